@@ -1,0 +1,53 @@
+// One open scene and what is compiled from it: the engines' only meeting place. Used by the command
+// line and by the window; knows neither.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "field/build_field.h"
+#include "geometry/mesh_report.h"
+#include "geometry/mesh_unit.h"
+#include "haptics/snapshot.h"
+#include "scene/scene.h"
+
+namespace patina {
+
+struct OpenOptions {
+  MeshUnit unit = MeshUnit::mm;
+  std::optional<double> iso; // needed for a volume from elsewhere
+};
+
+struct OpenedScene {
+  Scene scene;
+  std::vector<std::string> warnings; // one line each
+};
+
+// A mesh (.obj .ply .stl), a workspace folder, a volume (.vti). Throws FileError; nothing is kept.
+OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options);
+
+// A mesh in metres as a scene of one object.
+Scene sceneOf(TriangleMesh mesh, const std::string& name);
+
+// The scene's objects as one mesh in the world frame.
+TriangleMesh worldMesh(const Scene& scene);
+
+// Everything that a scene compiles to. Immutable.
+struct CompiledScene {
+  Scene scene;
+  TriangleMesh mesh; // world frame
+  MeshReport mesh_report;
+  BuiltField built; // with the sample layer
+  std::shared_ptr<const HapticSnapshot> snapshot;
+};
+// Slow; polls progress, throws Cancelled. Safe on a background thread.
+std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress);
+// Only haptic values changed: keeps the field.
+std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
+                                               const HapticProperties& haptics);
+
+} // namespace patina

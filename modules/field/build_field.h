@@ -1,0 +1,35 @@
+// From a mesh to its sampled implicit surface (K01, K02).
+#pragma once
+
+#include <memory>
+
+#include "core/progress.h"
+#include "field/surface_field.h"
+#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
+
+namespace patina {
+
+struct FieldReport {
+  double seconds = 0;     // wall
+  double cpu_seconds = 0; // of all threads
+  std::size_t blocks = 0;
+  std::size_t bytes = 0;
+  std::size_t dense_bytes = 0;       // distance + face for every node of the same grid
+  std::size_t dropped_triangles = 0; // non-finite and degenerate
+  std::size_t ambiguous_signs = 0;   // nodes where the sign rules disagree; the majority stands
+};
+
+struct BuiltField {
+  std::shared_ptr<const SurfaceField> field; // distance, face and coarse layers
+  FieldReport report;
+};
+
+// Exact distance and nearest face for every node with |phi| <= band; sign by connected components
+// of edges that the surface cannot cross (|d1| + |d2| > length) and one generalised winding number
+// for each, cross-checked. Parallel; polls `progress` and throws Cancelled. Degenerate and
+// non-finite triangles are dropped and counted. Face indices refer to `mesh` as given. Throws Error
+// if no triangle is left or the grid is impossible.
+BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress);
+
+} // namespace patina

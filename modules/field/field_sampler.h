@@ -1,0 +1,60 @@
+// Value and direction of a field at any point, in constant time and without allocation.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "field/surface_field.h"
+
+namespace patina {
+
+// kim: trilinear value and the trilinear blend of nodal gradients (K05, F1: direction O(h^2), value
+// O(h^2)). high: same direction, value = average of trilinear and gradient-Taylor blend (F15:
+// O(h^3)).
+enum class Sampler : std::uint8_t { kim, high };
+
+Sampler parseSampler(std::string_view text); // throws Error naming the choices
+std::string_view name(Sampler sampler);
+
+enum class FieldRegion : std::uint8_t {
+  band,    // exact: all eight nodes stored
+  outside, // farther than the band: phi is a lower bound of the distance, gradient zero
+  deep,    // inside, deeper than the band: from the coarse nodes
+  nowhere, // a NaN point: phi = +infinity
+};
+
+// In voxels; the gradient is dimensionless and not normalised.
+struct GridSample {
+  double phi = 0;
+  Vec3 gradient = Vec3::Zero();
+  FieldRegion region = FieldRegion::outside;
+};
+
+// A view: the field must outlive it and must have its sample layer; `deep` needs the coarse layer,
+// without which deep points report phi = -band and a zero gradient. Any thread.
+class FieldSampler {
+ public:
+  FieldSampler(const SurfaceField& field, Sampler sampler); // invalid_argument without samples
+
+  GridSample atGrid(const Vec3& q) const noexcept; // q in grid coordinates
+  // Only the value, for root finding along a ray.
+  double phiAtGrid(const Vec3& q) const noexcept;
+  // In metres: phi [m].
+  GridSample at(const Vec3& p) const noexcept {
+    GridSample sample = atGrid(grid_.toGrid(p));
+    sample.phi *= grid_.voxel;
+    return sample;
+  }
+  // Nearest face of the nearest stored node of p's cell; -1 if none.
+  std::int32_t faceNear(const Vec3& p) const noexcept;
+
+  const FieldGrid& grid() const noexcept { return grid_; }
+  Sampler sampler() const noexcept { return sampler_; }
+
+ private:
+  const SurfaceField* field_;
+  FieldGrid grid_;
+  Sampler sampler_;
+};
+
+} // namespace patina

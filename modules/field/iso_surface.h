@@ -1,0 +1,17 @@
+// The surface phi = iso of a field as triangles, block by block, so that an edited block is
+// extracted alone (K26).
+#pragma once
+
+#include "field/surface_field.h"
+#include "geometry/triangle_mesh.h"
+
+namespace patina {
+
+// Cells of one stored block; vertices on shared cell faces coincide bit for bit with the
+// neighbour's. iso in metres, |iso| < band. Outward-facing (towards growing phi).
+TriangleMesh isoSurfaceOfBlock(const SurfaceField& field, std::int32_t slot, double iso);
+
+// All blocks, welded: closed if the iso-surface stays inside the band. Parallel.
+TriangleMesh isoSurface(const SurfaceField& field, double iso);
+
+} // namespace patina

@@ -1,0 +1,54 @@
+// The servo thread: device -> stages -> limit -> device (DESIGN section 4).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/ring.h"
+#include "core/snapshot_exchange.h"
+#include "haptics/device.h"
+#include "haptics/snapshot.h"
+#include "scene/tool_sample.h"
+
+namespace patina {
+
+struct ServoTiming {
+  std::string policy; // "SCHED_FIFO 50, memory locked" or what was refused
+  bool realtime = false;
+  std::uint64_t ticks = 0;
+  std::uint64_t missed = 0; // deadlines that passed by more than a period
+  // Of the last window of ticks, from a histogram [us]:
+  double late_p50 = 0, late_p99 = 0, late_p999 = 0, late_max = 0;
+  double step_p50_ns = 0, step_p99_ns = 0;
+  double rate_hz = 0;
+};
+
+class ServoLoop {
+ public:
+  // Does not start. rate in 100 .. 10000 Hz.
+  ServoLoop(std::unique_ptr<Device> device, double rate_hz = 1000);
+  ~ServoLoop(); // stops
+  ServoLoop(const ServoLoop&) = delete;
+  ServoLoop& operator=(const ServoLoop&) = delete;
+
+  void start();
+  void stop();
+  bool running() const;
+
+  void publish(std::shared_ptr<const HapticSnapshot> snapshot); // any one thread
+  Ring<ToolSample>& samples(); // consumer: one thread; holds 1 s at least
+  ServoTiming timing() const;  // any thread
+  Device& device();            // for setTarget and info only
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// The wake-up histogram of this machine, without device or scene.
+ServoTiming measureLatency(double seconds, double rate_hz = 1000);
+
+} // namespace patina

@@ -1,0 +1,39 @@
+// What the servo reads: compiled from a scene, immutable (DESIGN section 3).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptics/stage.h"
+#include "scene/scene.h"
+
+namespace patina {
+
+struct StageInfo {
+  std::string name;      // "contact", "damping", "friction", "limit"
+  std::string why;       // "friction.static = 0.5"
+  std::size_t bytes = 0; // held for this stage beyond the stage itself
+};
+
+struct HapticSnapshot {
+  std::shared_ptr<const SurfaceField> field; // with its sample layer; world frame
+  std::vector<std::unique_ptr<const ForceStage>> stages;
+  std::vector<StageInfo> why; // one entry a stage
+};
+
+// Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never
+// left out. `field` is the field of the scene's objects in the world frame.
+std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
+                                                    std::shared_ptr<const SurfaceField> field);
+
+// For the proof that pruning changes nothing: every stage present, absent values neutral.
+std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
+                                                       std::shared_ptr<const SurfaceField> field);
+
+// One servo tick as a pure function of its arguments: dt is passed in, no clock is read.
+// A NaN or infinite tip: no contact, zero force, counted in memory.bad_tips.
+Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
+             double dt) noexcept;
+
+} // namespace patina

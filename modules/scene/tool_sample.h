@@ -1,0 +1,26 @@
+// What the servo thread says about one tick; drained by the window, recorders and (later) the
+// brush.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/triangle_mesh.h"
+
+namespace patina {
+
+struct ToolSample {
+  double t = 0;               // [s] since the loop began
+  Vec3 tip = Vec3::Zero();    // [m], world
+  Vec3 force = Vec3::Zero();  // [N] on the hand
+  Vec3 vcp = Vec3::Zero();    // virtual contact point [m]; the tip if there is no contact
+  Vec3 normal = Vec3::Zero(); // unit, outward; zero if there is no contact
+  double depth = 0;           // |vcp - tip| along the normal [m]
+  std::int32_t face = -1;     // nearest face of the VCP
+  bool contact = false;
+  bool deep = false;         // deeper than the band: coarse field or held VCP
+  bool fault = false;        // a jump faded the force to zero (F13)
+  std::uint32_t step_ns = 0; // time inside tick()
+  std::uint32_t late_ns = 0; // wake-up after its deadline
+};
+
+} // namespace patina
