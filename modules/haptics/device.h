@@ -30,8 +30,16 @@ class Device {
   virtual DeviceInfo info() const = 0;
 };
 
+// One exact step of m x'' + b x' = F with F held over dt (MATH 2.1): x += c v + d F, v = a v + e F.
+// b = 0 and b dt/m -> 0 keep all their digits.
+struct HeldForceStep {
+  double a, c, d, e;
+};
+HeldForceStep heldForceStep(double mass, double damping, double dt) noexcept;
+
 // A point mass with viscous damping in a hand that pushes with a given force, stepped exactly for a
-// force held over dt (F2, section 2.1). b = 0 is handled.
+// force held over dt (F2). Throws std::invalid_argument unless mass > 0 and
+// damping >= 0.
 struct SimulatedDeviceSpec {
   double mass = 0.1;    // [kg]
   double damping = 0.5; // [N s/m]

@@ -20,7 +20,7 @@ struct ServoTiming {
   bool realtime = false;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0; // deadlines that passed by more than a period
-  // Of the last window of ticks, from a histogram [us]:
+  // Of the last 8192 ticks at least, exact percentiles [us]:
   double late_p50 = 0, late_p99 = 0, late_p999 = 0, late_max = 0;
   double step_p50_ns = 0, step_p99_ns = 0;
   double rate_hz = 0;
@@ -39,9 +39,9 @@ class ServoLoop {
   bool running() const;
 
   void publish(std::shared_ptr<const HapticSnapshot> snapshot); // any one thread
-  Ring<ToolSample>& samples(); // consumer: one thread; holds 1 s at least
-  ServoTiming timing() const;  // any thread
-  Device& device();            // for setTarget and info only
+  Ring<ToolSample>& samples();  // consumer: one thread; holds 1 s at least
+  ServoTiming timing() const;   // any thread
+  const Device& device() const; // for info(); keep your own pointer to a MouseDevice
 
  private:
   struct Impl;

@@ -1,0 +1,55 @@
+#include "haptics/realtime.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <time.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace patina {
+namespace {
+
+constexpr int kPriority = 50;
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+// Touched once, the pages stay; the servo's own frames are far smaller.
+[[gnu::noinline]] void prefaultStack() {
+  volatile char page_touch[64 * 1024];
+  for (std::size_t i = 0; i < sizeof(page_touch); i += 1024) page_touch[i] = 0;
+}
+
+} // namespace
+
+std::int64_t monotonicNs() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * kSecond + now.tv_nsec;
+}
+
+void sleepUntil(std::int64_t monotonic_ns) noexcept {
+  const timespec until{monotonic_ns / kSecond, monotonic_ns % kSecond};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+RealtimeGrant requestRealtime() {
+  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  prefaultStack();
+  sched_param parameter{};
+  parameter.sched_priority = kPriority;
+  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+  // ONFAULT: what is in memory stays there, without reading in every page of the program at once.
+  const bool locked = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+  const std::string memory =
+      locked ? "memory locked" : std::string("memory not locked: ") + std::strerror(errno);
+  if (refused != 0) {
+    return {false, std::string("SCHED_OTHER (SCHED_FIFO refused: ") + std::strerror(refused) +
+                       "), " + memory};
+  }
+  return {true, "SCHED_FIFO " + std::to_string(kPriority) + ", " + memory};
+}
+
+} // namespace patina

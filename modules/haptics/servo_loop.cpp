@@ -1,0 +1,215 @@
+#include "haptics/servo_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "haptics/realtime.h"
+#include "haptics/timing_window.h"
+
+namespace patina {
+namespace {
+
+constexpr std::size_t kTimingTicks = 8192;
+constexpr double kNsPerSecond = 1e9;
+constexpr int kRateTicks = 250;
+
+double checkedRate(double rate_hz) {
+  if (!(rate_hz >= 100 && rate_hz <= 10000)) {
+    throw std::invalid_argument("servo rate must be between 100 and 10000 Hz");
+  }
+  return rate_hz;
+}
+
+ServoTiming summary(const TimingWindow& window, const RealtimeGrant& grant) {
+  ServoTiming timing;
+  timing.policy = grant.policy;
+  timing.realtime = grant.realtime;
+  const TimingWindow::Percentiles late = window.late();
+  const TimingWindow::Percentiles step = window.step();
+  timing.late_p50 = late.p50 * 1e-3;
+  timing.late_p99 = late.p99 * 1e-3;
+  timing.late_p999 = late.p999 * 1e-3;
+  timing.late_max = late.max * 1e-3;
+  timing.step_p50_ns = step.p50;
+  timing.step_p99_ns = step.p99;
+  timing.ticks = window.count();
+  return timing;
+}
+
+} // namespace
+
+struct ServoLoop::Impl {
+  Impl(std::unique_ptr<Device> device_in, double rate_hz)
+      : device(std::move(device_in)),
+        period_ns(static_cast<std::int64_t>(kNsPerSecond / checkedRate(rate_hz))),
+        samples(std::max<std::size_t>(4096, static_cast<std::size_t>(rate_hz))),
+        window(kTimingTicks) {
+    if (!device) throw std::invalid_argument("servo loop: no device");
+  }
+
+  void run() noexcept {
+    // The only allocation of this thread: before the first tick, and handed over by `granted`.
+    grant = requestRealtime();
+    granted.store(true, std::memory_order_release);
+
+    const std::int64_t start = monotonicNs();
+    rate_mark = start;
+    PeriodicClock clock(start, period_ns);
+    std::int64_t last_wake = start;
+    const SurfaceField* felt = nullptr;
+    ContactMemory memory;
+    Vec3 force = Vec3::Zero();
+    while (!stopping.load(std::memory_order_relaxed)) {
+      const std::int64_t deadline = clock.nextDeadline();
+      sleepUntil(deadline);
+      const std::int64_t woke = monotonicNs();
+      missed.fetch_add(static_cast<std::uint64_t>(clock.woke(woke)), std::memory_order_relaxed);
+      const double dt = static_cast<double>(woke - last_wake) / kNsPerSecond;
+      last_wake = woke;
+
+      const DeviceState state = device->exchange(force, dt);
+      const HapticSnapshot* snapshot = exchange.latest();
+      const SurfaceField* field = snapshot ? snapshot->field.get() : nullptr;
+      if (field != felt) {
+        memory.reset(); // contact points of another surface mean nothing here
+        felt = field;
+      }
+      ToolSample sample;
+      sample.t = static_cast<double>(woke - start) / kNsPerSecond;
+      sample.tip = state.tip;
+      sample.vcp = state.tip;
+      const std::int64_t before = monotonicNs();
+      if (snapshot) {
+        const Contact contact = tick(*snapshot, memory, state.tip, dt);
+        fill(sample, contact, *field);
+        force = contact.force;
+      } else {
+        force.setZero();
+      }
+      const std::int64_t step = monotonicNs() - before;
+      sample.step_ns = static_cast<std::uint32_t>(std::min<std::int64_t>(step, UINT32_MAX));
+      sample.late_ns =
+          static_cast<std::uint32_t>(std::clamp<std::int64_t>(woke - deadline, 0, UINT32_MAX));
+      window.record(woke - deadline, step);
+      measureRate(woke);
+      samples.push(sample);
+    }
+    // A stopped loop leaves no force behind.
+    device->exchange(Vec3::Zero(), static_cast<double>(period_ns) / kNsPerSecond);
+  }
+
+  static void fill(ToolSample& sample, const Contact& contact, const SurfaceField& field) noexcept {
+    sample.force = contact.force;
+    sample.contact = contact.touching;
+    sample.deep = contact.deep;
+    sample.fault = contact.fault;
+    if (!contact.touching) return;
+    sample.vcp = contact.vcp;
+    sample.normal = contact.normal;
+    sample.depth = contact.depth;
+    sample.face = FieldSampler(field, Sampler::kim).faceNear(contact.vcp);
+  }
+
+  void measureRate(std::int64_t woke) noexcept {
+    if (++ticks_since_mark < kRateTicks) return;
+    measured_rate.store(kRateTicks * kNsPerSecond / static_cast<double>(woke - rate_mark),
+                        std::memory_order_relaxed);
+    rate_mark = woke;
+    ticks_since_mark = 0;
+  }
+
+  std::unique_ptr<Device> device;
+  std::int64_t period_ns;
+  SnapshotExchange<HapticSnapshot> exchange;
+  Ring<ToolSample> samples;
+  TimingWindow window;
+  std::thread thread;
+  std::atomic<bool> stopping{false};
+  std::atomic<bool> granted{false};
+  std::atomic<std::uint64_t> missed{0};
+  std::atomic<double> measured_rate{0};
+  RealtimeGrant grant;        // written before `granted`, constant after
+  std::int64_t rate_mark = 0; // servo thread's own, as the next
+  int ticks_since_mark = 0;
+};
+
+ServoLoop::ServoLoop(std::unique_ptr<Device> device, double rate_hz)
+    : impl_(std::make_unique<Impl>(std::move(device), rate_hz)) {}
+
+ServoLoop::~ServoLoop() {
+  stop();
+}
+
+void ServoLoop::start() {
+  if (running()) return;
+  impl_->stopping.store(false);
+  impl_->granted.store(false);
+  impl_->thread = std::thread([this] { impl_->run(); });
+}
+
+void ServoLoop::stop() {
+  if (!running()) return;
+  impl_->stopping.store(true);
+  impl_->thread.join();
+}
+
+bool ServoLoop::running() const {
+  return impl_->thread.joinable();
+}
+
+void ServoLoop::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
+  impl_->exchange.publish(std::move(snapshot));
+  if (!running()) return;
+  std::this_thread::sleep_for(std::chrono::nanoseconds(2 * impl_->period_ns));
+  impl_->exchange.collect();
+}
+
+Ring<ToolSample>& ServoLoop::samples() {
+  return impl_->samples;
+}
+
+const Device& ServoLoop::device() const {
+  return *impl_->device;
+}
+
+ServoTiming ServoLoop::timing() const {
+  const bool granted = impl_->granted.load(std::memory_order_acquire);
+  ServoTiming timing = summary(impl_->window, granted ? impl_->grant : RealtimeGrant{});
+  timing.missed = impl_->missed.load(std::memory_order_relaxed);
+  timing.rate_hz = impl_->measured_rate.load(std::memory_order_relaxed);
+  return timing;
+}
+
+ServoTiming measureLatency(double seconds, double rate_hz) {
+  const auto period_ns = static_cast<std::int64_t>(kNsPerSecond / checkedRate(rate_hz));
+  if (!(seconds > 0 && seconds <= 3600)) {
+    throw std::invalid_argument("latency measurement takes more than 0 and at most 3600 s");
+  }
+  const auto wakeups = static_cast<std::size_t>(std::max(1.0, seconds * rate_hz));
+  TimingWindow window(wakeups);
+  RealtimeGrant grant;
+  std::int64_t missed = 0;
+  std::int64_t elapsed = 0;
+  std::thread thread([&] {
+    grant = requestRealtime();
+    const std::int64_t start = monotonicNs();
+    PeriodicClock clock(start, period_ns);
+    for (std::size_t i = 0; i < wakeups; ++i) {
+      const std::int64_t deadline = clock.nextDeadline();
+      sleepUntil(deadline);
+      const std::int64_t woke = monotonicNs();
+      missed += clock.woke(woke);
+      window.record(woke - deadline, 0);
+    }
+    elapsed = monotonicNs() - start;
+  });
+  thread.join();
+  ServoTiming timing = summary(window, grant);
+  timing.missed = static_cast<std::uint64_t>(missed);
+  timing.rate_hz = static_cast<double>(wakeups) * kNsPerSecond / static_cast<double>(elapsed);
+  return timing;
+}
+
+} // namespace patina
