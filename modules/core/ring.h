@@ -9,7 +9,8 @@
 namespace patina {
 
 template <typename T> class Ring {
-  static_assert(std::is_trivially_copyable_v<T>);
+  // Eigen's fixed vectors are plain but not "trivially copyable"; what matters is that nothing is owned.
+  static_assert(std::is_trivially_destructible_v<T>);
 
  public:
   // capacity is rounded up to a power of two; all memory is touched here, none later.
