@@ -1,0 +1,157 @@
+#include "haptics/servo_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "haptics/realtime.h"
+#include "haptics/timing_window.h"
+
+namespace patina {
+namespace {
+
+std::shared_ptr<const HapticSnapshot> sphereSnapshot(double stiffness) {
+  const double radius = 0.05;
+  FieldSpec spec;
+  spec.resolution = 48;
+  const FieldGrid grid = gridAround(Box3(Vec3::Constant(-radius), Vec3::Constant(radius)), spec);
+  auto field = std::make_shared<const SurfaceField>(
+      sampleFunction([=](const Vec3& p) { return p.norm() - radius; }, grid, spec.band));
+  Scene scene;
+  scene.haptics.stiffness = stiffness;
+  return compileStages(scene, withSamples(field));
+}
+
+// A device that stands still inside the sphere and keeps what it was asked to render.
+class StillDevice final : public Device {
+ public:
+  DeviceState exchange(const Vec3& force, double dt) noexcept override {
+    force_x.store(force.x());
+    if (dt <= 0) bad_dt.store(true);
+    exchanges.fetch_add(1);
+    return {Vec3(0.049, 0, 0), false, false};
+  }
+  DeviceInfo info() const override { return {"still", 0, 0, ""}; }
+
+  std::atomic<double> force_x{-1};
+  std::atomic<int> exchanges{0};
+  std::atomic<bool> bad_dt{false};
+};
+
+void waitForExchanges(const StillDevice& device, int count) {
+  const int until = device.exchanges.load() + count;
+  for (int i = 0; i < 5000 && device.exchanges.load() < until; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ASSERT_GE(device.exchanges.load(), until) << "the servo does not run";
+}
+
+TEST(ServoLoop, RendersNothingBeforeTheFirstSnapshotAndAnEditFromTheNextTickOn) {
+  auto owned = std::make_unique<StillDevice>();
+  StillDevice& device = *owned;
+  ServoLoop loop(std::move(owned));
+  loop.start();
+  waitForExchanges(device, 20);
+  EXPECT_EQ(device.force_x.load(), 0.0);
+  loop.publish(sphereSnapshot(500));
+  waitForExchanges(device, 20);
+  EXPECT_NEAR(device.force_x.load(), 500 * 0.001, 0.02);
+  loop.publish(sphereSnapshot(1000));
+  waitForExchanges(device, 20);
+  EXPECT_NEAR(device.force_x.load(), 1000 * 0.001, 0.04);
+  loop.stop();
+  EXPECT_EQ(device.force_x.load(), 0.0) << "a stopped loop leaves no force behind";
+  EXPECT_FALSE(device.bad_dt.load());
+}
+
+TEST(ServoLoop, ReportsEveryTickThroughTheRing) {
+  ServoLoop loop(makeReplayDevice({Vec3(0.049, 0, 0)}));
+  loop.publish(sphereSnapshot(500));
+  loop.start();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  loop.stop();
+  ToolSample sample;
+  std::uint64_t drained = 0;
+  double last_t = -1;
+  while (loop.samples().pop(sample)) {
+    EXPECT_GT(sample.t, last_t);
+    last_t = sample.t;
+    EXPECT_TRUE(sample.contact);
+    EXPECT_NEAR(sample.vcp.x(), 0.05, 1e-4);
+    ++drained;
+  }
+  const ServoTiming timing = loop.timing();
+  EXPECT_EQ(drained, timing.ticks);
+  EXPECT_GT(drained, 100u);
+  EXPECT_FALSE(timing.policy.empty());
+  // Between them, ticks and missed deadlines account for the whole time.
+  EXPECT_NEAR(static_cast<double>(timing.ticks + timing.missed), 300, 60);
+}
+
+TEST(ServoLoop, StartsAndStopsAgainAndAgain) {
+  ServoLoop loop(makeReplayDevice({Vec3::Zero()}), 10000);
+  for (int i = 0; i < 20; ++i) {
+    loop.start();
+    EXPECT_TRUE(loop.running());
+    loop.stop();
+    EXPECT_FALSE(loop.running());
+  }
+}
+
+TEST(ServoLoop, FreesSnapshotsThatItHasLeft) {
+  ServoLoop loop(makeReplayDevice({Vec3(0.049, 0, 0)}));
+  loop.start();
+  std::weak_ptr<const HapticSnapshot> first;
+  {
+    auto snapshot = sphereSnapshot(500);
+    first = snapshot;
+    loop.publish(std::move(snapshot));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_FALSE(first.expired()) << "the servo still reads it";
+  const auto second = sphereSnapshot(600);
+  for (int i = 0; i < 50 && !first.expired(); ++i) loop.publish(second);
+  EXPECT_TRUE(first.expired());
+}
+
+TEST(ServoLoop, RefusesARateOutOfRange) {
+  EXPECT_THROW(ServoLoop(makeReplayDevice({Vec3::Zero()}), 50), std::invalid_argument);
+  EXPECT_THROW(ServoLoop(makeReplayDevice({Vec3::Zero()}), 20000), std::invalid_argument);
+  EXPECT_THROW(ServoLoop(nullptr), std::invalid_argument);
+}
+
+TEST(PeriodicClock, CountsAndSkipsMissedDeadlines) {
+  PeriodicClock clock(0, 1000);
+  EXPECT_EQ(clock.nextDeadline(), 1000);
+  EXPECT_EQ(clock.woke(1400), 0);
+  EXPECT_EQ(clock.nextDeadline(), 2000);
+  EXPECT_EQ(clock.woke(5500), 3) << "3000, 4000 and 5000 went by";
+  EXPECT_EQ(clock.nextDeadline(), 6000);
+}
+
+TEST(TimingWindow, GivesNearestRankPercentilesOfTheLastTicks) {
+  TimingWindow window(100);
+  EXPECT_EQ(window.late().max, 0.0);
+  for (int i = 0; i < 50; ++i) window.record(1'000'000, 1); // fall out of the window below
+  for (int i = 1; i <= 100; ++i) window.record(i, 2 * i);
+  EXPECT_EQ(window.late().p50, 50);
+  EXPECT_EQ(window.late().p99, 99);
+  EXPECT_EQ(window.late().p999, 100);
+  EXPECT_EQ(window.step().max, 200);
+  window.record(-5, 0);
+  EXPECT_EQ(window.late().max, 100) << "a wake-up before its deadline is not late";
+}
+
+TEST(MeasureLatency, CountsOneWakeUpAPeriod) {
+  const ServoTiming timing = measureLatency(0.2, 1000);
+  EXPECT_EQ(timing.ticks, 200u);
+  EXPECT_GT(timing.late_max, 0);
+  EXPECT_LE(timing.late_p50, timing.late_p99);
+  EXPECT_LE(timing.late_p99, timing.late_max);
+  EXPECT_THROW(measureLatency(0), std::invalid_argument);
+}
+
+} // namespace
+} // namespace patina
