@@ -36,8 +36,9 @@ Vec3 faceNormal(const TriangleMesh& mesh, std::size_t triangle); // unit; zero i
 double area(const TriangleMesh& mesh);
 // Signed, by the divergence theorem; meaningful for a closed mesh only.
 double volume(const TriangleMesh& mesh);
+// A reflection turns the triangles round too, so that outside stays outside.
 TriangleMesh transformed(const TriangleMesh& mesh, const Eigen::Affine3d& target_from_mesh);
-// One mesh with the triangles of both.
+// One mesh with the triangles of both; texture coordinates only if both have them.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
 } // namespace patina
