@@ -1,0 +1,28 @@
+// What ParaView reads, for `patina export`. Every file is written atomically; all throw FileError.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+#include "scene/tool_sample.h"
+
+namespace patina {
+
+// Triangles in metres, with "face" (the index). Texture
+// coordinates are per corner and stay in OBJ.
+void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh);
+
+// The tip's path as one line, with arrays "t [s]", "force [N]", "vcp [m]", "depth [m]", "contact".
+void writeToolPathVtp(const std::filesystem::path& path, const std::vector<ToolSample>& samples);
+
+// One file that opens the others together: (block name, file name relative to the .vtm).
+void writeCollectionVtm(const std::filesystem::path& path,
+                        const std::vector<std::pair<std::string, std::string>>& files);
+
+// Columns of the `feel` output.
+void writeToolSamplesCsv(const std::filesystem::path& path, const std::vector<ToolSample>& samples);
+
+} // namespace patina

@@ -1,0 +1,35 @@
+// What a picture shows and from where: the words of `patina render --show` and `--view`.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace patina {
+
+enum class Layer : std::uint8_t {
+  mesh,      // the surface as it was read
+  iso,       // the iso-surface of the field
+  slice,     // a plane through the field, coloured by distance, with its scalar bar
+  band,      // the extent of the stored blocks
+  tip,       // the tool, its true tip, the contact point and the force
+  nodes,     // the field's nodes near the tip (K26)
+  wireframe, // edges of the mesh and of the iso-surface
+};
+
+// "mesh,slice,band". Throws Error naming the choices.
+std::set<Layer> parseLayers(std::string_view text);
+std::string_view name(Layer layer);
+const std::vector<Layer>& allLayers();
+
+enum class ViewPreset : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z, iso };
+
+// "+x" (the camera stands on the +x side and looks along -x) ... "iso". Throws Error naming the
+// choices.
+ViewPreset parseView(std::string_view text);
+std::string_view name(ViewPreset view);
+const std::vector<ViewPreset>& allViews();
+
+} // namespace patina
