@@ -32,13 +32,21 @@ struct FaceBlock {
 
 // What the servo reads: one block look-up serves any point of its 8^3 cells. The 9^3 nodes are
 // those of the block and the first layer of its upper neighbours; each holds phi and the nodal
-// gradient (K04, central differences; dimensionless, |g| about 1). Derived from the distance layer.
+// gradient (K04: central differences, one-sided beside a node beyond the band; dimensionless, |g|
+// about 1). Nodes beyond the band hold +-kBeyondBand and a zero gradient. Derived from the distance
+// layer.
 struct alignas(16) SampleNode {
   float phi, gx, gy, gz;
 };
 inline constexpr int kSampleSide = kBlockSide + 1;
 struct SampleBlock {
-  std::array<SampleNode, kSampleSide * kSampleSide * kSampleSide> node;
+  std::array<SampleNode, kSampleSide * kSampleSide * kSampleSide> node; // x fastest
+  std::array<std::uint64_t, kBlockSide>
+      complete; // [z], bit 8 y + x: all 8 nodes of the cell stored
+
+  bool cellComplete(int x, int y, int z) const {
+    return complete[static_cast<std::size_t>(z)] >> (kBlockSide * y + x) & 1;
+  }
 };
 
 // Distance at every block corner, 8 voxels apart, in voxels: what contact deeper than the band
