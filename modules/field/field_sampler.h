@@ -17,9 +17,9 @@ Sampler parseSampler(std::string_view text); // throws Error naming the choices
 std::string_view name(Sampler sampler);
 
 enum class FieldRegion : std::uint8_t {
-  band,    // exact: all eight nodes stored
+  band,    // all eight nodes stored
   outside, // farther than the band: phi is a lower bound of the distance, gradient zero
-  deep,    // inside, deeper than the band: from the coarse nodes
+  deep,    // inside, deeper than band - 2.75 voxels: from the coarse nodes
   nowhere, // a NaN point: phi = +infinity
 };
 
@@ -30,8 +30,11 @@ struct GridSample {
   FieldRegion region = FieldRegion::outside;
 };
 
-// A view: the field must outlive it and must have its sample layer; `deep` needs the coarse layer,
-// without which deep points report phi = -band and a zero gradient. Any thread.
+// A view: the field must outlive it and must have its sample layer. Any thread.
+//
+// From band to deep the value passes over one voxel of depth to the coarse one, which is held at
+// band - 1.75 or deeper: depth is continuous and never falls on the way in. Without a coarse layer
+// points deeper than the band report phi = -band and a zero gradient.
 class FieldSampler {
  public:
   FieldSampler(const SurfaceField& field, Sampler sampler); // invalid_argument without samples
@@ -52,9 +55,17 @@ class FieldSampler {
   Sampler sampler() const noexcept { return sampler_; }
 
  private:
+  struct Cell;
+  bool findCell(const Vec3& q, Cell& cell) const noexcept;
+  GridSample beyondBand(const Vec3& q) const noexcept;
+  GridSample deepSample(const Vec3& q) const noexcept;
+  GridSample handOver(const Vec3& q, const GridSample& sample) const noexcept;
+
   const SurfaceField* field_;
   FieldGrid grid_;
   Sampler sampler_;
+  Vec3 last_node_;   // grid coordinates; cells lie in [0, last_node_)
+  double hand_over_; // phi below which the coarse nodes are blended in
 };
 
 } // namespace patina

@@ -1,0 +1,237 @@
+#include "field/field_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/error.h"
+
+namespace patina {
+
+Sampler parseSampler(std::string_view text) {
+  if (text == "kim") return Sampler::kim;
+  if (text == "high") return Sampler::high;
+  throw Error("unknown sampler '" + std::string(text) + "'; choose kim or high");
+}
+
+std::string_view name(Sampler sampler) {
+  return sampler == Sampler::kim ? "kim" : "high";
+}
+
+namespace {
+
+// One node, {phi, gx, gy, gz}: the compiler's portable vectors, SSE or NEON alike.
+using Float4 = float __attribute__((vector_size(16)));
+
+Float4 load(const SampleNode& node) {
+  Float4 value;
+  __builtin_memcpy(&value, __builtin_assume_aligned(&node, 16), sizeof(value));
+  return value;
+}
+
+constexpr std::size_t kRow = kSampleSide, kLayer = kSampleSide * kSampleSide;
+
+// Depth at which every cell is still complete is band - sqrt(3); the hand-over ends before it.
+constexpr double kHandOverEnd = 1.75, kHandOverWidth = 1;
+
+struct Blend {
+  Float4 sum;        // trilinear phi and gradient
+  float taylor_half; // 1/2 sum w_i g_i . (x - x_i), F15; zero if not asked for
+};
+
+template <bool kHigh> inline Blend blend(const SampleNode* node, float fx, float fy, float fz) {
+  const float ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
+  const float a = ex * ey, b = fx * ey, c = ex * fy, d = fx * fy;
+  const Float4 t0 = load(node[0]) * (a * ez), t1 = load(node[1]) * (b * ez);
+  const Float4 t2 = load(node[kRow]) * (c * ez), t3 = load(node[kRow + 1]) * (d * ez);
+  const SampleNode* up = node + kLayer;
+  const Float4 t4 = load(up[0]) * (a * fz), t5 = load(up[1]) * (b * fz);
+  const Float4 t6 = load(up[kRow]) * (c * fz), t7 = load(up[kRow + 1]) * (d * fz);
+  const Float4 odd = (t1 + t3) + (t5 + t7), s23 = t2 + t3, s67 = t6 + t7, upper = (t4 + t5) + s67;
+  const Float4 sum = ((t0 + t1) + s23) + upper;
+  if constexpr (!kHigh) return {sum, 0};
+  // sum w_i g_i . (f - c_i): the corners c_i with a coordinate of 1 are the upper half along it.
+  const Float4 y_upper = s23 + s67;
+  const float moment =
+      (fx * sum[1] - odd[1]) + (fy * sum[2] - y_upper[2]) + (fz * sum[3] - upper[3]);
+  return {sum, 0.5F * moment};
+}
+
+} // namespace
+
+struct FieldSampler::Cell {
+  const SampleNode* node; // the lowest of its eight
+  float fx, fy, fz;
+};
+
+FieldSampler::FieldSampler(const SurfaceField& field, Sampler sampler)
+    : field_(&field), grid_(field.grid), sampler_(sampler),
+      last_node_(field.grid.nodes[0] - 1, field.grid.nodes[1] - 1, field.grid.nodes[2] - 1) {
+  if (field.sample.size() != field.blockCount())
+    throw std::invalid_argument("FieldSampler: the field has no sample layer; call withSamples()");
+  hand_over_ = field.coarse.empty() ? -std::numeric_limits<double>::infinity()
+                                    : -(field.band - kHandOverEnd - kHandOverWidth);
+}
+
+// False unless all eight nodes are stored. NaN and infinity fail the comparisons, so that nothing
+// is converted that does not fit.
+inline bool FieldSampler::findCell(const Vec3& q, Cell& cell) const noexcept {
+  const double x = q[0], y = q[1], z = q[2];
+  if (!(x >= 0 && y >= 0 && z >= 0 && x < last_node_[0] && y < last_node_[1] && z < last_node_[2]))
+    return false;
+  const int i = static_cast<int>(x), j = static_cast<int>(y), k = static_cast<int>(z);
+  const std::int32_t slot = field_->slotOf(i / kBlockSide, j / kBlockSide, k / kBlockSide);
+  if (slot < 0) return false;
+  const SampleBlock& block = *field_->sample[static_cast<std::size_t>(slot)];
+  const int bi = i % kBlockSide, bj = j % kBlockSide, bk = k % kBlockSide;
+  if (!block.cellComplete(bi, bj, bk)) return false;
+  cell.node = &block.node[static_cast<std::size_t>((bk * kSampleSide + bj) * kSampleSide + bi)];
+  cell.fx = static_cast<float>(x - i);
+  cell.fy = static_cast<float>(y - j);
+  cell.fz = static_cast<float>(z - k);
+  return true;
+}
+
+GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
+  Cell cell;
+  if (!findCell(q, cell)) [[unlikely]]
+    return beyondBand(q);
+  const Blend value = sampler_ == Sampler::high
+                          ? blend<true>(cell.node, cell.fx, cell.fy, cell.fz)
+                          : blend<false>(cell.node, cell.fx, cell.fy, cell.fz);
+  GridSample sample;
+  sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
+  sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
+  sample.region = FieldRegion::band;
+  if (sample.phi < hand_over_) [[unlikely]]
+    return handOver(q, sample);
+  return sample;
+}
+
+double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {
+  Cell cell;
+  if (!findCell(q, cell)) [[unlikely]]
+    return beyondBand(q).phi;
+  const Blend value = sampler_ == Sampler::high
+                          ? blend<true>(cell.node, cell.fx, cell.fy, cell.fz)
+                          : blend<false>(cell.node, cell.fx, cell.fy, cell.fz);
+  const auto phi = static_cast<double>(value.sum[0] + value.taylor_half);
+  if (phi < hand_over_) [[unlikely]]
+    return atGrid(q).phi;
+  return phi;
+}
+
+namespace {
+
+int clampedIndex(double value, int last) {
+  return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(last)));
+}
+
+// Distance is 1-Lipschitz: far from the surface the nearest coarse node bounds it from below.
+double outsideBound(const SurfaceField& field, const Vec3& q) {
+  const double least = std::max(0.0, field.band - kHandOverEnd);
+  if (field.coarse.empty()) return least;
+  std::array<int, 3> at{};
+  Vec3 node;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    at[axis] = clampedIndex(std::round(q[a] / kBlockSide), field.blocks[axis]);
+    node[a] = kBlockSide * at[axis];
+  }
+  const std::size_t index = static_cast<std::size_t>(
+      (at[2] * (field.blocks[1] + 1) + at[1]) * (field.blocks[0] + 1) + at[0]);
+  const double bound = static_cast<double>(field.coarse[index].phi) - (q - node).norm();
+  return bound > least ? bound : least;
+}
+
+// Whether a point that is not in the band is inside: its block's mark, or its nearest node's sign.
+bool isInside(const SurfaceField& field, const Vec3& q) {
+  const auto& n = field.grid.nodes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = q[static_cast<Eigen::Index>(axis)];
+    if (!(x >= 0 && x <= n[axis] - 1)) return false;
+  }
+  return field.phiAt(static_cast<int>(std::lround(q[0])), static_cast<int>(std::lround(q[1])),
+                     static_cast<int>(std::lround(q[2]))) < 0;
+}
+
+} // namespace
+
+GridSample FieldSampler::beyondBand(const Vec3& q) const noexcept {
+  GridSample sample;
+  if (q.hasNaN()) {
+    sample.phi = std::numeric_limits<double>::infinity();
+    sample.region = FieldRegion::nowhere;
+    return sample;
+  }
+  if (isInside(*field_, q)) return deepSample(q);
+  sample.phi = outsideBound(*field_, q);
+  sample.region = FieldRegion::outside;
+  return sample;
+}
+
+GridSample FieldSampler::deepSample(const Vec3& q) const noexcept {
+  GridSample sample;
+  sample.region = FieldRegion::deep;
+  if (field_->coarse.empty()) {
+    sample.phi = -field_->band;
+    return sample;
+  }
+  std::array<int, 3> at{};
+  std::array<std::array<double, 2>, 3> weight{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double c = q[static_cast<Eigen::Index>(axis)] / kBlockSide;
+    at[axis] = clampedIndex(c, field_->blocks[axis] - 1);
+    const double f = std::clamp(c - at[axis], 0.0, 1.0);
+    weight[axis] = {1 - f, f};
+  }
+  double phi = 0;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const std::array<int, 3> step{static_cast<int>(corner & 1), static_cast<int>(corner >> 1 & 1),
+                                  static_cast<int>(corner >> 2)};
+    const std::size_t index = static_cast<std::size_t>(
+        ((at[2] + step[2]) * (field_->blocks[1] + 1) + at[1] + step[1]) * (field_->blocks[0] + 1) +
+        at[0] + step[0]);
+    const CoarseNode& node = field_->coarse[index];
+    const double w = weight[0][corner & 1] * weight[1][corner >> 1 & 1] * weight[2][corner >> 2];
+    phi += w * static_cast<double>(node.phi);
+    sample.gradient += w * Vec3(node.gx, node.gy, node.gz);
+  }
+  sample.phi = std::min(phi, -(field_->band - kHandOverEnd));
+  return sample;
+}
+
+GridSample FieldSampler::handOver(const Vec3& q, const GridSample& sample) const noexcept {
+  const double w = std::min((hand_over_ - sample.phi) / kHandOverWidth, 1.0);
+  GridSample deep = deepSample(q);
+  deep.phi += (1 - w) * (sample.phi - deep.phi);
+  deep.gradient += (1 - w) * (sample.gradient - deep.gradient);
+  return deep;
+}
+
+std::int32_t FieldSampler::faceNear(const Vec3& p) const noexcept {
+  const Vec3 q = grid_.toGrid(p);
+  const auto& n = grid_.nodes;
+  std::array<int, 3> cell{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = q[static_cast<Eigen::Index>(axis)];
+    if (!(x >= -1 && x <= n[axis])) return -1;
+    cell[axis] = static_cast<int>(std::floor(x));
+  }
+  std::int32_t nearest = -1;
+  double nearest_squared = std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    const int i = cell[0] + (corner & 1), j = cell[1] + (corner >> 1 & 1),
+              k = cell[2] + (corner >> 2);
+    const std::int32_t face = field_->faceAt(i, j, k);
+    const double squared = (q - Vec3(i, j, k)).squaredNorm();
+    if (face < 0 || squared >= nearest_squared) continue;
+    nearest = face;
+    nearest_squared = squared;
+  }
+  return nearest;
+}
+
+} // namespace patina
