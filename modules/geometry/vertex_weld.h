@@ -1,0 +1,77 @@
+// Gives equal points one index, by a hash of their bits. Internal to the readers and writers.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "core/types.h"
+
+namespace patina {
+
+class VertexWeld {
+ public:
+  explicit VertexWeld(std::size_t expected) {
+    slots_.resize(std::bit_ceil(2 * expected + 16));
+    points_.reserve(expected);
+  }
+
+  // Equal means the same bits, but -0 equals 0.
+  std::int32_t index(const Vec3& given) {
+    const Vec3 point = given.array() + 0.0; // -0 + 0 is +0
+    const std::uint64_t hash = hashOf(point);
+    const auto tag = static_cast<std::uint32_t>(hash >> 32);
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t at = hash & mask;; at = (at + 1) & mask) {
+      Slot& slot = slots_[at];
+      if (slot.index < 0) {
+        slot = {tag, static_cast<std::int32_t>(points_.size())};
+        points_.push_back(point);
+        const std::int32_t index = slot.index;
+        if (2 * points_.size() > slots_.size()) grow();
+        return index;
+      }
+      if (slot.tag == tag && sameBits(points_[static_cast<std::size_t>(slot.index)], point))
+        return slot.index;
+    }
+  }
+
+  const std::vector<Vec3>& points() const { return points_; }
+  std::vector<Vec3> takePoints() { return std::move(points_); }
+
+ private:
+  struct Slot {
+    std::uint32_t tag = 0;
+    std::int32_t index = -1;
+  };
+
+  static bool sameBits(const Vec3& a, const Vec3& b) {
+    bool same = true;
+    for (int k = 0; k < 3; ++k)
+      same &= std::bit_cast<std::uint64_t>(a[k]) == std::bit_cast<std::uint64_t>(b[k]);
+    return same;
+  }
+  static std::uint64_t hashOf(const Vec3& p) {
+    std::uint64_t hash = 0x9e3779b97f4a7c15u;
+    for (int k = 0; k < 3; ++k) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 0xbf58476d1ce4e5b9u;
+      hash ^= hash >> 29;
+    }
+    return hash * 0x94d049bb133111ebu ^ hash >> 31;
+  }
+  void grow() {
+    slots_.assign(2 * slots_.size(), Slot{});
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const std::uint64_t hash = hashOf(points_[i]);
+      std::size_t at = hash & mask;
+      while (slots_[at].index >= 0) at = (at + 1) & mask;
+      slots_[at] = {static_cast<std::uint32_t>(hash >> 32), static_cast<std::int32_t>(i)};
+    }
+  }
+
+  std::vector<Slot> slots_;
+  std::vector<Vec3> points_;
+};
+
+} // namespace patina
