@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/types.h"
@@ -49,7 +50,9 @@ void validate(const Scene& scene);
 
 // "friction.static", "0.5" and so on; the keys of DESIGN section 7. "none" makes a value absent.
 // Throws Error for an unknown key (listing those known) or a bad value; the scene is then
-// unchanged.
+// unchanged. Lengths take a unit ("0.5mm"). Of resolution and voxel the last one set holds. A first
+// friction coefficient is both, so that the two may be set in either order; "none" for either
+// takes friction away.
 void setValue(Scene& scene, const std::string& key, const std::string& value);
 // Keys and present values, in the order of the documentation.
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene);

@@ -1,0 +1,97 @@
+#include "scene/scene.h"
+
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+void require(bool holds, const std::string& key, double value, const std::string& range) {
+  if (!holds) throw Error(key + " = " + formatNumber(value) + ": it must be " + range);
+}
+
+// NaN fails every comparison, so it is refused here without a test of its own.
+void requireBetween(const std::string& key, double value, double low, double high,
+                    const std::string& unit) {
+  require(value >= low && value <= high, key, value,
+          "between " + formatNumber(low) + " and " + formatNumber(high) +
+              (unit.empty() ? "" : " " + unit));
+}
+
+void requirePositive(const std::string& key, double value, double high, const std::string& unit) {
+  require(value > 0 && value <= high, key, value,
+          "above 0 and at most " + formatNumber(high) + " " + unit);
+}
+
+void validate(const Friction& friction) {
+  requireBetween("friction.static", friction.static_coefficient, 0, 10, "");
+  requireBetween("friction.dynamic", friction.dynamic_coefficient, 0, 10, "");
+  requireBetween("friction.depth", friction.depth_gain, 0, 100, "");
+  require(friction.dynamic_coefficient <= friction.static_coefficient, "friction.dynamic",
+          friction.dynamic_coefficient,
+          "at most friction.static = " + formatNumber(friction.static_coefficient));
+}
+
+void validate(const HapticProperties& haptics) {
+  requireBetween("stiffness", haptics.stiffness, 0, 1e7, "N/m");
+  if (haptics.damping) requireBetween("damping", *haptics.damping, 0, 1e4, "N s/m");
+  if (haptics.friction) validate(*haptics.friction);
+  if (haptics.tip_radius) requireBetween("tip.radius", *haptics.tip_radius, 0, 1, "m");
+  requirePositive("force.limit", haptics.force_limit, 1000, "N");
+}
+
+void validate(const FieldSpec& field) {
+  requireBetween("band", field.band, 2, 64, "voxels");
+  if (field.voxel) {
+    requirePositive("voxel", *field.voxel, 1000, "m");
+    return;
+  }
+  requireBetween("resolution", field.resolution, 8, 4096, "cells");
+  require(field.resolution > 2 * field.band + 2, "resolution", field.resolution,
+          "above 2 band + 2 = " + formatNumber(2 * field.band + 2) +
+              ", because the band lies on both ends");
+}
+
+bool isName(const std::string& name) {
+  if (name.empty() || name.size() > 100) return false;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    if (!letter && !(c >= '0' && c <= '9') && c != '-' && c != '_') return false;
+  }
+  return true;
+}
+
+void validate(const std::vector<SceneObject>& objects) {
+  std::set<std::string> seen;
+  for (const SceneObject& object : objects) {
+    if (!isName(object.name)) {
+      throw Error("object name '" + object.name +
+                  "': use 1 to 100 letters, digits, '-' and '_' only");
+    }
+    if (!seen.insert(object.name).second)
+      throw Error("object name '" + object.name + "' is used twice");
+    if (!object.mesh) throw Error("object '" + object.name + "' has no mesh");
+    const Eigen::Matrix3d rotation = object.world_from_object.linear();
+    const bool rigid =
+        object.world_from_object.matrix().allFinite() &&
+        (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
+        rotation.determinant() > 0;
+    // A scaled pose would scale distances and with them the force.
+    if (!rigid) throw Error("object '" + object.name + "': its pose is not a rigid transform");
+  }
+}
+
+} // namespace
+
+void validate(const Scene& scene) {
+  validate(scene.objects);
+  validate(scene.field);
+  validate(scene.haptics);
+  if (scene.device != "mouse" && scene.device != "simulated")
+    throw Error("device = " + scene.device + ": it must be mouse or simulated");
+}
+
+} // namespace patina

@@ -1,0 +1,203 @@
+// Scene values as text: one table serves setting, listing and the message for an unknown key.
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "scene/scene.h"
+
+namespace patina {
+namespace {
+
+double numberFor(const std::string& key, const std::string& text) {
+  const std::optional<double> value = parseNumber(text);
+  if (!value) throw Error(key + " = '" + text + "': it must be a number");
+  return *value;
+}
+
+double lengthFor(const std::string& key, const std::string& text) {
+  try {
+    return parseLength(text);
+  } catch (const Error& error) {
+    throw Error(key + ": " + error.what());
+  }
+}
+
+[[noreturn]] void refuseNone(const std::string& key) {
+  throw Error(key + " cannot be none: a scene always has one");
+}
+
+bool isNone(const std::string& text) {
+  return text == "none";
+}
+
+enum class Coefficient { static_one, dynamic_one };
+
+// One number given for friction that was absent is both coefficients, so that the order in which
+// the two are set does not matter and one alone is plain Coulomb friction.
+void setCoefficient(Scene& scene, Coefficient which, double value) {
+  Friction friction = scene.haptics.friction.value_or(Friction{});
+  const bool unset = friction.static_coefficient == 0 && friction.dynamic_coefficient == 0;
+  if (unset || which == Coefficient::static_one) friction.static_coefficient = value;
+  if (unset || which == Coefficient::dynamic_one) friction.dynamic_coefficient = value;
+  scene.haptics.friction = friction;
+}
+
+Friction& frictionOf(Scene& scene) {
+  if (!scene.haptics.friction) scene.haptics.friction.emplace();
+  return *scene.haptics.friction;
+}
+
+void setSlip(Scene& scene, const std::string& text) {
+  if (text == "paper") {
+    frictionOf(scene).slip = Friction::SlipDirection::paper;
+  } else if (text == "displacement") {
+    frictionOf(scene).slip = Friction::SlipDirection::displacement;
+  } else {
+    throw Error("friction.slip = '" + text + "': it must be paper or displacement");
+  }
+}
+
+std::string slipName(Friction::SlipDirection slip) {
+  return slip == Friction::SlipDirection::paper ? "paper" : "displacement";
+}
+
+std::optional<std::string> text(const std::optional<double>& value) {
+  if (!value) return std::nullopt;
+  return formatNumber(*value);
+}
+
+using Text = std::optional<std::string>;
+
+struct Entry {
+  const char* key;
+  std::function<void(Scene&, const std::string&)> set;
+  std::function<Text(const Scene&)> get;
+};
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> kEntries = {
+      {"stiffness",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) refuseNone("stiffness");
+         s.haptics.stiffness = numberFor("stiffness", t);
+       },
+       [](const Scene& s) { return Text(formatNumber(s.haptics.stiffness)); }},
+      {"damping",
+       [](Scene& s, const std::string& t) {
+         s.haptics.damping.reset();
+         if (!isNone(t)) s.haptics.damping = numberFor("damping", t);
+       },
+       [](const Scene& s) { return text(s.haptics.damping); }},
+      {"friction.static",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) return s.haptics.friction.reset();
+         setCoefficient(s, Coefficient::static_one, numberFor("friction.static", t));
+       },
+       [](const Scene& s) {
+         return s.haptics.friction ? text(s.haptics.friction->static_coefficient) : Text();
+       }},
+      {"friction.dynamic",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) return s.haptics.friction.reset();
+         setCoefficient(s, Coefficient::dynamic_one, numberFor("friction.dynamic", t));
+       },
+       [](const Scene& s) {
+         return s.haptics.friction ? text(s.haptics.friction->dynamic_coefficient) : Text();
+       }},
+      {"friction.depth",
+       [](Scene& s, const std::string& t) {
+         if (!isNone(t)) {
+           frictionOf(s).depth_gain = numberFor("friction.depth", t);
+         } else if (s.haptics.friction) {
+           s.haptics.friction->depth_gain = 0;
+         }
+       },
+       [](const Scene& s) {
+         const bool present = s.haptics.friction && s.haptics.friction->depth_gain != 0;
+         return present ? text(s.haptics.friction->depth_gain) : Text();
+       }},
+      {"friction.slip",
+       [](Scene& s, const std::string& t) {
+         if (!isNone(t)) {
+           setSlip(s, t);
+         } else if (s.haptics.friction) {
+           s.haptics.friction->slip = Friction::SlipDirection::paper;
+         }
+       },
+       [](const Scene& s) {
+         return s.haptics.friction ? Text(slipName(s.haptics.friction->slip)) : Text();
+       }},
+      {"tip.radius",
+       [](Scene& s, const std::string& t) {
+         s.haptics.tip_radius.reset();
+         if (!isNone(t)) s.haptics.tip_radius = lengthFor("tip.radius", t);
+       },
+       [](const Scene& s) { return text(s.haptics.tip_radius); }},
+      {"force.limit",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) refuseNone("force.limit");
+         s.haptics.force_limit = numberFor("force.limit", t);
+       },
+       [](const Scene& s) { return Text(formatNumber(s.haptics.force_limit)); }},
+      {"resolution",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) refuseNone("resolution");
+         const double cells = numberFor("resolution", t);
+         if (!(cells == std::floor(cells) && std::abs(cells) <= 1e6))
+           throw Error("resolution = '" + t + "': it must be a whole number of cells");
+         s.field.resolution = static_cast<int>(cells);
+         s.field.voxel.reset(); // whichever of the two was set last holds
+       },
+       [](const Scene& s) {
+         return s.field.voxel ? Text() : Text(std::to_string(s.field.resolution));
+       }},
+      {"voxel",
+       [](Scene& s, const std::string& t) {
+         s.field.voxel.reset();
+         if (!isNone(t)) s.field.voxel = lengthFor("voxel", t);
+       },
+       [](const Scene& s) { return text(s.field.voxel); }},
+      {"band",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) refuseNone("band");
+         s.field.band = numberFor("band", t);
+       },
+       [](const Scene& s) { return Text(formatNumber(s.field.band)); }},
+      {"sampler",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) refuseNone("sampler");
+         s.sampler = parseSampler(t);
+       },
+       [](const Scene& s) { return Text(std::string(name(s.sampler))); }},
+      {"device", [](Scene& s, const std::string& t) { s.device = t; },
+       [](const Scene& s) { return Text(s.device); }},
+  };
+  return kEntries;
+}
+
+} // namespace
+
+void setValue(Scene& scene, const std::string& key, const std::string& value) {
+  for (const Entry& entry : entries()) {
+    if (key != entry.key) continue;
+    Scene changed = scene; // meshes are shared, so this is cheap
+    entry.set(changed, value);
+    validate(changed);
+    scene = std::move(changed);
+    return;
+  }
+  std::string known;
+  for (const Entry& entry : entries()) known += std::string(" ") + entry.key;
+  throw Error("unknown key '" + key + "'; known are:" + known);
+}
+
+std::vector<std::pair<std::string, std::string>> values(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const Entry& entry : entries())
+    if (Text value = entry.get(scene)) list.emplace_back(entry.key, std::move(*value));
+  return list;
+}
+
+} // namespace patina
