@@ -27,6 +27,9 @@ struct OpenedScene {
   std::vector<std::string> warnings; // one line each
 };
 
+// What the engines leave out of a mesh, in words: one line a kind, nothing if nothing.
+std::vector<std::string> meshWarnings(const MeshReport& report);
+
 // A mesh (.obj .ply .stl), a workspace folder, a volume (.vti). Throws FileError; nothing is kept.
 OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options);
 

@@ -1,0 +1,11 @@
+#include "app/cli/commands.h"
+
+namespace patina::cli {
+
+std::vector<Command> allCommands() {
+  return {infoCommand(),        sceneCommand(),  fieldCommand(), sampleCommand(), feelCommand(),
+          renderCommand(),      exportCommand(), studyCommand(), modelCommand(),  devicesCommand(),
+          latencyTestCommand(), guiCommand(),    manCommand()};
+}
+
+} // namespace patina::cli

@@ -1,0 +1,22 @@
+// Every command, one a source file of the same name.
+#pragma once
+
+#include "app/cli/command.h"
+
+namespace patina::cli {
+
+Command infoCommand();
+Command sceneCommand();
+Command fieldCommand();
+Command sampleCommand();
+Command feelCommand();
+Command renderCommand();
+Command exportCommand();
+Command studyCommand();
+Command modelCommand();
+Command latencyTestCommand();
+Command devicesCommand();
+Command guiCommand();
+Command manCommand();
+
+} // namespace patina::cli

@@ -1,0 +1,48 @@
+// Where a command speaks: reports on stdout, warnings and the progress bar on stderr, Ctrl-C as a
+// cancel.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "core/json.h"
+#include "core/progress.h"
+
+namespace patina::cli {
+
+class Console {
+ public:
+  // Takes over SIGINT until destroyed. At most one at a time.
+  Console();
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  bool json = false;
+
+  // Cancelled by the first Ctrl-C; a second one ends the process at once.
+  Progress& progress() { return progress_; }
+  // From here on Ctrl-C ends the process: for work that touches no file and cannot be polled.
+  void endOnInterrupt();
+  void warn(const std::string& line);
+  // The report of a command: the object with --json, else the text.
+  void report(const Json& object, const std::string& text);
+  // For people who wait: no line of it is part of a report. Nothing with --json.
+  void say(const std::string& line);
+  // Removes the progress bar, if one is drawn.
+  void clearBar();
+
+ private:
+  void drawBar(double fraction, std::string_view what);
+
+  bool stderr_is_terminal_;
+  bool bar_drawn_ = false;
+  std::chrono::steady_clock::time_point last_draw_;
+  Progress progress_;
+};
+
+// "name   value" lines with the values aligned.
+std::string aligned(const std::vector<std::pair<std::string, std::string>>& rows);
+
+} // namespace patina::cli

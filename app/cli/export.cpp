@@ -1,0 +1,110 @@
+#include "app/cli/commands.h"
+#include "app/cli/reports.h"
+#include "app/cli/scene_options.h"
+#include "app/cli/tip_path.h"
+#include "core/csv.h"
+#include "core/error.h"
+#include "field/field_sampler.h"
+#include "field/iso_surface.h"
+#include "visualization/export_files.h"
+#include "visualization/field_io.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct ExportOptions {
+  std::filesystem::path input, output, path;
+  SceneOptions scene;
+};
+
+// The field at the mesh's own vertices: how far the sampled surface is from the given one.
+CsvTable vertexTable(const CompiledScene& compiled) {
+  CsvTable table;
+  table.columns = {"x [m]", "y [m]", "z [m]", "phi [m]", "nx", "ny", "nz"};
+  const FieldSampler sampler(*compiled.built.field, compiled.scene.sampler);
+  for (const Vec3& p : compiled.mesh.positions) {
+    const GridSample sample = sampler.at(p);
+    const double length = sample.gradient.norm();
+    const Vec3 n = length > 0 ? Vec3(sample.gradient / length) : Vec3::Zero();
+    table.rows.push_back({p.x(), p.y(), p.z(), sample.phi, n.x(), n.y(), n.z()});
+  }
+  return table;
+}
+
+int runExport(const ExportOptions& options, Console& console) {
+  const std::filesystem::path& folder = options.output;
+  std::vector<TimedTip> path;
+  if (!options.path.empty()) path = readTipPath(options.path);
+  const auto compiled =
+      compile(openWith(options.input, options.scene, console), console.progress());
+  std::vector<ToolSample> samples;
+  if (!path.empty()) samples = feel(*compiled->snapshot, path, console.progress());
+  console.progress().throwIfCancelled();
+
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    throw FileError(folder.string(), 0, "this folder cannot be made");
+  std::vector<std::pair<std::string, std::string>> blocks = {
+      {"mesh", "mesh.vtp"}, {"surface", "surface.vtp"}, {"field", "field.vti"}};
+  writeMeshVtp(folder / "mesh.vtp", compiled->mesh);
+  // With a finite tip the surface that is felt lies its radius outside.
+  const double iso = compiled->scene.haptics.tip_radius.value_or(0.0);
+  writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->built.field, iso));
+  writeField(folder / "field.vti", *compiled->built.field);
+  writeCsv(folder / "vertices.csv", vertexTable(*compiled));
+  if (!samples.empty()) {
+    writeToolPathVtp(folder / "path.vtp", samples);
+    writeToolSamplesCsv(folder / "forces.csv", samples);
+    blocks.emplace_back("path", "path.vtp");
+  }
+  writeCollectionVtm(folder / "scene.vtm", blocks);
+
+  Json files = Json::array();
+  TextRows rows;
+  for (const auto& [name, file] : blocks) {
+    files.push(file);
+    rows.emplace_back(name, (folder / file).string());
+  }
+  rows.emplace_back("vertices", (folder / "vertices.csv").string());
+  files.push("vertices.csv");
+  if (!samples.empty()) {
+    rows.emplace_back("forces", (folder / "forces.csv").string());
+    files.push("forces.csv");
+  }
+  rows.emplace_back("all", (folder / "scene.vtm").string());
+  files.push("scene.vtm");
+  Json json = Json::object();
+  json.set("folder", folder.string());
+  json.set("files", files);
+  console.report(json, aligned(rows));
+  return kDone;
+}
+
+} // namespace
+
+Command exportCommand() {
+  auto options = std::make_shared<ExportOptions>();
+  Command command;
+  command.name = "export";
+  command.summary = "write everything for ParaView";
+  command.description =
+      "Into the folder: mesh.vtp, surface.vtp (the surface that the tip's centre feels), "
+      "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens them "
+      "together, and with --path also path.vtp and forces.csv (as patina feel).\n"
+      "JSON: folder, files.";
+  command.examples = {"patina export workspace -o paraview",
+                      "patina export bunny.ply -o paraview --path tip.csv"};
+  command.input("INPUT", "Workspace, mesh (.obj .ply .stl) or volume (.vti).", options->input);
+  command.output("FOLDER", "Where to; made if it is missing.", options->output);
+  command.file("--path", "TIP.csv", "A tip path to feel and write too.", options->path);
+  addHapticOptions(command, options->scene);
+  addFieldOptions(command, options->scene);
+  addSamplerOption(command, options->scene);
+  addOpenOptions(command, options->scene.open);
+  command.run = [options](Console& console) { return runExport(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli

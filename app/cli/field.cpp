@@ -1,0 +1,53 @@
+#include "app/cli/commands.h"
+#include "app/cli/reports.h"
+#include "app/cli/scene_options.h"
+#include "core/error.h"
+#include "visualization/field_io.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct FieldOptions {
+  std::filesystem::path input, output;
+  SceneOptions scene;
+};
+
+int runField(const FieldOptions& options, Console& console) {
+  if (options.output.extension() != ".vti")
+    throw Error("--output: a field is a .vti file, not '" + options.output.string() + "'");
+  requireWritable(options.output);
+  const Scene scene = openWith(options.input, options.scene, console);
+  if (scene.objects.size() != 1)
+    throw Error(options.input.string() + ": needs exactly one object to build a field");
+  const BuiltField built = buildField(worldMesh(scene), scene.field, console.progress());
+  console.progress().throwIfCancelled();
+  writeField(options.output, *built.field);
+  console.report(fieldJson(*built.field, built.report),
+                 aligned(fieldRows(*built.field, built.report)));
+  return kDone;
+}
+
+} // namespace
+
+Command fieldCommand() {
+  auto options = std::make_shared<FieldOptions>();
+  Command command;
+  command.name = "field";
+  command.summary = "build the sampled implicit surface of a mesh";
+  command.description =
+      "Writes signed distance [m], negative inside, and the nearest face of every node in a band "
+      "about the surface, as a volume that ParaView opens. JSON: seconds, cpu_seconds, voxel [m], "
+      "resolution (cells), origin [m], band_voxels, blocks, bytes, dense_bytes, "
+      "dropped_triangles, ambiguous_signs.";
+  command.examples = {"patina field bunny.ply -o bunny.vti --resolution 200",
+                      "patina field bunny.ply -o bunny.vti --voxel 0.5mm --band 6 --json"};
+  command.input("MESH", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
+  command.output("FIELD.vti", "The field, compressed.", options->output);
+  addFieldOptions(command, options->scene);
+  addOpenOptions(command, options->scene.open);
+  command.run = [options](Console& console) { return runField(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli

@@ -1,0 +1,155 @@
+#include <cstdio>
+
+#include "app/cli/commands.h"
+#include "app/cli/reports.h"
+#include "app/cli/scene_options.h"
+#include "app/session.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "geometry/triangle_tree.h"
+#include "haptics/feel.h"
+#include "visualization/display.h"
+#include "visualization/picture.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct RenderOptions {
+  std::filesystem::path input, output;
+  std::set<Layer> layers = {Layer::mesh};
+  ViewPreset view = ViewPreset::iso;
+  PictureSize size;
+  std::optional<Vec3> tip;
+  SceneOptions scene;
+};
+
+PictureSize parseSize(const std::string& text) {
+  PictureSize size;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%6dx%6d%c", &size.width, &size.height, &rest) != 2 ||
+      size.width < 16 || size.height < 16 || size.width > 16384 || size.height > 16384)
+    throw Error("'" + text + "' is not WIDTHxHEIGHT with sides of 16 to 16384 pixels");
+  return size;
+}
+
+Vec3 parsePoint(const std::string& text) {
+  Vec3 point;
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos) throw Error("'" + text + "' is not X,Y,Z");
+    point[axis] = parseLength(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return point;
+}
+
+template <typename Value> std::string choices(const std::vector<Value>& all) {
+  std::string text;
+  for (const Value value : all) text += (text.empty() ? "" : " ") + std::string(name(value));
+  return text;
+}
+
+// The tool as the servo leaves it when it comes to `tip` from outside.
+ToolSample toolAt(const CompiledScene& compiled, const Vec3& tip, Progress& progress) {
+  const CleanMesh clean = cleaned(compiled.mesh);
+  const ClosestPoint nearest = TriangleTree(clean.mesh).closestPoint(tip);
+  const Box3 box = bounds(clean.mesh);
+  const bool inside = FieldSampler(*compiled.built.field, compiled.scene.sampler).at(tip).phi < 0;
+  Vec3 outward = inside ? Vec3(nearest.point - tip) : Vec3(tip - nearest.point);
+  if (outward.norm() > 0)
+    outward.normalize();
+  else
+    outward = faceNormal(clean.mesh, static_cast<std::size_t>(nearest.surface.face));
+  const Vec3 start = nearest.point + 0.02 * box.sizes().maxCoeff() * outward;
+  constexpr int kTicks = 200;
+  std::vector<TimedTip> path;
+  for (int i = 0; i <= kTicks; ++i)
+    path.push_back({0.001 * i, start + (tip - start) * (static_cast<double>(i) / kTicks)});
+  return feel(*compiled.snapshot, path, progress).back();
+}
+
+int runRender(const RenderOptions& options, Console& console) {
+  if (options.output.extension() != ".png")
+    throw Error("--output: a picture is a .png file, not '" + options.output.string() + "'");
+  requireWritable(options.output);
+  if (!options.tip &&
+      (options.layers.contains(Layer::tip) || options.layers.contains(Layer::nodes)))
+    throw Error("--show: the layers tip and nodes need --tip X,Y,Z");
+  requireDisplay();
+  Scene scene = openWith(options.input, options.scene, console);
+  const bool only_mesh = options.layers == std::set<Layer>{Layer::mesh} ||
+                         options.layers == std::set<Layer>{Layer::mesh, Layer::wireframe};
+  SceneView view;
+  if (only_mesh) {
+    view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
+  } else {
+    const auto compiled = compile(std::move(scene), console.progress());
+    view.setMesh(std::shared_ptr<const TriangleMesh>(compiled, &compiled->mesh));
+    view.setField(compiled->built.field);
+    if (const auto radius = compiled->scene.haptics.tip_radius) {
+      view.setTipRadius(*radius);
+      view.setIso(*radius);
+    }
+    if (options.tip) view.setTool(toolAt(*compiled, *options.tip, console.progress()));
+  }
+  console.progress().throwIfCancelled();
+  view.showOnly(options.layers);
+  view.setView(options.view);
+  renderToPng(view, options.size, options.output);
+
+  Json layers = Json::array();
+  std::string layer_text;
+  for (const Layer layer : options.layers) {
+    layers.push(std::string(name(layer)));
+    layer_text += (layer_text.empty() ? "" : " ") + std::string(name(layer));
+  }
+  Json json = Json::object();
+  json.set("picture", options.output.string());
+  json.set("width", options.size.width);
+  json.set("height", options.size.height);
+  json.set("layers", layers);
+  json.set("view", std::string(name(options.view)));
+  console.report(json, aligned({{"picture", options.output.string()}, {"layers", layer_text}}));
+  return kDone;
+}
+
+} // namespace
+
+Command renderCommand() {
+  auto options = std::make_shared<RenderOptions>();
+  Command command;
+  command.name = "render";
+  command.summary = "a picture of a mesh or workspace and its field";
+  command.description =
+      "Layers: " + choices(allLayers()) + ". Views: " + choices(allViews()) +
+      "; +x is seen from the +x side. The layers tip and nodes show what the servo makes of the "
+      "tool at --tip, come to from outside.\n"
+      "Needs a display; on a machine without one: xvfb-run -a patina render ...\n"
+      "JSON: picture, width, height, layers, view.";
+  command.examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
+                      "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm"};
+  command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
+  command.output("PICTURE.png", "The picture.", options->output);
+  command.arguments.push_back(
+      {"--show", "LAYERS", "Layers, with commas between.", "mesh", false, false,
+       [options](const auto& text) { options->layers = parseLayers(text); }});
+  command.arguments.push_back({"--view", "NAME", "Where the camera stands.", "iso", false, false,
+                               [options](const auto& text) { options->view = parseView(text); }});
+  command.arguments.push_back(
+      {"--size", "WxH", "Pixels.",
+       std::to_string(options->size.width) + "x" + std::to_string(options->size.height), false,
+       false, [options](const std::string& text) { options->size = parseSize(text); }});
+  command.arguments.push_back(
+      {"--tip", "X,Y,Z", "Place of the tip [m]; units as 1mm,0,2mm.", "", false, false,
+       [options](const std::string& text) { options->tip = parsePoint(text); }});
+  addHapticOptions(command, options->scene);
+  addFieldOptions(command, options->scene);
+  addSamplerOption(command, options->scene);
+  addOpenOptions(command, options->scene.open);
+  command.run = [options](Console& console) { return runRender(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli

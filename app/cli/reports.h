@@ -1,0 +1,31 @@
+// What several commands report in the same words (DESIGN section 9).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/json.h"
+#include "field/build_field.h"
+#include "geometry/mesh_report.h"
+
+namespace patina::cli {
+
+using TextRows = std::vector<std::pair<std::string, std::string>>;
+
+Json vectorJson(const Vec3& v);
+Json fieldJson(const SurfaceField& field, const FieldReport& report);
+TextRows fieldRows(const SurfaceField& field, const FieldReport& report);
+
+struct Percentiles {
+  double p50 = 0, p99 = 0, p999 = 0, max = 0;
+};
+// Of a non-empty list, which is sorted on the way.
+Percentiles percentiles(std::vector<double> values);
+Json toJson(const Percentiles& p);
+
+// Throws FileError now rather than after a minute's work if `path` cannot become a file.
+void requireWritable(const std::filesystem::path& path);
+
+} // namespace patina::cli

@@ -1,0 +1,181 @@
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "app/cli/commands.h"
+#include "app/cli/reports.h"
+#include "app/cli/scene_options.h"
+#include "core/csv.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "field/field_sampler.h"
+#include "geometry/triangle_tree.h"
+#include "visualization/field_io.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct SampleOptions {
+  std::filesystem::path input, points, output;
+  SceneOptions scene;
+};
+
+const std::vector<std::string> kPointColumns = {"x [m]", "y [m]", "z [m]"};
+const std::vector<std::string> kColumns = {
+    "x [m]",  "y [m]",  "z [m]",   "phi [m]",         "nx",      "ny", "nz", "face", "cx [m]",
+    "cy [m]", "cz [m]", "in_band", "stiffness [N/m]", "friction"};
+
+// Exact closest points on the triangles that a field is built from, under the indices of the mesh
+// as given.
+class SurfaceOracle {
+ public:
+  explicit SurfaceOracle(const TriangleMesh& mesh) : tree_(kept(mesh, face_of_)) {}
+
+  ClosestPoint closest(const Vec3& p) const {
+    ClosestPoint found = tree_.closestPoint(p);
+    found.surface.face = face_of_[static_cast<std::size_t>(found.surface.face)];
+    return found;
+  }
+
+ private:
+  static TriangleMesh kept(const TriangleMesh& mesh, std::vector<std::int32_t>& face_of) {
+    TriangleMesh result;
+    result.positions = mesh.positions;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Vec3 normal = faceNormal(mesh, t);
+      if (!normal.allFinite() || normal.isZero(0.0)) continue;
+      result.triangles.push_back(mesh.triangles[t]);
+      face_of.push_back(static_cast<std::int32_t>(t));
+    }
+    return result;
+  }
+
+  std::vector<std::int32_t> face_of_; // before tree_: its construction fills it
+  TriangleTree tree_;
+};
+
+struct SampledSurface {
+  std::shared_ptr<const SurfaceField> field;
+  std::optional<SurfaceOracle> oracle; // absent: only the field is known
+  Sampler sampler = Sampler::high;
+  HapticProperties haptics;
+};
+
+SampledSurface open(const SampleOptions& options, Console& console) {
+  SampledSurface surface;
+  if (options.input.extension() == ".vti" && isField(options.input)) {
+    Scene scene;
+    for (const auto& [key, value] : options.scene.settings) {
+      if (key != "sampler") throw Error("--" + key + ": the field in the file has its own");
+      setValue(scene, key, value);
+    }
+    surface.field = withSamples(std::make_shared<const SurfaceField>(readField(options.input)));
+    surface.sampler = scene.sampler;
+    return surface;
+  }
+  const auto compiled =
+      compile(openWith(options.input, options.scene, console), console.progress());
+  surface.field = compiled->built.field;
+  surface.oracle.emplace(compiled->mesh);
+  surface.sampler = compiled->scene.sampler;
+  surface.haptics = compiled->scene.haptics;
+  return surface;
+}
+
+std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler& sampler,
+                              const Vec3& p) {
+  const GridSample sample = sampler.at(p);
+  const bool in_band = sample.region == FieldRegion::band;
+  double phi = sample.phi;
+  Vec3 normal = sample.gradient.norm() > 0 ? Vec3(sample.gradient.normalized()) : Vec3::Zero();
+  Vec3 closest = p - phi * normal;
+  std::int32_t face = -1;
+  if (surface.oracle && p.allFinite()) {
+    const ClosestPoint exact = surface.oracle->closest(p);
+    closest = exact.point;
+    face = exact.surface.face;
+    if (!in_band) { // the field only bounds the distance here
+      const double sign = sample.region == FieldRegion::deep ? -1 : 1;
+      phi = sign * exact.distance;
+      normal = exact.distance > 0 ? Vec3(sign * (p - closest) / exact.distance) : Vec3::Zero();
+    }
+  } else if (!surface.oracle) {
+    face = sampler.faceNear(p);
+  }
+  const double friction =
+      surface.haptics.friction ? surface.haptics.friction->static_coefficient : 0;
+  return {p.x(),
+          p.y(),
+          p.z(),
+          phi,
+          normal.x(),
+          normal.y(),
+          normal.z(),
+          static_cast<double>(face),
+          closest.x(),
+          closest.y(),
+          closest.z(),
+          in_band ? 1.0 : 0.0,
+          surface.haptics.stiffness,
+          friction};
+}
+
+int runSample(const SampleOptions& options, Console& console) {
+  requireWritable(options.output);
+  const CsvTable points = readCsv(options.points, kPointColumns);
+  const SampledSurface surface = open(options, console);
+  const FieldSampler sampler(*surface.field, surface.sampler);
+  CsvTable table;
+  table.columns = kColumns;
+  table.rows.reserve(points.rows.size());
+  std::size_t in_band = 0;
+  for (const std::vector<double>& row : points.rows) {
+    if (table.rows.size() % 1024 == 0) console.progress().throwIfCancelled();
+    table.rows.push_back(sampleRow(surface, sampler, {row[0], row[1], row[2]}));
+    in_band += table.rows.back()[11] != 0;
+  }
+  console.progress().throwIfCancelled();
+  writeCsv(options.output, table);
+
+  Json json = Json::object();
+  json.set("points", points.rows.size());
+  json.set("in_band", in_band);
+  json.set("sampler", std::string(name(surface.sampler)));
+  json.set("voxel", surface.field->grid.voxel);
+  console.report(json, aligned({{"points", formatCount(points.rows.size()) + ", in the band " +
+                                               formatCount(in_band)},
+                                {"sampler", std::string(name(surface.sampler))},
+                                {"voxel", formatLength(surface.field->grid.voxel)}}));
+  return kDone;
+}
+
+} // namespace
+
+Command sampleCommand() {
+  auto options = std::make_shared<SampleOptions>();
+  Command command;
+  command.name = "sample";
+  command.summary = "distance, direction, nearest face and material at points";
+  command.description =
+      "Points come with the columns x [m],y [m],z [m]; further columns are ignored. Out go phi [m] "
+      "(negative inside), the unit direction nx,ny,nz, the nearest face, the closest point "
+      "cx,cy,cz "
+      "[m], in_band (1 or 0), stiffness [N/m] and static friction.\n"
+      "With a mesh or workspace the face and closest point are exact, and so are phi and the "
+      "direction beyond the band. With a field alone they are what the field knows: closest point "
+      "= point - phi n, and beyond the band phi is a bound and the direction zero.\n"
+      "JSON: points, in_band, sampler, voxel [m].";
+  command.examples = {"patina sample bunny.ply --points points.csv -o samples.csv",
+                      "patina sample bunny.vti --points points.csv -o samples.csv --sampler kim"};
+  command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
+  command.file("--points", "POINTS.csv", "The points.", options->points).required = true;
+  command.output("SAMPLES.csv", "One row a point.", options->output);
+  addFieldOptions(command, options->scene);
+  addSamplerOption(command, options->scene);
+  addOpenOptions(command, options->scene.open);
+  command.run = [options](Console& console) { return runSample(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli

@@ -1,0 +1,89 @@
+#include "app/cli/scene_options.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina::cli {
+
+namespace {
+
+// An option that stands for a key of the scene: the scene says what is allowed.
+void addSetting(Command& command, SceneOptions& options, const std::string& name,
+                const std::string& key, const std::string& value, const std::string& help,
+                const std::string& fallback) {
+  command.arguments.push_back(
+      {name, value, help, fallback, false, false, [&options, key](const std::string& text) {
+         Scene trial;
+         setValue(trial, key, text);
+         options.settings.emplace_back(key, text);
+       }});
+}
+
+bool has(const SceneOptions& options, const std::string& key) {
+  return std::any_of(options.settings.begin(), options.settings.end(),
+                     [&](const auto& setting) { return setting.first == key; });
+}
+
+} // namespace
+
+void addOpenOptions(Command& command, OpenOptions& open) {
+  command.arguments.push_back({"--unit", "mm|cm|m|in|fit",
+                               "Unit of a mesh file; fit scales its longest side to 100 mm. "
+                               "Workspaces and fields written by patina are in metres already.",
+                               "mm", false, false,
+                               [&open](const auto& text) { open.unit = parseMeshUnit(text); }});
+  command.number("--iso", "VALUE", "Value at which a volume (.vti) from elsewhere is a surface.",
+                 open.iso);
+}
+
+void addFieldOptions(Command& command, SceneOptions& options) {
+  const FieldSpec usual;
+  addSetting(command, options, "--resolution", "resolution", "N",
+             "Cells along the longest side, with the band on both ends.",
+             std::to_string(usual.resolution));
+  addSetting(command, options, "--voxel", "voxel", "LENGTH",
+             "Side of a cell [m]; takes the place of --resolution.", "");
+  addSetting(command, options, "--band", "band", "N",
+             "Voxels on each side of the surface in which the field is stored.",
+             formatNumber(usual.band));
+}
+
+void addSamplerOption(Command& command, SceneOptions& options) {
+  addSetting(command, options, "--sampler", "sampler", "kim|high",
+             "How the field is read between nodes: kim as in the paper, high of higher order.",
+             std::string(name(Scene{}.sampler)));
+}
+
+void addHapticOptions(Command& command, SceneOptions& options) {
+  const HapticProperties usual;
+  addSetting(command, options, "--stiffness", "stiffness", "K", "Spring [N/m].",
+             formatNumber(usual.stiffness));
+  addSetting(command, options, "--damping", "damping", "B", "Damper along the normal [N s/m].", "");
+  addSetting(command, options, "--friction-static", "friction.static", "MU",
+             "Coefficient that holds the tip at rest.", "");
+  addSetting(command, options, "--friction-dynamic", "friction.dynamic", "MU",
+             "Coefficient while the tip slips; not above the static one.", "");
+  addSetting(command, options, "--friction-depth", "friction.depth", "GAIN",
+             "Growth of friction with depth, for each mm.", "");
+  addSetting(command, options, "--friction-slip", "friction.slip", "paper|displacement",
+             "Direction of slip: towards the tip, or against the contact point's own motion.",
+             "paper");
+  addSetting(command, options, "--tip-radius", "tip.radius", "LENGTH",
+             "Radius of the tip [m]; its centre feels the surface that far out.", "");
+  addSetting(command, options, "--force-limit", "force.limit", "N", "Largest force [N].",
+             formatNumber(usual.force_limit));
+}
+
+Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console) {
+  OpenedScene opened = openScene(path, options.open);
+  for (const std::string& warning : opened.warnings) console.warn(warning);
+  // A workspace may hold a voxel, which would win over the resolution that was just asked for.
+  if (has(options, "resolution") && !has(options, "voxel")) setValue(opened.scene, "voxel", "none");
+  for (const auto& [key, value] : options.settings) setValue(opened.scene, key, value);
+  validate(opened.scene);
+  return std::move(opened.scene);
+}
+
+} // namespace patina::cli

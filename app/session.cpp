@@ -1,0 +1,138 @@
+#include "app/session.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "field/iso_surface.h"
+#include "geometry/mesh_io.h"
+#include "visualization/field_io.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+
+namespace {
+
+std::string lowerExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// What scene.h allows in an object's name.
+std::string objectName(const std::filesystem::path& path) {
+  std::string name = path.stem().string();
+  for (char& c : name) {
+    const auto letter = static_cast<unsigned char>(c);
+    if (letter >= 128 || (!std::isalnum(letter) && c != '-' && c != '_')) c = '_';
+  }
+  return name.empty() ? "object" : name;
+}
+
+TriangleMesh meshOfVolume(const std::filesystem::path& path, const OpenOptions& options,
+                          bool& in_metres) {
+  if (isField(path)) {
+    in_metres = true;
+    return isoSurface(readField(path), options.iso.value_or(0.0));
+  }
+  if (!options.iso) {
+    const VolumeRange range = scalarRange(path);
+    throw FileError(path.string(), 0,
+                    "a volume is felt as an iso-surface: choose its value with --iso, between " +
+                        formatNumber(range.low) + " and " + formatNumber(range.high));
+  }
+  in_metres = false;
+  return isoSurfaceOfVolume(path, *options.iso);
+}
+
+void requireOneObject(const Scene& scene) {
+  if (scene.objects.empty()) throw Error("the scene has no object: add a mesh to it");
+  if (scene.objects.size() > 1)
+    throw Error("the scene has " + std::to_string(scene.objects.size()) +
+                " objects; this version feels one object at a time");
+}
+
+} // namespace
+
+std::vector<std::string> meshWarnings(const MeshReport& report) {
+  std::vector<std::string> lines;
+  const auto count = [](std::size_t n, const char* what) {
+    return formatCount(n) + (n == 1 ? " triangle " : " triangles ") + what;
+  };
+  if (report.non_finite)
+    lines.push_back(count(report.non_finite, "with a NaN or infinite corner: left out"));
+  if (report.degenerate) lines.push_back(count(report.degenerate, "without area: left out"));
+  return lines;
+}
+
+OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options) {
+  if (!std::filesystem::exists(path)) throw FileError(path.string(), 0, "no such file or folder");
+  OpenedScene opened;
+  if (std::filesystem::is_directory(path)) {
+    opened.scene = loadWorkspace(path);
+    return opened;
+  }
+  bool in_metres = false;
+  TriangleMesh mesh =
+      lowerExtension(path) == ".vti" ? meshOfVolume(path, options, in_metres) : readMesh(path);
+  if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");
+  for (const std::string& line : meshWarnings(inspect(mesh)))
+    opened.warnings.push_back(path.string() + ": " + line);
+  ScaledMesh scaled = inMetres(std::move(mesh), in_metres ? MeshUnit::m : options.unit);
+  if (!scaled.warning.empty()) opened.warnings.push_back(path.string() + ": " + scaled.warning);
+  opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
+  return opened;
+}
+
+Scene sceneOf(TriangleMesh mesh, const std::string& name) {
+  Scene scene;
+  scene.objects.push_back(
+      {name, std::make_shared<const TriangleMesh>(std::move(mesh)), Pose::Identity()});
+  return scene;
+}
+
+TriangleMesh worldMesh(const Scene& scene) {
+  TriangleMesh world;
+  for (const SceneObject& object : scene.objects) {
+    // An untouched pose leaves the coordinates bit for bit as they are.
+    const bool identity = object.world_from_object.matrix().isIdentity(0.0);
+    TriangleMesh mesh = identity
+                            ? *object.mesh
+                            : transformed(*object.mesh, Eigen::Affine3d(object.world_from_object));
+    world = world.triangles.empty() ? std::move(mesh) : joined(world, mesh);
+  }
+  return world;
+}
+
+std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress) {
+  validate(scene);
+  requireOneObject(scene);
+  progress.throwIfCancelled();
+  auto compiled = std::make_shared<CompiledScene>();
+  compiled->scene = std::move(scene);
+  compiled->mesh = worldMesh(compiled->scene);
+  compiled->mesh_report = inspect(compiled->mesh);
+  progress.throwIfCancelled();
+  compiled->built = buildField(compiled->mesh, compiled->scene.field, progress);
+  progress.throwIfCancelled();
+  compiled->built.field = withSamples(std::move(compiled->built.field));
+  compiled->snapshot = compileStages(compiled->scene, compiled->built.field);
+  progress.throwIfCancelled();
+  return compiled;
+}
+
+std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
+                                               const HapticProperties& haptics) {
+  Scene scene = old.scene;
+  scene.haptics = haptics;
+  validate(scene);
+  auto compiled = std::make_shared<CompiledScene>(old);
+  compiled->scene = std::move(scene);
+  compiled->snapshot = compileStages(compiled->scene, compiled->built.field);
+  return compiled;
+}
+
+} // namespace patina
