@@ -10,13 +10,14 @@ namespace patina {
 struct MeshReport {
   std::size_t triangles = 0;
   std::size_t vertices = 0;
-  std::size_t components = 0; // connected through shared vertices
+  std::size_t components = 0; // connected through shared vertices; as for the edges below
   bool watertight = false;    // every edge has two faces with opposite directions
   // Triangles:
   std::size_t non_finite = 0; // a corner is NaN or infinite
-  std::size_t degenerate = 0; // zero area relative to its longest edge, or a repeated vertex
-  std::size_t duplicate = 0;  // same three vertices as an earlier triangle (in any order)
-  // Edges, after the above are left out:
+  // Twice the area is at most 1e-12 of the longest edge squared, or a vertex is repeated.
+  std::size_t degenerate = 0;
+  std::size_t duplicate = 0; // same three vertices as an earlier triangle (in any order)
+  // Edges, after the triangles above are left out:
   std::size_t boundary_edges = 0;     // one face
   std::size_t non_manifold_edges = 0; // three or more
   std::size_t misoriented_edges = 0;  // two faces running the same way
