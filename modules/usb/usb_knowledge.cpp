@@ -1,0 +1,57 @@
+// What we know of haptic devices on USB without asking them.
+#include <array>
+#include <cstdio>
+
+#include "usb/usb_bus.h"
+
+namespace patina {
+namespace {
+
+struct Known {
+  std::uint16_t vendor;
+  std::uint16_t product; // 0 = every product of this vendor is a haptic device
+  std::string_view name;
+};
+
+// The Falcon answers with the vendor number of its serial chip, so its product counts too.
+constexpr std::array<Known, 3> kKnown{{
+    {0x0403, 0xcb48, "Novint Falcon"},
+    {0x1451, 0, "Force Dimension"},
+    {0x2988, 0, "3D Systems Touch"},
+}};
+
+std::string hex4(std::uint16_t value) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "%04x", static_cast<unsigned>(value));
+  return text.data();
+}
+
+} // namespace
+
+std::string_view hapticName(std::uint16_t vendor, std::uint16_t product) {
+  for (const Known& known : kKnown) {
+    if (known.vendor == vendor && (known.product == 0 || known.product == product))
+      return known.name;
+  }
+  return {};
+}
+
+std::string usbAdvice(UsbRefusal refusal, std::uint16_t vendor, std::uint16_t product) {
+  switch (refusal) {
+  case UsbRefusal::permission:
+    return "no permission: put SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + hex4(vendor) +
+           "\", ATTR{idProduct}==\"" + hex4(product) +
+           "\", TAG+=\"uaccess\" into /etc/udev/rules.d/70-haptic.rules, run 'udevadm control "
+           "--reload' as root and plug the device in again";
+  case UsbRefusal::held_by_driver:
+    return "a driver or another program holds it: close that program, or unload the driver that "
+           "'lsusb -t' names";
+  case UsbRefusal::gone:
+    return "it went away while it was being asked: plug it in again";
+  case UsbRefusal::other:
+    break;
+  }
+  return "it does not answer: plug it in again, without a hub, and look at 'dmesg'";
+}
+
+} // namespace patina
