@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
@@ -33,7 +34,7 @@ class TriangleTree {
   ~TriangleTree();
 
   // Exact. warm_face: a face thought to be near (say, the neighbour's answer); only speed depends
-  // on it.
+  // on it. A point that is not finite gets face -1 and an infinite distance.
   ClosestPoint closestPoint(const Vec3& p, std::int32_t warm_face = -1) const;
   // Nullopt if nothing is within max_distance.
   std::optional<ClosestPoint> closestPointWithin(const Vec3& p, double max_distance,
@@ -43,6 +44,13 @@ class TriangleTree {
   // All faces whose distance to the centre is <= radius, ascending.
   std::vector<std::int32_t> facesInSphere(const Vec3& centre, double radius) const;
 
+  // Distances and faces of the side^3 points origin + spacing * (i, j, k), x fastest; side even.
+  // Distances count in spacings, to 1e-6 relative to the triangles nearby; where nothing is within
+  // max_distance [m] they are infinite and the face is -1. Of faces whose distances agree to about
+  // 1e-6, the lowest. Several times faster than one query a point. Any number of threads.
+  void closestOnLattice(const Vec3& origin, double spacing, int side, double max_distance,
+                        std::span<float> distance, std::span<std::int32_t> face) const;
+
   std::size_t size() const;  // triangles
   std::size_t bytes() const; // held by this tree
 
@@ -51,7 +59,8 @@ class TriangleTree {
   std::unique_ptr<const Impl> impl_;
 };
 
-// Closest point on one triangle: barycentric coordinates, exact in all seven Voronoi regions.
+// Closest point on one triangle: barycentric coordinates, exact in all seven Voronoi regions and
+// for triangles without area.
 Vec3 closestBarycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 } // namespace patina

@@ -1,0 +1,50 @@
+// Nearest triangles of eight points at a time: the data and the kernel behind TriangleTree's
+// lattice query. Everything is in the tree's own unit (the mesh's half extent is 0.5 to 1) about
+// its own centre.
+#pragma once
+
+#include <cstdint>
+
+namespace patina {
+
+inline constexpr int kWide = 8; // children of a node, and points of a packet
+
+// Boxes of the children, by coordinate. An empty place has an inverted, infinite box, so that no
+// query enters it. child >= 0 is a node, < 0 is ~(index of a triangle).
+struct alignas(32) WideNode {
+  float lo[3][kWide];
+  float hi[3][kWide];
+  std::int32_t child[kWide];
+};
+
+// A triangle in its own plane's frame: A at the origin, B on the x axis, C above it. The distance
+// of a point is then three edges in 2D and a height, without a division.
+struct PacketTriangle {
+  double origin[3];          // A
+  float a[3];                // A, rounded
+  float axis[3][3];          // rows: along AB, in the plane towards C, normal
+  float ab;                  // length of AB, the longest edge
+  float bc_x, bc_y;          // unit direction of BC
+  float bc_along, bc_across; // offsets of the coordinates along and across BC
+  float bc;                  // length
+  float ac_x, ac_y, ac;      // unit direction and length of AC
+  std::int32_t face;
+};
+
+// The nodes origin + spacing (i, j, k), 0 <= i, j, k < side, x fastest.
+struct LatticeJob {
+  const WideNode* nodes;
+  const PacketTriangle* triangles;
+  double origin[3];
+  double spacing;
+  int side;            // even
+  double max_distance; // farther nodes have no answer
+  // Nearest triangle of a node, or -1, and its distance.
+  std::int32_t* triangle;
+  float* distance;
+};
+
+// The same algorithm for the processor at hand; the difference is in the last bits.
+void closestOnLattice(const LatticeJob& job);
+
+} // namespace patina

@@ -1,0 +1,213 @@
+#include "geometry/wide_bvh.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include <tbb/parallel_for.h>
+
+namespace patina {
+namespace {
+
+constexpr int kBins = 16;
+constexpr float kInf = std::numeric_limits<float>::infinity();
+// Binned splits may peel off one box at a time on adversarial input; from this depth on, halves.
+constexpr int kBalancedDepth = 48;
+constexpr std::size_t kParallelSize = 20000;
+
+struct Bounds {
+  std::array<float, 3> lo{kInf, kInf, kInf}, hi{-kInf, -kInf, -kInf};
+
+  void add(const float* l, const float* h) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      lo[a] = std::min(lo[a], l[a]);
+      hi[a] = std::max(hi[a], h[a]);
+    }
+  }
+  void add(const Bounds& b) { add(b.lo.data(), b.hi.data()); }
+  float halfArea() const {
+    const float x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
+    return x * y + y * z + z * x;
+  }
+};
+
+struct Piece {
+  std::size_t begin = 0, end = 0;
+  Bounds bounds, centroids; // centroids doubled: lo + hi
+  std::size_t size() const { return end - begin; }
+};
+
+float centroid(const BoxRef& ref, std::size_t axis) {
+  return ref.lo[axis] + ref.hi[axis];
+}
+
+Piece measured(const std::vector<BoxRef>& refs, std::size_t begin, std::size_t end) {
+  Piece piece{begin, end, {}, {}};
+  for (std::size_t i = begin; i < end; ++i) {
+    piece.bounds.add(refs[i].lo, refs[i].hi);
+    const std::array<float, 3> c{centroid(refs[i], 0), centroid(refs[i], 1), centroid(refs[i], 2)};
+    piece.centroids.add(c.data(), c.data());
+  }
+  return piece;
+}
+
+class Builder {
+ public:
+  explicit Builder(std::vector<BoxRef>& refs) : refs_(refs) {}
+
+  std::vector<WideNode> build() {
+    std::vector<WideNode> nodes;
+    node(measured(refs_, 0, refs_.size()), 0, nodes);
+    return nodes;
+  }
+
+ private:
+  // Fills nodes with the subtree of `piece`; its root comes first.
+  void node(const Piece& piece, int depth, std::vector<WideNode>& nodes) {
+    const std::size_t at = nodes.size();
+    nodes.emplace_back();
+    for (int a = 0; a < 3; ++a) {
+      std::fill_n(nodes[at].lo[a], kWide, kInf);
+      std::fill_n(nodes[at].hi[a], kWide, -kInf);
+    }
+    std::fill_n(nodes[at].child, kWide, 0);
+    if (piece.size() <= kWide) {
+      for (std::size_t i = 0; i < piece.size(); ++i) {
+        const BoxRef& ref = refs_[piece.begin + i];
+        setBox(nodes[at], i, ref.lo, ref.hi);
+        nodes[at].child[i] = ~static_cast<std::int32_t>(piece.begin + i);
+      }
+      return;
+    }
+    std::array<Piece, kWide> pieces;
+    std::size_t count = 1;
+    pieces[0] = piece;
+    while (count < kWide) {
+      std::size_t largest = count;
+      for (std::size_t i = 0; i < count; ++i)
+        if (pieces[i].size() > 1 && (largest == count || cost(pieces[i]) > cost(pieces[largest])))
+          largest = i;
+      if (largest == count) break;
+      const auto [left, right] = split(pieces[largest], depth);
+      pieces[largest] = left;
+      pieces[count++] = right;
+    }
+    if (piece.size() >= kParallelSize) return childrenInParallel(pieces, count, at, depth, nodes);
+    for (std::size_t i = 0; i < count; ++i) {
+      setBox(nodes[at], i, pieces[i].bounds.lo.data(), pieces[i].bounds.hi.data());
+      const auto child = pieces[i].size() == 1 ? ~static_cast<std::int32_t>(pieces[i].begin)
+                                               : static_cast<std::int32_t>(nodes.size());
+      nodes[at].child[i] = child;
+      if (child > 0) node(pieces[i], depth + 1, nodes);
+    }
+  }
+
+  // Each subtree in its own array, then one after the other: the same tree for any thread count.
+  void childrenInParallel(const std::array<Piece, kWide>& pieces, std::size_t count, std::size_t at,
+                          int depth, std::vector<WideNode>& nodes) {
+    std::array<std::vector<WideNode>, kWide> subtrees;
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      if (pieces[i].size() == 1) return;
+      subtrees[i].reserve(pieces[i].size() / 4);
+      node(pieces[i], depth + 1, subtrees[i]);
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      setBox(nodes[at], i, pieces[i].bounds.lo.data(), pieces[i].bounds.hi.data());
+      const auto offset = static_cast<std::int32_t>(nodes.size());
+      nodes[at].child[i] =
+          pieces[i].size() == 1 ? ~static_cast<std::int32_t>(pieces[i].begin) : offset;
+      for (WideNode& inner : subtrees[i]) {
+        for (std::size_t k = 0; k < kWide; ++k)
+          if (inner.child[k] > 0) inner.child[k] += offset;
+        nodes.push_back(inner);
+      }
+    }
+  }
+
+  static float cost(const Piece& piece) {
+    return piece.bounds.halfArea() * static_cast<float>(piece.size());
+  }
+
+  static void setBox(WideNode& node, std::size_t place, const float* lo, const float* hi) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      node.lo[a][place] = lo[a];
+      node.hi[a][place] = hi[a];
+    }
+  }
+
+  std::pair<Piece, Piece> split(const Piece& piece, int depth) {
+    std::size_t axis = 0;
+    std::array<float, 3> size{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      size[a] = piece.centroids.hi[a] - piece.centroids.lo[a];
+      if (size[a] > size[axis]) axis = a;
+    }
+    if (depth >= kBalancedDepth || !(size[axis] > 1e-30f)) return halves(piece, axis);
+    const float origin = piece.centroids.lo[axis];
+    const float scale = kBins * 0.9999f / size[axis];
+    const auto bin = [&](const BoxRef& ref) {
+      return std::min(static_cast<int>((centroid(ref, axis) - origin) * scale), kBins - 1);
+    };
+    std::array<Piece, kBins> bins;
+    std::array<std::size_t, kBins> counts{};
+    for (std::size_t i = piece.begin; i < piece.end; ++i) {
+      const auto b = static_cast<std::size_t>(bin(refs_[i]));
+      bins[b].bounds.add(refs_[i].lo, refs_[i].hi);
+      ++counts[b];
+    }
+    std::array<float, kBins> right_cost{};
+    Bounds sweep;
+    std::size_t swept = 0;
+    for (std::size_t b = kBins - 1; b > 0; --b) {
+      sweep.add(bins[b].bounds);
+      swept += counts[b];
+      right_cost[b] = swept ? sweep.halfArea() * static_cast<float>(swept) : 0;
+    }
+    float best = kInf;
+    std::size_t cut = 0; // first bin of the right side
+    sweep = {};
+    swept = 0;
+    for (std::size_t b = 0; b + 1 < kBins; ++b) {
+      sweep.add(bins[b].bounds);
+      swept += counts[b];
+      if (swept == 0 || swept == piece.size()) continue;
+      const float total = sweep.halfArea() * static_cast<float>(swept) + right_cost[b + 1];
+      if (total < best) {
+        best = total;
+        cut = b + 1;
+      }
+    }
+    if (cut == 0) return halves(piece, axis);
+    const auto first = refs_.begin() + static_cast<std::ptrdiff_t>(piece.begin);
+    const auto last = refs_.begin() + static_cast<std::ptrdiff_t>(piece.end);
+    const auto middle = std::partition(
+        first, last, [&](const BoxRef& ref) { return static_cast<std::size_t>(bin(ref)) < cut; });
+    return parts(piece, static_cast<std::size_t>(middle - refs_.begin()));
+  }
+
+  std::pair<Piece, Piece> halves(const Piece& piece, std::size_t axis) {
+    const std::size_t middle = piece.begin + piece.size() / 2;
+    const auto at = [&](std::size_t i) { return refs_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(piece.begin), at(middle), at(piece.end),
+                     [axis](const BoxRef& a, const BoxRef& b) {
+                       const float x = centroid(a, axis), y = centroid(b, axis);
+                       return x < y || (x == y && a.id < b.id);
+                     });
+    return parts(piece, middle);
+  }
+
+  std::pair<Piece, Piece> parts(const Piece& piece, std::size_t middle) const {
+    return {measured(refs_, piece.begin, middle), measured(refs_, middle, piece.end)};
+  }
+
+  std::vector<BoxRef>& refs_;
+};
+
+} // namespace
+
+std::vector<WideNode> buildWideBvh(std::vector<BoxRef>& refs) {
+  return Builder(refs).build();
+}
+
+} // namespace patina
