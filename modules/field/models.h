@@ -6,7 +6,7 @@
 namespace patina {
 
 // A toy dinosaur, 100 mm long: a smooth union of capsules meshed by its iso-surface; closed, about
-// 60,000 triangles at the default resolution.
+// 70,000 triangles at the default resolution.
 TriangleMesh dinosaur(int resolution = 200);
 
 } // namespace patina
