@@ -1,0 +1,143 @@
+#include "haptics/contact_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "haptics/ray_search.h"
+
+namespace patina {
+namespace {
+
+constexpr double kMinGradient = 0.1;   // K05
+constexpr double kHandoverTime = 5e-3; // [s]
+
+const SurfaceField& sampled(const std::shared_ptr<const SurfaceField>& field) {
+  if (!field) throw std::invalid_argument("contact: no field");
+  return *field;
+}
+
+bool outOfGrid(const FieldGrid& grid, const Vec3& q) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double last = grid.nodes[static_cast<std::size_t>(axis)] - 1;
+    if (!(q[axis] >= 0 && q[axis] <= last)) return true;
+  }
+  return false;
+}
+
+// K05; zero if there is no direction.
+Vec3 directionAt(const GridSample& sample, const ContactMemory& memory) noexcept {
+  const double squared = sample.gradient.squaredNorm();
+  if (squared >= kMinGradient * kMinGradient) return sample.gradient / std::sqrt(squared);
+  return memory.in_contact ? memory.last_normal : Vec3::Zero();
+}
+
+} // namespace
+
+ContactStage::ContactStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
+                           double tip_radius, bool sweep)
+    : field_(std::move(field)), sampler_(sampled(field_), sampler), voxel_(field_->grid.voxel),
+      iso_(tip_radius / voxel_),
+      hold_limit_(0.25 * *std::max_element(field_->grid.nodes.begin(), field_->grid.nodes.end())),
+      sweep_(sweep) {}
+
+void ContactStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  const Vec3 q = sampler_.grid().toGrid(contact.tip);
+  if (outOfGrid(sampler_.grid(), q)) ++memory.outside_ticks;
+  const GridSample sample = sampler_.atGrid(q);
+  contact.samples = 1;
+  const double f = sample.phi - iso_;
+  const Vec3 direction = f < 0 ? directionAt(sample, memory) : Vec3::Zero();
+
+  Found found;
+  if (sweep_ && hold(q, sample, direction, memory, found)) {
+    finish(found, contact, memory);
+  } else if (f < 0) {
+    alongRay(q, sample, direction, contact, found);
+    finish(found, contact, memory);
+  } else {
+    memory.leaveContact();
+  }
+  memory.clearance = f;
+}
+
+// Whether the tip is on the wrong side of a surface that it entered by; the VCP on that surface.
+bool ContactStage::hold(const Vec3& q, const GridSample& sample, const Vec3& direction,
+                        const ContactMemory& memory, Found& found) const noexcept {
+  if (!memory.has_last_tip) return false;
+  const double f = sample.phi - iso_;
+  if (memory.in_contact) {
+    const Vec3 last = sampler_.grid().toGrid(memory.last_candidate);
+    const double turned = direction.dot(memory.last_normal);
+    const bool wrong_side = f < 0 ? (memory.held() ? turned < 0.5 : turned < 0)
+                                  : (q - last).dot(memory.last_normal) < 0;
+    return wrong_side && follow(q, {last, memory.last_normal}, found);
+  }
+  // Slow motion ends here: a 1-Lipschitz field has no surface between two points whose clearances
+  // together exceed their distance, and a tip that enters moves against the direction.
+  const Vec3 from = sampler_.grid().toGrid(memory.last_tip);
+  const double step = (q - from).norm();
+  const bool suspicious = f < 0 ? direction.dot(q - from) > 0 : f + memory.clearance < step;
+  if (!suspicious || !(memory.clearance >= 0 && memory.clearance < step)) return false;
+  const std::optional<SurfaceContact> entry = firstCrossing(sampler_, from, q, iso_);
+  if (!entry || (f < 0 && entry->normal.dot(direction) > 0)) return false;
+  return follow(q, *entry, found);
+}
+
+bool ContactStage::follow(const Vec3& q, const SurfaceContact& from, Found& found) const noexcept {
+  const std::optional<SurfaceContact> foot = trackFoot(sampler_, q, from, iso_);
+  if (!foot) return false;
+  found.normal = foot->normal;
+  found.depth = (foot->point - q).dot(foot->normal);
+  found.mode = ContactMode::held;
+  return found.depth > 0 && found.depth < hold_limit_;
+}
+
+void ContactStage::alongRay(const Vec3& q, const GridSample& sample, const Vec3& direction,
+                            Contact& contact, Found& found) const noexcept {
+  contact.deep = sample.region == FieldRegion::deep;
+  found.normal = direction;
+  if (direction.isZero()) return;
+  const RayRoot root = rayRoot(sampler_, q, direction, iso_ - sample.phi, iso_);
+  contact.samples += root.samples;
+  if (root.found) {
+    found.depth = root.s;
+    return;
+  }
+  // F9: -f g / |g|^2 has the length -f / |g|; a direction from memory has no slope of its own.
+  const double slope = sample.gradient.norm();
+  found.depth = (iso_ - sample.phi) / (slope >= kMinGradient ? slope : 1.0);
+  found.mode = ContactMode::newton;
+}
+
+void ContactStage::finish(const Found& found, Contact& contact,
+                          ContactMemory& memory) const noexcept {
+  contact.touching = true;
+  contact.held = found.mode == ContactMode::held;
+  contact.approximate = found.mode == ContactMode::newton;
+  contact.normal = found.normal;
+  contact.depth = found.depth * voxel_;
+  contact.candidate = contact.tip + contact.depth * found.normal;
+
+  if (memory.in_contact && memory.mode != found.mode) {
+    memory.handover = (memory.last_candidate - memory.last_tip) - (contact.candidate - contact.tip);
+    memory.has_handover = true;
+  }
+  if (memory.has_handover) {
+    const double along = memory.handover.dot(found.normal);
+    memory.has_handover =
+        contact.depth + along >= 0 && memory.handover.squaredNorm() > 1e-12 * voxel_ * voxel_;
+    if (memory.has_handover) {
+      contact.candidate += memory.handover;
+      contact.depth += along;
+      memory.handover *= kHandoverTime / (kHandoverTime + std::max(contact.dt, 0.0));
+    }
+  }
+  contact.vcp = contact.candidate;
+  memory.in_contact = true;
+  memory.mode = found.mode;
+  memory.last_candidate = contact.candidate;
+  if (!found.normal.isZero()) memory.last_normal = found.normal;
+}
+
+} // namespace patina

@@ -1,0 +1,53 @@
+// Finds the frictionless virtual contact point (K03, K05, K06).
+#pragma once
+
+#include <memory>
+
+#include "field/field_sampler.h"
+#include "haptics/stage.h"
+#include "haptics/thin_part.h"
+
+namespace patina {
+
+// Sets touching, normal, candidate, vcp (= candidate) and depth.
+//
+// Deeper than the band the direction comes from the coarse nodes and the ray still ends on the
+// surface. A tip that has passed through the surface between two ticks (swept test), or past the
+// middle of a part so that the direction turned by more than 90 degrees, is held: the VCP walks on
+// the side where it entered, until
+//  - the tip is in front of the tangent plane there, or
+//  - the tip is inside and the field's own direction is within 60 degrees of the held one, or
+//  - it is held deeper than a quarter of the grid's longest side, or the surface is lost.
+// Where the way of finding the VCP changes in contact, the difference fades over some 5 ms.
+class ContactStage final : public ForceStage {
+ public:
+  // Throws std::invalid_argument without a sample layer. sweep = false is for the test that shows
+  // what the swept test is for.
+  ContactStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
+               bool sweep = true);
+
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "contact"; }
+
+ private:
+  struct Found {
+    Vec3 normal = Vec3::Zero();
+    double depth = 0; // voxels
+    ContactMode mode = ContactMode::ray;
+  };
+  bool hold(const Vec3& q, const GridSample& sample, const Vec3& direction,
+            const ContactMemory& memory, Found& found) const noexcept;
+  bool follow(const Vec3& q, const SurfaceContact& from, Found& found) const noexcept;
+  void alongRay(const Vec3& q, const GridSample& sample, const Vec3& direction, Contact& contact,
+                Found& found) const noexcept;
+  void finish(const Found& found, Contact& contact, ContactMemory& memory) const noexcept;
+
+  std::shared_ptr<const SurfaceField> field_;
+  FieldSampler sampler_;
+  double voxel_;
+  double iso_;        // voxels
+  double hold_limit_; // voxels
+  bool sweep_;
+};
+
+} // namespace patina

@@ -1,0 +1,38 @@
+// Friction as a limit to the movement of the VCP (K09, K10).
+#pragma once
+
+#include <memory>
+
+#include "field/field_sampler.h"
+#include "haptics/stage.h"
+#include "scene/scene.h"
+
+namespace patina {
+
+inline constexpr double kFrictionDepthReference = 1e-3; // d_ref of K10 [m]
+
+// The VCP p stays where it is until |p - c| exceeds mu_s d, then trails the frictionless candidate
+// c at mu_d d until |p - c| < mu_d d. Where p trails:
+//  paper         in the direction from c to where p was: on a curved path it lags by up to mu_d d;
+//  displacement  against the displacement of c, measured over 0.05 voxel so that noise of the tip
+//                does not choose the direction.
+class FrictionStage final : public ForceStage {
+ public:
+  FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
+                const Friction& friction);
+
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "friction"; }
+
+ private:
+  Vec3 slipDirection(const Vec3& candidate, const ContactMemory& memory) const noexcept;
+  Vec3 ontoSurface(const Vec3& p, double bound) const noexcept;
+
+  std::shared_ptr<const SurfaceField> field_;
+  FieldSampler sampler_;
+  Friction friction_;
+  double iso_;   // voxels
+  double trail_; // [m]
+};
+
+} // namespace patina

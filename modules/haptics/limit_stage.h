@@ -1,0 +1,37 @@
+// The stage that is never left out: the magnitude limit and the jump fault (F13, section 2.8).
+#pragma once
+
+#include "haptics/stage.h"
+
+namespace patina {
+
+inline constexpr double kHandSpeed = 2;        // [m/s], in a workspace of
+inline constexpr double kHandWorkspace = 0.2;  // [m]; a larger model is felt through a scaled hand
+inline constexpr double kFaultFadeTime = 0.05; // [s]
+
+struct LimitSpec {
+  double force_limit = 3.3;      // [N], of the magnitude: the vector is scaled
+  double stiffness = 500;        // K [N/m]
+  double damping = 0;            // B [N s/m]
+  double max_speed = kHandSpeed; // v_max [m/s]
+};
+
+// Jump fault: where the force (before the limit) changes within a tick by more than
+// 2 v_max (K T + B), plus K times what the VCP let go as a slip began, the last force fades to zero
+// over kFaultFadeTime; whole force comes back once that is over and the tip has left contact. T is
+// the time since the last tick, taken between 0.1 and 50 ms, so that a missed tick is no fault. The
+// first tick is none either. The rate of the force is never limited.
+class LimitStage final : public ForceStage {
+ public:
+  explicit LimitStage(const LimitSpec& spec) : spec_(spec) {}
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "limit"; }
+
+ private:
+  bool jumped(const Contact& contact, const ContactMemory& memory) const noexcept;
+  Vec3 limited(const Vec3& force) const noexcept;
+
+  LimitSpec spec_;
+};
+
+} // namespace patina

@@ -1,0 +1,28 @@
+#include "haptics/spring_stage.h"
+
+namespace patina {
+
+void SpringStage::apply(Contact& contact, ContactMemory&) const noexcept {
+  if (!contact.touching) return;
+  contact.stiffness = stiffness_;
+  contact.force = stiffness_ * (contact.vcp - contact.tip);
+}
+
+void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
+  if (!contact.touching) return;
+  const Vec3& n = contact.normal;
+  const double v_n = contact.velocity.dot(n);
+  contact.force -= damping_ * v_n * n;
+  const double f_n = contact.force.dot(n);
+  if (f_n < 0) contact.force -= f_n * n;
+
+  if (!(contact.stick_radius > 0)) return;
+  const Vec3 normal_part = contact.force.dot(n) * n;
+  Vec3 tangential = contact.force - normal_part - damping_ * (contact.velocity - v_n * n);
+  const double bearable = contact.stiffness * contact.stick_radius;
+  const double magnitude = tangential.norm();
+  if (magnitude > bearable) tangential *= bearable / magnitude;
+  contact.force = normal_part + tangential;
+}
+
+} // namespace patina
