@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <chrono>
 
 #include "app/cli/commands.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
 #include "app/cli/tip_path.h"
+#include "app/stage_cost.h"
 #include "core/numbers.h"
 #include "visualization/export_files.h"
 
@@ -16,20 +16,6 @@ struct FeelOptions {
   std::filesystem::path input, path, output;
   SceneOptions scene;
 };
-
-// What reading the clock adds to each measured step.
-double timerNs() {
-  using Clock = std::chrono::steady_clock;
-  double best = 1e9;
-  for (int batch = 0; batch < 20; ++batch) {
-    constexpr int kPairs = 200;
-    const auto begin = Clock::now();
-    for (int i = 0; i < kPairs; ++i) (void)Clock::now();
-    best = std::min(best, std::chrono::duration<double, std::nano>(Clock::now() - begin).count() /
-                              kPairs);
-  }
-  return best;
-}
 
 int runFeel(const FeelOptions& options, Console& console) {
   requireWritable(options.output);

@@ -17,7 +17,7 @@ struct SceneCommandOptions {
   std::filesystem::path workspace;
   OpenOptions open;
   std::vector<std::string> added, removed;
-  std::vector<std::pair<std::string, std::string>> settings;
+  Settings settings;
 };
 
 // 4 x 4, row-major, '#' starts a comment.
@@ -87,7 +87,7 @@ int runScene(const SceneCommandOptions& options, Console& console) {
                   "' already and this version feels one object; --remove it first");
     scene.objects.push_back(readObject(text, options.open, console));
   }
-  for (const auto& [key, value] : options.settings) setValue(scene, key, value);
+  applySettings(scene, options.settings);
   validate(scene);
   console.progress().throwIfCancelled();
   const bool changed =

@@ -1,7 +1,5 @@
 #include "app/cli/scene_options.h"
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "core/numbers.h"
 
@@ -9,21 +7,29 @@ namespace patina::cli {
 
 namespace {
 
+// A scene in which nothing but the key itself can be wrong.
+Scene trialFor(const std::string& key) {
+  Scene trial = trialFor(key);
+  if (key == "resolution") trial.field.band = 2;
+  if (key == "band") trial.field.resolution = 4096;
+  return trial;
+}
+
+template <typename Iterator> Scene applied(Scene scene, Iterator first, Iterator last) {
+  for (; first != last; ++first) setValue(scene, first->first, first->second);
+  return scene;
+}
+
 // An option that stands for a key of the scene: the scene says what is allowed.
 void addSetting(Command& command, SceneOptions& options, const std::string& name,
                 const std::string& key, const std::string& value, const std::string& help,
                 const std::string& fallback) {
   command.arguments.push_back(
       {name, value, help, fallback, false, false, [&options, key](const std::string& text) {
-         Scene trial;
+         Scene trial = trialFor(key);
          setValue(trial, key, text);
          options.settings.emplace_back(key, text);
        }});
-}
-
-bool has(const SceneOptions& options, const std::string& key) {
-  return std::any_of(options.settings.begin(), options.settings.end(),
-                     [&](const auto& setting) { return setting.first == key; });
 }
 
 } // namespace
@@ -76,13 +82,24 @@ void addHapticOptions(Command& command, SceneOptions& options) {
              formatNumber(usual.force_limit));
 }
 
+void applySettings(Scene& scene, const Settings& settings) {
+  try {
+    scene = applied(scene, settings.begin(), settings.end());
+  } catch (const Error& in_order) {
+    // Two values may be fine together though the first alone is not: a smaller resolution needs
+    // the smaller band first.
+    try {
+      scene = applied(scene, settings.rbegin(), settings.rend());
+    } catch (const Error&) {
+      throw in_order;
+    }
+  }
+}
+
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console) {
   OpenedScene opened = openScene(path, options.open);
   for (const std::string& warning : opened.warnings) console.warn(warning);
-  // A workspace may hold a voxel, which would win over the resolution that was just asked for.
-  if (has(options, "resolution") && !has(options, "voxel")) setValue(opened.scene, "voxel", "none");
-  for (const auto& [key, value] : options.settings) setValue(opened.scene, key, value);
-  validate(opened.scene);
+  applySettings(opened.scene, options.settings);
   return std::move(opened.scene);
 }
 

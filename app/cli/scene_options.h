@@ -12,9 +12,11 @@
 
 namespace patina::cli {
 
+using Settings = std::vector<std::pair<std::string, std::string>>; // scene key, value
+
 struct SceneOptions {
   OpenOptions open;
-  std::vector<std::pair<std::string, std::string>> settings; // scene key, value
+  Settings settings;
 };
 
 // --unit and --iso.
@@ -24,6 +26,9 @@ void addFieldOptions(Command& command, SceneOptions& options);
 void addSamplerOption(Command& command, SceneOptions& options);
 // --stiffness --damping --friction-... --tip-radius --force-limit.
 void addHapticOptions(Command& command, SceneOptions& options);
+
+// All of them or, with an Error, none. Their order matters only where they contradict one another.
+void applySettings(Scene& scene, const Settings& settings);
 
 // Opens, warns, and applies the settings. Throws FileError or Error; see openScene().
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console);

@@ -1,0 +1,171 @@
+#include "app/cli/commands.h"
+#include "app/cli/reports.h"
+#include "app/cli/scene_options.h"
+#include "app/stage_cost.h"
+#include "core/numbers.h"
+#include "geometry/mesh_report.h"
+#include "visualization/field_io.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct InfoOptions {
+  std::filesystem::path input;
+  bool no_field = false;
+  SceneOptions scene;
+};
+
+Json defectsJson(const MeshReport& report) {
+  Json json = Json::object();
+  json.set("non_finite", report.non_finite);
+  json.set("degenerate", report.degenerate);
+  json.set("duplicate", report.duplicate);
+  json.set("boundary_edges", report.boundary_edges);
+  json.set("non_manifold_edges", report.non_manifold_edges);
+  json.set("misoriented_edges", report.misoriented_edges);
+  return json;
+}
+
+std::string defectsText(const MeshReport& report) {
+  const std::pair<std::size_t, const char*> kinds[] = {
+      {report.non_finite, "non-finite triangles"},
+      {report.degenerate, "triangles without area"},
+      {report.duplicate, "duplicate triangles"},
+      {report.boundary_edges, "boundary edges"},
+      {report.non_manifold_edges, "non-manifold edges"},
+      {report.misoriented_edges, "misoriented edges"}};
+  std::string text;
+  for (const auto& [count, what] : kinds)
+    if (count) text += (text.empty() ? "" : ", ") + formatCount(count) + " " + what;
+  return text.empty() ? "none" : text;
+}
+
+void describeMesh(const TriangleMesh& mesh, const MeshReport& report, Json& json, TextRows& rows) {
+  const Box3 box = bounds(mesh);
+  json.set("triangles", report.triangles);
+  json.set("vertices", report.vertices);
+  json.set("bounds", Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
+  json.set("watertight", report.watertight);
+  json.set("components", report.components);
+  json.set("defects", defectsJson(report));
+  rows.emplace_back("triangles", formatCount(report.triangles));
+  rows.emplace_back("vertices", formatCount(report.vertices));
+  const Vec3 size = box.sizes();
+  rows.emplace_back("size", formatLength(size.x()) + " x " + formatLength(size.y()) + " x " +
+                                formatLength(size.z()));
+  rows.emplace_back("watertight", report.watertight ? "yes" : "no");
+  rows.emplace_back("components", formatCount(report.components));
+  rows.emplace_back("defects", defectsText(report));
+}
+
+void describeLayers(const SurfaceField& field, std::size_t mesh_bytes, Json& json, TextRows& rows) {
+  Json layers = Json::array();
+  std::vector<LayerBytes> all = field.layerBytes();
+  if (mesh_bytes) all.insert(all.begin(), {"mesh", mesh_bytes});
+  for (const LayerBytes& layer : all) {
+    Json entry = Json::object();
+    entry.set("name", layer.name);
+    entry.set("bytes", layer.bytes);
+    layers.push(entry);
+    rows.emplace_back("layer " + layer.name, formatBytes(static_cast<double>(layer.bytes)));
+  }
+  json.set("layers", layers);
+}
+
+void describeStages(const CompiledScene& compiled, Json& json, TextRows& rows) {
+  const std::vector<double> ns = stageNs(compiled);
+  Json stages = Json::array();
+  for (std::size_t i = 0; i < compiled.snapshot->why.size(); ++i) {
+    const StageInfo& stage = compiled.snapshot->why[i];
+    Json entry = Json::object();
+    entry.set("name", stage.name);
+    entry.set("why", stage.why);
+    entry.set("bytes", stage.bytes);
+    entry.set("ns", ns[i]);
+    stages.push(entry);
+    rows.emplace_back("stage " + stage.name,
+                      stage.why + "; " + formatBytes(static_cast<double>(stage.bytes)) + ", " +
+                          formatNumber(static_cast<double>(static_cast<int>(ns[i] + 0.5))) + " ns");
+  }
+  json.set("stages", stages);
+}
+
+std::size_t bytesOf(const TriangleMesh& mesh) {
+  return mesh.positions.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(Triangle) +
+         mesh.corner_uvs.size() * sizeof(mesh.corner_uvs[0]);
+}
+
+int runInfo(const InfoOptions& options, Console& console) {
+  Scene scene = openWith(options.input, options.scene, console);
+  const bool is_folder = std::filesystem::is_directory(options.input);
+  const bool is_field = !is_folder && options.input.extension() == ".vti" && isField(options.input);
+  const char* kind = is_folder ? "workspace" : is_field ? "field" : "mesh";
+  Json json = Json::object();
+  TextRows rows = {{"file", options.input.string()}, {"kind", kind}};
+  json.set("file", options.input.string());
+  json.set("kind", kind);
+  if (is_folder) {
+    Json settings = Json::object();
+    for (const auto& [key, value] : values(scene)) {
+      settings.set(key, value);
+      rows.emplace_back(key, value);
+    }
+    json.set("values", settings);
+  }
+  if (options.no_field || scene.objects.empty()) {
+    const TriangleMesh mesh = worldMesh(scene);
+    describeMesh(mesh, inspect(mesh), json, rows);
+    json.set("layers", Json::array());
+    json.set("stages", Json::array());
+  } else {
+    const auto compiled = compile(std::move(scene), console.progress());
+    describeMesh(compiled->mesh, compiled->mesh_report, json, rows);
+    if (is_field) { // the numbers of the file, not of the field that its surface compiles to
+      const SurfaceField field = readField(options.input);
+      FieldReport report;
+      report.blocks = field.blockCount();
+      report.bytes = field.bytes();
+      report.dense_bytes = field.grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
+      json.set("field", fieldJson(field, report));
+      const TextRows more = fieldRows(field, report);
+      rows.insert(rows.end(), more.begin(), more.end());
+      describeLayers(field, 0, json, rows);
+    } else {
+      json.set("field", fieldJson(*compiled->built.field, compiled->built.report));
+      const TextRows more = fieldRows(*compiled->built.field, compiled->built.report);
+      rows.insert(rows.end(), more.begin(), more.end());
+      describeLayers(*compiled->built.field, bytesOf(compiled->mesh), json, rows);
+    }
+    describeStages(*compiled, json, rows);
+  }
+  console.report(json, aligned(rows));
+  return kDone;
+}
+
+} // namespace
+
+Command infoCommand() {
+  auto options = std::make_shared<InfoOptions>();
+  Command command;
+  command.name = "info";
+  command.summary = "what a mesh, field or workspace is and what it costs to feel";
+  command.description =
+      "Size, defects and whether the mesh is watertight; the bytes of each layer of its field; the "
+      "stages of the servo that are on, why, and what each costs in bytes and ns (measured here, "
+      "on "
+      "short strokes over the mesh).\n"
+      "JSON: kind, triangles, vertices, bounds [m], watertight, components, defects (non_finite, "
+      "degenerate, duplicate, boundary_edges, non_manifold_edges, misoriented_edges), layers "
+      "(name, bytes), stages (name, why, bytes, ns), field (as patina field).";
+  command.examples = {"patina info bunny.ply", "patina info workspace --json",
+                      "patina info huge.stl --unit m --no-field"};
+  command.input("FILE", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
+  command.flag("--no-field", "Only the mesh: layers and stages stay empty.", options->no_field);
+  addFieldOptions(command, options->scene);
+  addOpenOptions(command, options->scene.open);
+  command.run = [options](Console& console) { return runInfo(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli
