@@ -54,6 +54,8 @@ void validate(const Scene& scene);
 // friction coefficient is both, so that the two may be set in either order; "none" for either
 // takes friction away.
 void setValue(Scene& scene, const std::string& key, const std::string& value);
+// Several at once, judged together at the end, so that their order does not matter.
+void setValues(Scene& scene, const std::vector<std::pair<std::string, std::string>>& list);
 // Keys and present values, in the order of the documentation.
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene);
 

@@ -179,18 +179,27 @@ const std::vector<Entry>& entries() {
 
 } // namespace
 
+void setValues(Scene& scene, const std::vector<std::pair<std::string, std::string>>& list) {
+  Scene changed = scene; // meshes are shared, so this is cheap
+  const auto assign = [&](const std::string& key, const std::string& value) {
+    for (const Entry& entry : entries()) {
+      if (key == entry.key) return entry.set(changed, value);
+    }
+    std::string known;
+    for (const Entry& entry : entries()) known += std::string(" ") + entry.key;
+    throw Error("unknown key '" + key + "'; known are:" + known);
+  };
+  // First, because a first coefficient is both: "dynamic 0, static 0.5" must not lose its zero.
+  for (const auto& [key, value] : list)
+    if (key == "friction.static") assign(key, value);
+  for (const auto& [key, value] : list)
+    if (key != "friction.static") assign(key, value);
+  validate(changed);
+  scene = std::move(changed);
+}
+
 void setValue(Scene& scene, const std::string& key, const std::string& value) {
-  for (const Entry& entry : entries()) {
-    if (key != entry.key) continue;
-    Scene changed = scene; // meshes are shared, so this is cheap
-    entry.set(changed, value);
-    validate(changed);
-    scene = std::move(changed);
-    return;
-  }
-  std::string known;
-  for (const Entry& entry : entries()) known += std::string(" ") + entry.key;
-  throw Error("unknown key '" + key + "'; known are:" + known);
+  setValues(scene, {{key, value}});
 }
 
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene) {
