@@ -7,6 +7,7 @@
 #include <string>
 
 #include <vtkCommand.h>
+#include <vtkLogger.h>
 #include <vtkXMLImageDataReader.h>
 
 #include "core/error.h"
@@ -27,6 +28,18 @@ class ErrorCatcher : public vtkCommand {
     if (const auto end = cause.find('\n'); end != std::string::npos) cause.resize(end);
   }
   std::string cause = {};
+};
+
+// VTK's pipeline and decompressor print on stderr beside what they tell their observers.
+class QuietLog {
+ public:
+  QuietLog() { vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF); }
+  ~QuietLog() { vtkLogger::SetStderrVerbosity(before_); }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  vtkLogger::Verbosity before_ = vtkLogger::GetCurrentVerbosityCutoff();
 };
 
 // The reader allocates whatever the header asks for, so the header is read first.
@@ -60,6 +73,7 @@ void checkHeader(const std::filesystem::path& path) {
 
 vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path) {
   checkHeader(path);
+  const QuietLog quiet;
   const vtkNew<ErrorCatcher> errors;
   const vtkNew<vtkXMLImageDataReader> reader;
   reader->AddObserver(vtkCommand::ErrorEvent, errors);

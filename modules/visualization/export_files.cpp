@@ -1,0 +1,129 @@
+#include "visualization/export_files.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkIntArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include "core/csv.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "visualization/surface_data.h"
+
+namespace patina {
+namespace {
+
+void writePolyData(const std::filesystem::path& path, vtkPolyData* data) {
+  const vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(data);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressionLevel(2);
+  writer->WriteToOutputStringOn();
+  if (writer->Write() == 0) throw FileError(path.string(), 0, "cannot be encoded as .vtp");
+  writeFileAtomically(path, writer->GetOutputString());
+}
+
+vtkSmartPointer<vtkDoubleArray> pointArray(vtkPolyData* data, const char* name, int components) {
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(data->GetNumberOfPoints());
+  data->GetPointData()->AddArray(array);
+  return array;
+}
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+    case '&':
+      safe += "&amp;";
+      break;
+    case '<':
+      safe += "&lt;";
+      break;
+    case '>':
+      safe += "&gt;";
+      break;
+    case '"':
+      safe += "&quot;";
+      break;
+    default:
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+} // namespace
+
+void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  const auto data = plainData(mesh);
+  const vtkNew<vtkIntArray> face;
+  face->SetName("face");
+  face->SetNumberOfValues(static_cast<vtkIdType>(mesh.triangles.size()));
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    face->SetValue(static_cast<vtkIdType>(f), static_cast<int>(f));
+  data->GetCellData()->AddArray(face);
+  writePolyData(path, data);
+}
+
+void writeToolPathVtp(const std::filesystem::path& path, const std::vector<ToolSample>& samples) {
+  const vtkNew<vtkPolyData> data;
+  const vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  const vtkNew<vtkCellArray> lines;
+  if (!samples.empty()) lines->InsertNextCell(static_cast<int>(samples.size()));
+  for (const ToolSample& sample : samples)
+    lines->InsertCellPoint(points->InsertNextPoint(sample.tip.data()));
+  data->SetPoints(points);
+  data->SetLines(lines);
+  const auto time = pointArray(data, "t [s]", 1);
+  const auto force = pointArray(data, "force [N]", 3);
+  const auto vcp = pointArray(data, "vcp [m]", 3);
+  const auto depth = pointArray(data, "depth [m]", 1);
+  const auto contact = pointArray(data, "contact", 1);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const auto at = static_cast<vtkIdType>(s);
+    time->SetValue(at, samples[s].t);
+    force->SetTuple(at, samples[s].force.data());
+    vcp->SetTuple(at, samples[s].vcp.data());
+    depth->SetValue(at, samples[s].depth);
+    contact->SetValue(at, samples[s].contact ? 1 : 0);
+  }
+  writePolyData(path, data);
+}
+
+void writeCollectionVtm(const std::filesystem::path& path,
+                        const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string text = "<?xml version=\"1.0\"?>\n"
+                     "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n"
+                     "  <vtkMultiBlockDataSet>\n";
+  for (std::size_t i = 0; i < files.size(); ++i)
+    text += "    <DataSet index=\"" + std::to_string(i) + "\" name=\"" + escaped(files[i].first) +
+            "\" file=\"" + escaped(files[i].second) + "\"/>\n";
+  text += "  </vtkMultiBlockDataSet>\n</VTKFile>\n";
+  writeFileAtomically(path, text);
+}
+
+void writeToolSamplesCsv(const std::filesystem::path& path,
+                         const std::vector<ToolSample>& samples) {
+  CsvTable table;
+  table.columns = {"t [s]",  "x [m]",   "y [m]",     "z [m]",     "fx [N]",    "fy [N]",
+                   "fz [N]", "contact", "depth [m]", "vcp_x [m]", "vcp_y [m]", "vcp_z [m]",
+                   "nx",     "ny",      "nz",        "step [ns]"};
+  table.rows.reserve(samples.size());
+  for (const ToolSample& s : samples)
+    table.rows.push_back({s.t, s.tip[0], s.tip[1], s.tip[2], s.force[0], s.force[1], s.force[2],
+                          s.contact ? 1.0 : 0.0, s.depth, s.vcp[0], s.vcp[1], s.vcp[2], s.normal[0],
+                          s.normal[1], s.normal[2], static_cast<double>(s.step_ns)});
+  writeCsv(path, table);
+}
+
+} // namespace patina

@@ -1,0 +1,45 @@
+// Every colour of the pictures, the plots and the window, in one place. sRGB, 0 .. 1.
+#pragma once
+
+#include <array>
+
+namespace patina::palette {
+
+using Color = std::array<double, 3>;
+
+// VTK's setters ask for double* and only read it.
+inline double* forVtk(const Color& color) {
+  return const_cast<double*>(color.data());
+}
+
+inline constexpr Color kBackgroundLow{0.965, 0.970, 0.978};
+inline constexpr Color kBackgroundHigh{0.780, 0.825, 0.875};
+inline constexpr Color kText{0.13, 0.15, 0.19};
+inline constexpr Color kQuiet{0.45, 0.49, 0.55}; // outlines, grids
+
+inline constexpr Color kSurface{0.68, 0.80, 0.64};
+inline constexpr Color kSurfaceBack{0.50, 0.56, 0.50}; // the inner side, seen through a cut
+inline constexpr Color kEdges{0.36, 0.44, 0.37};
+inline constexpr Color kIso{0.30, 0.62, 0.78};
+
+inline constexpr Color kTool{0.95, 0.55, 0.12};
+inline constexpr Color kToolShaft{0.28, 0.30, 0.36};
+inline constexpr Color kGhost{0.45, 0.35, 0.62};
+inline constexpr Color kContactPoint{0.10, 0.11, 0.14};
+inline constexpr Color kForce{0.78, 0.10, 0.22};
+
+// Ends of the diverging map of distance: inside warm, outside cool.
+inline constexpr Color kInside{0.706, 0.204, 0.118};
+inline constexpr Color kOutside{0.130, 0.330, 0.640};
+
+// Series of plots: told apart by luminance as well as hue.
+inline constexpr std::array<Color, 6> kSeries{{
+    {0.12, 0.36, 0.66},
+    {0.84, 0.37, 0.05},
+    {0.13, 0.52, 0.33},
+    {0.50, 0.28, 0.60},
+    {0.55, 0.41, 0.10},
+    {0.10, 0.55, 0.62},
+}};
+
+} // namespace patina::palette

@@ -1,0 +1,382 @@
+#include "visualization/scene_view.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <vtkActor.h>
+#include <vtkAxesActor.h>
+#include <vtkCamera.h>
+#include <vtkCaptionActor2D.h>
+#include <vtkLight.h>
+#include <vtkOutlineSource.h>
+#include <vtkPlaneCollection.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkTransform.h>
+
+#include "field/iso_surface.h"
+#include "visualization/camera.h"
+#include "visualization/node_layer.h"
+#include "visualization/palette.h"
+#include "visualization/slice_layer.h"
+#include "visualization/surface_data.h"
+#include "visualization/surface_pick.h"
+#include "visualization/tool_layer.h"
+
+namespace patina {
+namespace {
+
+vtkSmartPointer<vtkActor> surfaceActor(const palette::Color& color) {
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  const vtkNew<vtkPolyDataMapper> mapper;
+  mapper->ScalarVisibilityOff();
+  actor->SetMapper(mapper);
+  vtkProperty* property = actor->GetProperty();
+  property->SetColor(palette::forVtk(color));
+  property->SetAmbient(0.16);
+  property->SetDiffuse(0.88);
+  property->SetSpecular(0.16);
+  property->SetSpecularPower(24);
+  property->SetEdgeColor(palette::forVtk(palette::kEdges));
+  property->SetLineWidth(1);
+  return actor;
+}
+
+void addLights(vtkRenderer& renderer) {
+  struct Lamp {
+    Vec3 from; // camera frame: right, up, towards the viewer
+    double intensity;
+    palette::Color color;
+  };
+  // A warm key from the upper left, a cool fill from the lower right, a rim from behind.
+  const Lamp lamps[] = {{Vec3(-0.5, 0.7, 1.0), 0.82, {1.0, 0.98, 0.94}},
+                        {Vec3(0.8, -0.5, 0.8), 0.34, {0.90, 0.95, 1.0}},
+                        {Vec3(0.2, 0.6, -1.0), 0.25, {1.0, 1.0, 1.0}}};
+  renderer.AutomaticLightCreationOff();
+  for (const Lamp& lamp : lamps) {
+    const vtkNew<vtkLight> light;
+    light->SetLightTypeToCameraLight();
+    light->SetPosition(lamp.from[0], lamp.from[1], lamp.from[2]);
+    light->SetFocalPoint(0, 0, 0);
+    light->SetIntensity(lamp.intensity);
+    light->SetColor(palette::forVtk(lamp.color));
+    renderer.AddLight(light);
+  }
+}
+
+vtkSmartPointer<vtkAxesActor> axesActor() {
+  auto axes = vtkSmartPointer<vtkAxesActor>::New();
+  axes->SetShaftTypeToCylinder();
+  axes->SetCylinderRadius(0.045);
+  axes->SetConeRadius(0.32);
+  axes->SetNormalizedShaftLength(0.75, 0.75, 0.75);
+  axes->SetNormalizedTipLength(0.25, 0.25, 0.25);
+  axes->SetNormalizedLabelPosition(1.25, 1.25, 1.25);
+  const palette::Color colors[] = {{0.76, 0.23, 0.20}, {0.25, 0.56, 0.27}, {0.20, 0.38, 0.72}};
+  vtkProperty* shafts[] = {axes->GetXAxisShaftProperty(), axes->GetYAxisShaftProperty(),
+                           axes->GetZAxisShaftProperty()};
+  vtkProperty* tips[] = {axes->GetXAxisTipProperty(), axes->GetYAxisTipProperty(),
+                         axes->GetZAxisTipProperty()};
+  vtkCaptionActor2D* captions[] = {axes->GetXAxisCaptionActor2D(), axes->GetYAxisCaptionActor2D(),
+                                   axes->GetZAxisCaptionActor2D()};
+  const char* letters[] = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) {
+    shafts[i]->SetColor(palette::forVtk(colors[i]));
+    tips[i]->SetColor(palette::forVtk(colors[i]));
+    captions[i]->SetCaption(letters[i]);
+    captions[i]->GetTextActor()->SetTextScaleModeToNone();
+    vtkTextProperty* text = captions[i]->GetCaptionTextProperty();
+    text->SetFontFamilyToArial();
+    text->SetFontSize(14);
+    text->BoldOn();
+    text->ItalicOff();
+    text->ShadowOff();
+    text->SetColor(palette::forVtk(colors[i]));
+  }
+  return axes;
+}
+
+} // namespace
+
+struct SceneView::Impl {
+  vtkNew<vtkRenderer> scene, overlay, corner;
+  vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
+  vtkSmartPointer<vtkActor> iso_actor = surfaceActor(palette::kIso);
+  vtkNew<vtkOutlineSource> outline;
+  vtkNew<vtkActor> band_actor;
+  SliceLayer slice{*scene, *overlay};
+  ToolLayer tool{*scene, *overlay};
+  NodeLayer nodes{*overlay};
+
+  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const SurfaceField> field;
+  double iso = 0;
+  SlicePlace place;
+  double tip_radius = 0;
+  std::optional<ToolSample> sample;
+  std::set<Layer> layers{Layer::mesh, Layer::tip};
+
+  // What is out of date; made again by prepare() and only if it is shown.
+  bool iso_stale = false, slice_stale = false, nodes_stale = false, dirty = true;
+  bool cut_keeps_positive = true, cut_on = false;
+  vtkMTimeType camera_time = 0;
+
+  Box3 meshBox() const { return mesh ? bounds(*mesh) : Box3(); }
+  Box3 gridBox() const {
+    if (!field) return {};
+    const Vec3 last(field->grid.nodes[0] - 1, field->grid.nodes[1] - 1, field->grid.nodes[2] - 1);
+    return Box3(field->grid.origin, field->grid.toWorld(last));
+  }
+  // What people mean by the size of the scene: the mesh where there is one.
+  Box3 box() const {
+    Box3 all = mesh ? meshBox() : gridBox();
+    if (layers.count(Layer::band) && field) all.extend(gridBox());
+    if (all.isEmpty()) all = Box3(Vec3::Constant(-0.05), Vec3::Constant(0.05));
+    return all;
+  }
+  double size() const {
+    const Box3 all = mesh ? meshBox() : box();
+    return all.isEmpty() ? 0.1 : std::max(1e-9, all.diagonal().norm());
+  }
+
+  double aspect() {
+    if (auto* window = scene->GetRenderWindow()) {
+      const int* pixels = window->GetSize();
+      if (pixels[0] > 0 && pixels[1] > 0) return static_cast<double>(pixels[0]) / pixels[1];
+    }
+    return 4.0 / 3.0;
+  }
+  bool on(Layer layer) const { return layers.count(layer) != 0; }
+
+  void sizeTool() { tool.setSize(tip_radius > 0 ? tip_radius : 0.006 * size(), size()); }
+  void applyVisibility();
+  void cutAt();
+  void aimTool();
+  void syncCorner();
+};
+
+void SceneView::Impl::applyVisibility() {
+  mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr);
+  iso_actor->SetVisibility(on(Layer::iso) && field != nullptr);
+  band_actor->SetVisibility(on(Layer::band) && field != nullptr);
+  slice.setVisible(on(Layer::slice) && field != nullptr);
+  tool.setVisible(on(Layer::tip) && sample.has_value());
+  nodes.setVisible(on(Layer::nodes) && field != nullptr);
+  for (auto& actor : {mesh_actor, iso_actor})
+    actor->GetProperty()->SetEdgeVisibility(on(Layer::wireframe));
+  // Over the mesh the iso-surface is a shell that one sees through; alone it is the surface.
+  const bool shell = on(Layer::mesh) && mesh != nullptr;
+  iso_actor->GetProperty()->SetOpacity(shell ? 0.38 : 1.0);
+  iso_actor->GetProperty()->SetBackfaceCulling(shell);
+}
+
+// Surfaces in front of the slice would hide it: the half towards the camera is cut away.
+void SceneView::Impl::cutAt() {
+  vtkPlane& plane = slice.plane();
+  const bool wanted = on(Layer::slice) && field != nullptr;
+  const Vec3 eye(scene->GetActiveCamera()->GetPosition());
+  const Vec3 normal = Vec3::Unit(place.axis);
+  const bool keeps_positive = (eye - Vec3(plane.GetOrigin())).dot(normal) < 0;
+  if (wanted) {
+    Vec3 inward = keeps_positive ? normal : Vec3(-normal);
+    plane.SetNormal(inward.data());
+  }
+  if (wanted == cut_on && keeps_positive == cut_keeps_positive) return;
+  cut_on = wanted;
+  cut_keeps_positive = keeps_positive;
+  for (auto& actor : {mesh_actor, iso_actor}) {
+    actor->GetMapper()->RemoveAllClippingPlanes();
+    if (wanted) actor->GetMapper()->AddClippingPlane(&plane);
+  }
+  dirty = true;
+}
+
+// Before a hand moved it, the tip rests on the surface in the middle of the picture.
+void SceneView::Impl::aimTool() {
+  if (sample || !field || !(on(Layer::tip) || on(Layer::nodes))) return;
+  const Ray ray = rayThrough(*scene->GetActiveCamera(), 0, 0);
+  const auto hit = firstSurfaceAlong(*field, ray.origin, ray.direction);
+  if (!hit) return;
+  sample.emplace();
+  sample->tip = sample->vcp = *hit;
+  tool.update(*sample);
+  nodes_stale = true;
+}
+
+void SceneView::Impl::syncCorner() {
+  vtkCamera* camera = scene->GetActiveCamera();
+  Vec3 back = (Vec3(camera->GetPosition()) - Vec3(camera->GetFocalPoint())).normalized() * 5.2;
+  vtkCamera* small = corner->GetActiveCamera();
+  small->SetPosition(back.data());
+  small->SetFocalPoint(0, 0, 0);
+  small->SetViewUp(camera->GetViewUp());
+  corner->ResetCameraClippingRange();
+}
+
+SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
+  Impl& my = *impl_;
+  my.scene->SetBackground(palette::forVtk(palette::kBackgroundLow));
+  my.scene->SetBackground2(palette::forVtk(palette::kBackgroundHigh));
+  my.scene->GradientBackgroundOn();
+  my.scene->AddActor(my.mesh_actor);
+  my.scene->AddActor(my.iso_actor);
+  addLights(*my.scene);
+  const vtkNew<vtkProperty> inner;
+  inner->DeepCopy(my.mesh_actor->GetProperty());
+  inner->SetColor(palette::forVtk(palette::kSurfaceBack));
+  inner->SetSpecular(0);
+  my.mesh_actor->SetBackfaceProperty(inner);
+
+  const vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(my.outline->GetOutputPort());
+  my.band_actor->SetMapper(mapper);
+  my.band_actor->GetProperty()->SetColor(palette::forVtk(palette::kQuiet));
+  my.band_actor->GetProperty()->SetLineWidth(1.5);
+  my.band_actor->GetProperty()->LightingOff();
+  my.scene->AddActor(my.band_actor);
+
+  my.overlay->SetLayer(1);
+  my.overlay->InteractiveOff();
+  my.overlay->SetActiveCamera(my.scene->GetActiveCamera());
+  addLights(*my.overlay);
+  my.corner->SetLayer(1);
+  my.corner->InteractiveOff();
+  my.corner->SetViewport(0.0, 0.0, 0.13, 0.17);
+  my.corner->AddActor(axesActor());
+  my.applyVisibility();
+  my.sizeTool();
+}
+
+SceneView::~SceneView() = default;
+
+void SceneView::attachTo(vtkRenderWindow& window) {
+  window.SetNumberOfLayers(2);
+  window.AddRenderer(impl_->scene);
+  window.AddRenderer(impl_->overlay);
+  window.AddRenderer(impl_->corner);
+}
+
+vtkRenderer& SceneView::renderer() {
+  return *impl_->scene;
+}
+
+void SceneView::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
+  Impl& my = *impl_;
+  my.mesh = std::move(mesh);
+  auto* mapper = vtkPolyDataMapper::SafeDownCast(my.mesh_actor->GetMapper());
+  mapper->SetInputData(my.mesh ? surfaceData(*my.mesh) : vtkSmartPointer<vtkPolyData>::New());
+  my.sizeTool();
+  my.applyVisibility();
+  my.dirty = true;
+}
+
+void SceneView::setField(std::shared_ptr<const SurfaceField> field) {
+  Impl& my = *impl_;
+  my.field = std::move(field);
+  my.sample.reset();
+  my.iso_stale = my.slice_stale = my.nodes_stale = true;
+  if (my.field) {
+    const Box3 box = my.gridBox();
+    my.outline->SetBounds(box.min()[0], box.max()[0], box.min()[1], box.max()[1], box.min()[2],
+                          box.max()[2]);
+  }
+  my.sizeTool();
+  my.applyVisibility();
+  my.dirty = true;
+}
+
+void SceneView::setIso(double iso) {
+  impl_->iso_stale = impl_->iso_stale || iso != impl_->iso;
+  impl_->iso = iso;
+  impl_->dirty = true;
+}
+
+void SceneView::setSlice(const SlicePlace& place) {
+  impl_->place = place;
+  impl_->slice_stale = impl_->dirty = true;
+}
+
+void SceneView::setTipRadius(double radius) {
+  impl_->tip_radius = radius;
+  impl_->sizeTool();
+  impl_->dirty = true;
+}
+
+void SceneView::setTool(const ToolSample& sample) {
+  Impl& my = *impl_;
+  const bool first = !my.sample.has_value();
+  if (!first && my.sample->tip == sample.tip && my.sample->vcp == sample.vcp &&
+      my.sample->force == sample.force && my.sample->contact == sample.contact)
+    return;
+  my.sample = sample;
+  my.tool.update(sample);
+  if (first) my.applyVisibility();
+  my.nodes_stale = true;
+  my.dirty = true;
+}
+
+void SceneView::show(Layer layer, bool on) {
+  if (on)
+    impl_->layers.insert(layer);
+  else
+    impl_->layers.erase(layer);
+  impl_->applyVisibility();
+  impl_->dirty = true;
+}
+
+void SceneView::showOnly(const std::set<Layer>& layers) {
+  impl_->layers = layers;
+  impl_->applyVisibility();
+  impl_->dirty = true;
+}
+
+bool SceneView::shown(Layer layer) const {
+  return impl_->on(layer);
+}
+
+void SceneView::setView(ViewPreset view) {
+  placeCamera(*impl_->scene->GetActiveCamera(), view, impl_->box(), impl_->aspect());
+  impl_->dirty = true;
+}
+
+void SceneView::fit() {
+  fitCamera(*impl_->scene->GetActiveCamera(), impl_->box(), impl_->aspect());
+  impl_->dirty = true;
+}
+
+Box3 SceneView::extent() const {
+  return impl_->box();
+}
+
+bool SceneView::prepare() {
+  Impl& my = *impl_;
+  my.aimTool();
+  if (my.iso_stale && my.field && my.on(Layer::iso)) {
+    vtkPolyDataMapper::SafeDownCast(my.iso_actor->GetMapper())
+        ->SetInputData(surfaceData(isoSurface(*my.field, my.iso)));
+    my.iso_stale = false;
+  }
+  if (my.slice_stale && my.field && my.on(Layer::slice)) {
+    my.slice.update(*my.field, my.place);
+    my.slice_stale = false;
+  }
+  if (my.nodes_stale && my.field && my.sample && my.on(Layer::nodes)) {
+    my.nodes.update(*my.field, my.sample->tip);
+    my.nodes_stale = false;
+  }
+  my.cutAt();
+  vtkCamera* camera = my.scene->GetActiveCamera();
+  my.tool.faceCamera(*camera);
+  my.applyVisibility();
+  my.syncCorner();
+  my.scene->ResetCameraClippingRange();
+  const bool camera_moved = camera->GetViewTransformObject()->GetMTime() != my.camera_time;
+  my.camera_time = camera->GetViewTransformObject()->GetMTime();
+  const bool changed = my.dirty || camera_moved;
+  my.dirty = false;
+  return changed;
+}
+
+} // namespace patina

@@ -1,0 +1,177 @@
+#include "visualization/slice_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <vtkImageData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkTextProperty.h>
+
+#include "visualization/distance_map.h"
+#include "visualization/palette.h"
+
+namespace patina {
+namespace {
+
+constexpr int kTexelsPerCell = 4;
+
+// 1, 2 or 5 times a power of ten, so that at most `lines` of them fit in `length`.
+double niceStep(double length, int lines) {
+  const double raw = length / lines;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= raw) return factor * power;
+  return 10 * power;
+}
+
+// How much of a texel a line covers: phi is a distance, so a line of constant width is a range of
+// phi, and its edge is softened over one texel.
+double coverage(double distance, double half_width, double texel) {
+  return std::clamp((half_width - distance) / texel + 0.5, 0.0, 1.0);
+}
+
+struct Ink {
+  vtkLookupTable* map;
+  double voxel_mm, step_mm;
+  double shown; // voxels: a little less than the band, where every cell has all of its nodes
+
+  void paint(double phi_voxels, unsigned char* rgba) const {
+    const double mm = phi_voxels * voxel_mm;
+    const unsigned char* color = map->MapValue(mm);
+    const double texel = 1.0 / kTexelsPerCell;
+    const double to_line = std::abs(mm - step_mm * std::round(mm / step_mm)) / voxel_mm;
+    const double thin = 0.35 * coverage(to_line, 0.10, texel);
+    const double thick = 0.90 * coverage(std::abs(phi_voxels), 0.28, texel);
+    const double dark = std::max(thin, thick);
+    for (int channel = 0; channel < 3; ++channel)
+      rgba[channel] = static_cast<unsigned char>(
+          std::lround(color[channel] * (1 - dark) +
+                      255 * palette::kText[static_cast<std::size_t>(channel)] * dark));
+    rgba[3] = static_cast<unsigned char>(
+        std::lround(255 * coverage(std::abs(phi_voxels), shown, 1.0 / kTexelsPerCell)));
+  }
+};
+
+vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Ink& ink) {
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  const int width = (plane.columns - 1) * kTexelsPerCell;
+  const int height = (plane.rows - 1) * kTexelsPerCell;
+  image->SetDimensions(width, height, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 4);
+  auto* rgba = static_cast<unsigned char*>(image->GetScalarPointer());
+  const auto node = [&](int column, int row) {
+    return static_cast<double>(
+        plane.phi[static_cast<std::size_t>(row) * static_cast<std::size_t>(plane.columns) +
+                  static_cast<std::size_t>(column)]);
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x, rgba += 4) {
+      const int column = x / kTexelsPerCell, row = y / kTexelsPerCell;
+      const double u = (x % kTexelsPerCell + 0.5) / kTexelsPerCell;
+      const double v = (y % kTexelsPerCell + 0.5) / kTexelsPerCell;
+      const double phi = (1 - v) * ((1 - u) * node(column, row) + u * node(column + 1, row)) +
+                         v * ((1 - u) * node(column, row + 1) + u * node(column + 1, row + 1));
+      if (std::isfinite(phi))
+        ink.paint(phi, rgba);
+      else
+        std::fill(rgba, rgba + 4, static_cast<unsigned char>(0));
+    }
+  return image;
+}
+
+} // namespace
+
+FieldPlane planeOf(const SurfaceField& field, const SlicePlace& place) {
+  const auto along = static_cast<std::size_t>(place.axis);
+  const std::size_t across = (along + 1) % 3, up = (along + 2) % 3;
+  const int last_cell = std::max(0, field.grid.nodes[along] - 2);
+  const double q = std::clamp(place.position, 0.0, 1.0) * (field.grid.nodes[along] - 1);
+  const int below = std::clamp(static_cast<int>(q), 0, last_cell);
+  const auto weight = static_cast<float>(q - below);
+
+  FieldPlane plane;
+  plane.columns = field.grid.nodes[across];
+  plane.rows = field.grid.nodes[up];
+  plane.phi.reserve(static_cast<std::size_t>(plane.columns) * static_cast<std::size_t>(plane.rows));
+  std::array<int, 3> node{};
+  for (node[up] = 0; node[up] < plane.rows; ++node[up])
+    for (node[across] = 0; node[across] < plane.columns; ++node[across]) {
+      node[along] = below;
+      const float low = field.phiAt(node[0], node[1], node[2]);
+      node[along] = below + 1;
+      const float high = field.phiAt(node[0], node[1], node[2]);
+      const bool stored = std::abs(low) < kBeyondBand && std::abs(high) < kBeyondBand;
+      plane.phi.push_back(stored ? (1 - weight) * low + weight * high
+                                 : std::numeric_limits<float>::quiet_NaN());
+    }
+  return plane;
+}
+
+SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
+    : quad_(vtkSmartPointer<vtkPlaneSource>::New()), texture_(vtkSmartPointer<vtkTexture>::New()),
+      actor_(vtkSmartPointer<vtkActor>::New()), bar_(vtkSmartPointer<vtkScalarBarActor>::New()),
+      plane_(vtkSmartPointer<vtkPlane>::New()) {
+  const vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(quad_->GetOutputPort());
+  actor_->SetMapper(mapper);
+  actor_->SetTexture(texture_);
+  actor_->GetProperty()->LightingOff();
+  texture_->InterpolateOn();
+  texture_->MipmapOn();
+  scene.AddActor(actor_);
+
+  bar_->SetTitle("distance [mm]\n");
+  bar_->SetNumberOfLabels(5);
+  bar_->SetLabelFormat("%+.1f");
+  bar_->UnconstrainedFontSizeOn();
+  for (vtkTextProperty* text : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
+    text->SetColor(palette::forVtk(palette::kText));
+    text->SetFontFamilyToArial();
+    text->ItalicOff();
+    text->BoldOff();
+    text->ShadowOff();
+    text->SetFontSize(13);
+  }
+  bar_->GetTitleTextProperty()->BoldOn();
+  bar_->SetBarRatio(0.22);
+  bar_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  bar_->SetPosition(0.885, 0.28);
+  bar_->SetWidth(0.10);
+  bar_->SetHeight(0.46);
+  overlay.AddActor2D(bar_);
+  setVisible(false);
+}
+
+void SliceLayer::update(const SurfaceField& field, const SlicePlace& place) {
+  const auto along = static_cast<std::size_t>(place.axis);
+  const FieldGrid& grid = field.grid;
+  Vec3 corner = Vec3::Zero();
+  corner[place.axis] = std::clamp(place.position, 0.0, 1.0) * (grid.nodes[along] - 1);
+  Vec3 across = corner, up = corner;
+  across[(place.axis + 1) % 3] = grid.nodes[(along + 1) % 3] - 1;
+  up[(place.axis + 2) % 3] = grid.nodes[(along + 2) % 3] - 1;
+  quad_->SetOrigin(grid.toWorld(corner).data());
+  quad_->SetPoint1(grid.toWorld(across).data());
+  quad_->SetPoint2(grid.toWorld(up).data());
+  plane_->SetOrigin(grid.toWorld(corner).data());
+  Vec3 normal = Vec3::Unit(place.axis);
+  plane_->SetNormal(normal.data());
+
+  const double voxel_mm = 1000 * grid.voxel;
+  const double limit_mm = field.band * voxel_mm;
+  const auto map = distanceMap(limit_mm);
+  texture_->SetInputData(
+      painted(planeOf(field, place), {map, voxel_mm, niceStep(limit_mm, 4),
+                                      std::max(0.6 * field.band, field.band - 1.75)}));
+  bar_->SetLookupTable(map);
+  bar_->SetLabelFormat(limit_mm < 1 ? "%+.2f" : limit_mm < 50 ? "%+.1f" : "%+.0f");
+}
+
+void SliceLayer::setVisible(bool on) {
+  actor_->SetVisibility(on);
+  bar_->SetVisibility(on);
+}
+
+} // namespace patina

@@ -1,0 +1,44 @@
+// A plane of the field as a picture in space, with its scalar bar.
+#pragma once
+
+#include <vector>
+
+#include <vtkActor.h>
+#include <vtkPlane.h>
+#include <vtkPlaneSource.h>
+#include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
+#include <vtkSmartPointer.h>
+#include <vtkTexture.h>
+
+#include "field/surface_field.h"
+#include "visualization/scene_view.h"
+
+namespace patina {
+
+// Distance on one plane, blended linearly between nodes; NaN where a node is not stored.
+struct FieldPlane {
+  int columns = 0, rows = 0; // nodes along the plane's two axes
+  std::vector<float> phi;    // voxels, columns fastest
+};
+FieldPlane planeOf(const SurfaceField& field, const SlicePlace& place);
+
+class SliceLayer {
+ public:
+  // scene: where the plane stands; overlay: where the scalar bar does.
+  SliceLayer(vtkRenderer& scene, vtkRenderer& overlay);
+
+  void update(const SurfaceField& field, const SlicePlace& place);
+  void setVisible(bool on);
+  // The plane itself, to cut the surfaces with; its normal is the slice's axis.
+  vtkPlane& plane() { return *plane_; }
+
+ private:
+  vtkSmartPointer<vtkPlaneSource> quad_;
+  vtkSmartPointer<vtkTexture> texture_;
+  vtkSmartPointer<vtkActor> actor_;
+  vtkSmartPointer<vtkScalarBarActor> bar_;
+  vtkSmartPointer<vtkPlane> plane_;
+};
+
+} // namespace patina

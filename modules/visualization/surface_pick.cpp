@@ -1,0 +1,64 @@
+#include "visualization/surface_pick.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+namespace {
+
+// Trilinear, voxels; a node that is not stored counts as the band, which phi there exceeds.
+double phiAtGrid(const SurfaceField& field, const Vec3& q) {
+  std::array<int, 3> cell{};
+  Vec3 w;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    cell[a] = static_cast<int>(
+        std::clamp(std::floor(q[axis]), 0.0, static_cast<double>(field.grid.nodes[a] - 2)));
+    w[axis] = std::clamp(q[axis] - cell[a], 0.0, 1.0);
+  }
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int x = corner & 1, y = (corner >> 1) & 1, z = corner >> 2;
+    const double weight = (x ? w[0] : 1 - w[0]) * (y ? w[1] : 1 - w[1]) * (z ? w[2] : 1 - w[2]);
+    const double phi = field.phiAt(cell[0] + x, cell[1] + y, cell[2] + z);
+    sum += weight * std::clamp(phi, -field.band, field.band);
+  }
+  return sum;
+}
+
+} // namespace
+
+std::optional<Vec3> firstSurfaceAlong(const SurfaceField& field, const Vec3& origin,
+                                      const Vec3& direction) {
+  const Vec3 start = field.grid.toGrid(origin);
+  if (!start.allFinite() || !direction.allFinite()) return std::nullopt;
+  // Where the ray is in the grid.
+  double from = 0, to = 1e9;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double last = field.grid.nodes[static_cast<std::size_t>(axis)] - 1;
+    if (std::abs(direction[axis]) < 1e-12) {
+      if (start[axis] < 0 || start[axis] > last) return std::nullopt;
+      continue;
+    }
+    const double a = -start[axis] / direction[axis], b = (last - start[axis]) / direction[axis];
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  double previous = from;
+  for (double t = from; t <= to;) {
+    const double phi = phiAtGrid(field, start + t * direction);
+    if (phi <= 0) {
+      double outside = previous, inside = t;
+      while (inside - outside > 0.01) {
+        const double middle = 0.5 * (outside + inside);
+        (phiAtGrid(field, start + middle * direction) > 0 ? outside : inside) = middle;
+      }
+      return field.grid.toWorld(start + outside * direction);
+    }
+    previous = t;
+    t += std::max(0.25, 0.9 * phi);
+  }
+  return std::nullopt;
+}
+
+} // namespace patina

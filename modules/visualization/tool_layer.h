@@ -1,0 +1,39 @@
+// The tool as the hand feels it: held out by the surface, with what it hides (the true tip, the
+// contact point, the force) drawn over everything.
+#pragma once
+
+#include <vtkActor.h>
+#include <vtkBillboardTextActor3D.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include "scene/tool_sample.h"
+
+namespace patina {
+
+class ToolLayer {
+ public:
+  // scene: hidden by surfaces in front of it; overlay: never hidden.
+  ToolLayer(vtkRenderer& scene, vtkRenderer& overlay);
+
+  // radius: of the drawn ball [m]; length: a size of the scene that shaft and arrow scale with [m].
+  void setSize(double radius, double length);
+  void update(const ToolSample& sample);
+  // The shaft leans towards the viewer's upper right, so that it never hides its own tip.
+  void faceCamera(vtkCamera& camera);
+  void setVisible(bool on);
+
+ private:
+  void place();
+
+  vtkSmartPointer<vtkActor> ball_, neck_, shaft_; // the proxy
+  vtkSmartPointer<vtkActor> ghost_, spring_, contact_, arrow_shaft_, arrow_head_;
+  vtkSmartPointer<vtkBillboardTextActor3D> label_;
+  ToolSample sample_;
+  Vec3 lean_ = Vec3(0.4, 0.7, 0.6).normalized();
+  double radius_ = 1e-3;
+  double length_ = 0.1;
+  bool visible_ = false;
+};
+
+} // namespace patina

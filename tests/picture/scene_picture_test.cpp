@@ -1,0 +1,159 @@
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "field/surface_field.h"
+#include "geometry/shapes.h"
+#include "picture/picture_support.h"
+#include "visualization/picture.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMajor = 0.035, kMinor = 0.015;
+
+double torusDistance(const Vec3& p) {
+  return std::hypot(std::hypot(p[0], p[1]) - kMajor, p[2]) - kMinor;
+}
+
+std::shared_ptr<const SurfaceField> torusField() {
+  FieldSpec spec;
+  spec.resolution = 120;
+  spec.band = 8;
+  const Box3 box(Vec3(-kMajor - kMinor, -kMajor - kMinor, -kMinor),
+                 Vec3(kMajor + kMinor, kMajor + kMinor, kMinor));
+  return std::make_shared<SurfaceField>(
+      sampleFunction(torusDistance, gridAround(box, spec), spec.band));
+}
+
+class ScenePicture : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    PATINA_NEEDS_DISPLAY();
+    view_.setMesh(std::make_shared<TriangleMesh>(torus(kMajor, kMinor, 160, 80)));
+    view_.setField(torusField());
+  }
+  Pixels drawn(const std::string& name, const std::set<Layer>& layers,
+               ViewPreset preset = ViewPreset::iso) {
+    view_.showOnly(layers);
+    view_.setView(preset);
+    const char* keep = std::getenv("PATINA_KEEP_PICTURES");
+    const fs::path folder = keep != nullptr ? fs::path(keep) : fs::temp_directory_path();
+    const fs::path path = folder / (name + "-" + std::to_string(getpid()) + ".png");
+    renderToPng(view_, {960, 720}, path);
+    Pixels pixels(path);
+    if (keep == nullptr)
+      fs::remove(path);
+    else
+      fs::rename(path, folder / (name + ".png"));
+    return pixels;
+  }
+  ToolSample pressed() const {
+    ToolSample sample;
+    sample.contact = true;
+    sample.vcp = Vec3(0, -kMajor, kMinor);
+    sample.tip = Vec3(0, -kMajor, kMinor - 0.003);
+    sample.normal = Vec3::UnitZ();
+    sample.force = Vec3(0, 0, 1.5);
+    sample.depth = 0.003;
+    return sample;
+  }
+  SceneView view_;
+};
+
+TEST_F(ScenePicture, SeenFromAboveATorusFillsItsRingAndLeavesItsHole) {
+  const Pixels pixels = drawn("above", {Layer::mesh}, ViewPreset::plus_z);
+  EXPECT_EQ(pixels.width(), 960);
+  // The ring's area over the picture's, from the fit: the outer diameter takes 1/1.08 of the
+  // height.
+  const double scale = 1 / 1.08 / (2 * (kMajor + kMinor));
+  const double ring = 4 * M_PI * kMajor * kMinor * scale * scale * 0.75 / 0.86;
+  EXPECT_NEAR(pixels.share(isSurface), ring, 0.1 * ring);
+  EXPECT_EQ(pixels.share(isSurface, 0.47, 0.53, 0.47, 0.53), 0);
+}
+
+TEST_F(ScenePicture, HiddenLayersDrawNothing) {
+  const Pixels pixels = drawn("nothing", {Layer::band});
+  EXPECT_EQ(pixels.share(isSurface), 0);
+}
+
+TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
+  view_.setSlice({1, 0.5});
+  const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::band, Layer::iso});
+  EXPECT_GT(pixels.share(isWarm), 0.02);
+  EXPECT_GT(pixels.share(isCool), 0.02);
+  EXPECT_GT(pixels.share(isSurface), 0.05); // the half behind the plane
+  // The scalar bar stands at the right edge: both ends of the map, and dark text.
+  EXPECT_GT(pixels.share(isWarm, 0.88, 1, 0.2, 0.8), 0.01);
+  EXPECT_GT(pixels.share(isCool, 0.88, 1, 0.2, 0.8), 0.01);
+  EXPECT_GT(pixels.share([](const Vec3& c) { return c.maxCoeff() < 110; }, 0.88, 1, 0.2, 0.8),
+            0.003);
+}
+
+TEST_F(ScenePicture, ToolForceAndLabelAreDrawnOverTheSurface) {
+  view_.setTipRadius(0.002);
+  view_.setTool(pressed());
+  const Pixels pixels = drawn("tool", {Layer::mesh, Layer::tip});
+  EXPECT_GT(pixels.share(isTool), 0.0002);
+  EXPECT_GT(pixels.share(isForce), 0.002);
+  EXPECT_GT(pixels.share(isSurface), 0.2);
+}
+
+TEST_F(ScenePicture, WithoutContactThereIsNoForceArrow) {
+  ToolSample sample;
+  sample.tip = sample.vcp = Vec3(0, -kMajor, 0.03);
+  view_.setTool(sample);
+  const Pixels pixels = drawn("free", {Layer::mesh, Layer::tip});
+  EXPECT_GT(pixels.share(isTool), 0.0001);
+  EXPECT_EQ(pixels.share(isForce), 0);
+}
+
+TEST_F(ScenePicture, NodesNearTheTipShowBothSidesOfTheSurface) {
+  view_.setTool(pressed());
+  const Pixels pixels = drawn("nodes", {Layer::mesh, Layer::nodes, Layer::wireframe});
+  EXPECT_GT(pixels.share(isWarm), 0.0005);
+  EXPECT_GT(pixels.share(isCool), 0.0005);
+}
+
+TEST_F(ScenePicture, IsoSurfaceAloneLooksLikeTheShape) {
+  view_.setIso(0.001);
+  const Pixels pixels = drawn("iso", {Layer::iso});
+  EXPECT_GT(pixels.share(isCool), 0.2);
+}
+
+TEST_F(ScenePicture, ATipNobodyMovedRestsOnTheSurface) {
+  const Pixels pixels = drawn("resting", {Layer::mesh, Layer::tip}, ViewPreset::plus_y);
+  EXPECT_GT(pixels.share(isTool, 0.4, 0.6, 0.4, 0.6), 0.001);
+}
+
+TEST(Picture, SaysWhatToDoWithoutADisplay) {
+  const char* display = std::getenv("DISPLAY");
+  const std::string kept = display != nullptr ? display : "";
+  for (const char* value : {"", ":31999"}) {
+    setenv("DISPLAY", value, 1);
+    SceneView view;
+    try {
+      renderToPng(view, {64, 64}, fs::temp_directory_path() / "never.png");
+      ADD_FAILURE() << "drawn on display '" << value << "'";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("xvfb-run"), std::string::npos);
+    }
+  }
+  if (display != nullptr)
+    setenv("DISPLAY", kept.c_str(), 1);
+  else
+    unsetenv("DISPLAY");
+}
+
+TEST(Picture, RefusesSizesThatNoPictureHas) {
+  SceneView view;
+  EXPECT_THROW(renderToPng(view, {0, 100}, "x.png"), Error);
+  EXPECT_THROW(renderToPng(view, {100, 100000}, "x.png"), Error);
+}
+
+} // namespace
+} // namespace patina

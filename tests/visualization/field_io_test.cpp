@@ -1,0 +1,215 @@
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkXMLImageDataWriter.h>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "field/surface_field.h"
+#include "visualization/field_io.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FieldIo : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("patina-field-io-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path file(const std::string& name) const { return folder_ / name; }
+
+ private:
+  fs::path folder_;
+};
+
+double sphere(const Vec3& p) {
+  return p.norm() - 0.03;
+}
+
+SurfaceField sphereField() {
+  FieldSpec spec;
+  spec.resolution = 43; // no multiple of the block side
+  spec.band = 3;
+  const FieldGrid grid = gridAround(Box3(Vec3::Constant(-0.03), Vec3::Constant(0.03)), spec);
+  return sampleFunction(sphere, grid, spec.band);
+}
+
+// A face layer of numbers that tell the nodes apart.
+void addFaces(SurfaceField& field) {
+  std::int32_t next = 7;
+  for (const auto& distance : field.distance) {
+    auto faces = std::make_shared<FaceBlock>();
+    for (std::size_t n = 0; n < faces->face.size(); ++n)
+      faces->face[n] = std::abs(distance->phi[n]) < kBeyondBand ? next++ : -1;
+    field.face.push_back(std::move(faces));
+  }
+}
+
+void expectSameNodes(const SurfaceField& a, const SurfaceField& b) {
+  ASSERT_EQ(a.grid.nodes, b.grid.nodes);
+  for (int k = -1; k <= a.grid.nodes[2]; ++k)
+    for (int j = -1; j <= a.grid.nodes[1]; ++j)
+      for (int i = -1; i <= a.grid.nodes[0]; ++i) {
+        ASSERT_EQ(a.phiAt(i, j, k), b.phiAt(i, j, k)) << i << ' ' << j << ' ' << k;
+        if (!a.face.empty()) {
+          ASSERT_EQ(a.faceAt(i, j, k), b.faceAt(i, j, k));
+        }
+      }
+}
+
+std::string messageOf(const fs::path& path) {
+  try {
+    readField(path);
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(FieldIo, StoredNodesComeBackBitForBit) {
+  SurfaceField field = sphereField();
+  addFaces(field);
+  field.coarse.resize(static_cast<std::size_t>((field.blocks[0] + 1) * (field.blocks[1] + 1) *
+                                               (field.blocks[2] + 1)));
+  std::mt19937 random(3);
+  for (CoarseNode& node : field.coarse)
+    node = {static_cast<float>(random()), 0.1F, -0.2F, static_cast<float>(random()) * 1e-9F};
+  writeField(file("f.vti"), field);
+  const SurfaceField back = readField(file("f.vti"));
+  EXPECT_EQ(back.grid.origin, field.grid.origin);
+  EXPECT_EQ(back.grid.voxel, field.grid.voxel);
+  EXPECT_EQ(back.band, field.band);
+  EXPECT_EQ(back.blocks, field.blocks);
+  expectSameNodes(field, back);
+  ASSERT_EQ(back.coarse.size(), field.coarse.size());
+  for (std::size_t i = 0; i < back.coarse.size(); ++i) {
+    EXPECT_EQ(back.coarse[i].phi, field.coarse[i].phi);
+    EXPECT_EQ(back.coarse[i].gz, field.coarse[i].gz);
+  }
+  EXPECT_TRUE(isField(file("f.vti")));
+}
+
+TEST_F(FieldIo, KeepsSparseBlocksSparse) {
+  SurfaceField field = sphereField();
+  field.coarse.clear();
+  writeField(file("f.vti"), field);
+  const SurfaceField back = readField(file("f.vti"));
+  EXPECT_LE(back.blockCount(), field.blockCount());
+  EXPECT_LT(back.blockCount(), back.top.size());
+  EXPECT_TRUE(back.face.empty());
+  EXPECT_TRUE(back.coarse.empty());
+  EXPECT_EQ(withSamples(std::make_shared<SurfaceField>(back))->sample.size(), back.blockCount());
+}
+
+TEST_F(FieldIo, EveryTruncationIsAnErrorThatNamesTheFile) {
+  writeField(file("f.vti"), sphereField());
+  const std::string whole = readFile(file("f.vti"));
+  for (const double fraction : {0.0, 0.001, 0.01, 0.1, 0.5, 0.9, 0.99}) {
+    std::ofstream(file("cut.vti"), std::ios::binary)
+        << whole.substr(0, static_cast<std::size_t>(fraction * static_cast<double>(whole.size())));
+    const std::string message = messageOf(file("cut.vti"));
+    EXPECT_NE(message.find("cut.vti"), std::string::npos) << fraction;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST_F(FieldIo, DamagedBytesNeverCrashAndNeverGiveAnInfiniteField) {
+  writeField(file("f.vti"), sphereField());
+  const std::string whole = readFile(file("f.vti"));
+  std::mt19937 random(11);
+  int refused = 0;
+  for (int round = 0; round < 60; ++round) {
+    std::string bytes = whole;
+    // The header's numbers on one half of the rounds, the compressed data on the other.
+    const std::size_t range = round % 2 == 0 ? std::size_t{1500} : bytes.size();
+    for (int hit = 0; hit < 3; ++hit) bytes[random() % range] = static_cast<char>(random());
+    std::ofstream(file("bad.vti"), std::ios::binary) << bytes;
+    try {
+      const SurfaceField field = readField(file("bad.vti"));
+      for (const auto& block : field.distance)
+        for (const float phi : block->phi) ASSERT_TRUE(std::isfinite(phi));
+    } catch (const FileError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 20);
+}
+
+TEST_F(FieldIo, RefusesWhatIsNotAFieldInOneLine) {
+  std::ofstream(file("text.vti")) << "solid of hope\n";
+  EXPECT_NE(messageOf(file("text.vti")).find("not a VTK XML ImageData"), std::string::npos);
+  EXPECT_NE(messageOf(file("none.vti")).find("no such file"), std::string::npos);
+  EXPECT_NE(messageOf(fs::temp_directory_path()).find("is a folder"), std::string::npos);
+  std::ofstream(file("huge.vti"))
+      << "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\">\n"
+         "<ImageData WholeExtent=\"0 99999999 0 99999999 0 99999999\" Origin=\"0 0 0\" "
+         "Spacing=\"1 1 1\"></ImageData></VTKFile>\n";
+  EXPECT_NE(messageOf(file("huge.vti")).find("2^30"), std::string::npos);
+}
+
+TEST_F(FieldIo, FailedWriteLeavesTheOldFile) {
+  writeField(file("f.vti"), sphereField());
+  EXPECT_THROW(writeField(file("no/such/folder/f.vti"), sphereField()), FileError);
+  EXPECT_TRUE(isField(file("f.vti")));
+}
+
+// A density with its solid inside, as of a scanner.
+void writeDensity(const fs::path& path) {
+  const vtkNew<vtkImageData> image;
+  constexpr int kNodes = 48;
+  image->SetDimensions(kNodes, kNodes, kNodes);
+  image->SetOrigin(-1.5, -1.5, -1.5);
+  image->SetSpacing(3.0 / (kNodes - 1), 3.0 / (kNodes - 1), 3.0 / (kNodes - 1));
+  const vtkNew<vtkFloatArray> density;
+  density->SetName("density");
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+    double p[3];
+    image->GetPoint(i, p);
+    density->InsertNextValue(static_cast<float>(100 * (1 - Vec3(p).norm())));
+  }
+  image->GetPointData()->AddArray(density);
+  const vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName(path.c_str());
+  writer->Write();
+}
+
+TEST_F(FieldIo, AVolumeFromElsewhereGivesAnOutwardSurface) {
+  writeDensity(file("v.vti"));
+  EXPECT_FALSE(isField(file("v.vti")));
+  const VolumeRange range = scalarRange(file("v.vti"));
+  EXPECT_LT(range.low, -100);
+  EXPECT_GT(range.high, 90);
+  const TriangleMesh mesh = isoSurfaceOfVolume(file("v.vti"), 20); // sphere of radius 0.8
+  double worst = 0;
+  for (const Vec3& p : mesh.positions) worst = std::max(worst, std::abs(p.norm() - 0.8));
+  EXPECT_LT(worst, 0.005);
+  EXPECT_NEAR(volume(mesh), 4.0 / 3.0 * M_PI * 0.512, 0.02);
+}
+
+TEST_F(FieldIo, AnIsoValueOutsideTheRangeIsExplained) {
+  writeDensity(file("v.vti"));
+  try {
+    isoSurfaceOfVolume(file("v.vti"), 1000);
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("its values run from"), std::string::npos);
+  }
+  EXPECT_NE(messageOf(file("v.vti")).find("not a Patina field"), std::string::npos);
+}
+
+} // namespace
+} // namespace patina
