@@ -1,0 +1,72 @@
+#include "core/csv.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+namespace patina {
+namespace {
+
+const std::vector<std::string> kTip{"t [s]", "x [m]", "y [m]", "z [m]"};
+
+std::string errorOf(const std::string& text) {
+  try {
+    parseCsv(text, "tip.csv", kTip);
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Csv, ReadsHeaderAndRows) {
+  const CsvTable table =
+      parseCsv("t [s],x [m],y [m],z [m],force [N]\r\n0,1,2,3,4\r\n\r\n1e-3, -1,.5,0,nan\r\n",
+               "tip.csv", kTip);
+  EXPECT_EQ(table.columns.size(), 5u);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[1][2], 0.5);
+}
+
+TEST(Csv, AcceptsAByteOrderMarkAndNoLastNewline) {
+  EXPECT_EQ(parseCsv("\xEF\xBB\xBFt [s],x [m],y [m],z [m]\n1,2,3,4", "a", kTip).rows.size(), 1u);
+}
+
+TEST(Csv, NamesTheLineOfAFault) {
+  const std::string header = "t [s],x [m],y [m],z [m]\n0,0,0,0\n";
+  EXPECT_EQ(errorOf(header + "1,2,3\n"), "tip.csv:3: 3 values where the header names 4");
+  EXPECT_EQ(errorOf(header + "1,2,x,4\n"), "tip.csv:3: 'x' is not a number");
+  EXPECT_EQ(errorOf(header + "1,2,,4\n"), "tip.csv:3: '' is not a number");
+  EXPECT_TRUE(errorOf("time,x,y,z\n1,2,3,4\n").starts_with("tip.csv:1: header is 'time,x,y,z'"));
+  EXPECT_TRUE(errorOf("").starts_with("tip.csv: is empty"));
+}
+
+TEST(Csv, NamesADecimalCommaAsSuch) {
+  const std::string header = "t [s],x [m],y [m],z [m]\n";
+  EXPECT_NE(errorOf(header + "0,1,1,5,2,5,3,5\n").find("decimal comma"), std::string::npos);
+  EXPECT_NE(errorOf(header + "0,1;1,5;2,5;3,5\n").find("decimal comma"), std::string::npos);
+}
+
+TEST(Csv, KeepsTheMessageOnOneLineWhateverTheFileHolds) {
+  std::string hostile = "\x01\x02\r\x03";
+  hostile.append(5000, 'z');
+  const std::string error = errorOf(hostile);
+  EXPECT_LT(error.size(), 200u);
+  for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
+}
+
+TEST(Csv, WrittenNumbersComeBackBitForBit) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  CsvTable table{kTip, {}};
+  for (int i = 0; i < 200; ++i)
+    table.rows.push_back({normal(random), normal(random) * 1e-200, normal(random) * 1e200, -0.0});
+  const std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / "patina_csv_test.csv";
+  writeCsv(path, table);
+  const CsvTable back = readCsv(path, kTip);
+  std::filesystem::remove(path);
+  EXPECT_EQ(back.rows, table.rows);
+  EXPECT_EQ(back.columns, table.columns);
+}
+
+} // namespace
+} // namespace patina
