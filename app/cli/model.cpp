@@ -56,7 +56,7 @@ const std::vector<Model>& models() {
        }},
       {"vase",
        "thin-walled, closed",
-       {{"height", 0.12}, {"wall", 0.003}, {"around", 48}, {"along", 25}},
+       {{"height", 0.12}, {"wall", 0.004}, {"around", 48}, {"along", 25}},
        [](const Sizes& s) {
          return vase(s.at("height"), s.at("wall"), count(s, "around"), count(s, "along"));
        }},
