@@ -1,0 +1,161 @@
+#include "field/surface_field.h"
+
+#include <atomic>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "field/analytic_fields.h"
+
+namespace patina {
+namespace {
+
+using namespace test;
+
+constexpr double kRadius = 0.05;
+
+TEST(SampledFunction, HoldsEveryNodeOfTheBandAndTheSignOfAllOthers) {
+  const FieldGrid grid = cubeGrid(kRadius, 64, 5);
+  const Distance sphere = sphereDistance(kRadius);
+  const SurfaceField field = sampleFunction(sphere, grid, 5);
+  for (int k = 0; k < grid.nodes[2]; ++k)
+    for (int j = 0; j < grid.nodes[1]; ++j)
+      for (int i = 0; i < grid.nodes[0]; ++i) {
+        const double exact = sphere(grid.toWorld(Vec3(i, j, k))) / grid.voxel;
+        const float stored = field.phiAt(i, j, k);
+        if (std::abs(exact) <= 5)
+          ASSERT_NEAR(stored, exact, 1e-6);
+        else
+          ASSERT_EQ(stored, exact < 0 ? -kBeyondBand : kBeyondBand) << i << ' ' << j << ' ' << k;
+      }
+  EXPECT_EQ(field.phiAt(-1, 0, 0), kBeyondBand);
+  EXPECT_EQ(field.phiAt(0, 0, grid.nodes[2]), kBeyondBand);
+  EXPECT_EQ(field.faceAt(32, 32, 6), -1);
+}
+
+TEST(SampledFunction, StoresNoBlockWithoutABandNodeAndSkipsWhatItProvesFar) {
+  const FieldGrid grid = cubeGrid(kRadius, 150, 4);
+  std::atomic<std::size_t> calls{0};
+  const SurfaceField field = sampleFunction(
+      [&](const Vec3& p) {
+        ++calls;
+        return p.norm() - kRadius;
+      },
+      grid, 4);
+  EXPECT_LT(calls.load(), grid.nodeCount() / 2);
+  for (const auto& block : field.distance) {
+    bool any = false;
+    for (const float phi : block->phi) any |= std::abs(phi) <= 4;
+    EXPECT_TRUE(any);
+  }
+  std::size_t stored = 0;
+  for (const std::int32_t slot : field.top) stored += slot >= 0;
+  EXPECT_EQ(stored, field.blockCount());
+  for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
+    const auto& at = field.block_at[slot];
+    EXPECT_EQ(field.slotOf(at[0], at[1], at[2]), static_cast<std::int32_t>(slot));
+  }
+}
+
+TEST(SampledFunction, CoarseNodesLieAtBlockCorners) {
+  const FieldGrid grid = cubeGrid(kRadius, 60);
+  const Distance sphere = sphereDistance(kRadius);
+  const SurfaceField field = sampleFunction(sphere, grid, 8);
+  ASSERT_EQ(field.coarse.size(), 9U * 9U * 9U);
+  const CoarseNode& node = field.coarse[(2 * 9 + 5) * 9 + 7];
+  const Vec3 p = grid.toWorld(8.0 * Vec3(7, 5, 2));
+  EXPECT_NEAR(node.phi, sphere(p) / grid.voxel, 1e-5);
+  EXPECT_LT(angleBetween(Vec3(node.gx, node.gy, node.gz), p), 1e-3);
+}
+
+// K04, against differences taken node by node.
+TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
+  const FieldGrid grid = cubeGrid(kRadius, 50, 4);
+  const auto field = sampledField(torusDistance(0.03, 0.015), grid, 4);
+  const auto difference = [&](int i, int j, int k, int axis) {
+    const std::array<int, 3> d{axis == 0, axis == 1, axis == 2};
+    const float before = field->phiAt(i - d[0], j - d[1], k - d[2]);
+    const float here = field->phiAt(i, j, k);
+    const float after = field->phiAt(i + d[0], j + d[1], k + d[2]);
+    const bool low = std::abs(before) < kBeyondBand, high = std::abs(after) < kBeyondBand;
+    if (low && high) return (after - before) / 2;
+    return high ? after - here : low ? here - before : 0.0F;
+  };
+  std::size_t one_sided = 0;
+  for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
+    const auto& at = field->block_at[slot];
+    for (int z = 0; z < kSampleSide; ++z)
+      for (int y = 0; y < kSampleSide; ++y)
+        for (int x = 0; x < kSampleSide; ++x) {
+          const int i = 8 * at[0] + x, j = 8 * at[1] + y, k = 8 * at[2] + z;
+          if (i + 1 >= grid.nodes[0] || j + 1 >= grid.nodes[1] || k + 1 >= grid.nodes[2]) continue;
+          const SampleNode& node =
+              field->sample[slot]
+                  ->node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)];
+          ASSERT_EQ(node.phi, field->phiAt(i, j, k));
+          if (std::abs(node.phi) >= kBeyondBand) {
+            ASSERT_EQ(node.gx, 0);
+            continue;
+          }
+          ASSERT_EQ(node.gx, difference(i, j, k, 0));
+          ASSERT_EQ(node.gy, difference(i, j, k, 1));
+          ASSERT_EQ(node.gz, difference(i, j, k, 2));
+          one_sided += std::abs(field->phiAt(i + 1, j, k)) >= kBeyondBand;
+        }
+  }
+  EXPECT_GT(one_sided, 100U);
+}
+
+TEST(SampleLayer, FlagsExactlyTheCellsWhoseEightNodesAreStored) {
+  const FieldGrid grid = cubeGrid(kRadius, 40, 3);
+  const auto field = sampledField(sphereDistance(kRadius), grid, 3);
+  std::size_t complete = 0, incomplete = 0;
+  for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
+    const auto& at = field->block_at[slot];
+    for (int cell = 0; cell < kBlockNodes; ++cell) {
+      const int x = cell % 8, y = cell / 8 % 8, z = cell / 64;
+      const int i = 8 * at[0] + x, j = 8 * at[1] + y, k = 8 * at[2] + z;
+      if (i + 1 >= grid.nodes[0] || j + 1 >= grid.nodes[1] || k + 1 >= grid.nodes[2]) continue;
+      bool all = true;
+      for (int corner = 0; corner < 8; ++corner)
+        all &= std::abs(field->phiAt(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2))) <
+               kBeyondBand;
+      ASSERT_EQ(field->sample[slot]->cellComplete(x, y, z), all) << i << ' ' << j << ' ' << k;
+      ++(all ? complete : incomplete);
+    }
+  }
+  EXPECT_GT(complete, 1000U);
+  EXPECT_GT(incomplete, 1000U);
+}
+
+TEST(SampleLayer, SharesTheOtherLayersAndIsIdempotent) {
+  const auto bare = std::make_shared<const SurfaceField>(
+      sampleFunction(sphereDistance(kRadius), cubeGrid(kRadius, 40), 8));
+  const auto field = withSamples(bare);
+  EXPECT_EQ(field->distance[0], bare->distance[0]);
+  EXPECT_TRUE(bare->sample.empty());
+  EXPECT_EQ(withSamples(field), field);
+}
+
+TEST(LayerBytes, CountOnlyTheLayersThatExist) {
+  const auto bare = std::make_shared<const SurfaceField>(
+      sampleFunction(sphereDistance(kRadius), cubeGrid(kRadius, 40), 8));
+  const auto sizes = [](const SurfaceField& field) {
+    std::map<std::string, std::size_t> bytes;
+    for (const LayerBytes& layer : field.layerBytes()) bytes[layer.name] = layer.bytes;
+    return bytes;
+  };
+  const auto without = sizes(*bare);
+  EXPECT_EQ(without.count("sample"), 0U);
+  EXPECT_EQ(without.count("face"), 0U);
+  EXPECT_GE(without.at("distance"), bare->blockCount() * sizeof(DistanceBlock));
+  const auto field = withSamples(bare);
+  EXPECT_GE(sizes(*field).at("sample"), field->blockCount() * sizeof(SampleBlock));
+  std::size_t sum = 0;
+  for (const auto& [name, size] : sizes(*field)) sum += size;
+  EXPECT_EQ(field->bytes(), sum);
+}
+
+} // namespace
+} // namespace patina
