@@ -104,7 +104,7 @@ class AsciiParser {
   void nextWord(const char* wanted) {
     if (!findWord())
       throw FileError(name_, lines_.number(),
-                      std::string("the file ends where '") + wanted + "' should be");
+                      std::string("the file ends where ") + wanted + " should be");
   }
   void expect(const char* wanted) {
     if (!equalIgnoringCase(word_, wanted)) throwUnexpected(wanted);

@@ -15,7 +15,8 @@ void throwNotANumber(std::string_view word, const std::string& name, std::size_t
       throw FileError(name, line,
                       quoted(word) + " has a decimal comma; numbers need a decimal point");
   }
-  throw FileError(name, line, quoted(word) + expected);
+  throw FileError(name, line,
+                  quoted(word) + " is no number a double can hold; it stands" + expected);
 }
 
 } // namespace patina::text

@@ -1,0 +1,178 @@
+// Exact counts on meshes with known defects (the oracle is how they were made).
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "geometry/mesh_report.h"
+#include "geometry/shapes.h"
+
+namespace patina {
+namespace {
+
+struct Counts {
+  std::size_t non_finite = 0, degenerate = 0, duplicate = 0;
+  std::size_t boundary = 0, non_manifold = 0, misoriented = 0;
+};
+
+void expectCounts(const TriangleMesh& mesh, const Counts& counts) {
+  const MeshReport report = inspect(mesh);
+  EXPECT_EQ(report.triangles, mesh.triangles.size());
+  EXPECT_EQ(report.vertices, mesh.positions.size());
+  EXPECT_EQ(report.non_finite, counts.non_finite);
+  EXPECT_EQ(report.degenerate, counts.degenerate);
+  EXPECT_EQ(report.duplicate, counts.duplicate);
+  EXPECT_EQ(report.boundary_edges, counts.boundary);
+  EXPECT_EQ(report.non_manifold_edges, counts.non_manifold);
+  EXPECT_EQ(report.misoriented_edges, counts.misoriented);
+}
+
+TEST(MeshReport, ClosedShapesAreWatertight) {
+  for (const TriangleMesh& mesh :
+       {icosphere(1, 5), torus(1, 0.2, 9, 7), box(Vec3(1, 2, 3), 3), vase()}) {
+    EXPECT_TRUE(inspect(mesh).watertight);
+    EXPECT_EQ(inspect(mesh).components, 1u);
+    expectCounts(mesh, {});
+  }
+}
+
+TEST(MeshReport, CountsTheRimOfASheet) {
+  expectCounts(sheet(1, 1, 6), {.boundary = 24});
+  EXPECT_FALSE(inspect(sheet(1, 1, 6)).watertight);
+}
+
+TEST(MeshReport, CountsOneRemovedTriangle) {
+  TriangleMesh mesh = icosphere(1, 4);
+  mesh.triangles.pop_back();
+  expectCounts(mesh, {.boundary = 3});
+}
+
+TEST(MeshReport, CountsFlippedFaces) {
+  TriangleMesh mesh = icosphere(1, 4);
+  std::swap(mesh.triangles[7][1], mesh.triangles[7][2]);
+  expectCounts(mesh, {.misoriented = 3});
+  EXPECT_FALSE(inspect(mesh).watertight);
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  expectCounts(mesh, {.misoriented = 3});
+}
+
+TEST(MeshReport, InsideOutIsStillWatertight) {
+  TriangleMesh mesh = icosphere(1, 4);
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  EXPECT_TRUE(inspect(mesh).watertight);
+}
+
+TEST(MeshReport, CountsAFinOnAnEdge) {
+  TriangleMesh mesh = icosphere(1, 2);
+  const Triangle t = mesh.triangles[0];
+  mesh.positions.emplace_back(0, 0, 3);
+  mesh.triangles.push_back({t[0], t[1], static_cast<std::int32_t>(mesh.positions.size()) - 1});
+  expectCounts(mesh, {.boundary = 2, .non_manifold = 1});
+}
+
+TEST(MeshReport, CountsDuplicatesInAnyOrderAndOnlyTheLaterOnes) {
+  TriangleMesh mesh = icosphere(1, 3);
+  const Triangle t = mesh.triangles[10];
+  mesh.triangles.push_back({t[1], t[2], t[0]});
+  mesh.triangles.push_back({t[1], t[0], t[2]});
+  mesh.triangles.push_back(mesh.triangles[11]);
+  expectCounts(mesh, {.duplicate = 3});
+  EXPECT_TRUE(inspect(mesh).watertight) << "edges are counted without the duplicates";
+}
+
+TEST(MeshReport, CountsNonFiniteFacesAndTheHoleTheyLeave) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    TriangleMesh mesh = icosphere(1, 4);
+    mesh.positions.back()[1] = bad; // within a face: six triangles round it
+    expectCounts(mesh, {.non_finite = 6, .boundary = 6});
+  }
+}
+
+TEST(MeshReport, ZeroAreaIsRelativeToTheLongestEdge) {
+  TriangleMesh mesh;
+  mesh.positions = {Vec3(0, 0, 0),      Vec3(1, 0, 0),       Vec3(0.5, 1e-13, 0),
+                    Vec3(0.5, 1e-9, 0), Vec3(0.1, 0.1, 0.1), Vec3(0.3, 0.3, 0.3),
+                    Vec3(0.7, 0.7, 0.7)};
+  mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {4, 5, 6}, {0, 0, 1}, {2, 2, 2}};
+  EXPECT_EQ(inspect(mesh).degenerate, 4u);
+  for (const double scale : {1e-200, 1e-30, 1e30, 1e200}) {
+    TriangleMesh scaled = mesh;
+    for (Vec3& p : scaled.positions) p *= scale;
+    EXPECT_EQ(inspect(scaled).degenerate, 4u) << scale;
+  }
+}
+
+TEST(MeshReport, EqualPositionsMakeADegenerateTriangle) {
+  TriangleMesh mesh = box(Vec3(1, 1, 1));
+  mesh.positions.push_back(mesh.positions[0]);
+  mesh.triangles.push_back({0, 1, static_cast<std::int32_t>(mesh.positions.size()) - 1});
+  expectCounts(mesh, {.degenerate = 1});
+}
+
+TEST(MeshReport, ComponentsAreConnectedThroughVertices) {
+  const TriangleMesh one = icosphere(1, 2);
+  const auto moved = [&](double x) {
+    return transformed(one, Eigen::Affine3d(Eigen::Translation3d(x, 0, 0)));
+  };
+  TriangleMesh mesh = joined(joined(one, moved(3)), moved(6));
+  EXPECT_EQ(inspect(mesh).components, 3u);
+  mesh.triangles.push_back({0, static_cast<std::int32_t>(one.positions.size()),
+                            static_cast<std::int32_t>(one.positions.size()) + 2});
+  EXPECT_EQ(inspect(mesh).components, 2u);
+  EXPECT_EQ(inspect(withShrunkenTriangles(one, 0.1)).components, one.triangles.size());
+}
+
+TEST(MeshReport, AnEmptyMeshIsNotWatertight) {
+  EXPECT_FALSE(inspect({}).watertight);
+  EXPECT_EQ(inspect({}).components, 0u);
+}
+
+TEST(Cleaned, DropsWhatNoEngineCanUseAndSaysSo) {
+  TriangleMesh mesh = icosphere(1, 4);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto u = static_cast<double>(t);
+    mesh.corner_uvs.push_back({Vec2(u, 0), Vec2(u, 1), Vec2(u, 2)});
+  }
+  const Vec3 last = mesh.positions.back();
+  mesh.positions.insert(mesh.positions.begin(), Vec3(std::nan(""), 0, 0)); // unused
+  for (Triangle& t : mesh.triangles)
+    for (std::int32_t& v : t) ++v;
+  mesh.triangles.insert(mesh.triangles.begin(), {{1, 1, 2}, {0, 1, 2}});
+  mesh.corner_uvs.insert(mesh.corner_uvs.begin(), 2, {});
+  mesh.triangles.push_back(mesh.triangles.back()); // a duplicate stays
+  mesh.corner_uvs.push_back(mesh.corner_uvs.back());
+
+  const CleanMesh clean = cleaned(mesh);
+  EXPECT_EQ(clean.dropped, 2u);
+  EXPECT_EQ(clean.report.non_finite, 1u);
+  EXPECT_EQ(clean.report.degenerate, 1u);
+  EXPECT_EQ(clean.report.duplicate, 1u);
+  EXPECT_EQ(clean.report.triangles, mesh.triangles.size());
+  EXPECT_EQ(clean.mesh.triangles.size(), mesh.triangles.size() - 2);
+  EXPECT_EQ(clean.mesh.positions.size(), icosphere(1, 4).positions.size());
+  EXPECT_EQ(clean.mesh.positions.back(), last);
+  ASSERT_EQ(clean.mesh.corner_uvs.size(), clean.mesh.triangles.size());
+  EXPECT_EQ(clean.mesh.corner_uvs[5][2], Vec2(5, 2));
+  for (std::size_t t = 0; t < clean.mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(clean.mesh.corner(t, k), mesh.corner(t + 2, k));
+}
+
+TEST(Cleaned, LeavesAGoodMeshAsItIs) {
+  const TriangleMesh mesh = vase();
+  const CleanMesh clean = cleaned(mesh);
+  EXPECT_EQ(clean.dropped, 0u);
+  EXPECT_EQ(clean.mesh.positions, mesh.positions);
+  EXPECT_EQ(clean.mesh.triangles, mesh.triangles);
+}
+
+TEST(Cleaned, RefusesAMeshWithNothingLeft) {
+  EXPECT_THROW(cleaned({}), Error);
+  TriangleMesh mesh;
+  mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_THROW(cleaned(mesh), Error);
+}
+
+} // namespace
+} // namespace patina
