@@ -202,6 +202,14 @@ MeshReport inspect(const TriangleMesh& mesh) {
   return inspect(mesh, faults);
 }
 
+std::vector<std::int32_t> usableTriangles(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> usable;
+  usable.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (faultOf(mesh, t) == Fault::none) usable.push_back(static_cast<std::int32_t>(t));
+  return usable;
+}
+
 CleanMesh cleaned(TriangleMesh mesh) {
   std::vector<Fault> faults;
   const MeshReport report = inspect(mesh, faults);

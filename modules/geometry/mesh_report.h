@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "geometry/triangle_mesh.h"
 
@@ -24,6 +26,9 @@ struct MeshReport {
 };
 
 MeshReport inspect(const TriangleMesh& mesh);
+
+// The triangles that are neither non-finite nor degenerate, ascending.
+std::vector<std::int32_t> usableTriangles(const TriangleMesh& mesh);
 
 struct CleanMesh {
   TriangleMesh mesh;   // without non-finite and degenerate triangles; unused vertices removed
