@@ -37,12 +37,12 @@ Vec3 directionAt(const GridSample& sample, const ContactMemory& memory) noexcept
 ContactStage::ContactStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
                            double tip_radius, bool sweep)
     : field_(std::move(field)), sampler_(sampled(field_), sampler), voxel_(field_->grid.voxel),
-      iso_(tip_radius / voxel_),
+      per_voxel_(1 / voxel_), iso_(tip_radius * per_voxel_),
       hold_limit_(0.25 * *std::max_element(field_->grid.nodes.begin(), field_->grid.nodes.end())),
       sweep_(sweep) {}
 
 void ContactStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  const Vec3 q = sampler_.grid().toGrid(contact.tip);
+  const Vec3 q = toGrid(contact.tip);
   if (outOfGrid(sampler_.grid(), q)) ++memory.outside_ticks;
   const GridSample sample = sampler_.atGrid(q);
   contact.samples = 1;
@@ -67,7 +67,7 @@ bool ContactStage::hold(const Vec3& q, const GridSample& sample, const Vec3& dir
   if (!memory.has_last_tip) return false;
   const double f = sample.phi - iso_;
   if (memory.in_contact) {
-    const Vec3 last = sampler_.grid().toGrid(memory.last_candidate);
+    const Vec3 last = toGrid(memory.last_candidate);
     const double turned = direction.dot(memory.last_normal);
     const bool wrong_side = f < 0 ? (memory.held() ? turned < 0.5 : turned < 0)
                                   : (q - last).dot(memory.last_normal) < 0;
@@ -75,7 +75,7 @@ bool ContactStage::hold(const Vec3& q, const GridSample& sample, const Vec3& dir
   }
   // Slow motion ends here: a 1-Lipschitz field has no surface between two points whose clearances
   // together exceed their distance, and a tip that enters moves against the direction.
-  const Vec3 from = sampler_.grid().toGrid(memory.last_tip);
+  const Vec3 from = toGrid(memory.last_tip);
   const double step = (q - from).norm();
   const bool suspicious = f < 0 ? direction.dot(q - from) > 0 : f + memory.clearance < step;
   if (!suspicious || !(memory.clearance >= 0 && memory.clearance < step)) return false;

@@ -40,11 +40,13 @@ class ContactStage final : public ForceStage {
   bool follow(const Vec3& q, const SurfaceContact& from, Found& found) const noexcept;
   void alongRay(const Vec3& q, const GridSample& sample, const Vec3& direction, Contact& contact,
                 Found& found) const noexcept;
+  Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - sampler_.grid().origin); }
   void finish(const Found& found, Contact& contact, ContactMemory& memory) const noexcept;
 
   std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   double voxel_;
+  double per_voxel_;  // [1/m]: a product is quicker than grid().toGrid()'s division
   double iso_;        // voxels
   double hold_limit_; // voxels
   bool sweep_;

@@ -1,20 +1,19 @@
 #include "haptics/friction_stage.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace patina {
 namespace {
 
 constexpr double kTrailVoxels = 0.05;
-constexpr double kMinGradient = 0.1;
 
 } // namespace
 
 FrictionStage::FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
                              double tip_radius, const Friction& friction)
     : field_(std::move(field)), sampler_(*field_, sampler), friction_(friction),
-      iso_(tip_radius / field_->grid.voxel), trail_(kTrailVoxels * field_->grid.voxel) {}
+      iso_(tip_radius / field_->grid.voxel), trail_(kTrailVoxels * field_->grid.voxel),
+      per_voxel_(1 / field_->grid.voxel) {}
 
 void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const double gain = 1 + friction_.depth_gain * contact.depth / kFrictionDepthReference;
@@ -32,11 +31,10 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
     memory.has_stuck = true;
     memory.slipping = false;
   }
-  const Vec3 behind = memory.trail - c;
-  const double lag = behind.norm();
-  if (lag > trail_) memory.trail = c + trail_ / lag * behind;
+  if (friction_.slip == Friction::SlipDirection::displacement) follow(memory.trail, c);
 
-  if ((memory.stuck - c).norm() <= (memory.slipping ? slip : stick)) {
+  const double radius = memory.slipping ? slip : stick;
+  if ((memory.stuck - c).squaredNorm() <= radius * radius) {
     memory.slipping = false;
     contact.stick_radius = stick;
     contact.vcp = memory.stuck;
@@ -44,14 +42,10 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   }
   Vec3 p = c;
   if (slip > 0) {
-    p = c + slip * slipDirection(c, memory);
+    const Vec3 offset = slip * slipDirection(c, memory);
+    // Where c itself is not on the surface there is nothing to project to.
     const bool on_surface = !contact.held && !contact.approximate && !memory.has_handover;
-    if (on_surface) {
-      // Projected, then back to the same distance: what the projection takes from it must not look
-      // like a return to sticking.
-      const Vec3 offset = ontoSurface(p, slip) - c;
-      p = c + slip / std::max(offset.norm(), 0.5 * slip) * offset;
-    }
+    p = c + (on_surface ? ontoSurface(contact, offset, slip) : offset);
   }
   if (!memory.slipping) contact.slip_step = (p - memory.stuck).norm();
   memory.slipping = true;
@@ -59,24 +53,36 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   contact.vcp = p;
 }
 
+void FrictionStage::follow(Vec3& trail, const Vec3& candidate) const noexcept {
+  const Vec3 behind = trail - candidate;
+  const double lag = behind.squaredNorm();
+  if (lag > trail_ * trail_) trail = candidate + trail_ / std::sqrt(lag) * behind;
+}
+
 Vec3 FrictionStage::slipDirection(const Vec3& candidate,
                                   const ContactMemory& memory) const noexcept {
   if (friction_.slip == Friction::SlipDirection::displacement) {
     const Vec3 behind = memory.trail - candidate;
-    const double lag = behind.norm();
-    if (lag > 0.5 * trail_) return behind / lag;
+    const double lag = behind.squaredNorm();
+    if (lag > 0.25 * trail_ * trail_) return behind / std::sqrt(lag);
   }
   return (memory.stuck - candidate).normalized();
 }
 
-// One Newton step; p itself where the field does not say or the step is longer than `bound`.
-Vec3 FrictionStage::ontoSurface(const Vec3& p, double bound) const noexcept {
-  const GridSample sample = sampler_.at(p);
-  const double squared = sample.gradient.squaredNorm();
-  if (sample.region != FieldRegion::band || !(squared > kMinGradient * kMinGradient)) return p;
-  const double voxel = sampler_.grid().voxel;
-  const Vec3 step = (sample.phi - iso_ * voxel) / squared * sample.gradient;
-  return step.squaredNorm() <= bound * bound ? Vec3(p - step) : p;
+// The offset from c moved by one Newton step along the contact's normal, then brought back to its
+// length: what the projection takes from it must not look like a return to sticking. A step longer
+// than the offset belongs to another sheet and is not taken.
+Vec3 FrictionStage::ontoSurface(const Contact& contact, const Vec3& offset,
+                                double length) const noexcept {
+  const FieldGrid& grid = sampler_.grid();
+  const Vec3 p = contact.candidate + offset;
+  const double f = (sampler_.phiAtGrid(per_voxel_ * (p - grid.origin)) - iso_) * grid.voxel;
+  if (!(std::abs(f) < length)) return offset;
+  const Vec3 projected = offset - f * contact.normal;
+  const double squared = projected.squaredNorm() / (length * length);
+  // One step of the inverse square root where it is exact to 1e-6, which is nearly always.
+  const double scale = std::abs(squared - 1) < 1e-3 ? 1.5 - 0.5 * squared : 1 / std::sqrt(squared);
+  return squared > 0.25 ? Vec3(scale * projected) : offset;
 }
 
 } // namespace patina

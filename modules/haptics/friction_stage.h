@@ -26,13 +26,15 @@ class FrictionStage final : public ForceStage {
 
  private:
   Vec3 slipDirection(const Vec3& candidate, const ContactMemory& memory) const noexcept;
-  Vec3 ontoSurface(const Vec3& p, double bound) const noexcept;
+  void follow(Vec3& trail, const Vec3& candidate) const noexcept;
+  Vec3 ontoSurface(const Contact& contact, const Vec3& offset, double length) const noexcept;
 
   std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   Friction friction_;
-  double iso_;   // voxels
-  double trail_; // [m]
+  double iso_;       // voxels
+  double trail_;     // [m]
+  double per_voxel_; // [1/m]
 };
 
 } // namespace patina

@@ -37,10 +37,10 @@ bool LimitStage::jumped(const Contact& contact, const ContactMemory& memory) con
 }
 
 Vec3 LimitStage::limited(const Vec3& force) const noexcept {
-  const double magnitude = force.stableNorm();
   // Rounding of the scaled vector must not lift it over the limit.
   const double limit = spec_.force_limit * (1 - 1e-15);
-  return magnitude > limit ? Vec3(limit / magnitude * force) : force;
+  if (force.squaredNorm() <= limit * limit) return force;
+  return limit / force.stableNorm() * force; // the square may have overflowed
 }
 
 } // namespace patina

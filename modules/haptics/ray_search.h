@@ -3,13 +3,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "field/field_sampler.h"
 
 namespace patina {
 
-// Voxels; a last secant step follows. Values near the surface are good to some 2e-7 (float).
+// Voxels; values near the surface are good to some 2e-7 (float).
 inline constexpr double kRootTolerance = 1e-6;
+// The step after the last sample leaves about |f| times the variation of the slope, which |slope -
+// 1| tells: along its own direction a distance has the slope 1, except across creases.
+inline constexpr double kStepTolerance = 2e-7;
+inline constexpr double kLeastVariation = 0.01;
 inline constexpr int kMaxRaySamples = 64;
 
 struct RayRoot {
@@ -36,7 +41,8 @@ inline RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n
     ++root.samples;
     const double slope = (f - f_last) / (s - s_last);
     double next = slope > 0.05 ? s - f / slope : s - f;
-    if (f > -kRootTolerance && f < kRootTolerance) {
+    const double variation = std::max(std::abs(slope - 1), kLeastVariation);
+    if (std::abs(f) < std::max(kRootTolerance, kStepTolerance / variation)) {
       root.s = next;
       root.found = next > 0;
       return root;

@@ -111,7 +111,7 @@ Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& 
   }
   memory.gap = 0;
   if (memory.has_last_tip && contact.dt > 0) {
-    const Vec3 difference = (tip - memory.last_tip) / contact.dt;
+    const Vec3 difference = 1 / contact.dt * (tip - memory.last_tip);
     memory.velocity += contact.dt / (contact.dt + kVelocityTime) * (difference - memory.velocity);
   }
   contact.velocity = memory.velocity;
