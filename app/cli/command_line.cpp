@@ -58,6 +58,7 @@ int runCommandLine(int argc, char** argv) {
   const std::vector<Command> commands = allCommands();
   CLI::App program;
   program.set_help_flag();
+  program.require_subcommand(0, 1); // so that "patina study field" is a study, not two commands
   bool help = false;
   bool version = false;
   Console console;

@@ -63,11 +63,10 @@ int runFeel(const FeelOptions& options, Console& console) {
   TextRows rows = {
       {"ticks", formatCount(samples.size()) + ", in contact " + formatCount(contact_ticks)},
       {"stages", stage_text},
-      {"step", formatNumber(step.p50) + " ns (p50), " + formatNumber(step.p99) + " (p99), " +
-                   formatNumber(step.p999) + " (p99.9), " + formatNumber(step.max) +
-                   " (max); of these the clock takes " +
-                   formatNumber(static_cast<double>(static_cast<int>(timer + 0.5)))},
-      {"largest force", formatNumber(max_force) + " N"},
+      {"step", rounded(step.p50) + " ns (p50), " + rounded(step.p99) + " (p99), " +
+                   rounded(step.p999) + " (p99.9), " + rounded(step.max) +
+                   " (max); of these the clock takes " + rounded(timer)},
+      {"largest force", rounded(max_force) + " N"},
       {"largest depth", formatLength(max_depth)}};
   if (deep_ticks)
     rows.emplace_back("deep", formatCount(deep_ticks) + " ticks deeper than the band");

@@ -84,9 +84,9 @@ void describeStages(const CompiledScene& compiled, Json& json, TextRows& rows) {
     entry.set("bytes", stage.bytes);
     entry.set("ns", ns[i]);
     stages.push(entry);
-    rows.emplace_back("stage " + stage.name,
-                      stage.why + "; " + formatBytes(static_cast<double>(stage.bytes)) + ", " +
-                          formatNumber(static_cast<double>(static_cast<int>(ns[i] + 0.5))) + " ns");
+    rows.emplace_back("stage " + stage.name, stage.why + "; " +
+                                                 formatBytes(static_cast<double>(stage.bytes)) +
+                                                 ", " + rounded(ns[i]) + " ns");
   }
   json.set("stages", stages);
 }

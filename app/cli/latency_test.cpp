@@ -35,7 +35,7 @@ int runLatencyTest(const LatencyOptions& options, Console& console) {
   json.set("late_us", late);
   json.set("missed", static_cast<std::int64_t>(timing.missed));
   json.set("load", load);
-  const auto us = [](double value) { return formatNumber(value) + " us"; };
+  const auto us = [](double value) { return rounded(value) + " us"; };
   console.report(json, aligned({{"policy", timing.policy},
                                 {"wake-ups", formatCount(timing.ticks) + " at " +
                                                  formatNumber(*options.rate) + " Hz"},
@@ -44,7 +44,7 @@ int runLatencyTest(const LatencyOptions& options, Console& console) {
                                 {"late, p99.9", us(timing.late_p999)},
                                 {"late, max", us(timing.late_max)},
                                 {"missed", formatCount(timing.missed)},
-                                {"load", formatNumber(load)}}));
+                                {"load", rounded(load)}}));
   return kDone;
 }
 

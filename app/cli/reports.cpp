@@ -84,6 +84,16 @@ Json toJson(const Percentiles& p) {
   return json;
 }
 
+std::string rounded(double value) {
+  const double size = std::abs(value);
+  if (size >= 999.5)
+    return (value < 0 ? "-" : "") + formatCount(static_cast<std::size_t>(size + 0.5));
+  const int digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : 3;
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
 void requireWritable(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder))

@@ -25,6 +25,9 @@ struct Percentiles {
 Percentiles percentiles(std::vector<double> values);
 Json toJson(const Percentiles& p);
 
+// For people: three significant digits, never an exponent ("0.8", "28.1", "1,411").
+std::string rounded(double value);
+
 // Throws FileError now rather than after a minute's work if `path` cannot become a file.
 void requireWritable(const std::filesystem::path& path);
 

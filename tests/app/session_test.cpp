@@ -1,0 +1,155 @@
+#include "app/session.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <unistd.h>
+
+#include "app/stage_cost.h"
+#include "geometry/mesh_io.h"
+#include "geometry/shapes.h"
+#include "visualization/field_io.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+class Session : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::temp_directory_path() /
+             ("patina-session-" + std::to_string(getpid()) + "-" +
+              testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  static Scene smallSphere() {
+    Scene scene = sceneOf(icosphere(0.02, 8), "sphere");
+    scene.field.resolution = 40;
+    return scene;
+  }
+
+  std::filesystem::path folder;
+  Progress progress;
+};
+
+TEST_F(Session, OpensAMeshInItsUnitUnderALegalName) {
+  TriangleMesh mesh = icosphere(20, 4); // 20 mm in a file of mm
+  writeMesh(folder / "my cup (2).ply", mesh);
+  const OpenedScene mm = openScene(folder / "my cup (2).ply", {});
+  ASSERT_EQ(mm.scene.objects.size(), 1u);
+  EXPECT_EQ(mm.scene.objects[0].name, "my_cup__2_");
+  EXPECT_NO_THROW(validate(mm.scene));
+  EXPECT_TRUE(mm.warnings.empty());
+  EXPECT_NEAR(bounds(*mm.scene.objects[0].mesh).max().z(), 0.02, 1e-3);
+  const OpenedScene metres = openScene(folder / "my cup (2).ply", {MeshUnit::m, {}});
+  EXPECT_NEAR(bounds(*metres.scene.objects[0].mesh).max().z(), 20, 1);
+  ASSERT_EQ(metres.warnings.size(), 1u);
+  EXPECT_NE(metres.warnings[0].find("--unit"), std::string::npos);
+}
+
+TEST_F(Session, WarnsOfEveryKindOfTriangleThatIsLeftOut) {
+  TriangleMesh mesh = icosphere(20, 4);
+  mesh.positions[3].x() = std::numeric_limits<double>::quiet_NaN();
+  mesh.triangles[0] = {0, 0, 1};
+  const MeshReport report = inspect(mesh);
+  ASSERT_GT(report.non_finite, 0u);
+  ASSERT_GT(report.degenerate, 0u);
+  EXPECT_EQ(meshWarnings(report).size(), 2u);
+  EXPECT_TRUE(meshWarnings(inspect(icosphere(20, 4))).empty());
+}
+
+TEST_F(Session, OpensAWorkspaceAsItWasSaved) {
+  Scene scene = smallSphere();
+  scene.haptics.stiffness = 321;
+  saveWorkspace(scene, folder / "workspace");
+  const OpenedScene opened = openScene(folder / "workspace", {});
+  EXPECT_EQ(opened.scene.haptics.stiffness, 321);
+  EXPECT_EQ(opened.scene.objects[0].mesh->positions, scene.objects[0].mesh->positions);
+}
+
+TEST_F(Session, OpensAFieldAsItsIsoSurfaceInMetres) {
+  const Scene scene = smallSphere();
+  const BuiltField built = buildField(worldMesh(scene), scene.field, progress);
+  writeField(folder / "field.vti", *built.field);
+  // The unit of meshes has no say: a field file is in metres.
+  const OpenedScene opened = openScene(folder / "field.vti", {MeshUnit::in, {}});
+  EXPECT_NEAR(bounds(*opened.scene.objects[0].mesh).max().z(), 0.02, 3e-4);
+  const OpenedScene outer = openScene(folder / "field.vti", {MeshUnit::mm, 0.002});
+  EXPECT_NEAR(bounds(*outer.scene.objects[0].mesh).max().z(), 0.022, 3e-4);
+}
+
+TEST_F(Session, WorldMeshAppliesThePoseAndKeepsAnUntouchedMeshBitForBit) {
+  Scene scene = smallSphere();
+  EXPECT_EQ(worldMesh(scene).positions, scene.objects[0].mesh->positions);
+  scene.objects[0].world_from_object.translation() = Vec3(1, 2, 3);
+  EXPECT_NEAR((bounds(worldMesh(scene)).center() - Vec3(1, 2, 3)).norm(), 0, 1e-3);
+}
+
+TEST_F(Session, CompiledSceneFeelsItsMesh) {
+  const auto compiled = compile(smallSphere(), progress);
+  EXPECT_EQ(compiled->mesh_report.triangles, 20u * 64);
+  EXPECT_FALSE(compiled->built.field->sample.empty());
+  ContactMemory memory;
+  for (int i = 0; i < 20; ++i) // from outside: a tip that starts inside has no way in
+    (void)tick(*compiled->snapshot, memory, Vec3(0, 0, 0.021 - 0.0001 * i), 0.001);
+  const Contact contact = tick(*compiled->snapshot, memory, Vec3(0, 0, 0.019), 0.001);
+  EXPECT_TRUE(contact.touching);
+  EXPECT_NEAR(contact.force.z(), 0.5, 0.1); // 1 mm at 500 N/m, less the facets' sag
+}
+
+TEST_F(Session, RecompileKeepsTheFieldAndChangesTheForce) {
+  const auto old = compile(smallSphere(), progress);
+  HapticProperties haptics = old->scene.haptics;
+  haptics.stiffness = 250;
+  const auto softer = recompile(*old, haptics);
+  EXPECT_EQ(softer->built.field, old->built.field);
+  EXPECT_NE(softer->snapshot, old->snapshot);
+  EXPECT_EQ(softer->scene.haptics.stiffness, 250);
+  const auto force = [](const CompiledScene& scene) {
+    ContactMemory memory;
+    for (int i = 0; i < 20; ++i)
+      (void)tick(*scene.snapshot, memory, Vec3(0, 0, 0.021 - 0.0001 * i), 0.001);
+    return tick(*scene.snapshot, memory, Vec3(0, 0, 0.019), 0.001).force.norm();
+  };
+  EXPECT_NEAR(force(*softer), force(*old) / 2, 1e-12);
+  haptics.stiffness = -1;
+  EXPECT_THROW(recompile(*old, haptics), Error);
+}
+
+TEST_F(Session, CancelledCompileThrowsAndKeepsNothing) {
+  progress.cancel();
+  EXPECT_THROW(compile(smallSphere(), progress), Cancelled);
+}
+
+TEST_F(Session, ScenesOfNoneOrSeveralObjectsSaySo) {
+  EXPECT_THROW(compile(Scene{}, progress), Error);
+  Scene two = smallSphere();
+  two.objects.push_back(two.objects.front());
+  two.objects.back().name = "other";
+  try {
+    (void)compile(two, progress);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("2 objects"), std::string::npos);
+  }
+}
+
+TEST_F(Session, StagesCostSomethingAndAsManyAreMeasuredAsAreOn) {
+  Scene scene = smallSphere();
+  scene.haptics.friction = Friction{0.5, 0.3};
+  const auto compiled = compile(scene, progress);
+  const std::vector<double> ns = stageNs(*compiled);
+  ASSERT_EQ(ns.size(), compiled->snapshot->stages.size());
+  for (const double cost : ns) {
+    EXPECT_GE(cost, 0);
+    EXPECT_LT(cost, 1e6);
+  }
+  for (std::size_t i = 0; i < ns.size(); ++i)
+    if (compiled->snapshot->why[i].name == "contact") EXPECT_GT(ns[i], 5);
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,167 @@
+// Bad input: one line with file and line, exit 2, no output file.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/file.h"
+#include "integration/program.h"
+
+namespace patina::test {
+namespace {
+
+class BadInput : public testing::Test {
+ protected:
+  void SetUp() override {
+    box = folder / "box.obj";
+    ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
+    path = folder.write("tip.csv", "t [s],x [m],y [m],z [m]\n0,0,0,0.1\n0.001,0,0,0.09\n");
+    out = folder / "out.csv";
+  }
+  Outcome feel(const std::string& mesh, const std::string& tips) const {
+    return run({"feel", mesh, "--path", tips, "-o", out, "--resolution", "40"});
+  }
+
+  ScratchFolder folder;
+  std::string box, path, out;
+};
+
+TEST_F(BadInput, MalformedMeshesOfEveryReaderGiveOneLine) {
+  const std::filesystem::path root =
+      std::filesystem::path(PATINA_SOURCE_DIR) / "tests/geometry/malformed";
+  int seen = 0;
+  std::set<std::string> readers;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(root)) {
+    const std::string extension = file.path().extension().string();
+    if (extension != ".obj" && extension != ".ply" && extension != ".stl") continue;
+    SCOPED_TRACE(file.path().string());
+    expectOneLineError(run({"info", file.path().string()}), {file.path().filename().string()});
+    readers.insert(extension);
+    ++seen;
+  }
+  EXPECT_EQ(readers.size(), 3u);
+  EXPECT_GT(seen, 20);
+}
+
+TEST_F(BadInput, MeshErrorsNameTheLine) {
+  const std::string mesh = folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999\n");
+  expectOneLineError(feel(mesh, path), {"bad.obj:4:"});
+  const std::string comma = folder.write("comma.obj", "v 0,5 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expectOneLineError(feel(comma, path), {"comma.obj:1:"});
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(BadInput, TablesNameTheLineAndTheDecimalComma) {
+  const std::string header = "t [s],x [m],y [m],z [m]\n";
+  expectOneLineError(feel(box, folder.write("a.csv", "time,x,y,z\n0,0,0,0\n")), {"a.csv:1:"});
+  expectOneLineError(feel(box, folder.write("b.csv", header + "0,0,0,1\n0,001,0,0,1\n")),
+                     {"b.csv:3:"});
+  expectOneLineError(feel(box, folder.write("c.csv", "t [s];x [m];y [m];z [m]\n0;0,5;0;1\n")),
+                     {"c.csv:"});
+  expectOneLineError(feel(box, folder.write("d.csv", header + "0,0,0,1\n0,0,0,1\n")),
+                     {"d.csv:3:", "time does not increase"});
+  expectOneLineError(feel(box, folder.write("e.csv", header + "nan,0,0,1\n")), {"e.csv:2:"});
+  expectOneLineError(feel(box, folder.write("f.csv", header)), {"f.csv"});
+  expectOneLineError(feel(box, folder.write("g.csv", header + "0,0,0,one\n")), {"g.csv:2:", "one"});
+  expectOneLineError(feel(box, folder.write("h.csv", "")), {"h.csv"});
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(BadInput, MissingFilesAreNamed) {
+  expectOneLineError(feel(folder / "none.ply", path), {"none.ply"});
+  expectOneLineError(feel(box, folder / "none.csv"), {"none.csv"});
+  expectOneLineError(feel(folder.path().string(), path), {folder.path().filename().string()});
+  expectOneLineError(run({"info", folder.write("mesh.xyz", "1 2 3")}), {"mesh.xyz"});
+  expectOneLineError(run({"info", folder.write("empty.vti", "")}), {"empty.vti"});
+}
+
+TEST_F(BadInput, OutputsThatCannotBeWrittenAreNamed) {
+  expectOneLineError(run({"feel", box, "--path", path, "-o", folder / "no/such/f.csv"}),
+                     {"f.csv", "no folder"});
+  expectOneLineError(run({"feel", box, "--path", path, "-o", folder.path().string()}),
+                     {"it is a folder"});
+  expectOneLineError(run({"field", box, "-o", folder / "field.raw"}), {".vti"});
+  expectOneLineError(run({"model", "box", "-o", folder / "box.xyz"}), {"box.xyz"});
+  expectOneLineError(run({"export", box, "-o", box, "--resolution", "40"}), {"box.obj"});
+  expectOneLineError(run({"man", "-o", box}), {"box.obj"});
+}
+
+TEST_F(BadInput, WordsOfTheCommandLineAreChecked) {
+  expectOneLineError(run({}), {"--help"});
+  expectOneLineError(run({"feeel", box}), {"feeel"});
+  expectOneLineError(run({"feel", box, "-o", out}), {"--path", "missing"});
+  expectOneLineError(run({"feel", "--path", path, "-o", out}), {"MESH", "missing"});
+  expectOneLineError(run({"field", box, "-o", folder / "f.vti", "--voxel", "3 parsec"}),
+                     {"--voxel", "parsec"});
+  expectOneLineError(run({"field", box, "-o", folder / "f.vti", "--voxel", "-1mm"}), {"voxel"});
+  expectOneLineError(run({"field", box, "-o", folder / "f.vti", "--voxel", "1nm"}), {});
+  expectOneLineError(run({"field", box, "-o", folder / "f.vti", "--resolution", "12"}),
+                     {"resolution"});
+  expectOneLineError(run({"field", box, "-o", folder / "f.vti", "--resolution", "150.5"}),
+                     {"--resolution", "150.5"});
+  expectOneLineError(run({"feel", box, "--path", path, "-o", out, "--sampler", "best"}),
+                     {"--sampler", "kim", "high"});
+  expectOneLineError(run({"info", box, "--unit", "yard"}), {"--unit", "yard", "mm"});
+  expectOneLineError(run({"feel", box, "--path", path, "-o", out, "--friction-static", "0.2",
+                          "--friction-dynamic", "0.4"}),
+                     {"friction.dynamic"});
+  expectOneLineError(run({"feel", box, "--path", path, "-o", out, "--stiffness", "1,5"}),
+                     {"--stiffness", "1,5"});
+  expectOneLineError(run({"model", "teapot", "-o", folder / "t.ply"}), {"teapot", "dinosaur"});
+  expectOneLineError(run({"model", "box", "-o", folder / "t.ply", "--tube", "1mm"}),
+                     {"--tube", "--width"});
+  expectOneLineError(run({"model", "sphere", "-o", folder / "t.ply", "--radius", "0"}),
+                     {"--radius"});
+  expectOneLineError(run({"latency-test", "--seconds", "0"}), {"--seconds"});
+  expectOneLineError(run({"render", box, "-o", folder / "p.png", "--show", "smell"}),
+                     {"--show", "smell", "mesh"});
+  expectOneLineError(run({"render", box, "-o", folder / "p.png", "--view", "+w"}), {"--view"});
+  expectOneLineError(run({"render", box, "-o", folder / "p.png", "--size", "9x9"}), {"--size"});
+  expectOneLineError(run({"render", box, "-o", folder / "p.png", "--show", "tip"}), {"--tip"});
+}
+
+TEST_F(BadInput, NonFiniteVerticesAreLeftOutCountedAndWarnedOf) {
+  std::string text = readFile(box) + "v nan 0 0\nv 1 inf 0\n";
+  const std::size_t n = static_cast<std::size_t>(std::count(text.begin(), text.end(), 'v'));
+  text += "f 1 2 " + std::to_string(n) + "\nf 1 2 " + std::to_string(n - 1) + "\n";
+  const std::string mesh = folder.write("nan.obj", text);
+  for (const char* unit : {"mm", "fit"}) {
+    const Outcome info = run({"info", mesh, "--json", "--resolution", "40", "--unit", unit});
+    ASSERT_EQ(info.exit, 0) << info.err;
+    EXPECT_NE(info.err.find("warning"), std::string::npos);
+    EXPECT_NE(info.err.find("2 triangles"), std::string::npos) << info.err;
+    const Json json = parseJson(info.out, "stdout");
+    EXPECT_EQ(json.at("defects").at("non_finite").asInteger(), 2);
+    EXPECT_EQ(json.at("field").at("dropped_triangles").asInteger(), 2);
+  }
+  const std::string only = folder.write("only.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome nothing = run({"info", only});
+  EXPECT_EQ(nothing.exit, 2);
+  EXPECT_EQ(nothing.out, "");
+  EXPECT_NE(nothing.err.find("\npatina: "), std::string::npos) << nothing.err;
+}
+
+TEST_F(BadInput, VolumesFromElsewhereNeedAValue) {
+  const std::string volume = folder.write(
+      "volume.vti",
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n<ImageData WholeExtent=\"0 3 0 3 0 3\" Origin=\"0 0 0\" "
+      "Spacing=\"10 10 10\">\n<Piece Extent=\"0 3 0 3 0 3\">\n<PointData Scalars=\"density\">\n"
+      "<DataArray type=\"Float32\" Name=\"density\" format=\"ascii\">\n" +
+          [] {
+            std::string values;
+            for (int i = 0; i < 64; ++i) {
+              const bool inner = i % 4 % 3 && i / 4 % 4 % 3 && i / 16 % 3;
+              values += inner ? "100 " : "0 ";
+            }
+            return values;
+          }() +
+          "\n</DataArray>\n</PointData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
+  expectOneLineError(run({"info", volume}), {"volume.vti", "--iso", "between 0 and 100"});
+  const Json info = runJson({"info", volume, "--iso", "50", "--resolution", "40"});
+  EXPECT_TRUE(info.at("watertight").asBool());
+  EXPECT_NEAR(info.at("bounds").asArray()[0].asArray()[0].asNumber(), 0.005, 1e-6); // 5 mm
+  expectOneLineError(run({"info", volume, "--iso", "500"}), {"volume.vti"});
+}
+
+} // namespace
+} // namespace patina::test

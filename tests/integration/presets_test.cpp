@@ -1,0 +1,87 @@
+// data/scenes: what ships is what the commands in its README make.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "core/file.h"
+#include "integration/program.h"
+#include "workspace/workspace.h"
+
+namespace patina::test {
+namespace {
+
+const std::filesystem::path kScenes = std::filesystem::path(PATINA_SOURCE_DIR) / "data/scenes";
+
+std::vector<std::string> presets() {
+  std::vector<std::string> names;
+  for (const auto& item : std::filesystem::directory_iterator(kScenes))
+    if (item.is_directory()) names.push_back(item.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> wordsOf(const std::string& line) {
+  std::istringstream in(line);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+TEST(Presets, AreThoseOfThePapersSizes) {
+  EXPECT_EQ(presets(), (std::vector<std::string>{"dinosaur", "galleon", "pottery"}));
+  EXPECT_EQ(loadWorkspace(kScenes / "galleon").objects.at(0).mesh->triangles.size(), 8794u); // K25
+  EXPECT_EQ(loadWorkspace(kScenes / "pottery").objects.at(0).mesh->triangles.size(), 4800u);
+  for (const std::string& name : presets())
+    EXPECT_EQ(loadWorkspace(kScenes / name).field.resolution, 150) << name;
+}
+
+TEST(Presets, AreSmall) {
+  for (const std::string& name : presets()) {
+    std::uintmax_t bytes = 0;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(kScenes / name))
+      if (file.is_regular_file()) bytes += file.file_size();
+    EXPECT_LT(bytes, 500'000u) << name;
+  }
+}
+
+// Runs the README's own lines in a scratch folder and compares. Positions may differ in the last
+// bits between machines' mathematical libraries.
+TEST(Presets, AreMadeByTheCommandsInTheirReadme) {
+  const ScratchFolder folder;
+  std::istringstream readme(readFile(kScenes / "README.md"));
+  int lines = 0;
+  for (std::string line; std::getline(readme, line);) {
+    if (!line.starts_with("    patina ")) continue;
+    std::vector<std::string> words = wordsOf(line);
+    words.erase(words.begin());
+    for (std::string& word : words)
+      if (word.starts_with("out/")) word = folder / word.substr(4);
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.exit, 0) << line << "\n" << outcome.err;
+    ++lines;
+  }
+  ASSERT_GE(lines, 6);
+  for (const std::string& name : presets()) {
+    SCOPED_TRACE(name);
+    const Scene made = loadWorkspace(folder / name);
+    const Scene shipped = loadWorkspace(kScenes / name);
+    EXPECT_EQ(values(made), values(shipped));
+    const TriangleMesh& a = *made.objects.at(0).mesh;
+    const TriangleMesh& b = *shipped.objects.at(0).mesh;
+    EXPECT_EQ(made.objects[0].name, shipped.objects[0].name);
+    EXPECT_EQ(a.triangles, b.triangles);
+    ASSERT_EQ(a.positions.size(), b.positions.size());
+    for (std::size_t i = 0; i < a.positions.size(); ++i)
+      ASSERT_LT((a.positions[i] - b.positions[i]).norm(), 1e-9);
+  }
+}
+
+TEST(Presets, CanBeFelt) {
+  for (const std::string& name : presets()) {
+    const Json info = runJson({"info", (kScenes / name).string()});
+    EXPECT_FALSE(info.at("stages").asArray().empty()) << name;
+  }
+}
+
+} // namespace
+} // namespace patina::test

@@ -1,0 +1,145 @@
+// patina scene: a workspace that opens again and feels like the mesh it was made of.
+#include <gtest/gtest.h>
+
+#include "core/csv.h"
+#include "core/file.h"
+#include "integration/program.h"
+
+namespace patina::test {
+namespace {
+
+class Workspaces : public testing::Test {
+ protected:
+  void SetUp() override {
+    torus = folder / "torus.ply";
+    ASSERT_EQ(run({"model", "torus", "-o", torus, "--around", "48", "--across", "24"}).exit, 0);
+    workspace = folder / "workspace";
+    std::string text = "t [s],x [m],y [m],z [m]\n";
+    for (int i = 0; i < 300; ++i) // pressed into the ring, then dragged along it
+      text += std::to_string(0.001 * i) + ",0.04," + std::to_string(1e-5 * std::max(0, i - 100)) +
+              "," + std::to_string(0.016 - 2e-5 * std::min(i, 100)) + "\n";
+    path = folder.write("tip.csv", text);
+  }
+
+  // The whole row but the time of the step, which is the machine's own.
+  std::vector<std::vector<double>> forces(const std::string& file) const {
+    std::vector<std::vector<double>> rows = readCsv(file, {"t [s]"}).rows;
+    for (std::vector<double>& row : rows) row.pop_back();
+    return rows;
+  }
+
+  ScratchFolder folder;
+  std::string torus, workspace, path;
+};
+
+TEST_F(Workspaces, SavedAndOpenedAgainFeelsBitwiseAsTheMesh) {
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus, "--set", "stiffness=700", "--set",
+                 "friction.static=0.5", "--set", "friction.dynamic=0.3", "--set",
+                 "tip.radius=0.4mm", "--set", "resolution=80", "--set", "sampler=kim"})
+                .exit,
+            0);
+  ASSERT_EQ(run({"feel", workspace, "--path", path, "-o", folder / "a.csv"}).exit, 0);
+  ASSERT_EQ(run({"feel", torus, "--path", path, "-o", folder / "b.csv", "--stiffness", "700",
+                 "--friction-static", "0.5", "--friction-dynamic", "0.3", "--tip-radius", "0.4mm",
+                 "--resolution", "80", "--sampler", "kim"})
+                .exit,
+            0);
+  const auto a = forces(folder / "a.csv"), b = forces(folder / "b.csv");
+  EXPECT_EQ(a, b);
+  EXPECT_GT(b.back()[6], 0.5); // the comparison is of forces, not of zeros
+
+  // An option overrides the workspace for one run and leaves it as it is.
+  const std::string before = readFile(workspace + "/workspace.json");
+  const Json softer =
+      runJson({"feel", workspace, "--path", path, "-o", folder / "c.csv", "--stiffness", "70"});
+  EXPECT_LT(softer.at("max_force").asNumber(), 0.2);
+  EXPECT_EQ(readFile(workspace + "/workspace.json"), before);
+}
+
+TEST_F(Workspaces, ListsWhatItHoldsWithoutChangingIt) {
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus}).exit, 0);
+  const Json listed = runJson({"scene", "-o", workspace});
+  EXPECT_FALSE(listed.at("saved").asBool());
+  ASSERT_EQ(listed.at("objects").asArray().size(), 1u);
+  EXPECT_EQ(listed.at("objects").asArray()[0].at("name").asString(), "torus");
+  EXPECT_EQ(listed.at("objects").asArray()[0].at("triangles").asInteger(), 2 * 48 * 24);
+  EXPECT_EQ(listed.at("values").at("stiffness").asString(), "500");
+  EXPECT_EQ(listed.at("values").find("damping"), nullptr); // an absent feature is an absent value
+}
+
+TEST_F(Workspaces, PoseMovesTheObject) {
+  const std::string pose =
+      folder.write("pose.txt", "# world_from_object\n0 -1 0 0.1\n1 0 0 0\n0 0 1 -0.02\n0 0 0 1\n");
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus + "@" + pose}).exit, 0);
+  const Json info = runJson({"info", workspace, "--no-field"});
+  EXPECT_EQ(info.at("kind").asString(), "workspace");
+  const auto& low = info.at("bounds").asArray()[0].asArray();
+  EXPECT_NEAR(low[0].asNumber(), 0.1 - 0.055, 1e-9);
+  EXPECT_NEAR(low[2].asNumber(), -0.02 - 0.015, 1e-9);
+
+  const std::string scaled = folder.write("scaled.txt", "2 0 0 0\n0 2 0 0\n0 0 2 0\n0 0 0 1\n");
+  expectOneLineError(run({"scene", "-o", folder / "other", "--add", torus + "@" + scaled}),
+                     {"scaled.txt", "rotation"});
+}
+
+TEST_F(Workspaces, ErrorsLeaveTheFolderAsItWas) {
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus}).exit, 0);
+  const std::string before = readFile(workspace + "/workspace.json");
+  expectOneLineError(run({"scene", "-o", workspace, "--add", torus}),
+                     {"one object", "torus", "--remove"});
+  expectOneLineError(
+      run({"scene", "-o", workspace, "--set", "stiffness=900", "--set", "colour=red"}),
+      {"colour", "stiffness", "friction.static", "tip.radius", "resolution"});
+  expectOneLineError(run({"scene", "-o", workspace, "--set", "stiffness=-1"}), {"stiffness", "-1"});
+  expectOneLineError(run({"scene", "-o", workspace, "--set", "stiffness"}), {"--set", "KEY=VALUE"});
+  expectOneLineError(run({"scene", "-o", workspace, "--remove", "cup"}), {"cup", "torus"});
+  expectOneLineError(run({"scene", "-o", workspace, "--add", folder / "none.ply"}), {"none.ply"});
+  EXPECT_EQ(readFile(workspace + "/workspace.json"), before);
+}
+
+TEST_F(Workspaces, RemovedObjectMakesRoomForAnother) {
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus}).exit, 0);
+  const std::string box = folder / "box.stl";
+  ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
+  const Json changed = runJson({"scene", "-o", workspace, "--remove", "torus", "--add", box});
+  EXPECT_EQ(changed.at("objects").asArray()[0].at("name").asString(), "box");
+  expectOneLineError(run({"feel", (run({"scene", "-o", folder / "empty"}), folder / "empty"),
+                          "--path", path, "-o", folder / "f.csv"}),
+                     {"no object"});
+}
+
+TEST_F(Workspaces, SettingsThatFitOnlyTogetherAreAccepted) {
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus, "--set", "friction.static=0.5", "--set",
+                 "friction.dynamic=0.3"})
+                .exit,
+            0);
+  EXPECT_EQ(run({"scene", "-o", workspace, "--set", "resolution=12", "--set", "band=3", "--set",
+                 "friction.static=0.2", "--set", "friction.dynamic=0.1"})
+                .exit,
+            0);
+  const Json values = runJson({"scene", "-o", workspace}).at("values");
+  EXPECT_EQ(values.at("resolution").asString(), "12");
+  EXPECT_EQ(values.at("friction.static").asString(), "0.2");
+}
+
+TEST_F(Workspaces, AFolderOfSomethingElseIsNeverTakenOver) {
+  const std::string photos = folder / "photos";
+  std::filesystem::create_directories(photos);
+  folder.write("photos/cat.txt", "meow");
+  expectOneLineError(run({"scene", "-o", photos, "--add", torus}), {"photos", "not a workspace"});
+  EXPECT_EQ(readFile(photos + "/cat.txt"), "meow");
+  EXPECT_FALSE(std::filesystem::exists(photos + "/workspace.json"));
+}
+
+TEST_F(Workspaces, ChangedFilesAreNoticed) {
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus}).exit, 0);
+  for (const auto& file : std::filesystem::directory_iterator(workspace + "/meshes")) {
+    std::string bytes = readFile(file.path());
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    writeFileAtomically(file.path(), bytes);
+  }
+  expectOneLineError(run({"info", workspace}), {"SHA-256"});
+}
+
+} // namespace
+} // namespace patina::test
