@@ -1,10 +1,123 @@
+// patina-gui: the window.
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
 
-int main() {
-  if (std::getenv("DISPLAY") == nullptr) {
-    std::cerr << "patina-gui: no DISPLAY; run it in a desktop session or under xvfb-run -a\n";
+#include <QApplication>
+#include <QSurfaceFormat>
+
+#include "app/gui/first_picture.h"
+#include "app/gui/main_window.h"
+#include "app/gui/tour.h"
+#include "app/gui/window_style.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "visualization/display.h"
+#include "visualization/export_files.h"
+
+namespace {
+
+constexpr const char* kHelp =
+    "Usage: patina-gui [FILE] [options]\n\n"
+    "Opens a mesh (.obj .ply .stl), a volume (.vti) or a workspace folder in a window and lets "
+    "the\n"
+    "mouse feel it. Without FILE: the toy dinosaur.\n\n"
+    "  --unit UNIT               of a mesh: mm (default), cm, m, in, or fit (longest side 100 mm)\n"
+    "  --iso VALUE               of a volume from elsewhere: where its surface is\n"
+    "  --log FILE.csv            record every tick, written when the window closes\n"
+    "  --tour FOLDER             a scripted session: pictures and feel.csv into FOLDER, then quit\n"
+    "  --first-picture-time      print the seconds from start to the first picture of FILE\n"
+    "  --help, --version\n";
+
+struct Arguments {
+  patina::LoadRequest request;
+  std::optional<std::filesystem::path> log, tour;
+  bool first_picture_time = false;
+  bool help = false, version = false;
+};
+
+Arguments parse(const std::vector<std::string>& words) {
+  Arguments arguments;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    const auto value = [&]() -> const std::string& {
+      if (i + 1 >= words.size()) throw patina::Error(word + " needs a value; see --help");
+      return words[++i];
+    };
+    if (word == "--help" || word == "-h") {
+      arguments.help = true;
+    } else if (word == "--version") {
+      arguments.version = true;
+    } else if (word == "--unit") {
+      arguments.request.options.unit = patina::parseMeshUnit(value());
+      arguments.request.unit_chosen = true;
+    } else if (word == "--iso") {
+      const std::string& text = value();
+      arguments.request.options.iso = patina::parseNumber(text);
+      if (!arguments.request.options.iso)
+        throw patina::Error("--iso '" + text + "' is not a number");
+    } else if (word == "--log") {
+      arguments.log = value();
+    } else if (word == "--tour") {
+      arguments.tour = value();
+    } else if (word == "--first-picture-time") {
+      arguments.first_picture_time = true;
+    } else if (word.size() > 1 && word[0] == '-') {
+      throw patina::Error("unknown option " + word + "; see --help");
+    } else if (!arguments.request.path.empty()) {
+      throw patina::Error("one file at a time: '" + word + "' is one too many");
+    } else {
+      arguments.request.path = word;
+    }
+  }
+  return arguments;
+}
+
+int run(const Arguments& arguments, int argc, char** argv) {
+  patina::requireDisplay();
+  if (std::getenv("QT_QPA_PLATFORM") == nullptr) setenv("QT_QPA_PLATFORM", "xcb", 1);
+  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+  QApplication application(argc, argv);
+  QApplication::setApplicationName(QStringLiteral("patina"));
+  QApplication::setOrganizationName(QStringLiteral("patina"));
+  patina::applyStyle(application);
+  patina::MainWindow window;
+  window.resize(1280, 800);
+  window.show();
+  if (arguments.tour) {
+    patina::runTour(window, arguments.request, *arguments.tour);
+    return 0;
+  }
+  if (arguments.first_picture_time) {
+    std::cout << patina::firstPictureSeconds(window, arguments.request) << '\n';
+    return 0;
+  }
+  window.open(arguments.request);
+  if (arguments.log) window.startRecording();
+  const int code = QApplication::exec();
+  if (arguments.log) patina::writeToolSamplesCsv(*arguments.log, window.takeRecording());
+  return code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Arguments arguments = parse({argv + 1, argv + argc});
+    if (arguments.help) {
+      std::cout << kHelp;
+      return 0;
+    }
+    if (arguments.version) {
+      std::cout << "patina " << PATINA_VERSION << '\n';
+      return 0;
+    }
+    return run(arguments, argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "patina-gui: " << error.what() << '\n';
     return 2;
   }
-  return 0;
 }

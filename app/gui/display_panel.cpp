@@ -1,0 +1,126 @@
+#include "app/gui/display_panel.h"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+namespace patina {
+namespace {
+
+QString caption(Layer layer) {
+  switch (layer) {
+  case Layer::mesh:
+    return DisplayPanel::tr("Mesh");
+  case Layer::iso:
+    return DisplayPanel::tr("Iso-surface");
+  case Layer::slice:
+    return DisplayPanel::tr("Slice");
+  case Layer::band:
+    return DisplayPanel::tr("Field extent");
+  case Layer::tip:
+    return DisplayPanel::tr("Tool and force");
+  case Layer::nodes:
+    return DisplayPanel::tr("Nodes at the tip");
+  case Layer::wireframe:
+    return DisplayPanel::tr("Wireframe");
+  }
+  return {};
+}
+
+bool needsField(Layer layer) {
+  return layer != Layer::mesh && layer != Layer::wireframe;
+}
+
+} // namespace
+
+DisplayPanel::DisplayPanel(QWidget* parent)
+    : QGroupBox(tr("Show"), parent), slice_card_(new QWidget(this)),
+      axis_(new QComboBox(slice_card_)),
+      position_(
+          new ValueRow(tr("Slice position"), QStringLiteral("%"), {0, 100, 1, 1}, slice_card_)),
+      iso_card_(new QWidget(this)) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  auto* grid = new QGridLayout;
+  grid->setVerticalSpacing(4);
+  column->addLayout(grid);
+  int index = 0;
+  for (const Layer layer : {Layer::mesh, Layer::tip, Layer::slice, Layer::iso, Layer::wireframe,
+                            Layer::nodes, Layer::band}) {
+    auto* box = new QCheckBox(caption(layer), this);
+    box->setObjectName(QString::fromUtf8(name(layer).data(), static_cast<int>(name(layer).size())));
+    box->setChecked(layer == Layer::mesh || layer == Layer::tip);
+    connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
+      arrange();
+      emit layerToggled(layer, on);
+    });
+    grid->addWidget(box, index / 2, index % 2);
+    boxes_[layer] = box;
+    ++index;
+  }
+
+  auto* slice_layout = new QGridLayout(slice_card_);
+  slice_layout->setContentsMargins(0, 4, 0, 0);
+  auto* label = new QLabel(tr("Slice across"), slice_card_);
+  label->setProperty("quiet", true);
+  slice_layout->addWidget(label, 0, 0);
+  axis_->addItems({QStringLiteral("x"), QStringLiteral("y"), QStringLiteral("z")});
+  axis_->setCurrentIndex(slice_.axis);
+  slice_layout->addWidget(axis_, 0, 1);
+  slice_layout->addWidget(position_, 1, 0, 1, 2);
+  position_->setValue(100 * slice_.position);
+  column->addWidget(slice_card_);
+  connect(axis_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int axis) {
+    slice_.axis = axis;
+    emit sliceMoved(slice_);
+  });
+  connect(position_, &ValueRow::edited, this, [this](double percent) {
+    slice_.position = percent / 100;
+    emit sliceMoved(slice_);
+  });
+  (new QVBoxLayout(iso_card_))->setContentsMargins(0, 4, 0, 0);
+  column->addWidget(iso_card_);
+  setField(nullptr);
+}
+
+void DisplayPanel::setField(const SurfaceField* field) {
+  has_field_ = field != nullptr;
+  delete iso_;
+  iso_ = nullptr;
+  if (has_field_) {
+    const double reach = 1000 * field->grid.voxel * (field->band - 1);
+    iso_ = new ValueRow(tr("Iso-surface at"), QStringLiteral("mm"),
+                        {-reach, reach, reach / 20, reach < 1 ? 3 : 2}, iso_card_);
+    iso_->setValue(0);
+    iso_card_->layout()->addWidget(iso_);
+    connect(iso_, &ValueRow::edited, this, [this](double mm) { emit isoMoved(mm / 1000); });
+  }
+  arrange();
+}
+
+void DisplayPanel::arrange() {
+  for (const auto& [layer, box] : boxes_) box->setVisible(has_field_ || !needsField(layer));
+  slice_card_->setVisible(has_field_ && shown(Layer::slice));
+  iso_card_->setVisible(has_field_ && shown(Layer::iso));
+}
+
+void DisplayPanel::setShown(Layer layer, bool on) {
+  boxes_.at(layer)->setChecked(on);
+}
+
+bool DisplayPanel::shown(Layer layer) const {
+  return boxes_.at(layer)->isChecked();
+}
+
+void DisplayPanel::setSlice(const SlicePlace& place) {
+  slice_ = place;
+  {
+    const QSignalBlocker quiet(axis_);
+    axis_->setCurrentIndex(place.axis);
+    position_->setValue(100 * place.position);
+  }
+  emit sliceMoved(slice_);
+}
+
+} // namespace patina

@@ -1,0 +1,44 @@
+// What the 3D view shows, with the slice's and the iso-surface's own values while they are shown.
+#pragma once
+
+#include <map>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QGroupBox>
+
+#include "app/gui/value_row.h"
+#include "visualization/scene_view.h"
+
+namespace patina {
+
+class DisplayPanel : public QGroupBox {
+  Q_OBJECT
+ public:
+  explicit DisplayPanel(QWidget* parent = nullptr);
+
+  void setField(const SurfaceField* field); // nullptr: the mesh alone can be shown
+  void setShown(Layer layer, bool on);      // sends layerToggled if it changes
+  bool shown(Layer layer) const;
+  const SlicePlace& slice() const { return slice_; }
+  void setSlice(const SlicePlace& place); // sends sliceMoved
+
+ signals:
+  void layerToggled(patina::Layer layer, bool on);
+  void sliceMoved(const patina::SlicePlace& place);
+  void isoMoved(double iso); // [m]
+
+ private:
+  void arrange();
+
+  std::map<Layer, QCheckBox*> boxes_;
+  QWidget* slice_card_;
+  QComboBox* axis_;
+  ValueRow* position_;
+  QWidget* iso_card_;
+  ValueRow* iso_ = nullptr;
+  SlicePlace slice_;
+  bool has_field_ = false;
+};
+
+} // namespace patina

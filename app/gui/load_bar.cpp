@@ -1,0 +1,44 @@
+#include "app/gui/load_bar.h"
+
+#include <cmath>
+
+#include <QHBoxLayout>
+
+namespace patina {
+
+LoadBar::LoadBar(QWidget* parent)
+    : QWidget(parent), words_(new QLabel(this)), bar_(new QProgressBar(this)),
+      cancel_(new QPushButton(tr("Cancel"), this)) {
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(10, 5, 10, 5);
+  layout->addWidget(words_);
+  layout->addWidget(bar_, 1);
+  layout->addWidget(cancel_);
+  bar_->setRange(0, 1000);
+  cancel_->setObjectName(QStringLiteral("cancel_load"));
+  connect(cancel_, &QPushButton::clicked, this, [this] {
+    words_->setText(tr("Cancelling…"));
+    cancel_->setEnabled(false);
+    emit cancelled();
+  });
+  hide();
+}
+
+void LoadBar::begin(const QString& name) {
+  name_ = name;
+  words_->setText(tr("Opening %1").arg(name));
+  bar_->setValue(0);
+  cancel_->setEnabled(true);
+  show();
+}
+
+void LoadBar::report(double fraction, const QString& what) {
+  if (cancel_->isEnabled()) words_->setText(QStringLiteral("%1: %2").arg(name_, what));
+  bar_->setValue(static_cast<int>(std::lround(1000 * fraction)));
+}
+
+void LoadBar::end() {
+  hide();
+}
+
+} // namespace patina

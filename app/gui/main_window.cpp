@@ -1,0 +1,277 @@
+#include "app/gui/main_window.h"
+
+#include <QCloseEvent>
+#include <QDockWidget>
+#include <QDragEnterEvent>
+#include <QFileInfo>
+#include <QMimeData>
+#include <QScrollArea>
+#include <QVBoxLayout>
+
+#include "app/gui/load_dialogs.h"
+#include "app/gui/window_style.h"
+#include "core/error.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+
+MainWindow::MainWindow(QWidget* parent)
+    : QMainWindow(parent), view_(new SceneWidget), load_bar_(new LoadBar), warnings_(new QLabel),
+      object_(new ObjectPanel), haptics_(new HapticsPanel), display_(new DisplayPanel),
+      plot_(new ForcePlot), status_(new StatusLine(statusBar())), loader_(new SceneLoader(this)) {
+  setWindowTitle(tr("Patina"));
+  setAcceptDrops(true);
+  buildLayout();
+  buildMenus();
+  connectLoader();
+  connect(view_, &SceneWidget::tipMoved, this,
+          [this](const Vec3& target) { feel_.setTarget(target); });
+  connect(display_, &DisplayPanel::layerToggled, this,
+          [this](Layer layer, bool on) { view_->view().show(layer, on); });
+  connect(display_, &DisplayPanel::sliceMoved, this,
+          [this](const SlicePlace& place) { view_->view().setSlice(place); });
+  connect(display_, &DisplayPanel::isoMoved, this,
+          [this](double iso) { view_->view().setIso(iso); });
+  connect(haptics_, &HapticsPanel::edited, this, [this] { haptics_edited_ = true; });
+  connect(load_bar_, &LoadBar::cancelled, loader_, &SceneLoader::cancel);
+  restore();
+  // One timer draws everything; what did not change is not drawn again.
+  timer_.setTimerType(Qt::PreciseTimer);
+  connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
+  timer_.start(33);
+}
+
+MainWindow::~MainWindow() {
+  feel_.close();
+}
+
+void MainWindow::buildLayout() {
+  auto* centre = new QWidget;
+  auto* column = new QVBoxLayout(centre);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  warnings_->setWordWrap(true);
+  warnings_->setContentsMargins(10, 5, 10, 5);
+  warnings_->setStyleSheet(QStringLiteral("background: #fff4d6; color: #6b4e00;"));
+  warnings_->hide();
+  column->addWidget(load_bar_);
+  column->addWidget(warnings_);
+  column->addWidget(view_, 1);
+  setCentralWidget(centre);
+
+  auto* cards = new QWidget;
+  cards->setStyleSheet(cardStyle());
+  auto* stack = new QVBoxLayout(cards);
+  stack->setContentsMargins(8, 0, 8, 8);
+  stack->setSpacing(4);
+  stack->addWidget(haptics_);
+  stack->addWidget(display_);
+  stack->addWidget(object_);
+  stack->addStretch(1);
+  auto* scroll = new QScrollArea;
+  scroll->setWidget(cards);
+  scroll->setWidgetResizable(true);
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setMinimumWidth(292);
+  const auto dock = [this](const QString& title, const char* name, QWidget* widget,
+                           Qt::DockWidgetArea area) {
+    auto* made = new QDockWidget(title, this);
+    made->setObjectName(QString::fromUtf8(name));
+    made->setWidget(widget);
+    made->setFeatures(QDockWidget::DockWidgetClosable | QDockWidget::DockWidgetMovable);
+    addDockWidget(area, made);
+    return made;
+  };
+  dock(tr("Scene"), "scene_dock", scroll, Qt::RightDockWidgetArea);
+  dock(tr("Force on the hand"), "force_dock", plot_, Qt::BottomDockWidgetArea);
+  setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+}
+
+void MainWindow::connectLoader() {
+  const auto name = [this] {
+    const auto& path = loader_->request().path;
+    return path.empty() ? tr("the toy dinosaur") : QString::fromStdString(path.filename().string());
+  };
+  connect(loader_, &SceneLoader::progressed, load_bar_, &LoadBar::report);
+  connect(loader_, &SceneLoader::meshReady, this, &MainWindow::showPreview);
+  connect(loader_, &SceneLoader::ready, this, &MainWindow::take);
+  connect(loader_, &SceneLoader::failed, this, [this, name](const QString& message) {
+    restore();
+    showProblem(this, tr("%1 cannot be opened").arg(name()), message, adviceFor(message));
+    emit loadFailed(message);
+  });
+  connect(loader_, &SceneLoader::cancelled, this, [this] {
+    restore();
+    emit loadCancelled();
+  });
+  connect(loader_, &SceneLoader::needsUnit, this, [this, name](double longest) {
+    restore();
+    askUnit(this, name(), longest, [this](MeshUnit unit) {
+      LoadRequest request = loader_->request();
+      request.options.unit = unit;
+      request.unit_chosen = true;
+      open(request);
+    });
+  });
+  connect(loader_, &SceneLoader::needsIso, this, [this, name](double low, double high) {
+    restore();
+    askIso(this, name(), low, high, [this](double iso) {
+      LoadRequest request = loader_->request();
+      request.options.iso = iso;
+      open(request);
+    });
+  });
+}
+
+void MainWindow::open(const LoadRequest& request) {
+  load_bar_->begin(request.path.empty() ? tr("the toy dinosaur")
+                                        : QString::fromStdString(request.path.filename().string()));
+  loader_->start(request);
+}
+
+void MainWindow::showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name) {
+  previewing_ = true;
+  feel_.close();
+  view_->setField(nullptr);
+  view_->view().setField(nullptr);
+  view_->view().setMesh(mesh);
+  view_->view().setView(ViewPreset::iso);
+  object_->showMesh(*mesh, name);
+  object_->show();
+  haptics_->hide();
+  display_->setField(nullptr);
+  display_->show();
+  status_->showScene(nullptr);
+  view_->refresh();
+}
+
+void MainWindow::take(std::shared_ptr<const CompiledScene> scene, const QStringList& warnings) {
+  current_ = std::move(scene);
+  warnings_->setText(warnings.join(QStringLiteral("\n")));
+  warnings_->setVisible(!warnings.isEmpty());
+  const auto& path = loader_->request().path;
+  setWindowTitle(path.empty()
+                     ? tr("Patina")
+                     : tr("%1 – Patina").arg(QString::fromStdString(path.filename().string())));
+  if (!path.empty()) recent_->add(QString::fromStdString(path.string()));
+  showCurrent();
+  emit sceneReady();
+}
+
+void MainWindow::restore() {
+  load_bar_->end();
+  if (current_ == nullptr) {
+    previewing_ = false;
+    feel_.close();
+    view_->setField(nullptr);
+    view_->view().setField(nullptr);
+    view_->view().setMesh(nullptr);
+    for (QWidget* card : {static_cast<QWidget*>(object_), static_cast<QWidget*>(haptics_),
+                          static_cast<QWidget*>(display_)})
+      card->hide();
+    status_->showScene(nullptr);
+    save_action_->setEnabled(false);
+    record_action_->setEnabled(false);
+  } else if (previewing_) {
+    showCurrent();
+  }
+}
+
+void MainWindow::showCurrent() {
+  load_bar_->end();
+  const CompiledScene& scene = *current_;
+  // A preview has set mesh and camera already; a failed load has replaced both.
+  view_->view().setMesh(std::shared_ptr<const TriangleMesh>(current_, &scene.mesh));
+  view_->view().setField(scene.built.field);
+  view_->view().setTipRadius(scene.scene.haptics.tip_radius.value_or(0));
+  view_->setField(scene.built.field);
+  if (previewing_) view_->view().setView(ViewPreset::iso);
+  previewing_ = false;
+  object_->showScene(scene);
+  haptics_->setValues(scene.scene.haptics);
+  display_->setField(scene.built.field.get());
+  for (QWidget* card : {static_cast<QWidget*>(object_), static_cast<QWidget*>(haptics_),
+                        static_cast<QWidget*>(display_)})
+    card->show();
+  status_->showScene(&scene);
+  save_action_->setEnabled(true);
+  record_action_->setEnabled(true);
+  plot_->clear();
+  const Vec3 start = view_->restingPlace();
+  view_->setTarget(start);
+  feel_.open(scene.snapshot, start);
+}
+
+void MainWindow::applyHaptics() {
+  haptics_edited_ = false;
+  if (current_ == nullptr) return;
+  try {
+    current_ = recompile(*current_, haptics_->values());
+    haptics_->setProblem({});
+  } catch (const std::exception& error) {
+    haptics_->setProblem(QString::fromStdString(error.what()));
+    return;
+  }
+  feel_.publish(current_->snapshot);
+  view_->view().setTipRadius(current_->scene.haptics.tip_radius.value_or(0));
+  status_->showScene(current_.get());
+}
+
+void MainWindow::tick() {
+  if (haptics_edited_) applyHaptics();
+  const std::vector<ToolSample> samples = feel_.drain();
+  if (!samples.empty()) {
+    last_sample_ = samples.back();
+    view_->view().setTool(last_sample_);
+    plot_->add(samples);
+    if (recording_) record_.insert(record_.end(), samples.begin(), samples.end());
+  }
+  view_->refresh();
+  plot_->refresh();
+  if (ticks_++ % 10 == 0) status_->showTiming(feel_.timing(), feel_.running());
+}
+
+void MainWindow::setMode(SceneWidget::Mode mode) {
+  view_->setMode(mode);
+  feel_action_->setChecked(mode == SceneWidget::Mode::feel);
+  navigate_action_->setChecked(mode == SceneWidget::Mode::navigate);
+}
+
+void MainWindow::startRecording() {
+  record_.clear();
+  recording_ = true;
+}
+
+std::vector<ToolSample> MainWindow::takeRecording() {
+  tick();
+  recording_ = false;
+  return std::exchange(record_, {});
+}
+
+void MainWindow::saveWorkspaceTo(const QString& folder) {
+  if (current_ == nullptr) throw Error("there is no scene to save");
+  if (haptics_edited_) applyHaptics();
+  saveWorkspace(current_->scene, folder.toStdString());
+  recent_->add(folder);
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  if (event->mimeData()->hasUrls() && event->mimeData()->urls().front().isLocalFile())
+    event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  LoadRequest request;
+  request.path = event->mimeData()->urls().front().toLocalFile().toStdString();
+  open(request);
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  timer_.stop();
+  loader_->cancel();
+  feel_.close();
+  event->accept();
+}
+
+} // namespace patina

@@ -1,0 +1,95 @@
+// The window: puts the panels around the 3D view and passes values between them, the loader and the
+// servo. Everything that computes is elsewhere.
+#pragma once
+
+#include <QLabel>
+#include <QMainWindow>
+#include <QTimer>
+
+#include "app/gui/display_panel.h"
+#include "app/gui/feel_host.h"
+#include "app/gui/force_plot.h"
+#include "app/gui/haptics_panel.h"
+#include "app/gui/load_bar.h"
+#include "app/gui/object_panel.h"
+#include "app/gui/recent_files.h"
+#include "app/gui/scene_loader.h"
+#include "app/gui/scene_widget.h"
+#include "app/gui/status_line.h"
+
+namespace patina {
+
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+ public:
+  explicit MainWindow(QWidget* parent = nullptr);
+  ~MainWindow() override;
+
+  void open(const LoadRequest& request);
+  void saveWorkspaceTo(const QString& folder); // throws Error
+  void startRecording();
+  // Every tick since startRecording(), and recording ends.
+  std::vector<ToolSample> takeRecording();
+
+  const CompiledScene* scene() const { return current_.get(); }
+  SceneWidget& view() { return *view_; }
+  DisplayPanel& display() { return *display_; }
+  HapticsPanel& haptics() { return *haptics_; }
+  SceneLoader& loader() { return *loader_; }
+  FeelHost& feel() { return feel_; }
+  StatusLine& status() { return *status_; }
+  const ToolSample& lastSample() const { return last_sample_; }
+  void setMode(SceneWidget::Mode mode);
+
+ signals:
+  void sceneReady();
+  void loadFailed(const QString& message);
+  void loadCancelled();
+
+ protected:
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+  void closeEvent(QCloseEvent* event) override;
+
+ private:
+  void buildLayout();
+  void buildMenus();
+  void connectLoader();
+  void tick();
+  void showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name);
+  void take(std::shared_ptr<const CompiledScene> scene, const QStringList& warnings);
+  void restore(); // what was open before a load that came to nothing
+  void showCurrent();
+  void applyHaptics();
+  void openDialog();
+  void saveDialog();
+  void exportDialog();
+  void recordDialog(bool on);
+
+  SceneWidget* view_;
+  LoadBar* load_bar_;
+  QLabel* warnings_;
+  ObjectPanel* object_;
+  HapticsPanel* haptics_;
+  DisplayPanel* display_;
+  ForcePlot* plot_;
+  StatusLine* status_;
+  RecentFiles* recent_ = nullptr;
+  SceneLoader* loader_;
+  QAction* feel_action_ = nullptr;
+  QAction* navigate_action_ = nullptr;
+  QAction* save_action_ = nullptr;
+  QAction* record_action_ = nullptr;
+
+  FeelHost feel_;
+  QTimer timer_;
+  std::shared_ptr<const CompiledScene> current_;
+  bool previewing_ = false;
+  bool haptics_edited_ = false;
+  int ticks_ = 0;
+  ToolSample last_sample_;
+  bool recording_ = false;
+  std::vector<ToolSample> record_;
+};
+
+} // namespace patina

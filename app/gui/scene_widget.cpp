@@ -1,0 +1,161 @@
+#include "app/gui/scene_widget.h"
+
+#include <chrono>
+#include <cmath>
+
+#include <QMouseEvent>
+#include <QWheelEvent>
+
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+
+#include "visualization/camera.h"
+#include "visualization/surface_pick.h"
+
+namespace patina {
+
+SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
+  const vtkNew<vtkGenericOpenGLRenderWindow> window;
+  window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
+  setRenderWindow(window);
+  view_.attachTo(*window);
+  view_.renderer().UseFXAAOn();
+  setEnableHiDPI(true);
+  setMinimumSize(480,
+                 320); // without one, a docked layout may give it no pixel and nothing is drawn
+  setMouseTracking(false);
+  setFocusPolicy(Qt::StrongFocus);
+  setMode(mode_);
+}
+
+SceneWidget::~SceneWidget() = default;
+
+void SceneWidget::setMode(Mode mode) {
+  mode_ = mode;
+  setCursor(feels() ? Qt::CrossCursor : Qt::OpenHandCursor);
+  emit modeChanged();
+}
+
+void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
+  field_ = std::move(field);
+  setMode(mode_);
+}
+
+void SceneWidget::refresh() {
+  if (!view_.prepare() || !isVisible()) return;
+  const auto start = std::chrono::steady_clock::now();
+  renderWindow()->Render();
+  frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Vec2 SceneWidget::fraction(const QPoint& pixel) const {
+  const double high = std::max(1, height());
+  return {(pixel.x() - 0.5 * width()) / high, (0.5 * height() - pixel.y()) / high};
+}
+
+Vec3 SceneWidget::restingPlace() {
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const double gap = 0.04 * view_.extent().diagonal().norm();
+  const Ray ray = rayThrough(camera, 0, 0);
+  if (field_)
+    if (const auto hit = firstSurfaceAlong(*field_, ray.origin, ray.direction))
+      return *hit - gap * ray.direction;
+  return Vec3(view_.extent().center()) -
+         (0.5 * view_.extent().diagonal().norm() + gap) * viewDirection(camera);
+}
+
+void SceneWidget::moveTip(const Vec3& target) {
+  target_ = target;
+  emit tipMoved(target);
+}
+
+void SceneWidget::press(QMouseEvent& event) {
+  last_ = event.pos();
+  const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
+  switch (event.button()) {
+  case Qt::LeftButton:
+    drag_ = feels() && !shift ? Drag::tip : shift && !feels() ? Drag::pan : Drag::orbit;
+    break;
+  case Qt::MiddleButton:
+    drag_ = Drag::pan;
+    break;
+  case Qt::RightButton:
+    drag_ = Drag::zoom;
+    break;
+  default:
+    drag_ = Drag::none;
+  }
+  if (drag_ == Drag::tip) drag(event);
+}
+
+void SceneWidget::drag(QMouseEvent& event) {
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const Vec2 now = fraction(event.pos());
+  const Vec2 moved = now - fraction(last_);
+  last_ = event.pos();
+  switch (drag_) {
+  case Drag::tip:
+    moveTip(pointInViewPlane(camera, now[0], now[1], target_));
+    break;
+  case Drag::orbit:
+    orbit(camera, moved[0], moved[1]);
+    break;
+  case Drag::pan:
+    pan(camera, moved[0], moved[1]);
+    break;
+  case Drag::zoom:
+    zoom(camera, std::exp(3 * moved[1]));
+    break;
+  case Drag::none:
+    break;
+  }
+}
+
+void SceneWidget::doubleClick(QMouseEvent& event) {
+  if (!feels() || event.button() != Qt::LeftButton) return press(event);
+  const Vec2 at = fraction(event.pos());
+  const Ray ray = rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
+  if (const auto hit = firstSurfaceAlong(*field_, ray.origin, ray.direction)) moveTip(*hit);
+  drag_ = Drag::none;
+}
+
+void SceneWidget::wheel(QWheelEvent& event) {
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const double notches = event.angleDelta().y() / 120.0;
+  if (feels() && !event.modifiers().testFlag(Qt::ControlModifier)) {
+    const double step = 0.004 * view_.extent().diagonal().norm();
+    moveTip(target_ + notches * step * viewDirection(camera));
+  } else {
+    zoom(camera, std::pow(1.12, notches));
+  }
+}
+
+bool SceneWidget::event(QEvent* event) {
+  switch (event->type()) {
+  case QEvent::MouseButtonPress:
+    press(*static_cast<QMouseEvent*>(event));
+    return true;
+  case QEvent::MouseMove:
+    drag(*static_cast<QMouseEvent*>(event));
+    return true;
+  case QEvent::MouseButtonDblClick:
+    doubleClick(*static_cast<QMouseEvent*>(event));
+    return true;
+  case QEvent::MouseButtonRelease:
+    drag_ = Drag::none;
+    return true;
+  case QEvent::Wheel:
+    wheel(*static_cast<QWheelEvent*>(event));
+    return true;
+  case QEvent::ContextMenu:
+    return true;
+  // VTK's own key bindings (e quits, w wireframes) are not ours: keys go to the window's menus.
+  case QEvent::KeyPress:
+  case QEvent::KeyRelease:
+    return QOpenGLWidget::event(event);
+  default:
+    return QVTKOpenGLNativeWidget::event(event);
+  }
+}
+
+} // namespace patina

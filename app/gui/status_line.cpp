@@ -1,0 +1,62 @@
+#include "app/gui/status_line.h"
+
+#include "core/numbers.h"
+
+namespace patina {
+
+StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
+  bar->setSizeGripEnabled(false);
+  bar->setStyleSheet(QStringLiteral("QStatusBar::item { border: none; }"
+                                    "QStatusBar QLabel { padding: 1px 7px; }"));
+  const auto label = [&](const char* name) {
+    auto* made = new QLabel(bar);
+    made->setObjectName(QString::fromUtf8(name));
+    bar->addWidget(made);
+    return made;
+  };
+  rate_ = label("rate");
+  late_ = label("late");
+  missed_ = label("missed");
+  policy_ = label("policy");
+  stages_ = label("stages");
+  bytes_ = label("bytes");
+  late_->setToolTip(tr("How late 99 % of the servo's wake-ups are at most, over the last second"));
+  missed_->setToolTip(tr("Ticks that came more than a period late since the servo began"));
+  showTiming({}, false);
+  showScene(nullptr);
+}
+
+void StatusLine::showTiming(const ServoTiming& timing, bool running) {
+  for (QLabel* label : {late_, missed_, policy_}) label->setVisible(running);
+  if (!running) {
+    rate_->setText(tr("servo rests"));
+    return;
+  }
+  rate_->setText(tr("%1 Hz").arg(timing.rate_hz, 0, 'f', 0));
+  late_->setText(tr("p99 late %1 µs").arg(timing.late_p99, 0, 'f', 0));
+  missed_->setText(tr("missed %1").arg(timing.missed));
+  policy_->setText(timing.realtime ? tr("real time") : tr("no real time"));
+  policy_->setStyleSheet(timing.realtime ? QString() : QStringLiteral("color: #a15c00;"));
+  policy_->setToolTip(QString::fromStdString(timing.policy));
+}
+
+void StatusLine::showScene(const CompiledScene* scene) {
+  stages_->setVisible(scene != nullptr);
+  bytes_->setVisible(scene != nullptr);
+  if (scene == nullptr) return;
+  QStringList names, why;
+  for (const StageInfo& stage : scene->snapshot->why) {
+    names << QString::fromStdString(stage.name);
+    why << QStringLiteral("<tr><td><b>%1</b></td><td style='padding-left:8px'>%2</td>"
+                          "<td align='right' style='padding-left:8px'>%3</td></tr>")
+               .arg(names.back(), QString::fromStdString(stage.why).toHtmlEscaped(),
+                    QString::fromStdString(formatBytes(static_cast<double>(stage.bytes))));
+  }
+  stages_->setText(tr("stages: %1").arg(names.join(QStringLiteral(" → "))));
+  stages_->setToolTip(QStringLiteral("<table>%1</table>").arg(why.join(QString())));
+  bytes_->setText(tr("field %1")
+                      .arg(QString::fromStdString(
+                          formatBytes(static_cast<double>(scene->built.field->bytes())))));
+}
+
+} // namespace patina

@@ -1,0 +1,29 @@
+// The servo and the scene in one line: what runs, how well, and what it costs.
+#pragma once
+
+#include <QLabel>
+#include <QStatusBar>
+
+#include "app/session.h"
+#include "haptics/servo_loop.h"
+
+namespace patina {
+
+class StatusLine : public QObject {
+  Q_OBJECT
+ public:
+  explicit StatusLine(QStatusBar* bar);
+  void showScene(const CompiledScene* scene); // nullptr: no scene, no stage
+  void showTiming(const ServoTiming& timing, bool running);
+  QString stagesText() const { return stages_->text(); }
+
+ private:
+  QLabel* rate_;
+  QLabel* late_;
+  QLabel* missed_;
+  QLabel* policy_;
+  QLabel* stages_;
+  QLabel* bytes_;
+};
+
+} // namespace patina

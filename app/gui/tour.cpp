@@ -1,0 +1,189 @@
+#include "app/gui/tour.h"
+
+#include <cmath>
+#include <functional>
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QEventLoop>
+#include <QImage>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "visualization/camera.h"
+#include "visualization/export_files.h"
+#include "visualization/surface_pick.h"
+
+namespace patina {
+namespace {
+
+// Events go on while we wait; false after the time is up.
+bool waitUntil(const std::function<bool()>& done, int milliseconds) {
+  QElapsedTimer clock;
+  clock.start();
+  while (!done()) {
+    if (clock.elapsed() > milliseconds) return false;
+    QApplication::processEvents(QEventLoop::AllEvents, 10);
+  }
+  return true;
+}
+
+void wait(int milliseconds) {
+  waitUntil([] { return false; }, milliseconds);
+}
+
+void openAndWait(MainWindow& window, const LoadRequest& request) {
+  QString problem;
+  bool ready = false;
+  const auto failed = QObject::connect(&window, &MainWindow::loadFailed,
+                                       [&](const QString& message) { problem = message; });
+  const auto done = QObject::connect(&window, &MainWindow::sceneReady, [&] { ready = true; });
+  const auto unit = QObject::connect(&window.loader(), &SceneLoader::needsUnit, [&] {
+    problem = QStringLiteral("its size in millimetres is odd: say --unit fit, m, cm, mm or in");
+  });
+  const auto iso = QObject::connect(&window.loader(), &SceneLoader::needsIso, [&] {
+    problem = QStringLiteral("a volume needs the value of its surface: say --iso VALUE");
+  });
+  window.open(request);
+  const bool in_time = waitUntil([&] { return ready || !problem.isEmpty(); }, 10 * 60 * 1000);
+  for (const auto& connection : {failed, done, unit, iso}) QObject::disconnect(connection);
+  if (!problem.isEmpty()) throw Error(problem.toStdString());
+  if (!in_time) throw Error("the scene was not ready after ten minutes");
+}
+
+void aim(MainWindow& window, const Vec3& target) {
+  window.view().setTarget(target);
+  emit window.view().tipMoved(target);
+}
+
+// The surface under a place of the picture, in fractions of its height from the centre.
+std::optional<Vec3> surfaceAt(MainWindow& window, double x, double y, Vec3& inward) {
+  const Ray ray = rayThrough(*window.view().view().renderer().GetActiveCamera(), x, y);
+  inward = ray.direction;
+  return firstSurfaceAlong(*window.scene()->built.field, ray.origin, ray.direction);
+}
+
+// Somewhere near the middle there is surface, whatever the mesh.
+Vec2 placeToTouch(MainWindow& window) {
+  Vec3 inward;
+  for (double radius = 0; radius < 0.5; radius += 0.02)
+    for (int step = 0; step < 24; ++step) {
+      const double angle = 2 * M_PI * step / 24;
+      const Vec2 place(radius * std::cos(angle), radius * std::sin(angle));
+      if (surfaceAt(window, place[0], place[1], inward)) return place;
+    }
+  throw Error("there is no surface in the picture to touch");
+}
+
+// From the air onto the surface and in by `depth`, at a hand's speed.
+void press(MainWindow& window, const Vec2& place, double depth) {
+  Vec3 inward;
+  const auto hit = surfaceAt(window, place[0], place[1], inward);
+  if (!hit) throw Error("the tour lost the surface");
+  const double gap = 0.06 * window.view().view().extent().diagonal().norm();
+  constexpr int kSteps = 40;
+  for (int step = 0; step <= kSteps; ++step) {
+    aim(window, *hit + inward * (-gap + (gap + depth) * step / kSteps));
+    wait(20);
+  }
+}
+
+// Along the surface at a constant depth below it, ending at `to`.
+void slide(MainWindow& window, const Vec2& from, const Vec2& to, double depth, int milliseconds) {
+  const int steps = std::max(1, milliseconds / 20);
+  for (int step = 1; step <= steps; ++step) {
+    const Vec2 place = from + (to - from) * (static_cast<double>(step) / steps);
+    Vec3 inward;
+    if (const auto hit = surfaceAt(window, place[0], place[1], inward))
+      aim(window, *hit + inward * depth);
+    wait(20);
+  }
+}
+
+bool isBlank(const QImage& image) {
+  const QRgb first = image.pixel(image.width() / 2, image.height() / 2);
+  for (int y = 0; y < image.height(); y += 3)
+    for (int x = 0; x < image.width(); x += 3)
+      if (image.pixel(x, y) != first) return false;
+  return true;
+}
+
+void grab(MainWindow& window, const std::filesystem::path& path) {
+  wait(120);
+  if (isBlank(window.view().grabFramebuffer()))
+    throw Error("nothing was drawn: OpenGL gave an empty picture");
+  if (!window.grab().toImage().save(QString::fromStdString(path.string()), "PNG", 0))
+    throw FileError(path.string(), 0, "cannot be written");
+}
+
+// Nearer to where the tool is.
+void lookCloser(MainWindow& window, double factor) {
+  vtkCamera& camera = *window.view().view().renderer().GetActiveCamera();
+  const Vec3 shift = window.lastSample().vcp - Vec3(camera.GetFocalPoint());
+  const Vec3 eye = Vec3(camera.GetPosition()) + shift;
+  camera.SetPosition(eye[0], eye[1], eye[2]);
+  const Vec3& at = window.lastSample().vcp;
+  camera.SetFocalPoint(at[0], at[1], at[2]);
+  zoom(camera, factor);
+}
+
+void show(MainWindow& window, std::set<Layer> layers) {
+  for (const Layer layer : allLayers()) window.display().setShown(layer, layers.count(layer) != 0);
+}
+
+void checkFelt(const std::vector<ToolSample>& samples) {
+  std::size_t touching = 0;
+  double highest = 0;
+  for (const ToolSample& sample : samples) {
+    if (sample.contact) ++touching;
+    highest = std::max(highest, sample.force.norm());
+  }
+  if (samples.empty()) throw Error("the servo gave no sample");
+  if (touching == 0 || highest <= 0)
+    throw Error("the tip touched nothing in " + formatCount(samples.size()) + " ticks");
+}
+
+} // namespace
+
+void runTour(MainWindow& window, const LoadRequest& request, const std::filesystem::path& folder) {
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (code) throw FileError(folder.string(), 0, "cannot be made: " + code.message());
+  openAndWait(window, request);
+  wait(300);
+  window.startRecording();
+  const double depth = std::min(0.0025, 2.5 * window.scene()->built.field->grid.voxel);
+  const Vec2 start = placeToTouch(window);
+  const Vec2 end = start + Vec2(-0.06, 0.03);
+  press(window, start, depth);
+  slide(window, start, end, depth, 1600);
+  grab(window, folder / "window.png");
+
+  lookCloser(window, 3.2);
+  // The person gives the surface friction and strokes on: one row more, one stage more.
+  HapticProperties haptics = window.haptics().values();
+  if (!haptics.friction) haptics.friction = Friction{0.5, 0.3, 0, {}};
+  window.haptics().setValues(haptics);
+  emit window.haptics().edited(haptics);
+  wait(200);
+  slide(window, Vec2::Zero(), Vec2(0.12, 0.05), depth, 1400);
+  grab(window, folder / "feel.png");
+
+  show(window, {Layer::mesh, Layer::tip, Layer::wireframe, Layer::nodes});
+  lookCloser(window, 1.8);
+  grab(window, folder / "nodes.png");
+
+  aim(window, window.view().restingPlace());
+  wait(300);
+  show(window, {Layer::mesh, Layer::slice, Layer::iso, Layer::band});
+  window.display().setSlice({1, 0.5});
+  window.view().view().setView(ViewPreset::iso);
+  grab(window, folder / "slice.png");
+  show(window, {Layer::mesh, Layer::tip});
+
+  const std::vector<ToolSample> samples = window.takeRecording();
+  checkFelt(samples);
+  writeToolSamplesCsv(folder / "feel.csv", samples);
+}
+
+} // namespace patina

@@ -1,0 +1,41 @@
+// One value of a panel: caption, slider and number with its unit; optionally removable.
+#pragma once
+
+#include <QDoubleSpinBox>
+#include <QSlider>
+#include <QToolButton>
+#include <QWidget>
+
+namespace patina {
+
+struct ValueRange {
+  double low = 0, high = 1, step = 0.1;
+  int decimals = 2;
+  bool logarithmic = false; // low > 0 then
+};
+
+class ValueRow : public QWidget {
+  Q_OBJECT
+ public:
+  ValueRow(const QString& caption, const QString& unit, const ValueRange& range,
+           QWidget* parent = nullptr);
+
+  void setValue(double value); // sends no signal
+  double value() const { return number_->value(); }
+  void setRemovable(const QString& tip); // shows a cross that sends removed()
+
+ signals:
+  void edited(double value);
+  void removed();
+
+ private:
+  int toSlider(double value) const;
+  double fromSlider(int position) const;
+
+  ValueRange range_;
+  QSlider* slider_;
+  QDoubleSpinBox* number_;
+  QToolButton* cross_;
+};
+
+} // namespace patina

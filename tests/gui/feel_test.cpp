@@ -1,0 +1,137 @@
+// The mouse feels: what a person without a device sees and gets.
+#include <cmath>
+
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+
+namespace patina {
+namespace {
+
+constexpr double kRadius = 0.03;
+
+class MouseFeels : public WindowTest {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(kRadius, 30), "sphere.obj")));
+  }
+  void settle() { wait(250); }
+};
+
+TEST_F(MouseFeels, ADoubleClickSetsTheTipOntoTheSurface) {
+  send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
+  settle();
+  EXPECT_NEAR(view().target().norm(), kRadius, 2e-4);
+  EXPECT_NEAR(window_->lastSample().tip.norm(), kRadius, 2e-4);
+}
+
+TEST_F(MouseFeels, TheDrawnToolIsHeldOutByContactWhileTheTipGoesIn) {
+  send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
+  turnWheel(6);
+  settle();
+  const ToolSample sample = window_->lastSample();
+  ASSERT_TRUE(sample.contact);
+  EXPECT_LT(sample.tip.norm(), kRadius - 1e-3);  // the true tip is inside
+  EXPECT_NEAR(sample.vcp.norm(), kRadius, 1e-4); // the proxy is on the surface
+  EXPECT_GT(sample.force.dot(sample.vcp), 0);    // and the force points out
+  const double expected = std::min(3.3, 500 * (kRadius - sample.tip.norm()));
+  EXPECT_NEAR(sample.force.norm(), expected, 0.05 * expected);
+  EXPECT_GT(forceShare(), 0.0005);
+}
+
+TEST_F(MouseFeels, WithoutContactThereIsNoForceAndNoArrow) {
+  settle();
+  EXPECT_FALSE(window_->lastSample().contact);
+  EXPECT_EQ(window_->lastSample().force.norm(), 0);
+  EXPECT_EQ(forceShare(), 0);
+  EXPECT_GT(toolShare(), 0);
+}
+
+TEST_F(MouseFeels, DraggingMovesTheTipUnderThePointerInTheViewPlane) {
+  const Vec3 before = view().target();
+  dragFromTo(middle(), middle() + QPoint(60, 0));
+  const Vec3 moved = view().target() - before;
+  const Vec3 eye(view().view().renderer().GetActiveCamera()->GetDirectionOfProjection());
+  EXPECT_GT(moved.norm(), 1e-3);
+  EXPECT_NEAR(moved.dot(eye), 0, 1e-9);
+}
+
+TEST_F(MouseFeels, TheWheelMovesTheTipInDepthOnly) {
+  const Vec3 before = view().target();
+  turnWheel(3);
+  const Vec3 moved = view().target() - before;
+  const Vec3 eye(view().view().renderer().GetActiveCamera()->GetDirectionOfProjection());
+  EXPECT_GT(moved.dot(eye), 1e-4);
+  EXPECT_NEAR((moved - moved.dot(eye) * eye).norm(), 0, 1e-9);
+}
+
+TEST_F(MouseFeels, ShiftMiddleAndRightMoveTheCameraAndNotTheTip) {
+  auto* camera = view().view().renderer().GetActiveCamera();
+  const Vec3 target = view().target();
+  const auto eye = [&] { return Vec3(camera->GetPosition()); };
+  Vec3 before = eye();
+  dragFromTo(middle(), middle() + QPoint(80, 10), Qt::LeftButton, Qt::ShiftModifier);
+  EXPECT_GT((eye() - before).norm(), 1e-3);
+  before = eye();
+  dragFromTo(middle(), middle() + QPoint(80, 10), Qt::MiddleButton);
+  EXPECT_GT((eye() - before).norm(), 1e-3);
+  const double distance = camera->GetDistance();
+  dragFromTo(middle(), middle() + QPoint(0, -60), Qt::RightButton);
+  EXPECT_LT(camera->GetDistance(), distance);
+  EXPECT_EQ(view().target(), target);
+}
+
+TEST_F(MouseFeels, NavigateModeGivesTheLeftButtonToTheCamera) {
+  window_->setMode(SceneWidget::Mode::navigate);
+  const Vec3 target = view().target();
+  auto* camera = view().view().renderer().GetActiveCamera();
+  const Vec3 before(camera->GetPosition());
+  dragFromTo(middle(), middle() + QPoint(80, 10));
+  turnWheel(2);
+  EXPECT_GT((Vec3(camera->GetPosition()) - before).norm(), 1e-3);
+  EXPECT_EQ(view().target(), target);
+}
+
+TEST_F(MouseFeels, EditsReachTheServoWhileItRuns) {
+  send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
+  turnWheel(4);
+  settle();
+  const double before = window_->lastSample().force.norm();
+  HapticProperties haptics = window_->haptics().values();
+  haptics.stiffness = 250;
+  window_->haptics().setValues(haptics);
+  emit window_->haptics().edited(haptics);
+  wait(500);
+  EXPECT_NEAR(window_->lastSample().force.norm(), 0.5 * before, 0.05 * before);
+}
+
+TEST_F(MouseFeels, FrictionHoldsTheProxyBackWhenTheTipMovesSideways) {
+  HapticProperties haptics = window_->haptics().values();
+  haptics.friction = Friction{0.8, 0.8, 0, {}};
+  emit window_->haptics().edited(haptics); // values() unchanged: the row's own edit is tested below
+  window_->haptics().setValues(haptics);
+  emit window_->haptics().edited(haptics);
+  wait(200);
+  send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
+  turnWheel(5);
+  settle();
+  dragFromTo(middle(), middle() + QPoint(4, 0));
+  settle();
+  const ToolSample sample = window_->lastSample();
+  ASSERT_TRUE(sample.contact);
+  // The line from tip to proxy leans against the motion: a force along the surface.
+  const Vec3 along = sample.force - sample.force.dot(sample.normal) * sample.normal;
+  EXPECT_GT(along.norm(), 0.05);
+}
+
+TEST_F(MouseFeels, ARecordingHoldsEveryTickAsItWas) {
+  window_->startRecording();
+  wait(400);
+  const auto samples = window_->takeRecording();
+  ASSERT_GT(samples.size(), 200U);
+  for (std::size_t i = 1; i < samples.size(); ++i) ASSERT_GT(samples[i].t, samples[i - 1].t);
+}
+
+} // namespace
+} // namespace patina

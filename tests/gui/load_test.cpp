@@ -1,0 +1,162 @@
+// Opening: what is seen when, what is asked, and what stays when it fails.
+#include <fstream>
+
+#include <QAbstractButton>
+#include <QDialog>
+#include <QMessageBox>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkXMLImageDataWriter.h>
+
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+using Loading = WindowTest;
+
+TEST_F(Loading, TheMeshIsSeenBeforeTheFieldIsReady) {
+  const auto path = saved(icosphere(0.03, 60), "sphere.obj");
+  bool ready = false;
+  double seen = -1;
+  QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  QObject::connect(&window_->loader(), &SceneLoader::meshReady, window_.get(), [&] {
+    EXPECT_FALSE(ready);
+    seen = surfaceShare();
+  });
+  window_->open(requestFor(path));
+  ASSERT_TRUE(waitUntil([&] { return ready; }));
+  EXPECT_GT(seen, 0.1);
+  EXPECT_GT(surfaceShare(), 0.1);
+}
+
+TEST_F(Loading, NoSceneNoPanels) {
+  EXPECT_FALSE(window_->haptics().isVisible());
+  EXPECT_FALSE(window_->display().isVisible());
+  EXPECT_FALSE(window_->feel().running());
+  EXPECT_EQ(surfaceShare(), 0);
+}
+
+TEST_F(Loading, AFailedLoadLeavesTheSceneAsItWas) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+  const CompiledScene* before = window_->scene();
+  std::ofstream(folder_ / "bad.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999\n";
+  QString message;
+  QObject::connect(window_.get(), &MainWindow::loadFailed, [&](const QString& m) { message = m; });
+  window_->open(requestFor(folder_ / "bad.obj"));
+  ASSERT_TRUE(waitUntil([&] { return !message.isEmpty(); }));
+  wait(80);
+  EXPECT_TRUE(message.contains(QStringLiteral("bad.obj:4"))) << message.toStdString();
+  EXPECT_EQ(window_->scene(), before);
+  EXPECT_TRUE(window_->feel().running());
+  EXPECT_GT(surfaceShare(), 0.1);
+  auto* box = window_->findChild<QMessageBox*>(QStringLiteral("problem"));
+  ASSERT_NE(box, nullptr);
+  EXPECT_FALSE(box->informativeText().isEmpty());
+  box->accept();
+}
+
+TEST_F(Loading, CancelLeavesTheSceneAsItWas) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+  const CompiledScene* before = window_->scene();
+  const auto path = saved(torus(0.035, 0.015, 500, 250), "torus.obj");
+  bool cancelled = false;
+  QObject::connect(window_.get(), &MainWindow::loadCancelled, [&] { cancelled = true; });
+  QObject::connect(&window_->loader(), &SceneLoader::meshReady, window_.get(), [&] {
+    window_->findChild<QAbstractButton*>(QStringLiteral("cancel_load"))->click();
+  });
+  window_->open(requestFor(path));
+  ASSERT_TRUE(waitUntil([&] { return cancelled; }));
+  wait(80);
+  EXPECT_EQ(window_->scene(), before);
+  EXPECT_TRUE(window_->feel().running());
+  EXPECT_FALSE(window_->findChild<LoadBar*>()->isVisible());
+  EXPECT_GT(surfaceShare(), 0.1);
+}
+
+TEST_F(Loading, AnOddSizeAsksForTheUnitAndTheAnswerCounts) {
+  LoadRequest request;
+  request.path = saved(icosphere(0.03, 12), "small.obj"); // 0.06 mm, if it were millimetres
+  window_->open(request);
+  QDialog* dialog = nullptr;
+  ASSERT_TRUE(waitUntil([&] {
+    dialog = window_->findChild<QDialog*>(QStringLiteral("unit_dialog"));
+    return dialog != nullptr;
+  }));
+  EXPECT_EQ(window_->scene(), nullptr);
+  bool ready = false;
+  QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  dialog->accept(); // the first choice: 100 mm
+  ASSERT_TRUE(waitUntil([&] { return ready; }));
+  EXPECT_NEAR(bounds(window_->scene()->mesh).sizes().maxCoeff(), 0.1, 1e-9);
+}
+
+TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {
+  const vtkNew<vtkImageData> image;
+  image->SetDimensions(40, 40, 40);
+  image->SetOrigin(-20, -20, -20);
+  const vtkNew<vtkFloatArray> values;
+  values->SetName("density");
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+    double p[3];
+    image->GetPoint(i, p);
+    values->InsertNextValue(static_cast<float>(Vec3(p).norm() - 15));
+  }
+  image->GetPointData()->SetScalars(values);
+  const vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName((folder_ / "v.vti").c_str());
+  writer->Write();
+
+  LoadRequest request;
+  request.path = folder_ / "v.vti";
+  window_->open(request);
+  QDialog* dialog = nullptr;
+  ASSERT_TRUE(waitUntil([&] {
+    dialog = window_->findChild<QDialog*>(QStringLiteral("iso_dialog"));
+    return dialog != nullptr;
+  }));
+  bool ready = false;
+  QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  dialog->accept(); // a distance: 0 is offered
+  ASSERT_TRUE(waitUntil([&] { return ready; }));
+  EXPECT_NEAR(bounds(window_->scene()->mesh).sizes().maxCoeff(), 0.030, 1e-4);
+}
+
+TEST_F(Loading, AWorkspaceThatWasSavedOpensAgainWithItsValues) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+  HapticProperties haptics = window_->haptics().values();
+  haptics.stiffness = 321;
+  haptics.damping = 2.5;
+  window_->haptics().setValues(haptics);
+  emit window_->haptics().edited(haptics);
+  wait(100);
+  window_->saveWorkspaceTo(QString::fromStdString((folder_ / "ws").string()));
+  ASSERT_TRUE(open(folder_ / "ws"));
+  EXPECT_EQ(window_->scene()->scene.haptics.stiffness, 321);
+  EXPECT_EQ(window_->scene()->scene.haptics.damping, 2.5);
+  EXPECT_NE(window_->haptics().findChild<QWidget*>(QStringLiteral("damping")), nullptr);
+}
+
+TEST_F(Loading, OpenedFilesAreRemembered) {
+  const auto path = saved(icosphere(0.03, 8), "remember.obj");
+  ASSERT_TRUE(open(path));
+  EXPECT_TRUE(
+      window_->findChild<RecentFiles*>()->paths().contains(QString::fromStdString(path.string())));
+}
+
+TEST_F(Loading, ANewLoadTakesThePlaceOfOneUnderWay) {
+  const auto slow = saved(torus(0.035, 0.015, 400, 200), "torus.obj");
+  const auto quick = saved(icosphere(0.03, 8), "sphere.obj");
+  window_->open(requestFor(slow));
+  wait(20);
+  ASSERT_TRUE(open(quick));
+  EXPECT_EQ(window_->scene()->mesh.triangles.size(), 20U * 64U);
+}
+
+} // namespace
+} // namespace patina

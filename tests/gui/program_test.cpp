@@ -1,0 +1,106 @@
+// The program as a script meets it.
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include <sys/wait.h>
+
+#include "core/csv.h"
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(program_)) GTEST_SKIP() << program_ << " is not built";
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  static std::string contents(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+  Outcome run(const std::string& arguments, const std::string& environment = "") const {
+    const std::string command = environment + " '" + program_ + "' " + arguments + " >'" +
+                                (folder_ / "out").string() + "' 2>'" + (folder_ / "err").string() +
+                                "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder_ / "out"),
+            contents(folder_ / "err")};
+  }
+  static bool hasDisplay() { return std::getenv("DISPLAY") != nullptr; }
+
+  const std::string program_ = std::string(PATINA_BINARY_DIR) + "/patina-gui";
+  const fs::path folder_ =
+      fs::temp_directory_path() / ("patina-program-" + std::to_string(getpid()));
+};
+
+TEST_F(Program, WithoutADisplayItSaysWhatToDoAndExits2) {
+  const Outcome outcome = run("", "env -u DISPLAY");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("xvfb-run"), std::string::npos);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+}
+
+TEST_F(Program, HelpAndVersionNeedNoDisplay) {
+  EXPECT_EQ(run("--help", "env -u DISPLAY").code, 0);
+  EXPECT_EQ(run("--version", "env -u DISPLAY").code, 0);
+  EXPECT_EQ(run("--no-such-option").code, 2);
+}
+
+TEST_F(Program, TheTourLeavesPicturesAndALog) {
+  if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
+  writeMesh(folder_ / "sphere.obj", icosphere(30, 20));
+  const Outcome outcome = run("--tour '" + (folder_ / "tour").string() + "' '" +
+                              (folder_ / "sphere.obj").string() + "'");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* name : {"window.png", "feel.png", "slice.png", "nodes.png"})
+    EXPECT_GT(fs::file_size(folder_ / "tour" / name), 10000U) << name;
+  const CsvTable table =
+      readCsv(folder_ / "tour" / "feel.csv",
+              {"t [s]", "x [m]", "y [m]", "z [m]", "fx [N]", "fy [N]", "fz [N]", "contact",
+               "depth [m]", "vcp_x [m]", "vcp_y [m]", "vcp_z [m]", "nx", "ny", "nz", "step [ns]"});
+  std::size_t touching = 0;
+  for (const auto& row : table.rows) {
+    if (row[7] == 0) continue;
+    ++touching;
+    EXPECT_NEAR(Vec3(row[9], row[10], row[11]).norm(), 0.03, 2e-4);
+  }
+  EXPECT_GT(touching, 500U);
+}
+
+TEST_F(Program, ATourOfAMissingFileFailsInOneLine) {
+  if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
+  const Outcome outcome =
+      run("--tour '" + folder_.string() + "' '" + (folder_ / "no.obj").string() + "'");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("no.obj"), std::string::npos);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+TEST_F(Program, TheFirstPictureOf70000TrianglesTakesAtMostTwoSeconds) {
+  if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
+  writeMesh(folder_ / "sphere.obj", icosphere(30, 60)); // 72,000 triangles
+  double best = 1e9;
+  for (int round = 0; round < 3; ++round) {
+    const Outcome outcome = run("--first-picture-time '" + (folder_ / "sphere.obj").string() + "'");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    best = std::min(best, std::stod(outcome.out));
+  }
+  std::printf("first picture of 72,000 triangles: %.2f s\n", best);
+  EXPECT_LE(best, 2.0);
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,43 @@
+// Drawing must not starve the servo.
+#include <cstdio>
+
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+#include "visualization/camera.h"
+
+namespace patina {
+namespace {
+
+class ServoUnderDrawing : public WindowTest {};
+
+TEST_F(ServoUnderDrawing, WakesInTimeWhileTheWindowDraws500000Triangles) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 158), "sphere.ply"))); // 499,280 triangles
+  double longest = 0, sum = 0;
+  int frames = 0;
+  QElapsedTimer clock;
+  clock.start();
+  while (clock.elapsed() < 4000) {
+    orbit(*view().view().renderer().GetActiveCamera(), 0.004, 0);
+    view().refresh();
+    longest = std::max(longest, view().frameSeconds());
+    sum += view().frameSeconds();
+    ++frames;
+    QApplication::processEvents(QEventLoop::AllEvents, 1);
+  }
+  const ServoTiming timing = window_->feel().timing();
+  std::printf(
+      "%d frames, mean %.0f ms, longest %.0f ms; servo %s: late p99 %.0f us, p99.9 %.0f us, "
+      "missed %llu of %llu\n",
+      frames, 1000 * sum / frames, 1000 * longest, timing.policy.c_str(), timing.late_p99,
+      timing.late_p999, static_cast<unsigned long long>(timing.missed),
+      static_cast<unsigned long long>(timing.ticks));
+  EXPECT_GT(surfaceShare(), 0.1);
+  if (!timing.realtime)
+    GTEST_SKIP() << "no real-time priority here (" << timing.policy
+                 << "): lateness is shown and not judged";
+  EXPECT_LE(timing.late_p99, 100);
+  EXPECT_LE(timing.late_p999, 500);
+}
+
+} // namespace
+} // namespace patina

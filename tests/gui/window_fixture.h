@@ -1,0 +1,142 @@
+// A window per test, shown on the X display that the tests run under.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QMouseEvent>
+#include <QSettings>
+#include <QWheelEvent>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "app/gui/main_window.h"
+#include "app/gui/window_style.h"
+#include "geometry/mesh_io.h"
+
+namespace patina {
+
+// Qt wants one application a process, made in main's thread and never twice.
+inline QApplication& application() {
+  static int count = 1;
+  static char name[] = "gui_tests";
+  static char* words[] = {name, nullptr};
+  static QApplication* made = [] {
+    setenv("QT_QPA_PLATFORM", "xcb", 0);
+    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    auto* app = new QApplication(count, words);
+    QApplication::setOrganizationName(QStringLiteral("patina-tests"));
+    QApplication::setApplicationName(QStringLiteral("patina-tests"));
+    applyStyle(*app);
+    return app;
+  }();
+  return *made;
+}
+
+class WindowTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("DISPLAY") == nullptr)
+      GTEST_SKIP() << "no DISPLAY: run under xvfb-run -a -s \"-screen 0 1280x800x24\"";
+    folder_ = std::filesystem::temp_directory_path() / ("patina-gui-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,
+                       QString::fromStdString(folder_.string()));
+    application();
+    window_ = std::make_unique<MainWindow>();
+    window_->resize(1100, 760);
+    window_->show();
+    wait(50);
+  }
+  void TearDown() override {
+    window_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+
+  static bool waitUntil(const std::function<bool()>& done, int milliseconds = 60000) {
+    QElapsedTimer clock;
+    clock.start();
+    while (!done()) {
+      if (clock.elapsed() > milliseconds) return false;
+      QApplication::processEvents(QEventLoop::AllEvents, 5);
+    }
+    return true;
+  }
+  static void wait(int milliseconds) {
+    waitUntil([] { return false; }, milliseconds);
+  }
+
+  std::filesystem::path saved(const TriangleMesh& mesh, const std::string& name) const {
+    writeMesh(folder_ / name, mesh);
+    return folder_ / name;
+  }
+  // In metres, so that no question about the unit comes up.
+  bool open(const std::filesystem::path& path, MeshUnit unit = MeshUnit::m) {
+    bool ready = false;
+    const auto connection =
+        QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+    window_->open(requestFor(path, unit));
+    const bool done = waitUntil([&] { return ready; });
+    QObject::disconnect(connection);
+    wait(80);
+    return done;
+  }
+  static LoadRequest requestFor(const std::filesystem::path& path, MeshUnit unit = MeshUnit::m) {
+    LoadRequest request;
+    request.path = path;
+    request.options.unit = unit;
+    request.unit_chosen = true;
+    return request;
+  }
+
+  SceneWidget& view() { return window_->view(); }
+  QPoint middle() { return view().rect().center(); }
+  void send(QEvent::Type type, const QPoint& at, Qt::MouseButton button, Qt::MouseButtons held,
+            Qt::KeyboardModifiers keys = Qt::NoModifier) {
+    QMouseEvent event(type, at, view().mapToGlobal(at), button, held, keys);
+    QApplication::sendEvent(&view(), &event);
+  }
+  void dragFromTo(const QPoint& from, const QPoint& to, Qt::MouseButton button = Qt::LeftButton,
+                  Qt::KeyboardModifiers keys = Qt::NoModifier) {
+    send(QEvent::MouseButtonPress, from, button, button, keys);
+    for (int step = 1; step <= 8; ++step)
+      send(QEvent::MouseMove, from + (to - from) * step / 8, Qt::NoButton, button, keys);
+    send(QEvent::MouseButtonRelease, to, button, Qt::NoButton, keys);
+  }
+  void turnWheel(int notches, Qt::KeyboardModifiers keys = Qt::NoModifier) {
+    QWheelEvent event(middle(), view().mapToGlobal(middle()), {}, {0, 120 * notches}, Qt::NoButton,
+                      keys, Qt::NoScrollPhase, false);
+    QApplication::sendEvent(&view(), &event);
+  }
+
+  // Share of the view's pixels that pass a test of red, green and blue.
+  double share(const std::function<bool(int, int, int)>& test) {
+    view().refresh();
+    const QImage image = view().grabFramebuffer();
+    int hits = 0, all = 0;
+    for (int y = 0; y < image.height(); y += 2)
+      for (int x = image.width() / 7; x < image.width(); x += 2, ++all) {
+        const QRgb pixel = image.pixel(x, y);
+        if (test(qRed(pixel), qGreen(pixel), qBlue(pixel))) ++hits;
+      }
+    return static_cast<double>(hits) / std::max(1, all);
+  }
+  double surfaceShare() {
+    return share([](int r, int g, int b) { return g > r + 3 && g > b + 5; });
+  }
+  double toolShare() {
+    return share([](int r, int g, int b) { return r > 150 && r > g + 40 && g > b + 30; });
+  }
+  double forceShare() {
+    return share([](int r, int g, int b) { return r > 120 && g < 70 && b < 100; });
+  }
+
+  std::filesystem::path folder_;
+  std::unique_ptr<MainWindow> window_;
+};
+
+} // namespace patina
