@@ -1,0 +1,26 @@
+// Studies: error against run time, one row a setting (`patina study`).
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/work_precision.h"
+
+namespace patina {
+
+struct StudyOptions {
+  bool quick = false; // fewer points and coarser grids: seconds, for the tests
+};
+
+struct Study {
+  std::string_view name;  // on the command line
+  std::string_view about; // one line
+  // Reports to `progress` and throws Cancelled.
+  std::vector<WorkPrecisionTable> (*run)(const StudyOptions&, Progress&);
+};
+
+// All of them, in the order in which `patina study all` runs them.
+const std::vector<Study>& studies();
+
+} // namespace patina
