@@ -9,7 +9,9 @@
 namespace patina {
 namespace {
 
-constexpr double kMinGradient = 0.1;   // K05
+constexpr double kMinGradient = 0.1; // K05
+constexpr int kRefinements = 2;
+constexpr double kDeepFrom = 2.75;     // voxels before the band's end, where the sampler turns deep
 constexpr double kHandoverTime = 5e-3; // [s]
 
 const SurfaceField& sampled(const std::shared_ptr<const SurfaceField>& field) {
@@ -102,12 +104,35 @@ void ContactStage::alongRay(const Vec3& q, const GridSample& sample, const Vec3&
   contact.samples += root.samples;
   if (root.found) {
     found.depth = root.s;
+    if (contact.deep) refine(q, contact, found);
     return;
   }
   // F9: -f g / |g|^2 has the length -f / |g|; a direction from memory has no slope of its own.
   const double slope = sample.gradient.norm();
   found.depth = (iso_ - sample.phi) / (slope >= kMinGradient ? slope : 1.0);
   found.mode = ContactMode::newton;
+}
+
+// The normal where the ray ends is nearer to the nearest point's than a coarse direction is, by
+// depth over radius of curvature. It fades in behind the band and out again where depth may exceed
+// that radius, so that the force is continuous.
+void ContactStage::refine(const Vec3& q, Contact& contact, Found& found) const noexcept {
+  const double band = field_->band;
+  const double weight =
+      std::clamp(std::min(found.depth - (band - kDeepFrom), 3 - found.depth / band), 0.0, 1.0);
+  if (!(weight > 0)) return;
+  for (int i = 0; i < kRefinements; ++i) {
+    const GridSample surface = sampler_.atGrid(q + found.depth * found.normal);
+    ++contact.samples;
+    if (!(surface.gradient.dot(found.normal) > kMinGradient)) return;
+    const Vec3 normal =
+        (found.normal + weight * (surface.gradient.normalized() - found.normal)).normalized();
+    const RayRoot root = rayRoot(sampler_, q, normal, found.depth, iso_);
+    contact.samples += root.samples;
+    if (!root.found) return;
+    found.depth = root.s;
+    found.normal = normal;
+  }
 }
 
 void ContactStage::finish(const Found& found, Contact& contact,
@@ -120,7 +145,10 @@ void ContactStage::finish(const Found& found, Contact& contact,
   contact.candidate = contact.tip + contact.depth * found.normal;
 
   if (memory.in_contact && memory.mode != found.mode) {
-    memory.handover = (memory.last_candidate - memory.last_tip) - (contact.candidate - contact.tip);
+    // Where the old way would have put it: along with the tip over the surface.
+    const Vec3 step = contact.tip - memory.last_tip;
+    const Vec3 over = step - step.dot(memory.last_normal) * memory.last_normal;
+    memory.handover = memory.last_candidate + over - contact.candidate;
     memory.has_handover = true;
   }
   if (memory.has_handover) {

@@ -11,10 +11,10 @@ namespace patina {
 
 // Sets touching, normal, candidate, vcp (= candidate) and depth.
 //
-// Deeper than the band the direction comes from the coarse nodes and the ray still ends on the
-// surface. A tip that has passed through the surface between two ticks (swept test), or past the
-// middle of a part so that the direction turned by more than 90 degrees, is held: the VCP walks on
-// the side where it entered, until
+// Deeper than the band the first direction comes from the coarse nodes; the ray still ends on the
+// surface, and the normals found there improve it. A tip that has passed through the surface
+// between two ticks (swept test), or past the middle of a part so that the direction turned by more
+// than 90 degrees, is held: the VCP walks on the side where it entered, until
 //  - the tip is in front of the tangent plane there, or
 //  - the tip is inside and the field's own direction is within 60 degrees of the held one, or
 //  - it is held deeper than a quarter of the grid's longest side, or the surface is lost.
@@ -40,6 +40,7 @@ class ContactStage final : public ForceStage {
   bool follow(const Vec3& q, const SurfaceContact& from, Found& found) const noexcept;
   void alongRay(const Vec3& q, const GridSample& sample, const Vec3& direction, Contact& contact,
                 Found& found) const noexcept;
+  void refine(const Vec3& q, Contact& contact, Found& found) const noexcept;
   Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - sampler_.grid().origin); }
   void finish(const Found& found, Contact& contact, ContactMemory& memory) const noexcept;
 

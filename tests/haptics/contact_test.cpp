@@ -1,0 +1,357 @@
+#include "haptics/contact_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "core/work_precision.h"
+#include "haptics/contact_stage.h"
+
+namespace patina {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// T-K03. Float values resolve 6e-8 voxel, hence the small voxel.
+TEST(Contact, FlipsAtThePlane) {
+  const Field plane = planeField(0x1p-16);
+  const auto snapshot = compileStages(sceneOf(500), plane);
+  for (const double x : {0.0, 1.37e-4, -4.2e-4}) {
+    EXPECT_FALSE(touchOnce(*snapshot, Vec3(x, x, 1e-12)).touching);
+    EXPECT_TRUE(touchOnce(*snapshot, Vec3(x, x, -1e-12)).touching);
+  }
+}
+
+// T-K03: a step over a thin plate is caught by the swept test, and by nothing else.
+TEST(Contact, SweptTestCatchesAStepOverAThinPlate) {
+  const Field plate = plateField();
+  for (const bool sweep : {true, false}) {
+    const ContactStage stage(plate, Sampler::high, 0, sweep);
+    ContactMemory memory;
+    Contact before, after;
+    before.tip = Vec3(0.3e-3, 0.2e-3, 0.75e-3);
+    after.tip = before.tip - Vec3(0, 0, 2e-3);
+    after.dt = before.dt = 1e-3;
+    stage.apply(before, memory);
+    memory.last_tip = before.tip;
+    memory.has_last_tip = true;
+    stage.apply(after, memory);
+    EXPECT_FALSE(before.touching);
+    EXPECT_EQ(after.touching, sweep);
+    if (!sweep) continue;
+    EXPECT_TRUE(after.held);
+    EXPECT_LT((after.candidate - Vec3(0.3e-3, 0.2e-3, 0.25e-3)).norm(), 1e-7);
+    EXPECT_LT((after.normal - Vec3::UnitZ()).norm(), 1e-5);
+  }
+}
+
+TEST(Contact, HeldPointSlidesAlongThePlateAndLetsGoInFrontOfIt) {
+  const auto snapshot = compileStages(sceneOf(500), plateField());
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
+  tick(*snapshot, memory, Vec3(0, 0, -1e-3), 1e-3);
+  const Contact slid = glide(*snapshot, memory, Vec3(1e-3, -0.5e-3, -1e-3));
+  EXPECT_TRUE(slid.held);
+  EXPECT_LT((slid.vcp - Vec3(1e-3, -0.5e-3, 0.25e-3)).norm(), 1e-6);
+  EXPECT_NEAR(slid.force.z(), 500 * 1.25e-3, 1e-4);
+  const Contact back = glide(*snapshot, memory, Vec3(1e-3, -0.5e-3, 0.3e-3));
+  EXPECT_FALSE(back.touching);
+  EXPECT_EQ(back.force, Vec3::Zero().eval());
+}
+
+TEST(Contact, SlowPushThroughAThinPlateIsHeldToo) {
+  const auto snapshot = compileStages(sceneOf(500), plateField());
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
+  double last = 0;
+  for (double z = 0.24e-3; z > -1.5e-3; z -= 0.01e-3) {
+    const Contact contact = tick(*snapshot, memory, Vec3(0, 0, z), 1e-3);
+    EXPECT_NEAR(contact.force.z(), 500 * (0.25e-3 - z), 2e-3) << z;
+    EXPECT_GT(contact.force.z(), last) << z;
+    last = contact.force.z();
+  }
+}
+
+TEST(Contact, HeldPointGoesAroundTheRim) {
+  const auto snapshot = compileStages(sceneOf(500), plateField());
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
+  tick(*snapshot, memory, Vec3(0, 0, -0.5e-3), 1e-3);
+  ASSERT_TRUE(memory.held());
+  const Contact beyond = glide(*snapshot, memory, Vec3(3.5e-3, 0, -0.5e-3), 0.05e-3);
+  EXPECT_FALSE(beyond.touching);
+}
+
+TEST(Contact, IsNotHeldDeeperThanAQuarterOfTheGrid) {
+  const auto snapshot = compileStages(sceneOf(500), plateField());
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
+  EXPECT_TRUE(glide(*snapshot, memory, Vec3(0, 0, -1.5e-3)).touching);
+  EXPECT_FALSE(glide(*snapshot, memory, Vec3(0, 0, -1.9e-3)).touching); // 80 cells of 0.1 mm
+}
+
+TEST(Contact, SlidingOffARoundBodyIsNotHeld) {
+  const auto snapshot = compileStages(sceneOf(500), sphereField());
+  ContactMemory memory;
+  // Quick passes that dip 1 mm into the sphere and leave it behind the last tangent plane.
+  for (double step = 0.5e-3; step < 6e-3; step *= 1.3) {
+    memory.reset();
+    for (double x = -0.03; x < 0.03; x += step) {
+      const Vec3 tip(x, 0, 0.029);
+      const Contact contact = tick(*snapshot, memory, tip, 1e-3);
+      EXPECT_FALSE(contact.held) << step << ' ' << x;
+      EXPECT_EQ(contact.touching, tip.norm() < 0.03) << step << ' ' << x;
+    }
+  }
+}
+
+// Slow motion must not pay for the swept test: not even one sample more.
+TEST(Contact, FreeMotionTakesOneSample) {
+  const auto snapshot = compileStages(sceneOf(500), plateField());
+  ContactMemory memory;
+  for (double z = 2e-3; z > 0.3e-3; z -= 0.01e-3) {
+    EXPECT_EQ(tick(*snapshot, memory, Vec3(0, 0, z), 1e-3).samples, 1);
+  }
+}
+
+// T-K06a. Coordinates that float holds exactly are found exactly; others to what float resolves.
+TEST(Contact, VcpOnAPlaneIsExact) {
+  const auto snapshot = compileStages(sceneOf(500), planeField());
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> dyadic(0, 1 << 12);
+  const double unit = 0x1p-11 / (1 << 10);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 tip(dyadic(random) * unit, dyadic(random) * unit, -1e-12 - dyadic(random) * unit);
+    const Contact contact = touchOnce(*snapshot, tip);
+    EXPECT_LT((contact.vcp - Vec3(tip.x(), tip.y(), 0)).norm(), 2e-12);
+  }
+  std::uniform_real_distribution<double> any(-5e-3, 5e-3);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 tip(any(random), any(random), -1e-9 - 0.4 * std::abs(any(random)));
+    const Contact contact = touchOnce(*snapshot, tip);
+    EXPECT_LT((contact.vcp - Vec3(tip.x(), tip.y(), 0)).norm(), 3e-7 * 0x1p-11);
+  }
+}
+
+// T-K06b: order 2 of the VCP on a sphere, 1 to 4 mm deep, with the paper's sampler.
+TEST(Contact, VcpOnASphereConvergesWithOrderTwo) {
+  std::vector<double> voxels, errors;
+  for (const int cells : {48, 72, 104, 150, 200}) {
+    const Field sphere = sphereField(0.03, cells);
+    const auto snapshot = compileStages(sceneOf(500, Sampler::kim), sphere);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> depth(1e-3, 4e-3);
+    double sum = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const Vec3 direction = randomDirection(random);
+      const Contact contact = touchOnce(*snapshot, (0.03 - depth(random)) * direction);
+      sum += (contact.vcp - 0.03 * direction).squaredNorm();
+    }
+    voxels.push_back(sphere->grid.voxel);
+    errors.push_back(std::sqrt(sum / 4000));
+  }
+  EXPECT_NEAR(fittedOrder(voxels, errors), 2, 0.1);
+}
+
+// T-K06c and T-K06d, on a sphere and on a box with its creases.
+TEST(Contact, VcpLiesOnTheSurfaceWithinTheBoundOnSamples) {
+  const Field sphere = sphereField();
+  const Field box =
+      cubeField([](const Vec3& p) { return boxDistance(p, Vec3(0.03, 0.02, 0.025)); }, 0.5e-3, 150);
+  for (const Field& field : {sphere, box}) {
+    for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
+      const auto snapshot = compileStages(sceneOf(500, sampler), field);
+      const FieldSampler surface(*field, sampler);
+      std::mt19937 random(3);
+      std::uniform_real_distribution<double> coordinate(-0.03, 0.03);
+      int tested = 0;
+      for (int i = 0; i < 100000 && tested < 4000; ++i) {
+        const Vec3 tip(coordinate(random), coordinate(random), coordinate(random));
+        const GridSample at = surface.at(tip);
+        if (at.phi >= 0 || at.region != FieldRegion::band || at.gradient.norm() < 0.9) continue;
+        ++tested;
+        const Contact contact = touchOnce(*snapshot, tip);
+        EXPECT_LT(std::abs(surface.at(contact.vcp).phi), 1e-9);
+        EXPECT_FALSE(contact.approximate);
+        if (field == box) continue; // across a crease phi is not a distance along the ray
+        const double voxels = contact.depth / field->grid.voxel;
+        EXPECT_LE(contact.samples, static_cast<int>(std::ceil(voxels)) + 3);
+      }
+      EXPECT_GE(tested, 2000);
+    }
+  }
+}
+
+// K05: no direction at the middle of a plate -> the last one; without a last one, no force.
+TEST(Contact, KeepsTheLastDirectionWhereThereIsNone) {
+  const auto snapshot = compileStages(sceneOf(500), plateField(0.8e-3));
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
+  tick(*snapshot, memory, Vec3(0, 0, 0.3e-3), 1e-3);
+  const Contact middle = tick(*snapshot, memory, Vec3(0, 0, 0), 1e-3);
+  EXPECT_NEAR(middle.force.z(), 500 * 0.4e-3, 1e-3);
+  const Contact unknown = touchOnce(*snapshot, Vec3::Zero());
+  EXPECT_TRUE(unknown.touching);
+  EXPECT_EQ(unknown.force, Vec3::Zero().eval());
+}
+
+// T-K07.
+TEST(Contact, ForceIsStiffnessTimesDepth) {
+  const auto plane = compileStages(sceneOf(500), planeField());
+  EXPECT_NEAR(touchOnce(*plane, Vec3(0.1e-3, 0.7e-3, -2e-3)).force.z(), 1.0, 1e-7);
+  EXPECT_EQ(touchOnce(*plane, Vec3(0, 0, -0x1p-9)).force, Vec3(0, 0, 500 * 0x1p-9).eval());
+
+  const Field sphere = sphereField();
+  const double h = sphere->grid.voxel;
+  const auto kim = compileStages(sceneOf(500, Sampler::kim), sphere);
+  std::mt19937 random(4);
+  for (int i = 0; i < 2000; ++i) {
+    const Contact contact = touchOnce(*kim, 0.028 * randomDirection(random));
+    EXPECT_NEAR(contact.force.norm(), 1.0, 1.02 * 500 * h * h / (4 * 0.03));
+  }
+}
+
+TEST(Contact, TipRadiusIsAnIsoValue) {
+  Scene scene = sceneOf(500);
+  scene.haptics.tip_radius = 1e-3;
+  const auto snapshot = compileStages(scene, sphereField());
+  std::mt19937 random(5);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 n = randomDirection(random);
+    EXPECT_FALSE(touchOnce(*snapshot, 0.031001 * n).touching);
+    const Contact contact = touchOnce(*snapshot, 0.030 * n);
+    EXPECT_LT((contact.force - 0.5 * n).norm(), 4e-5);
+    EXPECT_LT((contact.vcp - 0.031 * n).norm(), 1e-7);
+  }
+}
+
+// T-K08: leaving at 0.5 m/s, the surface never pulls.
+TEST(Contact, DampingNeverPulls) {
+  Scene scene = sceneOf(200);
+  scene.haptics.damping = 5;
+  const auto snapshot = compileStages(scene, planeField());
+  ContactMemory memory;
+  Contact contact = glide(*snapshot, memory, Vec3(0, 0, 1e-3));
+  contact = glide(*snapshot, memory, Vec3(0, 0, -3e-3));
+  EXPECT_GT(contact.force.z(), 200 * 3e-3); // pushing in, the damper adds
+  bool clamped = false;
+  for (double z = -3e-3; z < 0; z += 0.5e-3) {
+    contact = tick(*snapshot, memory, Vec3(0, 0, z), 1e-3);
+    EXPECT_GE(contact.force.dot(contact.normal), 0);
+    clamped |= contact.touching && contact.force.norm() < 1e-15;
+  }
+  EXPECT_TRUE(clamped); // 5 N s/m at 0.5 m/s outweighs 0.6 N: without the clamp it would pull
+}
+
+// T-K08b.
+TEST(Contact, StaticForceDoesNotDependOnDamping) {
+  Scene damped = sceneOf(500);
+  damped.haptics.damping = 3;
+  const auto with = compileStages(damped, sphereField());
+  const auto without = compileStages(sceneOf(500), sphereField());
+  ContactMemory a, b;
+  const Vec3 tip(0.01, 0.02, 0.018);
+  Contact first, second;
+  for (int i = 0; i < 200; ++i) {
+    first = tick(*with, a, tip, 1e-3);
+    second = tick(*without, b, tip, 1e-3);
+  }
+  EXPECT_EQ(first.force, second.force);
+}
+
+TEST(Contact, VelocityIsAFilteredBackwardDifference) {
+  const auto snapshot = compileStages(sceneOf(500), planeField());
+  ContactMemory memory;
+  Contact contact;
+  for (int i = 0; i < 50; ++i) contact = tick(*snapshot, memory, Vec3(0, 0, 2e-4 * i), 1e-3);
+  EXPECT_NEAR(contact.velocity.z(), 0.2, 1e-12);
+  // 200 Hz: the first tick of a step passes dt / (dt + 1 / (2 pi 200)).
+  contact = tick(*snapshot, memory, memory.last_tip, 1e-3);
+  EXPECT_NEAR(contact.velocity.z() / 0.2, 1 - 1 / (1 + 1 / (0.4 * std::numbers::pi)), 1e-9);
+}
+
+// Section 2.8, field deeper than the band.
+TEST(Contact, DeeperThanTheBandForceGoesOnContinuously) {
+  const Field sphere = sphereField();
+  for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
+    const auto snapshot = compileStages(sceneOf(500, sampler), sphere);
+    std::mt19937 random(6);
+    for (int path = 0; path < 20; ++path) {
+      const Vec3 n = randomDirection(random);
+      ContactMemory memory;
+      tick(*snapshot, memory, 0.0301 * n, 1e-3);
+      Vec3 last = Vec3::Zero();
+      bool deep = false;
+      for (double r = 0.03; r > 6e-3; r -= 0.02e-3) {
+        const Contact contact = tick(*snapshot, memory, r * n, 1e-3);
+        deep |= contact.deep;
+        // The magnitude is exact along any direction that is; coarse cells are 3.6 mm wide.
+        const double tolerance = r > 0.02 ? 2e-3 : r > 0.01 ? 0.02 : 0.08;
+        EXPECT_LT((contact.force - 500 * (0.03 - r) * n).norm(),
+                  tolerance * 500 * (0.03 - r) + 1e-3);
+        EXPECT_LT((contact.force - last).norm(), 3 * 500 * 0.02e-3);
+        EXPECT_FALSE(contact.fault);
+        last = contact.force;
+      }
+      EXPECT_TRUE(deep);
+    }
+  }
+}
+
+TEST(Contact, DeepWithoutCoarseNodesHoldsTheLastDirection) {
+  SurfaceField field = *planeField();
+  field.coarse.clear();
+  const auto snapshot = compileStages(sceneOf(500), std::make_shared<const SurfaceField>(field));
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 1e-4), 1e-3);
+  const Contact contact = glide(*snapshot, memory, Vec3(0, 0, -0.013));
+  EXPECT_TRUE(contact.deep);
+  EXPECT_NEAR(contact.force.z(), 500 * 0.013, 1e-5);
+}
+
+// F9: two spheres of 20 mm at +-10 mm joined by min. Finite and bounded everywhere inside.
+TEST(Contact, JoinedSpheresStayFiniteAndBounded) {
+  const Vec3 centre(0.01, 0, 0);
+  const Field both = cubeField(
+      [&](const Vec3& p) { return std::min((p - centre).norm(), (p + centre).norm()) - 0.02; },
+      0.5e-3, 160);
+  const auto snapshot = compileStages(sceneOf(500), both);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-0.03, 0.03);
+  ContactMemory memory;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 tip(i % 5 ? coordinate(random) : 0, coordinate(random), coordinate(random));
+    const Contact fresh = touchOnce(*snapshot, tip);
+    const Contact tracked = tick(*snapshot, memory, tip, 1e-3);
+    for (const Contact& contact : {fresh, tracked}) {
+      EXPECT_TRUE(contact.force.allFinite());
+      EXPECT_LE(contact.depth, 0.06);
+    }
+  }
+}
+
+TEST(Contact, BadTipsAreCountedAndForceless) {
+  const auto snapshot = compileStages(sceneOf(500), planeField());
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 1e-3), 1e-3);
+  glide(*snapshot, memory, Vec3(0, 0, -1e-3));
+  for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
+    const Contact contact = tick(*snapshot, memory, Vec3(0, bad, 0), 1e-3);
+    EXPECT_FALSE(contact.touching);
+    EXPECT_EQ(contact.force, Vec3::Zero().eval());
+  }
+  EXPECT_EQ(memory.bad_tips, 3u);
+  EXPECT_EQ(memory.outside_ticks, 0u);
+  // What was known before is still known: no fault, no velocity from nowhere.
+  const Contact after = tick(*snapshot, memory, Vec3(0, 0, -1e-3), 1e-3);
+  EXPECT_NEAR(after.force.z(), 0.5, 1e-6);
+  EXPECT_FALSE(after.fault);
+
+  const Contact outside = tick(*snapshot, memory, Vec3(1, 1, 1), 1e-3);
+  EXPECT_FALSE(outside.touching);
+  EXPECT_EQ(memory.outside_ticks, 1u);
+}
+
+} // namespace
+} // namespace patina
