@@ -17,12 +17,12 @@ void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (f_n < 0) contact.force -= f_n * n;
 
   if (!(contact.stick_radius > 0)) return;
-  const Vec3 normal_part = contact.force.dot(n) * n;
-  Vec3 tangential = contact.force - normal_part - damping_ * (contact.velocity - v_n * n);
-  const double bearable = contact.stiffness * contact.stick_radius;
+  contact.force -= damping_ * (contact.velocity - v_n * n);
+  const Vec3 tangential = contact.force - contact.force.dot(n) * n;
+  // The margin keeps rounding from touching a force that was within the bound undamped.
+  const double bearable = contact.stiffness * contact.stick_radius * (1 + 1e-9);
   const double magnitude = tangential.norm();
-  if (magnitude > bearable) tangential *= bearable / magnitude;
-  contact.force = normal_part + tangential;
+  if (magnitude > bearable) contact.force -= (1 - bearable / magnitude) * tangential;
 }
 
 } // namespace patina

@@ -1,0 +1,73 @@
+#include "haptics/feel.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "haptics/contact_fixture.h"
+
+namespace patina {
+namespace {
+
+std::vector<TimedTip> press() {
+  std::vector<TimedTip> path;
+  for (int i = 0; i < 40; ++i) path.push_back({1e-3 * i, Vec3(1e-4 * i, 0, 1e-3 - 1e-4 * i)});
+  return path;
+}
+
+TEST(Feel, GivesOneSampleARowAsTheServoWould) {
+  const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), planeField());
+  const std::vector<TimedTip> path = press();
+  Progress progress;
+  const std::vector<ToolSample> samples = feel(*snapshot, path, progress);
+  ASSERT_EQ(samples.size(), path.size());
+  ContactMemory memory;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Contact contact =
+        tick(*snapshot, memory, path[i].tip, i ? path[i].t - path[i - 1].t : path[1].t - path[0].t);
+    EXPECT_EQ(samples[i].t, path[i].t);
+    EXPECT_EQ(samples[i].tip, path[i].tip);
+    EXPECT_EQ(samples[i].force, contact.force);
+    EXPECT_EQ(samples[i].vcp, contact.vcp);
+    EXPECT_EQ(samples[i].contact, path[i].tip.z() < 0);
+    if (!samples[i].contact) {
+      EXPECT_EQ(samples[i].vcp, samples[i].tip);
+      EXPECT_EQ(samples[i].normal, Vec3::Zero().eval());
+    } else {
+      EXPECT_NEAR(samples[i].depth, -path[i].tip.z(), 1e-9);
+    }
+  }
+}
+
+TEST(Feel, NamesTheRowWhereTimeDoesNotIncrease) {
+  const auto snapshot = compileStages(sceneOf(500), planeField());
+  std::vector<TimedTip> path = press();
+  path[7].t = path[6].t;
+  Progress progress;
+  try {
+    feel(*snapshot, path, progress);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("row 8"), std::string::npos) << error.what();
+  }
+  path[7].t = std::nan("");
+  EXPECT_THROW(feel(*snapshot, path, progress), Error);
+}
+
+TEST(Feel, SinglePointsAndNoPointsAreFelt) {
+  const auto snapshot = compileStages(sceneOf(500), planeField());
+  Progress progress;
+  EXPECT_TRUE(feel(*snapshot, {}, progress).empty());
+  const auto samples = feel(*snapshot, {{0, Vec3(0, 0, -1e-3)}}, progress);
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_NEAR(samples[0].force.z(), 0.5, 1e-6);
+}
+
+TEST(Feel, StopsWhenCancelled) {
+  const auto snapshot = compileStages(sceneOf(500), planeField());
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(feel(*snapshot, press(), progress), Cancelled);
+}
+
+} // namespace
+} // namespace patina

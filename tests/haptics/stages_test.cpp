@@ -1,0 +1,136 @@
+#include "haptics/contact_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+std::vector<std::string> names(const HapticSnapshot& snapshot) {
+  std::vector<std::string> result;
+  for (const auto& stage : snapshot.stages) result.emplace_back(stage->name());
+  return result;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(CompileStages, LeavesOutWhatTheSceneDoesNotHave) {
+  const Field sphere = sphereField(0.03, 60);
+  Scene scene = sceneOf(500);
+  EXPECT_EQ(names(*compileStages(scene, sphere)), (Names{"contact", "spring", "limit"}));
+  scene.haptics.damping = 1;
+  EXPECT_EQ(names(*compileStages(scene, sphere)), (Names{"contact", "spring", "damping", "limit"}));
+  scene = withFriction(scene, 0.5, 0.3);
+  EXPECT_EQ(names(*compileStages(scene, sphere)),
+            (Names{"contact", "friction", "spring", "damping", "limit"}));
+  scene.haptics.damping.reset();
+  EXPECT_EQ(names(*compileStages(scene, sphere)),
+            (Names{"contact", "friction", "spring", "limit"}));
+}
+
+TEST(CompileStages, TakesANeutralValueForAnAbsentOne) {
+  Scene scene = withFriction(sceneOf(500), 0, 0);
+  scene.haptics.damping = 0;
+  EXPECT_EQ(names(*compileStages(scene, sphereField(0.03, 60))),
+            (Names{"contact", "spring", "limit"}));
+}
+
+TEST(CompileStages, SaysWhyEachStageIsThereAndWhatItHolds) {
+  const Field sphere = sphereField(0.03, 60);
+  const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), sphere);
+  ASSERT_EQ(snapshot->why.size(), snapshot->stages.size());
+  for (std::size_t i = 0; i < snapshot->why.size(); ++i) {
+    EXPECT_EQ(snapshot->why[i].name, snapshot->stages[i]->name());
+  }
+  EXPECT_EQ(snapshot->why[1].why, "friction.static = 0.5");
+  std::size_t read = 0;
+  for (const LayerBytes& layer : sphere->layerBytes()) {
+    if (layer.name != "distance") read += layer.bytes;
+  }
+  EXPECT_EQ(snapshot->why[0].bytes, read); // top, sample and coarse
+  EXPECT_EQ(snapshot->why[1].bytes, 0u);
+}
+
+// DESIGN: forces of the pruned pipeline are bitwise those of the full one with neutral values.
+TEST(CompileStages, PruningChangesNoForce) {
+  const Field sphere = sphereField();
+  Scene damped = sceneOf(500);
+  damped.haptics.damping = 1.5;
+  Scene finite = sceneOf(500);
+  finite.haptics.tip_radius = 1e-3;
+  for (const Scene& scene : {sceneOf(500), damped, withFriction(sceneOf(500), 0.5, 0.3), finite}) {
+    const auto pruned = compileStages(scene, sphere);
+    const auto full = compileAllStages(scene, sphere);
+    EXPECT_EQ(full->stages.size(), 5u);
+    EXPECT_LT(pruned->stages.size(), 5u);
+    ContactMemory a, b;
+    std::mt19937 random(1);
+    std::uniform_int_distribution<int> rare(0, 99);
+    Vec3 tip(0, 0, 0.031);
+    for (int i = 0; i < 20000; ++i) {
+      // A walk in and out of the surface, now and then a leap that faults or skips.
+      tip += (rare(random) ? 2e-4 : 8e-3) * randomDirection(random);
+      if (std::abs(tip.norm() - 0.03) > 6e-3) tip *= 0.0302 / tip.norm();
+      const Contact first = tick(*pruned, a, tip, 1e-3);
+      const Contact second = tick(*full, b, tip, 1e-3);
+      ASSERT_EQ(first.force, second.force) << i;
+      ASSERT_EQ(first.vcp, second.vcp) << i;
+      ASSERT_EQ(first.fault, second.fault) << i;
+    }
+  }
+}
+
+TEST(CompileStages, RefusesAFieldThatCannotServe) {
+  EXPECT_THROW(compileStages(sceneOf(500), nullptr), std::invalid_argument);
+  SurfaceField bare = *sphereField(0.03, 60);
+  bare.sample.clear();
+  EXPECT_THROW(compileStages(sceneOf(500), std::make_shared<const SurfaceField>(bare)),
+               std::invalid_argument);
+}
+
+TEST(CompileStages, ATipWiderThanTheBandIsNamedWithTheRemedy) {
+  Scene scene = sceneOf(500);
+  const Field sphere = sphereField(0.03, 60); // h = 1.36 mm, band 8
+  scene.haptics.tip_radius = 7.5e-3;
+  try {
+    compileStages(scene, sphere);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("tip.radius"), std::string::npos) << text;
+    EXPECT_NE(text.find("set band to 9"), std::string::npos) << text;
+  }
+}
+
+// The tick is a pure function of snapshot, memory, tip and dt.
+TEST(Tick, RepeatsItselfBitForBit) {
+  Scene scene = withFriction(sceneOf(500), 0.5, 0.3);
+  scene.haptics.damping = 1;
+  const auto snapshot = compileStages(scene, sphereField());
+  const auto run = [&] {
+    std::vector<Vec3> forces;
+    ContactMemory memory;
+    std::mt19937 random(2);
+    Vec3 tip(0, 0, 0.0305);
+    for (int i = 0; i < 3000; ++i) {
+      tip += 1e-4 * randomDirection(random) - 2e-5 * (tip.norm() - 0.029) / 1e-3 * tip.normalized();
+      forces.push_back(tick(*snapshot, memory, tip, 1e-3).force);
+    }
+    return forces;
+  };
+  EXPECT_EQ(run(), run());
+}
+
+TEST(Tick, ResetIsTheFirstTickAgain) {
+  const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), sphereField());
+  ContactMemory memory;
+  const Vec3 tip(0.01, 0.02, 0.018);
+  const Vec3 first = tick(*snapshot, memory, tip, 1e-3).force;
+  glide(*snapshot, memory, Vec3(0.015, 0.02, 0.01));
+  memory.reset();
+  EXPECT_EQ(tick(*snapshot, memory, tip, 1e-3).force, first);
+}
+
+} // namespace
+} // namespace patina
