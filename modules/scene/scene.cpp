@@ -73,7 +73,8 @@ void validate(const std::vector<SceneObject>& objects) {
     }
     if (!seen.insert(object.name).second)
       throw Error("object name '" + object.name + "' is used twice");
-    if (!object.mesh) throw Error("object '" + object.name + "' has no mesh");
+    if (!object.mesh || object.mesh->triangles.empty())
+      throw Error("object '" + object.name + "' has no triangles");
     const Eigen::Matrix3d rotation = object.world_from_object.linear();
     const bool rigid =
         object.world_from_object.matrix().allFinite() &&

@@ -1,0 +1,133 @@
+#include "core/error.h"
+#include "scene/scene.h"
+
+namespace patina {
+namespace {
+
+using List = std::vector<std::pair<std::string, std::string>>;
+
+List withEverything() {
+  return {{"stiffness", "800"},       {"damping", "1.5"},
+          {"friction.static", "0.5"}, {"friction.dynamic", "0.3"},
+          {"friction.depth", "2"},    {"friction.slip", "displacement"},
+          {"tip.radius", "0.0015"},   {"force.limit", "5"},
+          {"voxel", "0.001"},         {"band", "6"},
+          {"sampler", "kim"},         {"device", "simulated"}};
+}
+
+TEST(SceneValues, EveryKeyIsSetAndListed) {
+  Scene scene;
+  for (const auto& [key, value] : withEverything()) setValue(scene, key, value);
+  EXPECT_EQ(values(scene), withEverything());
+  EXPECT_EQ(scene.haptics.friction->dynamic_coefficient, 0.3);
+  EXPECT_EQ(scene.sampler, Sampler::kim);
+  EXPECT_EQ(scene.field.voxel, 0.001);
+}
+
+TEST(SceneValues, ListedValuesMakeTheSameScene) {
+  for (const List& list : {List{}, withEverything(), List{{"resolution", "99"}, {"band", "4"}},
+                           List{{"friction.static", "0.5"}, {"friction.dynamic", "0"}}}) {
+    Scene scene, again;
+    setValues(scene, list);
+    setValues(again, values(scene));
+    EXPECT_EQ(values(again), values(scene));
+  }
+}
+
+TEST(SceneValues, AbsentFeaturesAreNotListed) {
+  const List list = values(Scene{});
+  for (const auto& [key, value] : list) {
+    EXPECT_FALSE(key.starts_with("friction")) << key;
+    EXPECT_NE(key, "damping");
+    EXPECT_NE(key, "tip.radius");
+    EXPECT_NE(key, "voxel");
+  }
+}
+
+TEST(SceneValues, NoneMakesAFeatureAbsent) {
+  Scene scene;
+  setValues(scene, withEverything());
+  for (const char* key : {"damping", "friction.static", "tip.radius", "voxel"})
+    setValue(scene, key, "none");
+  EXPECT_FALSE(scene.haptics.damping);
+  EXPECT_FALSE(scene.haptics.friction);
+  EXPECT_FALSE(scene.haptics.tip_radius);
+  EXPECT_FALSE(scene.field.voxel);
+  for (const char* key : {"stiffness", "force.limit", "resolution", "band", "sampler", "device"})
+    EXPECT_THROW(setValue(scene, key, "none"), Error) << key;
+}
+
+TEST(SceneValues, LengthsTakeUnits) {
+  Scene scene;
+  setValue(scene, "tip.radius", "0.5mm");
+  EXPECT_DOUBLE_EQ(*scene.haptics.tip_radius, 0.0005);
+  setValue(scene, "voxel", "20um");
+  EXPECT_DOUBLE_EQ(*scene.field.voxel, 2e-5);
+}
+
+TEST(SceneValues, OfResolutionAndVoxelTheLastHolds) {
+  Scene scene;
+  setValue(scene, "voxel", "1mm");
+  setValue(scene, "resolution", "80");
+  EXPECT_FALSE(scene.field.voxel);
+  EXPECT_EQ(scene.field.resolution, 80);
+}
+
+TEST(SceneValues, OneCoefficientIsPlainCoulombFriction) {
+  Scene scene;
+  setValue(scene, "friction.dynamic", "0.4");
+  EXPECT_EQ(scene.haptics.friction->static_coefficient, 0.4);
+  EXPECT_EQ(scene.haptics.friction->dynamic_coefficient, 0.4);
+}
+
+TEST(SceneValues, TheOrderOfSeveralDoesNotMatter) {
+  for (const List& pair : {List{{"friction.static", "0.5"}, {"friction.dynamic", "0.3"}},
+                           List{{"friction.static", "0.5"}, {"friction.dynamic", "0"}},
+                           List{{"resolution", "12"}, {"band", "4"}}}) {
+    Scene forward, backward;
+    setValues(forward, pair);
+    setValues(backward, {pair.rbegin(), pair.rend()});
+    EXPECT_EQ(values(forward), values(backward));
+  }
+}
+
+TEST(SceneValues, ARefusedValueLeavesTheSceneAsItWas) {
+  Scene scene;
+  setValues(scene, withEverything());
+  for (const auto& [key, value] : List{{"stiffness", "-1"},
+                                       {"stiffness", "many"},
+                                       {"stiffness", "1,5"},
+                                       {"stiffness", ""},
+                                       {"damping", "nan"},
+                                       {"friction.dynamic", "0.6"},
+                                       {"friction.slip", "sideways"},
+                                       {"tip.radius", "5kg"},
+                                       {"resolution", "10.5"},
+                                       {"resolution", "1e9"},
+                                       {"band", "0"},
+                                       {"sampler", "best"},
+                                       {"device", "none"},
+                                       {"colour", "red"},
+                                       {"", "1"}}) {
+    EXPECT_THROW(setValue(scene, key, value), Error) << key << "=" << value;
+    EXPECT_EQ(values(scene), withEverything());
+  }
+  EXPECT_THROW(setValues(scene, {{"stiffness", "100"}, {"band", "0"}}), Error);
+  EXPECT_EQ(values(scene), withEverything());
+}
+
+TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
+  Scene scene;
+  try {
+    setValue(scene, "stifness", "5");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "unknown key 'stifness'; known are: stiffness damping friction.static "
+              "friction.dynamic friction.depth friction.slip tip.radius force.limit resolution "
+              "voxel band sampler device");
+  }
+}
+
+} // namespace
+} // namespace patina

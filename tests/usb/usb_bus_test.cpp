@@ -1,0 +1,49 @@
+#include "usb/usb_bus.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+TEST(UsbBus, IsListedOrSaysWhyNot) {
+  try {
+    for (const UsbDevice& device : listUsbDevices()) {
+      EXPECT_FALSE(device.name.empty());
+      // Whoever may not open a device is told what to do.
+      EXPECT_TRUE(device.openable || !device.advice.empty()) << device.name;
+      EXPECT_EQ(device.haptic, hapticName(device.vendor, device.product));
+    }
+  } catch (const DeviceError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("the USB bus cannot be "));
+  }
+}
+
+TEST(UsbBus, KnowsHapticDevicesAndNothingElse) {
+  EXPECT_EQ(hapticName(0x0403, 0xcb48), "Novint Falcon");
+  EXPECT_EQ(hapticName(0x0403, 0x6001), ""); // the same chip maker's plain serial adapter
+  EXPECT_EQ(hapticName(0x1451, 0x0402), "Force Dimension");
+  EXPECT_EQ(hapticName(0x2988, 0x0302), "3D Systems Touch");
+  EXPECT_EQ(hapticName(0x1d6b, 0x0002), ""); // a root hub
+}
+
+TEST(UsbBus, AdviceForAMissingPermissionHoldsTheRule) {
+  const std::string advice = usbAdvice(UsbRefusal::permission, 0x0403, 0xcb48);
+  EXPECT_NE(advice.find("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\""), std::string::npos);
+  EXPECT_NE(advice.find("/etc/udev/rules.d/"), std::string::npos);
+}
+
+TEST(UsbBus, EveryRefusalHasItsOwnAdviceInOneLine) {
+  std::vector<std::string> seen;
+  for (const UsbRefusal refusal :
+       {UsbRefusal::permission, UsbRefusal::held_by_driver, UsbRefusal::gone, UsbRefusal::other}) {
+    const std::string advice = usbAdvice(refusal, 1, 2);
+    EXPECT_EQ(advice.find('\n'), std::string::npos);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), advice), 0);
+    seen.push_back(advice);
+  }
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,172 @@
+#include "workspace/workspace.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "workspace/workspace_support.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+void replaceIn(const fs::path& path, const std::string& from, const std::string& to) {
+  std::string text = readFile(path);
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  writeFileAtomically(path, text);
+}
+
+class BrokenWorkspace : public WorkspaceTest {
+ protected:
+  BrokenWorkspace() : json(folder / "workspace.json") {
+    saveWorkspace(sceneWithObjects(0.05), folder);
+  }
+  std::string errorOfLoading() const {
+    try {
+      loadWorkspace(folder);
+    } catch (const FileError& error) {
+      EXPECT_TRUE(error.path().starts_with(folder.string())) << error.what();
+      return error.what();
+    }
+    return "";
+  }
+  fs::path firstMesh() const { return fs::directory_iterator(folder / "meshes")->path(); }
+  fs::path json;
+};
+
+TEST_F(WorkspaceTest, AScenesEveryValueComesBack) {
+  const Scene scene = sceneWithObjects(0.05);
+  saveWorkspace(scene, folder);
+  EXPECT_TRUE(isWorkspace(folder));
+  EXPECT_TRUE(same(loadWorkspace(folder), scene));
+}
+
+TEST_F(WorkspaceTest, AnEmptySceneComesBack) {
+  saveWorkspace(Scene{}, folder);
+  EXPECT_TRUE(same(loadWorkspace(folder), Scene{}));
+}
+
+TEST_F(WorkspaceTest, TextureCoordinatesComeBack) {
+  TriangleMesh mesh = box(Vec3(1, 1, 1));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    mesh.corner_uvs.push_back({Vec2(0.1 * double(t), 0), Vec2(1, 1.0 / 3), Vec2(0, 1)});
+  Scene scene;
+  scene.objects.push_back({"box", std::make_shared<const TriangleMesh>(mesh), Pose::Identity()});
+  saveWorkspace(scene, folder);
+  EXPECT_EQ(loadWorkspace(folder).objects[0].mesh->corner_uvs, mesh.corner_uvs);
+}
+
+TEST_F(WorkspaceTest, SavingAgainReplacesAndLeavesNoOldMesh) {
+  saveWorkspace(sceneWithObjects(0.05), folder);
+  saveWorkspace(sceneWithObjects(0.08), folder);
+  EXPECT_TRUE(same(loadWorkspace(folder), sceneWithObjects(0.08)));
+  EXPECT_EQ(meshFiles(), 2u);
+}
+
+TEST_F(WorkspaceTest, AFileThatAPersonPutThereStays) {
+  saveWorkspace(sceneWithObjects(0.05), folder);
+  writeFileAtomically(folder / "meshes" / "original.ply", "mine");
+  saveWorkspace(sceneWithObjects(0.08), folder);
+  EXPECT_EQ(readFile(folder / "meshes" / "original.ply"), "mine");
+}
+
+TEST_F(WorkspaceTest, MovesWithItsFolder) {
+  saveWorkspace(sceneWithObjects(0.05), folder);
+  fs::rename(folder, root / "elsewhere");
+  EXPECT_TRUE(same(loadWorkspace(root / "elsewhere"), sceneWithObjects(0.05)));
+}
+
+TEST_F(WorkspaceTest, AnInvalidSceneIsNotSaved) {
+  saveWorkspace(sceneWithObjects(0.05), folder);
+  Scene broken = sceneWithObjects(0.08);
+  broken.haptics.stiffness = -1;
+  EXPECT_THROW(saveWorkspace(broken, folder), Error);
+  EXPECT_TRUE(same(loadWorkspace(folder), sceneWithObjects(0.05)));
+}
+
+TEST_F(WorkspaceTest, IsNotAnyFolderOrFile) {
+  EXPECT_FALSE(isWorkspace(root));
+  EXPECT_FALSE(isWorkspace(root / "missing"));
+  writeFileAtomically(root / "file", "x");
+  EXPECT_FALSE(isWorkspace(root / "file"));
+  EXPECT_THROW(saveWorkspace(Scene{}, root / "file"), FileError);
+  EXPECT_THROW(loadWorkspace(root), FileError);
+}
+
+TEST_F(BrokenWorkspace, AChangedMeshIsNamed) {
+  const fs::path mesh = firstMesh();
+  std::string bytes = readFile(mesh);
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);
+  writeFileAtomically(mesh, bytes);
+  EXPECT_NE(errorOfLoading().find(mesh.filename().string() + ": is not the file that was saved"),
+            std::string::npos);
+}
+
+TEST_F(BrokenWorkspace, AMissingMeshIsNamed) {
+  const fs::path mesh = firstMesh();
+  fs::remove(mesh);
+  EXPECT_NE(errorOfLoading().find(mesh.filename().string()), std::string::npos);
+}
+
+TEST_F(BrokenWorkspace, AnUnknownVersionIsRefusedAndNotSavedOver) {
+  replaceIn(json, "\"version\": 1", "\"version\": 2");
+  const std::string before = readFile(json);
+  EXPECT_NE(errorOfLoading().find("version 2 is unknown"), std::string::npos);
+  EXPECT_THROW(saveWorkspace(sceneWithObjects(0.08), folder), FileError);
+  EXPECT_EQ(readFile(json), before);
+}
+
+TEST_F(BrokenWorkspace, PathsThatLeaveTheFolderAreRefused) {
+  const std::string good = readFile(json);
+  writeFileAtomically(root / "outside.ply", readFile(firstMesh()));
+  const std::string mesh = "meshes/" + firstMesh().filename().string();
+  for (const std::string& path : {std::string("../outside.ply"), root.string() + "/outside.ply",
+                                  std::string("meshes/../../outside.ply"), std::string()}) {
+    writeFileAtomically(json, good);
+    replaceIn(json, "\"" + mesh + "\"", "\"" + path + "\"");
+    EXPECT_NE(errorOfLoading().find("leaves the workspace's folder"), std::string::npos) << path;
+  }
+}
+
+TEST_F(BrokenWorkspace, ALinkThatLeavesTheFolderIsRefused) {
+  const fs::path mesh = firstMesh();
+  fs::rename(mesh, root / "outside.ply");
+  fs::create_symlink(root / "outside.ply", mesh);
+  EXPECT_NE(errorOfLoading().find("leaves the workspace's folder"), std::string::npos);
+}
+
+TEST_F(BrokenWorkspace, EveryTruncationIsAnError) {
+  const std::string text = readFile(json);
+  // The last newline and brace apart, no prefix is whole.
+  for (std::size_t size = 0; size + 2 < text.size(); size += 7) {
+    writeFileAtomically(json, text.substr(0, size));
+    EXPECT_NE(errorOfLoading(), "") << size;
+  }
+}
+
+TEST_F(BrokenWorkspace, BadValuesAreNamed) {
+  const std::string good = readFile(json);
+  for (const auto& [from, to, says] : std::vector<std::array<std::string, 3>>{
+           {"\"stiffness\": 50.0", "\"stiffness\": -5", "stiffness = -5"},
+           {"\"stiffness\": 50.0", "\"stiffness\": [1]", "expected number, found array"},
+           {"\"sampler\": \"high\"", "\"sampler\": \"best\"", "best"},
+           {"\"name\": \"crate-1\"", "\"name\": \"ball\"", "used twice"},
+           {"\"name\": \"crate-1\"", "\"name\": \"../x\"", "object name"},
+           {"\"values\"", "\"value\"", "'values' is missing"},
+           {"[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 1.0]", "4 numbers"},
+           {"[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 0.5, 1.0]", "0 0 0 1"}}) {
+    writeFileAtomically(json, good);
+    replaceIn(json, from, to);
+    EXPECT_NE(errorOfLoading().find(says), std::string::npos) << to << ": " << errorOfLoading();
+  }
+}
+
+TEST_F(BrokenWorkspace, IsRepairedBySavingAgain) {
+  writeFileAtomically(json, "{");
+  saveWorkspace(sceneWithObjects(0.08), folder);
+  EXPECT_TRUE(same(loadWorkspace(folder), sceneWithObjects(0.08)));
+}
+
+} // namespace
+} // namespace patina
