@@ -6,8 +6,9 @@
 
 namespace patina {
 
-// Tables: value [m] and direction [deg] for sphere, torus and box by sampler and resolution; then
-// layouts of the same field at one resolution. "order" is the fitted order of that row's sampler.
+// Tables: value [m] and direction [deg] for sphere, torus and box by sampler and resolution; a
+// sphere known only through triangles; layouts of the same field at one resolution. "order" is the
+// fitted order of that row's sampler.
 std::vector<WorkPrecisionTable> fieldStudy(const StudyOptions& options, Progress& progress);
 
 } // namespace patina
