@@ -4,6 +4,7 @@
 
 #include "app/cli/commands.h"
 #include "core/error.h"
+#include "core/numbers.h"
 #include "geometry/mesh_unit.h"
 
 namespace patina::cli {
@@ -11,8 +12,8 @@ namespace patina::cli {
 namespace {
 
 struct GuiOptions {
-  std::vector<std::string> inputs;
-  std::string unit;
+  std::filesystem::path input;
+  std::vector<std::string> words; // for the window, checked here
 };
 
 int runGui(const GuiOptions& options) {
@@ -22,11 +23,12 @@ int runGui(const GuiOptions& options) {
     throw Error("this build has no window: " + window.string() +
                 " is missing; configure with PATINA_GUI=ON and build again");
   std::vector<std::string> words = {window.string()};
-  if (!options.unit.empty()) {
-    words.push_back("--unit");
-    words.push_back(options.unit);
+  words.insert(words.end(), options.words.begin(), options.words.end());
+  if (!options.input.empty()) {
+    if (!std::filesystem::exists(options.input))
+      throw FileError(options.input.string(), 0, "no such file or folder");
+    words.push_back(options.input.string());
   }
-  words.insert(words.end(), options.inputs.begin(), options.inputs.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -41,17 +43,43 @@ Command guiCommand() {
   Command command;
   command.name = "gui";
   command.summary = "the window";
-  command.description = "Starts patina-gui, which stands beside this program. It needs a display.";
-  command.examples = {"patina gui bunny.ply --unit cm"};
+  command.description =
+      "Starts patina-gui, which stands beside this program. It needs a display; on a machine "
+      "without one: xvfb-run -a patina gui --tour FOLDER.";
+  command.examples = {"patina gui bunny.ply --unit cm", "patina gui workspace --log session.csv"};
   command.reports = false;
+  command
+      .input("INPUT",
+             "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, the toy "
+             "dinosaur.",
+             options->input)
+      .required = false;
+  const auto pass = [options](const std::string& name, auto check) {
+    return [options, name, check](const std::string& text) {
+      check(text);
+      options->words.push_back(name);
+      if (!text.empty()) options->words.push_back(text);
+    };
+  };
+  const auto anything = [](const std::string&) {};
   command.arguments.push_back(
-      {"INPUT", "INPUT", "Workspace, mesh (.obj .ply .stl) or volume (.vti).", "", false, true,
-       [options](const auto& text) { options->inputs.push_back(text); }});
-  command.arguments.push_back({"--unit", "mm|cm|m|in|fit", "Unit of a mesh file.", "", false, false,
-                               [options](const auto& text) {
-                                 (void)parseMeshUnit(text);
-                                 options->unit = text;
-                               }});
+      {"--unit", "mm|cm|m|in|fit", "Unit of a mesh file.", "mm", false, false,
+       pass("--unit", [](const std::string& text) { (void)parseMeshUnit(text); })});
+  command.arguments.push_back({"--iso", "VALUE",
+                               "Value at which a volume (.vti) from elsewhere is a surface.", "",
+                               false, false, pass("--iso", [](const std::string& text) {
+                                 if (!parseNumber(text))
+                                   throw Error("'" + text + "' is not a number");
+                               })});
+  command.arguments.push_back({"--log", "FORCES.csv",
+                               "Record every tick; written when the window closes.", "", false,
+                               false, pass("--log", anything)});
+  command.arguments.push_back(
+      {"--tour", "FOLDER", "A scripted session: pictures and forces into the folder, then quit.",
+       "", false, false, pass("--tour", anything)});
+  command.arguments.push_back({"--first-picture-time", "",
+                               "Print the seconds from start to the first picture.", "", false,
+                               false, pass("--first-picture-time", anything)});
   command.run = [options](Console&) { return runGui(*options); };
   return command;
 }

@@ -109,7 +109,7 @@ int runInfo(const InfoOptions& options, Console& console) {
     Json settings = Json::object();
     for (const auto& [key, value] : values(scene)) {
       settings.set(key, value);
-      rows.emplace_back(key, value);
+      rows.emplace_back(key, withUnit(key, value));
     }
     json.set("values", settings);
   }

@@ -94,6 +94,18 @@ std::string rounded(double value) {
   return text;
 }
 
+std::string withUnit(const std::string& key, const std::string& value) {
+  if (key == "tip.radius" || key == "voxel") return formatLength(parseLength(value));
+  const std::pair<const char*, const char*> units[] = {{"stiffness", " N/m"},
+                                                       {"damping", " N s/m"},
+                                                       {"force.limit", " N"},
+                                                       {"resolution", " cells"},
+                                                       {"band", " voxels"}};
+  for (const auto& [name, unit] : units)
+    if (key == name) return value + unit;
+  return value;
+}
+
 void requireWritable(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder))

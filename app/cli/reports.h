@@ -28,6 +28,9 @@ Json toJson(const Percentiles& p);
 // For people: three significant digits, never an exponent ("0.8", "28.1", "1,411").
 std::string rounded(double value);
 
+// A scene's value by its key, with the unit: "stiffness", "800" -> "800 N/m".
+std::string withUnit(const std::string& key, const std::string& value);
+
 // Throws FileError now rather than after a minute's work if `path` cannot become a file.
 void requireWritable(const std::filesystem::path& path);
 

@@ -107,7 +107,7 @@ int runScene(const SceneCommandOptions& options, Console& console) {
   Json settings = Json::object();
   for (const auto& [key, value] : values(scene)) {
     settings.set(key, value);
-    rows.emplace_back(key, value);
+    rows.emplace_back(key, withUnit(key, value));
   }
   Json json = Json::object();
   json.set("workspace", folder.string());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unistd.h>
@@ -147,8 +148,7 @@ TEST_F(Session, StagesCostSomethingAndAsManyAreMeasuredAsAreOn) {
     EXPECT_GE(cost, 0);
     EXPECT_LT(cost, 1e6);
   }
-  for (std::size_t i = 0; i < ns.size(); ++i)
-    if (compiled->snapshot->why[i].name == "contact") EXPECT_GT(ns[i], 5);
+  EXPECT_GT(*std::max_element(ns.begin(), ns.end()), 5);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 
 #include "core/csv.h"
 #include "core/file.h"
+#include "core/types.h"
 #include "integration/program.h"
 
 namespace patina::test {
@@ -223,7 +224,7 @@ TEST_F(Commands, ModelsAreWrittenInEveryFormatAndReadBackAlike) {
 }
 
 TEST_F(Commands, DinosaurIsOneClosedSurfaceOfTheSizeOfAToy) {
-  const Json made = runJson({"model", "dinosaur", "-o", folder / "d.ply", "--resolution", "60"});
+  const Json made = runJson({"model", "dinosaur", "-o", folder / "d.ply", "--resolution", "100"});
   EXPECT_TRUE(made.at("watertight").asBool());
   const Json info = runJson({"info", folder / "d.ply", "--no-field"});
   EXPECT_EQ(info.at("components").asInteger(), 1);

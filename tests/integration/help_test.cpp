@@ -56,8 +56,9 @@ TEST(Help, OfEachCommandShowsOptionsExampleAndExitCodes) {
     const Outcome help = run({command, "--help"});
     EXPECT_EQ(help.exit, 0);
     EXPECT_EQ(help.err, "");
-    for (const std::string part : {"Usage: patina " + command, std::string("\n  patina ") + command,
-                                   std::string("Exit codes:"), std::string("--help")})
+    for (const std::string& part :
+         {"Usage: patina " + command, std::string("\n  patina ") + command,
+          std::string("Exit codes:"), std::string("--help")})
       EXPECT_NE(help.out.find(part), std::string::npos) << command << ": " << part;
     std::istringstream lines(help.out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
