@@ -39,7 +39,8 @@ int unlink(const char* path) noexcept {
   return step() ? -1 : static_cast<int>(syscall(SYS_unlinkat, AT_FDCWD, path, 0));
 }
 int remove(const char* path) noexcept {
-  return unlink(path);
+  const int result = unlink(path);
+  return result != 0 && errno == EISDIR ? rmdir(path) : result;
 }
 }
 
