@@ -84,9 +84,9 @@ void describeStages(const CompiledScene& compiled, Json& json, TextRows& rows) {
     entry.set("bytes", stage.bytes);
     entry.set("ns", ns[i]);
     stages.push(entry);
-    rows.emplace_back("stage " + stage.name, stage.why + "; " +
-                                                 formatBytes(static_cast<double>(stage.bytes)) +
-                                                 ", " + rounded(ns[i]) + " ns");
+    rows.emplace_back("stage " + stage.name,
+                      stage.why + "; " + formatBytes(static_cast<double>(stage.bytes)) + ", " +
+                          (ns[i] < 1 ? "below 1" : rounded(ns[i])) + " ns");
   }
   json.set("stages", stages);
 }

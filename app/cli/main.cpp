@@ -3,6 +3,8 @@
 #include <new>
 #include <string>
 
+#include <vtkObject.h>
+
 #include "app/cli/command.h"
 #include "app/cli/command_line.h"
 #include "core/error.h"
@@ -20,6 +22,8 @@ int fail(int code, std::string message) {
 
 int main(int argc, char** argv) {
   using namespace patina;
+  // What goes wrong inside VTK reaches the user as one Error; its own chatter would be more lines.
+  vtkObject::GlobalWarningDisplayOff();
   try {
     const int code = cli::runCommandLine(argc, argv);
     // A full disk behind a redirected report must not look like success.
