@@ -18,7 +18,8 @@ void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
 
   if (!(contact.stick_radius > 0)) return;
   contact.force -= damping_ * (contact.velocity - v_n * n);
-  const Vec3 tangential = contact.force - contact.force.dot(n) * n;
+  const Vec3 drag = contact.force - contact.stiffness * (contact.candidate - contact.tip);
+  const Vec3 tangential = drag - drag.dot(n) * n;
   // The margin keeps rounding from touching a force that was within the bound undamped.
   const double bearable = contact.stiffness * contact.stick_radius * (1 + 1e-9);
   const double magnitude = tangential.norm();
