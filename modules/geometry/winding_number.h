@@ -8,8 +8,14 @@
 
 namespace patina {
 
-// A hierarchy of dipole (and higher) moments; far clusters by their expansion, near ones by exact
-// solid angles. Immutable; queries may run on any number of threads.
+// A hierarchy of moments up to second order; far clusters by their expansion, near ones by exact
+// solid angles. Coordinates are kept relative to the mesh's centre and size, so that neither
+// matters. Immutable; queries may run on any number of threads.
+//
+// Exactly coincident triangles (same corner positions) count once, with the orientation that most
+// of them have. Where as many face either way, they cancel (a wall between two touching bodies),
+// unless most triangles of their connected part are such: a body joined with its own inverse still
+// has an inside. Triangles with a non-finite corner count nothing.
 class WindingNumber {
  public:
   // accuracy: a cluster is expanded when the query is farther than accuracy x its radius. 2 gives
@@ -19,7 +25,7 @@ class WindingNumber {
   WindingNumber& operator=(WindingNumber&&) noexcept;
   ~WindingNumber();
 
-  double at(const Vec3& p) const;
+  double at(const Vec3& p) const; // 0 for a point that is not finite
   std::size_t bytes() const;
 
  private:
@@ -27,7 +33,7 @@ class WindingNumber {
   std::unique_ptr<const Impl> impl_;
 };
 
-// The exact sum over all triangles: the oracle.
+// The exact sum over all triangles, coincident ones included: the oracle.
 double windingNumberBruteForce(const TriangleMesh& mesh, const Vec3& p);
 
 } // namespace patina
