@@ -1,0 +1,62 @@
+#!/bin/sh
+# Installs what is missing, builds, and runs the main job: a mesh that you see and feel.
+#   app/run.sh [MESH or WORKSPACE] [--unit mm|cm|m|in|fit]
+# With no argument: a toy dinosaur. With no display the same job runs without a window and leaves
+# pictures and tables in out/ (or in the folder that PATINA_OUT names).
+set -eu
+here=$(cd "$(dirname "$0")/.." && pwd)
+. "$here/app/packages.sh"
+
+case "${1:-}" in
+-h | --help)
+  sed -n '2,5s/^# \{0,1\}//p' "$0"
+  exit 0
+  ;;
+-*) ;;
+?*)
+  if [ ! -e "$1" ]; then
+    echo "$1: there is no such file or folder" >&2
+    exit 2
+  fi
+  ;;
+esac
+
+# shellcheck disable=SC2086 # lists of words
+if [ -n "${DISPLAY:-}" ]; then
+  need_packages $PATINA_BUILD_PACKAGES
+else
+  need_packages $PATINA_BUILD_PACKAGES $PATINA_HEADLESS_PACKAGES
+fi
+
+say "Building (the first time takes some minutes)"
+[ -f "$here/build/build.ninja" ] || cmake -S "$here" -B "$here/build" -G Ninja \
+  -DCMAKE_BUILD_TYPE=Release >&2
+cmake --build "$here/build" --target patina patina-gui -j "$(build_jobs)" >&2
+bin=$here/build/bin
+
+if [ -n "${DISPLAY:-}" ]; then
+  exec "$bin/patina-gui" "$@"
+fi
+
+out=${PATINA_OUT:-$here/out}
+mkdir -p "$out"
+if [ $# -eq 0 ]; then
+  "$bin/patina" model dinosaur -o "$out/dinosaur.ply"
+  set -- "$out/dinosaur.ply"
+fi
+say "No display: the same session without a window"
+in_window() { xvfb-run -a -s "-screen 0 1280x800x24" "$@" </dev/null; }
+in_window "$bin/patina-gui" --tour "$out" "$@"
+"$bin/patina" info "$@" --json >"$out/info.json"
+# The tour's log begins with the columns of a tip path: felt again, tick by tick, as a table.
+"$bin/patina" feel "$@" --path "$out/feel.csv" -o "$out/forces.csv" --json >"$out/feel.json"
+in_window "$bin/patina" render "$@" -o "$out/picture.png"
+
+say "Done. Pictures and tables are in $out"
+cat <<TEXT
+  window.png  feel.png  slice.png  nodes.png   the window before and during the touch
+  picture.png                                  the object alone
+  feel.csv                                     one row a servo tick of the session
+  forces.csv  feel.json                        the same path felt again in simulated time
+  info.json                                    the mesh, its defects, the stages and their costs
+TEXT

@@ -1,0 +1,160 @@
+#!/bin/bash
+# Installs what is missing, builds with warnings as errors, and runs every test.
+#   tests/run.sh                        all tests, then a short form of what follows
+#   tests/run.sh --sanitize address     unit and stability tests under ASan and UBSan
+#   tests/run.sh --sanitize thread      hand-over and servo tests under TSan
+#   tests/run.sh --fuzz [SECONDS]       each reader's fuzzer, 20 s each unless told
+#   tests/run.sh --quick                the tests alone, without sanitizers and fuzzers
+set -euo pipefail
+here=$(cd "$(dirname "$0")/.." && pwd)
+. "$here/app/packages.sh"
+cd "$here"
+
+usage() {
+  sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
+  exit 2
+}
+
+# configure TREE [CMAKE ARGUMENT]...
+configure() {
+  local tree=$1
+  shift
+  cmake -S . -B "$tree" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPATINA_WERROR=ON "$@" >"$tree.log" 2>&1 ||
+    { cat "$tree.log"; return 1; }
+  rm -f "$tree.log"
+}
+
+# build TREE [TARGET]...
+build() {
+  local tree=$1
+  shift
+  cmake --build "$tree" -j "$(build_jobs)" ${1:+--target "$@"}
+}
+
+run_tests() {
+  say "Building with warnings as errors"
+  local peers=OFF
+  [ -n "$(missing_packages $PATINA_PEER_PACKAGES)" ] || peers=ON
+  configure build -DPATINA_PEERS=$peers
+  build build
+  say "All tests"
+  xvfb-run -a -s "-screen 0 1280x800x24" \
+    ctest --test-dir build --output-on-failure -j "$(nproc)" </dev/null
+}
+
+# LeakSanitizer needs ptrace, which some containers forbid.
+leak_option() {
+  if "$1" --gtest_list_tests 2>&1 >/dev/null | grep -q 'LeakSanitizer has encountered a fatal'; then
+    echo "LeakSanitizer may not run here (no ptrace): leaks are not checked" >&2
+    echo detect_leaks=0
+  else
+    echo detect_leaks=1
+  fi
+}
+
+run_address() { # short or full
+  local folders="core geometry field scene"
+  [ "$1" = full ] && folders="$folders workspace haptics stability"
+  say "Address and undefined-behaviour sanitizers: $folders"
+  configure build-asan -DPATINA_SANITIZE=address -DPATINA_GUI=OFF
+  # shellcheck disable=SC2086
+  build build-asan ${folders// /_tests }_tests
+  local leaks folder
+  leaks=$(leak_option build-asan/bin/core_tests)
+  for folder in $folders; do
+    ASAN_OPTIONS=$leaks:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
+      "build-asan/bin/${folder}_tests" --gtest_brief=1 </dev/null
+  done
+}
+
+run_thread() {
+  say "Thread sanitizer: hand-over and servo"
+  configure build-tsan -DPATINA_SANITIZE=thread -DPATINA_GUI=OFF
+  build build-tsan core_tests haptics_tests
+  # gcc 12's runtime stops where the kernel spreads addresses too widely; a fixed layout helps.
+  local run=()
+  if ! build-tsan/bin/core_tests --gtest_list_tests >/dev/null 2>&1; then
+    run=(setarch "$(uname -m)" -R)
+    if ! "${run[@]}" build-tsan/bin/core_tests --gtest_list_tests >/dev/null 2>&1; then
+      echo "ThreadSanitizer cannot run on this kernel (address layout): skipped" >&2
+      return 0
+    fi
+  fi
+  "${run[@]}" build-tsan/bin/core_tests --gtest_brief=1 \
+    --gtest_filter='Ring.*:SnapshotExchange.*' </dev/null
+  "${run[@]}" build-tsan/bin/haptics_tests --gtest_brief=1 --gtest_filter='*Servo*:*Mouse*' </dev/null
+}
+
+run_fuzz() { # seconds each
+  say "Fuzzing each reader for $1 s"
+  configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
+  build build-fuzz
+  local program reader seeds
+  for program in build-fuzz/bin/*_fuzz; do
+    reader=$(basename "$program" _fuzz)
+    mkdir -p "build-fuzz/found/$reader"
+    seeds=tests/fuzz/corpus/$reader
+    [ -d "$seeds" ] || seeds=
+    echo "-- $reader"
+    # A finding is a file that the reader must survive: keep it as a seed when it is mended.
+    "$program" -max_total_time="$1" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+      -artifact_prefix="build-fuzz/found/$reader-" "build-fuzz/found/$reader" ${seeds:+"$seeds"} \
+      </dev/null
+  done
+}
+
+mode=all
+seconds=20
+while [ $# -gt 0 ]; do
+  case "$1" in
+  --sanitize)
+    case "${2:-}" in address | thread) mode=$2 ;; *) usage ;; esac
+    shift
+    ;;
+  --fuzz)
+    mode=fuzz
+    case "${2:-}" in
+    '' | -*) ;;
+    *[!0-9]*) usage ;;
+    *) seconds=$2; shift ;;
+    esac
+    ;;
+  --quick) mode=quick ;;
+  *) usage ;;
+  esac
+  shift
+done
+
+# shellcheck disable=SC2086 # lists of words
+need_packages $PATINA_BUILD_PACKAGES $PATINA_TEST_PACKAGES
+if [ "$mode" = all ] && [ "${PATINA_INSTALL:-yes}" != no ]; then
+  # In a shell of its own: what it cannot install is left out, and the tests go on.
+  (need_packages $PATINA_PEER_PACKAGES) || say "Without $PATINA_PEER_PACKAGES: no comparison with it"
+fi
+
+case $mode in
+all)
+  failed=
+  run_and_note() {
+    # Each in a shell of its own with errexit, so that one failure does not hide the next.
+    set +e
+    (set -e; "$@")
+    local code=$?
+    set -e
+    [ $code -eq 0 ] || failed="$failed $1"
+  }
+  run_and_note run_tests
+  run_and_note run_address short
+  run_and_note run_thread
+  run_and_note run_fuzz "$seconds"
+  if [ -n "$failed" ]; then
+    say "FAILED:$failed"
+    exit 1
+  fi
+  ;;
+quick) run_tests ;;
+address) run_address full ;;
+thread) run_thread ;;
+fuzz) run_fuzz "$seconds" ;;
+esac
+say "Passed"
