@@ -85,11 +85,13 @@ TEST(FieldStudy, EveryRowIsMeasuredInAllItsColumns) {
     }
 }
 
-// Facets set a floor that falls with the triangles and is the same for every sampler.
+// Facets set a floor that falls with the triangles. The spline follows them more closely than
+// central differences do: why it is not `high` (docs/studies.md).
 TEST(FieldStudy, FacetsLimitEverySamplerOnAMesh) {
   const WorkPrecisionTable& table = tableNamed("Direction on a sphere of triangles");
   ASSERT_EQ(table.rows.size(), 8U);
   EXPECT_GT(table.rows[1].error, 2 * table.rows[5].error);
+  EXPECT_GT(table.rows[3].error, 1.5 * table.rows[2].error);
   EXPECT_GT(more(table.rows[2], "value rms [m]"), 5 * more(table.rows[6], "value rms [m]"));
 }
 
