@@ -73,6 +73,9 @@ OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& opti
   OpenedScene opened;
   if (std::filesystem::is_directory(path)) {
     opened.scene = loadWorkspace(path);
+    for (const SceneObject& object : opened.scene.objects)
+      for (const std::string& line : meshWarnings(inspect(*object.mesh)))
+        opened.warnings.push_back(path.string() + ": " + object.name + ": " + line);
     return opened;
   }
   bool in_metres = false;

@@ -112,6 +112,8 @@ void requireWritable(const std::filesystem::path& path) {
     throw FileError(path.string(), 0, "cannot be written: there is no folder " + folder.string());
   if (std::filesystem::is_directory(path))
     throw FileError(path.string(), 0, "cannot be written: it is a folder");
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
+    throw FileError(path.string(), 0, "cannot be written: not a file");
   if (access(folder.c_str(), W_OK) != 0)
     throw FileError(path.string(), 0, "cannot be written: no permission in " + folder.string());
 }

@@ -118,6 +118,10 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view byt
   const std::string name = path.string();
   const std::filesystem::path parent = path.parent_path();
   const std::string folder = parent.empty() ? "." : parent.string();
+  struct stat old {};
+  const bool exists = ::stat(name.c_str(), &old) == 0;
+  // The rename below would put a file where a device or a pipe was.
+  if (exists && !S_ISREG(old.st_mode)) throw FileError(name, 0, "cannot be written: not a file");
   const Temporary temporary = createBeside(folder, path.filename().string());
   Descriptor file(temporary.fd);
   if (file.get() < 0) throw FileError(name, 0, "cannot be written: " + reason(errno));
@@ -127,9 +131,7 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view byt
     throw FileError(name, 0, what + ": " + reason(code));
   };
   if (!writeAll(file.get(), bytes)) fail("cannot be written");
-  struct stat old {};
-  if (::stat(name.c_str(), &old) == 0 && ::fchmod(file.get(), old.st_mode & 07777) != 0)
-    fail("cannot be written");
+  if (exists && ::fchmod(file.get(), old.st_mode & 07777) != 0) fail("cannot be written");
   if (!syncRetrying(file.get())) fail("cannot be flushed to disk");
   if (file.close() != 0) fail("cannot be written");
   if (::rename(temporary.name.c_str(), name.c_str()) != 0) fail("cannot be replaced");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sys/stat.h>
 
 #include "core/file.h"
 #include "integration/program.h"
@@ -80,6 +81,10 @@ TEST_F(BadInput, OutputsThatCannotBeWrittenAreNamed) {
   expectOneLineError(run({"feel", box, "--path", path, "-o", folder.path().string()}),
                      {"it is a folder"});
   expectOneLineError(run({"field", box, "-o", folder / "field.raw"}), {".vti"});
+  // Renaming a file over a device would take the device away.
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  expectOneLineError(run({"feel", box, "--path", path, "-o", folder / "pipe"}), {"not a file"});
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
   expectOneLineError(run({"model", "box", "-o", folder / "box.xyz"}), {"box.xyz"});
   expectOneLineError(run({"export", box, "-o", box, "--resolution", "40"}), {"box.obj"});
   expectOneLineError(run({"man", "-o", box}), {"box.obj"});

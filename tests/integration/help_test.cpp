@@ -94,6 +94,16 @@ TEST(Help, ShowsDefaultsAndUnits) {
     EXPECT_NE(help.find(part), std::string::npos) << part;
 }
 
+TEST(Help, OfSceneNamesEveryKeyThatASceneHas) {
+  const ScratchFolder folder;
+  const std::string help = run({"scene", "--help"}).out;
+  const std::string error = run({"scene", "-o", folder / "w", "--set", "no.such=1"}).err;
+  std::istringstream words(error.substr(error.find("known are:") + 10));
+  int keys = 0;
+  for (std::string key; words >> key; ++keys) EXPECT_NE(help.find(key), std::string::npos) << key;
+  EXPECT_GE(keys, 13) << error;
+}
+
 TEST(Help, VersionIsOneLine) {
   for (const auto& words : {std::vector<std::string>{"--version"}, {"info", "--version"}}) {
     const Outcome version = run(words);

@@ -32,7 +32,8 @@ std::filesystem::path programPath() {
   return std::filesystem::path(PATINA_BINARY_DIR) / "patina";
 }
 
-Running::Running(const std::vector<std::string>& words, const std::filesystem::path& program)
+Running::Running(const std::vector<std::string>& words, const std::filesystem::path& program,
+                 const std::filesystem::path& stderr_to)
     : out_(freshName(".out")), err_(freshName(".err")) {
   std::vector<std::string> all = {program.string()};
   all.insert(all.end(), words.begin(), words.end());
@@ -44,7 +45,9 @@ Running::Running(const std::vector<std::string>& words, const std::filesystem::p
   const int flags = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), flags, 0600);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), flags, 0600);
+  std::ofstream(err_).flush();
+  const std::filesystem::path& errors = stderr_to.empty() ? err_ : stderr_to;
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), flags, 0600);
   const int error = posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error) {

@@ -18,7 +18,9 @@ struct Outcome {
 // A started program; its streams go to files, so that it never waits for a reader.
 class Running {
  public:
-  Running(const std::vector<std::string>& words, const std::filesystem::path& program);
+  // stderr may be given another file, such as a terminal; it is then not part of the outcome.
+  Running(const std::vector<std::string>& words, const std::filesystem::path& program,
+          const std::filesystem::path& stderr_to = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;

@@ -93,8 +93,9 @@ TEST_F(Workspaces, ErrorsLeaveTheFolderAsItWas) {
   expectOneLineError(run({"scene", "-o", workspace, "--set", "stiffness=-1"}), {"stiffness", "-1"});
   expectOneLineError(run({"scene", "-o", workspace, "--set", "stiffness"}), {"--set", "KEY=VALUE"});
   expectOneLineError(run({"scene", "-o", workspace, "--remove", "cup"}), {"cup", "torus"});
-  expectOneLineError(run({"scene", "-o", workspace, "--remove", "torus", "--add", folder / "none.ply"}),
-                     {"none.ply"});
+  expectOneLineError(
+      run({"scene", "-o", workspace, "--remove", "torus", "--add", folder / "none.ply"}),
+      {"none.ply"});
   EXPECT_EQ(readFile(workspace + "/workspace.json"), before);
 }
 
