@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/progress.h"
 #include "haptics/snapshot.h"
 
 namespace patina {
@@ -47,6 +48,7 @@ ContactTestErrors contactTestErrors(const HapticSnapshot& snapshot, const Contac
 struct ContactTestTiming {
   double p50 = 0, p99 = 0; // [ns] of one tick, clock included
   double clock = 0;        // [ns] of reading the clock alone, the part included above
+  double mean = 0;         // [ns] a tick of a whole pass, timed as one
 };
 // The least of `repeats` passes: what other work on the machine adds is not the tick's.
 ContactTestTiming contactTestTiming(const HapticSnapshot& snapshot, const ContactTest& test,
@@ -54,5 +56,9 @@ ContactTestTiming contactTestTiming(const HapticSnapshot& snapshot, const Contac
 
 // The sphere's exact distance on the grid of the fixed test: 150 cells, band 8.
 std::shared_ptr<const SurfaceField> analyticSphere(double radius, int resolution = 150);
+// The same grid rule around an icosphere of 20 frequency^2 triangles, each shrunk by the fraction
+// `crack`.
+std::shared_ptr<const SurfaceField> meshSphere(double radius, int frequency, double crack,
+                                               Progress& progress);
 
 } // namespace patina

@@ -1,5 +1,6 @@
 #include "app/studies/study.h"
 
+#include "app/studies/contact_study.h"
 #include "app/studies/field_study.h"
 
 namespace patina {
@@ -7,6 +8,7 @@ namespace patina {
 const std::vector<Study>& studies() {
   static const std::vector<Study> all = {
       {"field", "samplers and storage of the field on sphere, torus and box", fieldStudy},
+      {"contact", "the contact step against a closed form on the fixed test", contactStudy},
   };
   return all;
 }
