@@ -62,7 +62,7 @@ void addUsb(bool diagnose, Json& list, TextRows& rows) {
     list.push(entry);
     std::string text = device.name;
     if (!device.haptic.empty())
-      text += " (" + device.haptic + ": known, but this version does not drive it yet)";
+      text += " (" + device.haptic + "; recognised; this version renders no force on it)";
     if (!device.advice.empty()) text += "; " + device.advice;
     rows.emplace_back(usbId(device), text);
   }

@@ -65,6 +65,7 @@ struct SampledSurface {
 SampledSurface open(const SampleOptions& options, Console& console) {
   SampledSurface surface;
   if (options.input.extension() == ".vti" && isField(options.input)) {
+    if (options.scene.open.iso) throw Error("--iso: a field is sampled as it is; phi is given");
     Scene scene;
     for (const auto& [key, value] : options.scene.settings) {
       if (key != "sampler") throw Error("--" + key + ": the field in the file has its own");
