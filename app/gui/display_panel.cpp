@@ -123,4 +123,9 @@ void DisplayPanel::setSlice(const SlicePlace& place) {
   emit sliceMoved(slice_);
 }
 
+void DisplayPanel::setIso(double iso) {
+  if (iso_ != nullptr) iso_->setValue(1000 * iso);
+  emit isoMoved(iso);
+}
+
 } // namespace patina

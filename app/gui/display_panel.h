@@ -22,6 +22,7 @@ class DisplayPanel : public QGroupBox {
   bool shown(Layer layer) const;
   const SlicePlace& slice() const { return slice_; }
   void setSlice(const SlicePlace& place); // sends sliceMoved
+  void setIso(double iso);                // [m]; sends isoMoved
 
  signals:
   void layerToggled(patina::Layer layer, bool on);

@@ -97,7 +97,7 @@ void ForcePlot::paintEvent(QPaintEvent*) {
     painter.drawLine(QPointF(area.left(), toY(f)), QPointF(area.right(), toY(f)));
     painter.setPen(QColor(0x4a, 0x53, 0x62));
     painter.drawText(QRectF(14, toY(f) - 8, 38, 16), Qt::AlignRight | Qt::AlignVCenter,
-                     QString::number(f, 'g', 3));
+                     QString::number(f, 'g', 3).replace('-', QStringLiteral("−")));
   }
   for (int back = 0; back <= static_cast<int>(kSpan); ++back) {
     const double x = toX(latest_ - back);

@@ -139,7 +139,7 @@ void HapticsPanel::addFrictionRows() {
 void HapticsPanel::addMenu() {
   auto* button = new QToolButton(rows_);
   button->setObjectName(QStringLiteral("add_property"));
-  button->setText(tr("＋ Add property"));
+  button->setText(tr("+ Add property"));
   button->setPopupMode(QToolButton::InstantPopup);
   button->setToolTip(tr("What a scene does not have costs nothing: no stage, no memory, no row."));
   auto* menu = new QMenu(button);

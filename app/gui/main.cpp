@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <cerrno>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <QApplication>
 #include <QSurfaceFormat>
 
@@ -76,9 +80,19 @@ Arguments parse(const std::vector<std::string>& words) {
   return arguments;
 }
 
+// Qt prints a warning where no session has set this, and a script reads our standard error.
+void giveRuntimeFolder() {
+  if (std::getenv("XDG_RUNTIME_DIR") != nullptr) return;
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("patina-runtime-" + std::to_string(getuid()));
+  if (mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST)
+    setenv("XDG_RUNTIME_DIR", folder.c_str(), 0);
+}
+
 int run(const Arguments& arguments, int argc, char** argv) {
   patina::requireDisplay();
-  if (std::getenv("QT_QPA_PLATFORM") == nullptr) setenv("QT_QPA_PLATFORM", "xcb", 1);
+  setenv("QT_QPA_PLATFORM", "xcb", 0);
+  giveRuntimeFolder();
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   QApplication application(argc, argv);
   QApplication::setApplicationName(QStringLiteral("patina"));

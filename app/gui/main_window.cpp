@@ -73,7 +73,9 @@ void MainWindow::buildLayout() {
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  scroll->setMinimumWidth(292);
+  // Room for the scroll bar from the start, or it would cover the cards when it comes.
+  scroll->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
+  scroll->setFixedWidth(318);
   const auto dock = [this](const QString& title, const char* name, QWidget* widget,
                            Qt::DockWidgetArea area) {
     auto* made = new QDockWidget(title, this);
@@ -81,7 +83,7 @@ void MainWindow::buildLayout() {
     made->setWidget(widget);
     made->setFeatures(QDockWidget::DockWidgetClosable | QDockWidget::DockWidgetMovable);
     addDockWidget(area, made);
-    return made;
+    panels_ << made->toggleViewAction();
   };
   dock(tr("Scene"), "scene_dock", scroll, Qt::RightDockWidgetArea);
   dock(tr("Force on the hand"), "force_dock", plot_, Qt::BottomDockWidgetArea);

@@ -80,6 +80,7 @@ class MainWindow : public QMainWindow {
   QAction* navigate_action_ = nullptr;
   QAction* save_action_ = nullptr;
   QAction* record_action_ = nullptr;
+  QList<QAction*> panels_; // show and hide the docks
 
   FeelHost feel_;
   QTimer timer_;

@@ -41,11 +41,12 @@ void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
   setMode(mode_);
 }
 
-void SceneWidget::refresh() {
-  if (!view_.prepare() || !isVisible()) return;
+bool SceneWidget::refresh() {
+  if (!view_.prepare() || !isVisible()) return false;
   const auto start = std::chrono::steady_clock::now();
   renderWindow()->Render();
   frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return true;
 }
 
 Vec2 SceneWidget::fraction(const QPoint& pixel) const {

@@ -28,8 +28,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   void setTarget(const Vec3& target) { target_ = target; }
   const Vec3& target() const { return target_; }
 
-  // Renders if anything changed since the last call.
-  void refresh();
+  // Renders if anything changed since the last call; false if nothing did.
+  bool refresh();
   // Seconds that the last drawn frame took.
   double frameSeconds() const { return frame_seconds_; }
 

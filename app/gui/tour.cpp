@@ -75,29 +75,34 @@ Vec2 placeToTouch(MainWindow& window) {
   throw Error("there is no surface in the picture to touch");
 }
 
-// From the air onto the surface and in by `depth`, at a hand's speed.
-void press(MainWindow& window, const Vec2& place, double depth) {
+// Calls step(0 .. 1) while the time passes, at the speed of a hand and not of the picture.
+void during(int milliseconds, const std::function<void(double)>& step) {
+  QElapsedTimer clock;
+  clock.start();
+  while (clock.elapsed() < milliseconds) {
+    step(static_cast<double>(clock.elapsed()) / milliseconds);
+    wait(8);
+  }
+  step(1);
+}
+
+// From the air onto the surface and in by `depth`.
+void press(MainWindow& window, const Vec2& place, double depth, int milliseconds) {
   Vec3 inward;
   const auto hit = surfaceAt(window, place[0], place[1], inward);
   if (!hit) throw Error("the tour lost the surface");
-  const double gap = 0.06 * window.view().view().extent().diagonal().norm();
-  constexpr int kSteps = 40;
-  for (int step = 0; step <= kSteps; ++step) {
-    aim(window, *hit + inward * (-gap + (gap + depth) * step / kSteps));
-    wait(20);
-  }
+  const double gap = 0.05 * window.view().view().extent().diagonal().norm();
+  during(milliseconds, [&](double t) { aim(window, *hit + inward * (t * (gap + depth) - gap)); });
 }
 
-// Along the surface at a constant depth below it, ending at `to`.
+// Along the surface, the depth below it swaying as a stroking hand's does.
 void slide(MainWindow& window, const Vec2& from, const Vec2& to, double depth, int milliseconds) {
-  const int steps = std::max(1, milliseconds / 20);
-  for (int step = 1; step <= steps; ++step) {
-    const Vec2 place = from + (to - from) * (static_cast<double>(step) / steps);
+  during(milliseconds, [&](double t) {
+    const Vec2 place = from + (to - from) * t;
     Vec3 inward;
     if (const auto hit = surfaceAt(window, place[0], place[1], inward))
-      aim(window, *hit + inward * depth);
-    wait(20);
-  }
+      aim(window, *hit + inward * (depth * (0.7 + 0.3 * std::cos(4 * M_PI * t))));
+  });
 }
 
 bool isBlank(const QImage& image) {
@@ -152,11 +157,11 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   openAndWait(window, request);
   wait(300);
   window.startRecording();
-  const double depth = std::min(0.0025, 2.5 * window.scene()->built.field->grid.voxel);
+  const double depth = 3.5 * window.scene()->built.field->grid.voxel;
   const Vec2 start = placeToTouch(window);
   const Vec2 end = start + Vec2(-0.06, 0.03);
-  press(window, start, depth);
-  slide(window, start, end, depth, 1600);
+  press(window, start, depth, 1200);
+  slide(window, start, end, depth, 2400);
   grab(window, folder / "window.png");
 
   lookCloser(window, 3.2);
@@ -166,7 +171,7 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   window.haptics().setValues(haptics);
   emit window.haptics().edited(haptics);
   wait(200);
-  slide(window, Vec2::Zero(), Vec2(0.12, 0.05), depth, 1400);
+  slide(window, Vec2::Zero(), Vec2(0.14, -0.06), depth, 2400);
   grab(window, folder / "feel.png");
 
   show(window, {Layer::mesh, Layer::tip, Layer::wireframe, Layer::nodes});
@@ -177,6 +182,7 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   wait(300);
   show(window, {Layer::mesh, Layer::slice, Layer::iso, Layer::band});
   window.display().setSlice({1, 0.5});
+  window.display().setIso(1.5 * window.scene()->built.field->grid.voxel);
   window.view().view().setView(ViewPreset::iso);
   grab(window, folder / "slice.png");
   show(window, {Layer::mesh, Layer::tip});

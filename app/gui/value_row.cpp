@@ -37,7 +37,7 @@ ValueRow::ValueRow(const QString& caption, const QString& unit, const ValueRange
   number_->setSingleStep(range.step);
   number_->setSuffix(unit.isEmpty() ? QString() : QStringLiteral(" ") + unit);
   number_->setKeyboardTracking(false);
-  number_->setMinimumWidth(104);
+  number_->setMinimumWidth(96);
   number_->setAccessibleName(caption);
   slider_->setAccessibleName(caption);
 

@@ -112,6 +112,9 @@ void MainWindow::buildMenus() {
     });
   }
 
+  view_menu->addSeparator();
+  view_menu->addActions(panels_);
+
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   const auto tell = [this](const QString& title, const QString& words) {
     auto* box = new QMessageBox(QMessageBox::NoIcon, title, words, QMessageBox::Ok, this);

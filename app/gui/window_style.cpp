@@ -1,5 +1,6 @@
 #include "app/gui/window_style.h"
 
+#include <QFont>
 #include <QPalette>
 #include <QStyleFactory>
 

@@ -59,22 +59,27 @@ void setText(vtkTextProperty* text, int size, bool bold) {
   text->SetColor(palette::forVtk(palette::kText));
 }
 
-// VTK's own log ticks are sparse and crowd under small ranges: a decade each, with 2 and 5 between
-// if there are few.
+// VTK's own log ticks are sparse and crowd under small ranges: a decade each, with more between
+// them the fewer there are.
+std::vector<double> ticksOfADecade(double decades) {
+  if (decades < 1) return {1, 1.5, 2, 3, 4, 5, 7};
+  if (decades <= 2) return {1, 2, 5};
+  return {1};
+}
+
 void placeLogTicks(vtkAxis* axis, const Range& range) {
-  double low = std::floor(std::log10(range.low) + 1e-9);
-  double high = std::ceil(std::log10(range.high) - 1e-9);
-  const bool few = high - low <= 2;
+  const double low = std::floor(std::log10(range.low) + 1e-9);
+  const double high = std::ceil(std::log10(range.high) - 1e-9);
+  const std::vector<double> factors = ticksOfADecade(std::log10(range.high / range.low));
+  const bool few = factors.size() > 1;
   const bool many = high - low > 9;
   const vtkNew<vtkDoubleArray> positions;
   const vtkNew<vtkStringArray> labels;
-  double first = INFINITY, last = -INFINITY;
   const double margin = std::max(0.08, 0.04 * std::log10(range.high / range.low));
   const double from = few ? std::log10(range.low) - margin : low;
   const double to = few ? std::log10(range.high) + margin : high;
   for (int decade = static_cast<int>(low) - 1; decade <= static_cast<int>(high) + 1; ++decade)
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      if (factor != 1.0 && !few) continue;
+    for (const double factor : factors) {
       if (many && decade % 2 != 0) continue;
       const double at = decade + std::log10(factor);
       if (at < from - 1e-9 || at > to + 1e-9) continue;
@@ -82,11 +87,9 @@ void placeLogTicks(vtkAxis* axis, const Range& range) {
       if (decade >= -2 && decade <= 3)
         std::snprintf(text, sizeof text, "%g", std::pow(10.0, at));
       else
-        std::snprintf(text, sizeof text, "%.0fe%d", factor, decade);
+        std::snprintf(text, sizeof text, "%ge%d", factor, decade);
       positions->InsertNextValue(at);
       labels->InsertNextValue(text);
-      first = std::min(first, at);
-      last = std::max(last, at);
     }
   axis->SetBehavior(vtkAxis::FIXED);
   axis->SetUnscaledRange(std::pow(10.0, from), std::pow(10.0, to));

@@ -114,7 +114,6 @@ struct SceneView::Impl {
   std::shared_ptr<const SurfaceField> field;
   double iso = 0;
   SlicePlace place;
-  double tip_radius = 0;
   std::optional<ToolSample> sample;
   std::set<Layer> layers{Layer::mesh, Layer::tip};
 
@@ -136,10 +135,6 @@ struct SceneView::Impl {
     if (all.isEmpty()) all = Box3(Vec3::Constant(-0.05), Vec3::Constant(0.05));
     return all;
   }
-  double size() const {
-    const Box3 all = mesh ? meshBox() : box();
-    return all.isEmpty() ? 0.1 : std::max(1e-9, all.diagonal().norm());
-  }
 
   double aspect() {
     if (auto* window = scene->GetRenderWindow()) {
@@ -150,7 +145,6 @@ struct SceneView::Impl {
   }
   bool on(Layer layer) const { return layers.count(layer) != 0; }
 
-  void sizeTool() { tool.setSize(tip_radius > 0 ? tip_radius : 0.006 * size(), size()); }
   void applyVisibility();
   void cutAt();
   void aimTool();
@@ -222,6 +216,10 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   my.scene->GradientBackgroundOn();
   my.scene->AddActor(my.mesh_actor);
   my.scene->AddActor(my.iso_actor);
+  // At 0 the iso-surface lies on the mesh: it is drawn as if a hair nearer.
+  auto* iso_mapper = vtkPolyDataMapper::SafeDownCast(my.iso_actor->GetMapper());
+  iso_mapper->SetResolveCoincidentTopologyToPolygonOffset();
+  iso_mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(-2, -2);
   addLights(*my.scene);
   const vtkNew<vtkProperty> inner;
   inner->DeepCopy(my.mesh_actor->GetProperty());
@@ -246,7 +244,6 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   my.corner->SetViewport(0.0, 0.0, 0.13, 0.17);
   my.corner->AddActor(axesActor());
   my.applyVisibility();
-  my.sizeTool();
 }
 
 SceneView::~SceneView() = default;
@@ -267,7 +264,6 @@ void SceneView::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   my.mesh = std::move(mesh);
   auto* mapper = vtkPolyDataMapper::SafeDownCast(my.mesh_actor->GetMapper());
   mapper->SetInputData(my.mesh ? surfaceData(*my.mesh) : vtkSmartPointer<vtkPolyData>::New());
-  my.sizeTool();
   my.applyVisibility();
   my.dirty = true;
 }
@@ -282,7 +278,6 @@ void SceneView::setField(std::shared_ptr<const SurfaceField> field) {
     my.outline->SetBounds(box.min()[0], box.max()[0], box.min()[1], box.max()[1], box.min()[2],
                           box.max()[2]);
   }
-  my.sizeTool();
   my.applyVisibility();
   my.dirty = true;
 }
@@ -299,8 +294,7 @@ void SceneView::setSlice(const SlicePlace& place) {
 }
 
 void SceneView::setTipRadius(double radius) {
-  impl_->tip_radius = radius;
-  impl_->sizeTool();
+  impl_->tool.setTipRadius(radius);
   impl_->dirty = true;
 }
 

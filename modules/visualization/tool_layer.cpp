@@ -1,5 +1,6 @@
 #include "visualization/tool_layer.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include <vtkCamera.h>
@@ -18,7 +19,8 @@ namespace patina {
 namespace {
 
 constexpr double kSmallestForce = 0.005; // [N]; an arrow below it is a speck
-constexpr double kArrowPerNewton = 0.14; // of the scene's length
+constexpr double kArrowPerNewton = 0.16; // of the picture's height
+constexpr double kPointRadius = 0.013;   // same
 
 vtkSmartPointer<vtkActor> actorOf(vtkAlgorithm* source, const palette::Color& color,
                                   double opacity) {
@@ -112,9 +114,8 @@ ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
   place();
 }
 
-void ToolLayer::setSize(double radius, double length) {
-  radius_ = radius;
-  length_ = length;
+void ToolLayer::setTipRadius(double radius) {
+  tip_radius_ = radius;
   place();
 }
 
@@ -129,6 +130,7 @@ void ToolLayer::faceCamera(vtkCamera& camera) {
   const Vec3 right = up.cross(back).normalized();
   lean_ =
       (0.55 * right + 0.65 * back.cross(right).normalized() + 0.5 * back.normalized()).normalized();
+  length_ = 2 * back.norm() * std::tan(0.5 * camera.GetViewAngle() * M_PI / 180);
   place();
 }
 
@@ -139,24 +141,26 @@ void ToolLayer::setVisible(bool on) {
 
 void ToolLayer::place() {
   const Vec3 held = sample_.contact ? sample_.vcp : sample_.tip;
-  const double shaft_radius = 0.5 * radius_;
-  placeBall(*ball_, held, radius_);
+  const double radius = tip_radius_ > 0 ? tip_radius_ : kPointRadius * length_;
+  const double shaft_radius = 0.006 * length_;
+  placeBall(*ball_, held, radius);
   // The neck's base sits on the shaft and its point in the ball.
-  const Vec3 neck_end = held + lean_ * (5 * radius_);
-  stretch(*neck_, neck_end, held, shaft_radius * 1.0);
-  stretch(*shaft_, neck_end, neck_end + lean_ * (0.30 * length_), shaft_radius);
+  const Vec3 neck_end = held + lean_ * (0.8 * radius + 0.05 * length_);
+  stretch(*neck_, neck_end, held, shaft_radius);
+  stretch(*shaft_, neck_end, neck_end + lean_ * (0.32 * length_), shaft_radius);
 
-  placeBall(*ghost_, sample_.tip, radius_);
-  placeBall(*contact_, sample_.vcp, 0.3 * radius_);
-  stretch(*spring_, sample_.tip, held, 0.12 * radius_);
+  placeBall(*ghost_, sample_.tip, radius);
+  placeBall(*contact_, sample_.vcp, 0.003 * length_);
+  stretch(*spring_, sample_.tip, held, 0.0016 * length_);
 
   const double newtons = sample_.force.norm();
   const bool pushed = newtons > kSmallestForce;
   if (pushed) {
     const Vec3 direction = sample_.force / newtons;
-    const double head = std::min(0.05, 0.5 * kArrowPerNewton * newtons) * length_;
-    const Vec3 end = held + direction * (kArrowPerNewton * newtons * length_);
-    stretch(*arrow_shaft_, held, end - direction * head, 0.0065 * length_);
+    const double head = std::min(0.045, 0.5 * kArrowPerNewton * newtons) * length_;
+    const Vec3 begin = held + direction * radius;
+    const Vec3 end = begin + direction * (kArrowPerNewton * newtons * length_);
+    stretch(*arrow_shaft_, begin, end - direction * head, 0.0055 * length_);
     stretch(*arrow_head_, end - direction * head, end, 0.35 * head);
     label_->SetPosition(end[0], end[1], end[2]);
     char words[32];

@@ -16,10 +16,11 @@ class ToolLayer {
   // scene: hidden by surfaces in front of it; overlay: never hidden.
   ToolLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
-  // radius: of the drawn ball [m]; length: a size of the scene that shaft and arrow scale with [m].
-  void setSize(double radius, double length);
+  // Of the tip [m]; 0 = a point, drawn as a ball of constant size in the picture.
+  void setTipRadius(double radius);
   void update(const ToolSample& sample);
-  // The shaft leans towards the viewer's upper right, so that it never hides its own tip.
+  // The shaft leans towards the viewer's upper right, so that it never hides its own tip; shaft and
+  // arrow keep their size in the picture, whatever the zoom.
   void faceCamera(vtkCamera& camera);
   void setVisible(bool on);
 
@@ -31,8 +32,8 @@ class ToolLayer {
   vtkSmartPointer<vtkBillboardTextActor3D> label_;
   ToolSample sample_;
   Vec3 lean_ = Vec3(0.4, 0.7, 0.6).normalized();
-  double radius_ = 1e-3;
-  double length_ = 0.1;
+  double tip_radius_ = 0;
+  double length_ = 0.1; // height of the picture at the focal point [m]
   bool visible_ = false;
 };
 

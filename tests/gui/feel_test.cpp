@@ -1,6 +1,8 @@
 // The mouse feels: what a person without a device sees and gets.
 #include <cmath>
 
+#include <vtkCamera.h>
+
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
 

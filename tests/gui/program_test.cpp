@@ -32,16 +32,21 @@ class Program : public ::testing::Test {
     return text.str();
   }
   Outcome run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = environment + " '" + program_ + "' " + arguments + " >'" +
-                                (folder_ / "out").string() + "' 2>'" + (folder_ / "err").string() +
-                                "'";
-    const int status = std::system(command.c_str());
+    std::ostringstream command;
+    command << environment << quoted(program_) << arguments << " >" << quoted(folder_ / "out")
+            << " 2>" << quoted(folder_ / "err");
+    const int status = std::system(command.str().c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder_ / "out"),
             contents(folder_ / "err")};
   }
+  static std::string quoted(const fs::path& path) {
+    std::ostringstream text;
+    text << " '" << path.string() << "' ";
+    return text.str();
+  }
   static bool hasDisplay() { return std::getenv("DISPLAY") != nullptr; }
 
-  const std::string program_ = std::string(PATINA_BINARY_DIR) + "/patina-gui";
+  const fs::path program_ = fs::path(PATINA_BINARY_DIR) / "patina-gui";
   const fs::path folder_ =
       fs::temp_directory_path() / ("patina-program-" + std::to_string(getpid()));
 };
@@ -62,8 +67,7 @@ TEST_F(Program, HelpAndVersionNeedNoDisplay) {
 TEST_F(Program, TheTourLeavesPicturesAndALog) {
   if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
   writeMesh(folder_ / "sphere.obj", icosphere(30, 20));
-  const Outcome outcome = run("--tour '" + (folder_ / "tour").string() + "' '" +
-                              (folder_ / "sphere.obj").string() + "'");
+  const Outcome outcome = run("--tour" + quoted(folder_ / "tour") + quoted(folder_ / "sphere.obj"));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* name : {"window.png", "feel.png", "slice.png", "nodes.png"})
     EXPECT_GT(fs::file_size(folder_ / "tour" / name), 10000U) << name;
@@ -82,8 +86,7 @@ TEST_F(Program, TheTourLeavesPicturesAndALog) {
 
 TEST_F(Program, ATourOfAMissingFileFailsInOneLine) {
   if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
-  const Outcome outcome =
-      run("--tour '" + folder_.string() + "' '" + (folder_ / "no.obj").string() + "'");
+  const Outcome outcome = run("--tour" + quoted(folder_ / "t") + quoted(folder_ / "no.obj"));
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("no.obj"), std::string::npos);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
@@ -94,7 +97,7 @@ TEST_F(Program, TheFirstPictureOf70000TrianglesTakesAtMostTwoSeconds) {
   writeMesh(folder_ / "sphere.obj", icosphere(30, 60)); // 72,000 triangles
   double best = 1e9;
   for (int round = 0; round < 3; ++round) {
-    const Outcome outcome = run("--first-picture-time '" + (folder_ / "sphere.obj").string() + "'");
+    const Outcome outcome = run("--first-picture-time" + quoted(folder_ / "sphere.obj"));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     best = std::min(best, std::stod(outcome.out));
   }

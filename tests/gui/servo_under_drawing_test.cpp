@@ -18,10 +18,11 @@ TEST_F(ServoUnderDrawing, WakesInTimeWhileTheWindowDraws500000Triangles) {
   clock.start();
   while (clock.elapsed() < 4000) {
     orbit(*view().view().renderer().GetActiveCamera(), 0.004, 0);
-    view().refresh();
-    longest = std::max(longest, view().frameSeconds());
-    sum += view().frameSeconds();
-    ++frames;
+    if (view().refresh()) {
+      longest = std::max(longest, view().frameSeconds());
+      sum += view().frameSeconds();
+      ++frames;
+    }
     QApplication::processEvents(QEventLoop::AllEvents, 1);
   }
   const ServoTiming timing = window_->feel().timing();
