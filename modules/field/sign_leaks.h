@@ -1,0 +1,22 @@
+// Components that run through a hole of the surface: private to signs.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "field/sign_components.h"
+#include "geometry/triangle_mesh.h"
+
+namespace patina::signs {
+
+// Every edge, vertices at equal positions being one, has an even number of faces: no component can
+// run from inside to outside, whichever way the faces are turned.
+bool isClosed(const TriangleMesh& mesh);
+
+// A cut of leaking components that follows the parts' opinions (1 = surely inside, -1 = surely
+// outside, 0 = none; NaN = not of a leaking component) and crosses few edges: a random walk from
+// each part along the links ends at the opinion that it meets first. Returns the sign of phi by
+// part: -1 inside, +1 outside, 0 for parts of other components.
+std::vector<std::int8_t> cutLeaks(const Components& components, const std::vector<float>& opinion);
+
+} // namespace patina::signs

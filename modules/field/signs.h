@@ -1,0 +1,31 @@
+// Which side of the surface each node lies on (K01).
+#pragma once
+
+#include <cstddef>
+
+#include "core/progress.h"
+#include "field/field_builder.h"
+#include "geometry/triangle_mesh.h"
+#include "geometry/triangle_tree.h"
+#include "geometry/winding_number.h"
+
+namespace patina {
+
+// Signs the distances, the top table and the coarse nodes of `builder`, whose distances must be
+// exact to 5e-4 voxel (FieldBuilder says what else). Returns how many nodes are ambiguous: the
+// rules disagree there and the majority stands.
+//
+// Nodes p, q with d(p) + d(q) > |pq| lie on one side, for the surface cannot cross between them.
+// Nodes so connected share one sign: the majority of winding numbers, |w| > 1/2 being inside, taken
+// where each block's share of them is deepest. |w|, so that an inverted mesh has an inside. Where
+// the votes are mixed and the mesh has open edges, the component leaks through a hole: it is cut
+// where neighbouring votes change, and there every node asks for itself. Slivers beside the surface
+// take the sign of a node that they can see, or else their own winding number. A node on the
+// surface (within 1e-6 voxel) counts as outside.
+//
+// All of `mesh` in tree and winding. Parallel, and the same for any number of threads. Polls
+// `progress` and throws Cancelled (builder is then half done).
+std::size_t assignSigns(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
+                        const WindingNumber& winding, Progress& progress);
+
+} // namespace patina
