@@ -1,0 +1,148 @@
+// The house keeps its plan: DESIGN's rooms and their doors, checked on every source.
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "architecture/include_rules.h"
+
+namespace patina::architecture {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = PATINA_SOURCE_DIR;
+constexpr std::size_t kMaxLines = 400;
+
+bool isCode(const fs::path& path) {
+  static const std::set<std::string> kEndings{".h", ".cpp", ".sh", ".cmake"};
+  return kEndings.contains(path.extension()) || path.filename() == "CMakeLists.txt";
+}
+
+std::vector<SourceFile> filesUnder(const std::vector<std::string>& folders,
+                                   bool (*wanted)(const fs::path&)) {
+  std::vector<SourceFile> files;
+  for (const std::string& folder : folders) {
+    if (!fs::exists(kRoot / folder)) continue;
+    for (const fs::directory_entry& item : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (!item.is_regular_file() || !wanted(item.path())) continue;
+      std::ostringstream text;
+      text << std::ifstream(item.path(), std::ios::binary).rdbuf();
+      files.push_back({fs::relative(item.path(), kRoot).generic_string(), text.str()});
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> forbidden(const std::string& path, const std::string& line) {
+  return includeViolations({path, "// first\n" + line + "\n"});
+}
+
+TEST(Architecture, EveryIncludeKeepsToThePlan) {
+  const std::vector<SourceFile> files = filesUnder({"modules", "app"}, isCode);
+  ASSERT_GT(files.size(), 50u);
+  for (const SourceFile& file : files)
+    for (const std::string& violation : includeViolations(file)) ADD_FAILURE() << violation;
+}
+
+// The checker itself: each made-up edge must be seen, each allowed one must pass.
+TEST(Architecture, TheCheckerSeesForbiddenEdges) {
+  for (const auto& [path, line] : std::vector<std::pair<std::string, std::string>>{
+           {"modules/core/a.cpp", "#include \"geometry/triangle_mesh.h\""},
+           {"modules/geometry/a.cpp", "#include \"field/models.h\""},
+           {"modules/field/a.h", "#include \"scene/scene.h\""},
+           {"modules/scene/a.cpp", "#include \"haptics/snapshot.h\""},
+           {"modules/haptics/a.cpp", "#include \"visualization/field_io.h\""},
+           {"modules/visualization/a.cpp", "#include \"haptics/snapshot.h\""},
+           {"modules/workspace/a.cpp", "#include \"visualization/field_io.h\""},
+           {"modules/workspace/a.cpp", "#include \"usb/usb_bus.h\""},
+           {"modules/haptics/a.cpp", "  #  include  \"app/session.h\""},
+           {"modules/kitchen/a.cpp", "#include \"core/json.h\""},
+           {"modules/field/a.cpp", "#include \"models.h\""},
+           {"app/session.cpp", "#include \"app/gui/main_window.h\""},
+           {"app/studies/a.cpp", "#include \"app/cli/command.h\""},
+           {"app/gui/a.cpp", "#include \"app/cli/command.h\""},
+           {"modules/core/csv.cpp", "#include <nlohmann/json.hpp>"},
+           {"modules/core/json.h", "#include <nlohmann/json.hpp>"},
+           {"modules/geometry/adjacency.h", "#include <OpenMesh/Core/Mesh/TriConnectivity.hh>"},
+           {"modules/field/a.cpp", "#include <OpenMesh/Core/Mesh/TriConnectivity.hh>"},
+           {"modules/field/a.h", "#include <tbb/parallel_for.h>"},
+           {"modules/haptics/a.cpp", "#include <tbb/parallel_for.h>"},
+           {"modules/haptics/a.cpp", "#include <vtkPolyData.h>"},
+           {"modules/visualization/a.cpp", "#include <QWidget>"},
+           {"modules/visualization/a.cpp", "#include <QVTKOpenGLNativeWidget.h>"},
+           {"app/session.cpp", "#include <QString>"},
+           {"app/gui/a.cpp", "#include <CLI/CLI.hpp>"},
+           {"app/cli/a.h", "#include <CLI/CLI.hpp>"},
+           {"modules/workspace/sha256.h", "#include <openssl/evp.h>"},
+           {"modules/haptics/a.cpp", "#include <libusb.h>"},
+           {"modules/field/a.cpp", "#include <openvdb/openvdb.h>"},
+           {"modules/core/a.cpp", "#include <gtest/gtest.h>"}}) {
+    ASSERT_EQ(forbidden(path, line).size(), 1u) << path << " " << line;
+    EXPECT_TRUE(forbidden(path, line)[0].starts_with(path + ":2: ")) << forbidden(path, line)[0];
+  }
+}
+
+TEST(Architecture, TheCheckerAllowsWhatThePlanAllows) {
+  for (const auto& [path, line] : std::vector<std::pair<std::string, std::string>>{
+           {"modules/scene/a.h", "#include \"field/field_grid.h\""},
+           {"modules/haptics/a.cpp", "#include \"usb/usb_bus.h\""},
+           {"modules/core/json.cpp", "#include <nlohmann/json.hpp>"},
+           {"modules/geometry/a.cpp", "#include <OpenMesh/Core/Mesh/TriConnectivity.hh>"},
+           {"modules/field/a.cpp", "#include <tbb/parallel_for.h>"},
+           {"modules/visualization/a.h", "#include <vtkSmartPointer.h>"},
+           {"modules/haptics/a.cpp", "#include <sys/mman.h>"},
+           {"modules/core/a.h", "#include <vector>"},
+           {"modules/core/a.h", "#include <Eigen/Core>"},
+           {"app/gui/a.h", "#include <QWidget>"},
+           {"app/cli/a.cpp", "#include <CLI/CLI.hpp>"},
+           {"app/cli/a.cpp", "#include \"app/session.h\""}})
+    EXPECT_TRUE(forbidden(path, line).empty()) << forbidden(path, line)[0];
+}
+
+TEST(Architecture, NoFileIsTooLongToRead) {
+  for (const SourceFile& file : filesUnder({"app", "modules", "tests"}, isCode)) {
+    const auto lines =
+        static_cast<std::size_t>(std::count(file.text.begin(), file.text.end(), '\n'));
+    EXPECT_LE(lines, kMaxLines) << file.path;
+  }
+}
+
+TEST(Architecture, EveryModuleHeaderBeginsWithItsIdea) {
+  for (const SourceFile& file : filesUnder({"modules"}, isCode)) {
+    if (file.path.ends_with(".h")) {
+      EXPECT_TRUE(file.text.starts_with("// ")) << file.path;
+      EXPECT_NE(file.text.find("#pragma once"), std::string::npos) << file.path;
+    }
+  }
+}
+
+TEST(Architecture, TheTopLevelTellsTheStory) {
+  const std::set<std::string> allowed{
+      "CMakeLists.txt", "README.md", "LICENSE", "CITATION.cff",  "app",         "modules",   "data",
+      "tests",          "docs",      ".ci",     ".clang-format", ".clang-tidy", ".gitignore"};
+  // What git leaves out: see .gitignore.
+  const std::set<std::string> ignored{".git", "out", ".cache", "compile_commands.json"};
+  std::set<std::string> found;
+  for (const fs::directory_entry& item : fs::directory_iterator(kRoot)) {
+    const std::string name = item.path().filename();
+    if (!ignored.contains(name) && !name.starts_with("build")) found.insert(name);
+  }
+  EXPECT_EQ(found, allowed);
+}
+
+TEST(Architecture, NothingNamesTheMachineItWasMadeOn) {
+  // In pieces, so that this file passes too.
+  const std::vector<std::string> places{std::string("/ho") + "me/", std::string("/wo") + "rk/",
+                                        std::string("/fa") + "rm", std::string("/Us") + "ers/",
+                                        std::string("/tmp/") + "b-"};
+  const auto any = [](const fs::path& path) {
+    return isCode(path) || path.extension() == ".md" || path.extension() == ".json";
+  };
+  for (const SourceFile& file : filesUnder({"app", "modules", "tests", "docs", "data"}, any))
+    for (const std::string& place : places)
+      EXPECT_EQ(file.text.find(place), std::string::npos) << file.path << " names " << place;
+}
+
+} // namespace
+} // namespace patina::architecture
