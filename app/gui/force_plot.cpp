@@ -125,8 +125,9 @@ void ForcePlot::paintEvent(QPaintEvent*) {
   double x = area.left();
   for (std::size_t c = 0; c < all.size(); ++c) {
     const double value = points_.empty() ? 0 : static_cast<double>(points_.back().f[c]);
-    const QString words =
+    QString words =
         QStringLiteral("%1  %2 N").arg(QString::fromUtf8(all[c].name)).arg(value, 0, 'f', 2);
+    words.replace('-', QStringLiteral("−"));
     painter.setPen(QPen(all[c].color, 3));
     painter.drawLine(QPointF(x, 4 + metrics.height() / 2.0),
                      QPointF(x + 16, 4 + metrics.height() / 2.0));

@@ -1,6 +1,5 @@
 #include "app/gui/scene_widget.h"
 
-#include <chrono>
 #include <cmath>
 
 #include <QMouseEvent>
@@ -19,7 +18,6 @@ SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
   window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
   setRenderWindow(window);
   view_.attachTo(*window);
-  view_.renderer().UseFXAAOn();
   setEnableHiDPI(true);
   setMinimumSize(480,
                  320); // without one, a docked layout may give it no pixel and nothing is drawn
@@ -42,11 +40,20 @@ void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
 }
 
 bool SceneWidget::refresh() {
-  if (!view_.prepare() || !isVisible()) return false;
-  const auto start = std::chrono::steady_clock::now();
+  const auto now = std::chrono::steady_clock::now();
+  const bool changed = view_.prepare();
+  if (!isVisible()) return false;
+  // Smoothing costs 20 ms of a frame where OpenGL is software: a moving picture goes without it if
+  // it is slow, and is smoothed once it stands still.
+  const bool stands_still = now - drawn_ > std::chrono::milliseconds(150);
+  if (!changed && (smooth_ || !stands_still)) return false;
+  smooth_ = !changed || frame_seconds_ < (smooth_ ? 0.040 : 0.020);
+  view_.renderer().SetUseFXAA(smooth_);
   renderWindow()->Render();
-  frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return true;
+  drawn_ = std::chrono::steady_clock::now();
+  // The one smoothed frame of a picture that stands says nothing about moving ones.
+  if (changed) frame_seconds_ = std::chrono::duration<double>(drawn_ - now).count();
+  return changed;
 }
 
 Vec2 SceneWidget::fraction(const QPoint& pixel) const {

@@ -1,6 +1,8 @@
 // The 3D view: draws a SceneView, and turns the mouse into tip targets or camera moves.
 #pragma once
 
+#include <chrono>
+
 #include <QPoint>
 #include <QVTKOpenGLNativeWidget.h>
 
@@ -30,7 +32,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
 
   // Renders if anything changed since the last call; false if nothing did.
   bool refresh();
-  // Seconds that the last drawn frame took.
+  // Seconds that the last frame took in which something had changed.
   double frameSeconds() const { return frame_seconds_; }
 
   // A resting place for the tip: over the surface in the middle of the picture, towards the viewer.
@@ -60,6 +62,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   QPoint last_;
   Vec3 target_ = Vec3::Zero();
   double frame_seconds_ = 0;
+  bool smooth_ = false; // the last frame was anti-aliased
+  std::chrono::steady_clock::time_point drawn_;
 };
 
 } // namespace patina

@@ -114,7 +114,7 @@ bool isBlank(const QImage& image) {
 }
 
 void grab(MainWindow& window, const std::filesystem::path& path) {
-  wait(120);
+  wait(450); // the picture is smoothed once it stands still
   if (isBlank(window.view().grabFramebuffer()))
     throw Error("nothing was drawn: OpenGL gave an empty picture");
   if (!window.grab().toImage().save(QString::fromStdString(path.string()), "PNG", 0))

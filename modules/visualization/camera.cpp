@@ -29,14 +29,14 @@ void look(vtkCamera& camera, const Vec3& eye, const Vec3& at, const Vec3& up) {
 
 } // namespace
 
-void fitCamera(vtkCamera& camera, const Box3& box, double aspect) {
+void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& points,
+               double aspect) {
   const Frame frame = frameOf(camera);
   const double tangent = std::tan(kHalfView);
-  const Vec3 centre = box.center();
-  // The nearest distance at which all eight corners are in the picture.
+  // The nearest distance at which every point is in the picture.
   double distance = 0;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner = box.corner(static_cast<Box3::CornerType>(i)) - centre;
+  for (const Vec3& point : points) {
+    const Vec3 corner = point - centre;
     const double across = std::abs(corner.dot(frame.right)) / aspect;
     const double high = std::abs(corner.dot(frame.up));
     distance =
@@ -46,7 +46,7 @@ void fitCamera(vtkCamera& camera, const Box3& box, double aspect) {
   look(camera, centre + frame.back * distance, centre, frame.up);
 }
 
-void placeCamera(vtkCamera& camera, ViewPreset view, const Box3& box, double aspect) {
+void turnCamera(vtkCamera& camera, ViewPreset view) {
   Vec3 back = Vec3::UnitX(), up = Vec3::UnitZ();
   switch (view) {
   case ViewPreset::plus_x:
@@ -73,9 +73,8 @@ void placeCamera(vtkCamera& camera, ViewPreset view, const Box3& box, double asp
     back = Vec3(0.65, -1, 0.55).normalized();
     break;
   }
-  const Vec3 centre = box.center();
+  const Vec3 centre(camera.GetFocalPoint());
   look(camera, centre + back, centre, up);
-  fitCamera(camera, box, aspect);
 }
 
 void orbit(vtkCamera& camera, double dx, double dy) {

@@ -1,6 +1,8 @@
 // Moving the camera and moving a point with the mouse: plain functions on a VTK camera.
 #pragma once
 
+#include <vector>
+
 #include <vtkCamera.h>
 
 #include "core/types.h"
@@ -8,11 +10,12 @@
 
 namespace patina {
 
-// Looks at the box's centre from a preset side and fills the picture with the box.
-// aspect = width / height.
-void placeCamera(vtkCamera& camera, ViewPreset view, const Box3& box, double aspect);
-// Keeps the direction.
-void fitCamera(vtkCamera& camera, const Box3& box, double aspect);
+// Looks at what it looked at before, from a preset side.
+void turnCamera(vtkCamera& camera, ViewPreset view);
+// Looks at `centre` from the present direction, as near as all points allow. aspect = width /
+// height.
+void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& points,
+               double aspect);
 
 // dx, dy in fractions of the picture's height, to the right and up.
 void orbit(vtkCamera& camera, double dx, double dy);

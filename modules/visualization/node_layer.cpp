@@ -66,7 +66,7 @@ void NodeLayer::update(const SurfaceField& field, const Vec3& tip) {
   data_->SetVerts(vertices);
   data_->GetPointData()->SetScalars(distance);
   // A narrower map than the slice's: the sign is what one looks for near the surface.
-  mapper_->SetLookupTable(distanceMap(1000 * field.grid.voxel * kRadius));
+  mapper_->SetLookupTable(distanceMap(500 * field.grid.voxel * kRadius));
 }
 
 void NodeLayer::setVisible(bool on) {

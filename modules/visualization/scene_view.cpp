@@ -135,6 +135,18 @@ struct SceneView::Impl {
     if (all.isEmpty()) all = Box3(Vec3::Constant(-0.05), Vec3::Constant(0.05));
     return all;
   }
+  // What has to be in the picture: the mesh's own outline is tighter than its box.
+  std::vector<Vec3> outermost(const Box3& box) const {
+    std::vector<Vec3> points;
+    if (mesh && !(on(Layer::band) && field))
+      for (const Triangle& triangle : mesh->triangles) {
+        const Vec3& point = mesh->positions[static_cast<std::size_t>(triangle[0])];
+        if (point.allFinite()) points.push_back(point);
+      }
+    if (points.empty())
+      for (int i = 0; i < 8; ++i) points.push_back(box.corner(static_cast<Box3::CornerType>(i)));
+    return points;
+  }
 
   double aspect() {
     if (auto* window = scene->GetRenderWindow()) {
@@ -331,12 +343,13 @@ bool SceneView::shown(Layer layer) const {
 }
 
 void SceneView::setView(ViewPreset view) {
-  placeCamera(*impl_->scene->GetActiveCamera(), view, impl_->box(), impl_->aspect());
-  impl_->dirty = true;
+  turnCamera(*impl_->scene->GetActiveCamera(), view);
+  fit();
 }
 
 void SceneView::fit() {
-  fitCamera(*impl_->scene->GetActiveCamera(), impl_->box(), impl_->aspect());
+  const Box3 box = impl_->box();
+  fitCamera(*impl_->scene->GetActiveCamera(), box.center(), impl_->outermost(box), impl_->aspect());
   impl_->dirty = true;
 }
 
