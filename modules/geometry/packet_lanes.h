@@ -9,6 +9,7 @@
 #endif
 
 #define PATINA_INLINE static inline __attribute__((always_inline))
+#define PATINA_MEMBER inline __attribute__((always_inline))
 
 namespace patina::PATINA_KERNEL {
 
@@ -33,6 +34,9 @@ PATINA_INLINE IntLanes spread(std::int32_t x) {
 PATINA_INLINE Lanes load(const float* p) {
   return {_mm256_load_ps(p)};
 }
+PATINA_INLINE IntLanes load(const std::int32_t* p) {
+  return {_mm256_load_si256(reinterpret_cast<const __m256i*>(p))};
+}
 PATINA_INLINE void store(float* p, const Lanes& a) {
   _mm256_store_ps(p, a.v);
 }
@@ -41,6 +45,12 @@ PATINA_INLINE void store(std::int32_t* p, const IntLanes& a) {
 }
 PATINA_INLINE Lanes operator-(const Lanes& a, const Lanes& b) {
   return {_mm256_sub_ps(a.v, b.v)};
+}
+PATINA_INLINE Lanes operator+(const Lanes& a, const Lanes& b) {
+  return {_mm256_add_ps(a.v, b.v)};
+}
+PATINA_INLINE Lanes magnitude(const Lanes& a) {
+  return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)};
 }
 PATINA_INLINE Lanes operator*(const Lanes& a, const Lanes& b) {
   return {_mm256_mul_ps(a.v, b.v)};
@@ -92,6 +102,26 @@ PATINA_INLINE float largest(const Lanes& a) {
   return _mm_cvtss_f32(m);
 }
 
+// column[i] = element i of each of the eight rows.
+PATINA_INLINE void transpose(const float* const (&row)[8], Lanes* column) {
+  __m256 r[8], s[8];
+  for (int i = 0; i < 8; ++i) r[i] = _mm256_load_ps(row[i]);
+  for (int i = 0; i < 8; i += 2) {
+    s[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
+    s[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
+  }
+  for (int i = 0; i < 8; i += 4) {
+    r[i] = _mm256_shuffle_ps(s[i], s[i + 2], 0x44);
+    r[i + 1] = _mm256_shuffle_ps(s[i], s[i + 2], 0xEE);
+    r[i + 2] = _mm256_shuffle_ps(s[i + 1], s[i + 3], 0x44);
+    r[i + 3] = _mm256_shuffle_ps(s[i + 1], s[i + 3], 0xEE);
+  }
+  for (int i = 0; i < 4; ++i) {
+    column[i].v = _mm256_permute2f128_ps(r[i], r[i + 4], 0x20);
+    column[i + 4].v = _mm256_permute2f128_ps(r[i], r[i + 4], 0x31);
+  }
+}
+
 #else
 
 typedef float Four __attribute__((vector_size(16)));
@@ -119,6 +149,10 @@ PATINA_INLINE Lanes load(const float* p) {
   const Four* f = reinterpret_cast<const Four*>(p);
   return {f[0], f[1]};
 }
+PATINA_INLINE IntLanes load(const std::int32_t* p) {
+  const IntFour* f = reinterpret_cast<const IntFour*>(p);
+  return {f[0], f[1]};
+}
 PATINA_INLINE void store(float* p, const Lanes& a) {
   Four* f = reinterpret_cast<Four*>(p);
   f[0] = a.a;
@@ -131,6 +165,14 @@ PATINA_INLINE void store(std::int32_t* p, const IntLanes& a) {
 }
 PATINA_INLINE Lanes operator-(const Lanes& x, const Lanes& y) {
   return {x.a - y.a, x.b - y.b};
+}
+PATINA_INLINE Lanes operator+(const Lanes& x, const Lanes& y) {
+  return {x.a + y.a, x.b + y.b};
+}
+PATINA_INLINE Lanes magnitude(const Lanes& x) {
+  const IntFour m = {0x7fffffff, 0x7fffffff, 0x7fffffff, 0x7fffffff};
+  return {reinterpret_cast<Four>(reinterpret_cast<IntFour>(x.a) & m),
+          reinterpret_cast<Four>(reinterpret_cast<IntFour>(x.b) & m)};
 }
 PATINA_INLINE Lanes operator*(const Lanes& x, const Lanes& y) {
   return {x.a * y.a, x.b * y.b};
@@ -153,12 +195,16 @@ PATINA_INLINE Lanes larger(const Lanes& x, const Lanes& y) {
 #endif
 }
 PATINA_INLINE Lanes root(const Lanes& x) {
+#if defined(__SSE__)
+  return {__builtin_ia32_sqrtps(x.a), __builtin_ia32_sqrtps(x.b)};
+#else
   Lanes r = x;
   for (int i = 0; i < 4; ++i) {
     r.a[i] = __builtin_sqrtf(x.a[i]);
     r.b[i] = __builtin_sqrtf(x.b[i]);
   }
   return r;
+#endif
 }
 PATINA_INLINE Mask operator<=(const Lanes& x, const Lanes& y) {
   return {x.a <= y.a, x.b <= y.b};
@@ -196,6 +242,13 @@ PATINA_INLINE unsigned bits(const Mask& m) {
   }
   return r;
 #endif
+}
+// column[i] = element i of each of the eight rows.
+PATINA_INLINE void transpose(const float* const (&row)[8], Lanes* column) {
+  for (int i = 0; i < 8; ++i) {
+    column[i].a = Four{row[0][i], row[1][i], row[2][i], row[3][i]};
+    column[i].b = Four{row[4][i], row[5][i], row[6][i], row[7][i]};
+  }
 }
 PATINA_INLINE float largest(const Lanes& x) {
   float m = x.a[0];

@@ -9,18 +9,23 @@ namespace patina {
 
 inline constexpr int kWide = 8; // children of a node, and points of a packet
 
-// Boxes of the children, by coordinate. An empty place has an inverted, infinite box, so that no
-// query enters it. child >= 0 is a node, < 0 is ~(index of a triangle).
+// Bounds of the children, by coordinate: a box, and a short cylinder about the box's centre whose
+// axis is the mean normal. Where a patch lies slanted in its box, far points see the box much
+// nearer than the patch, and only the cylinder keeps them from searching a wide surrounding.
+// An empty place has half = -infinity, so that no query enters it. child >= 0 is a node, < 0 is
+// ~(index of a triangle).
 struct alignas(32) WideNode {
-  float lo[3][kWide];
-  float hi[3][kWide];
+  float centre[3][kWide], half[3][kWide];
+  float normal[3][kWide];        // unit
+  float low[kWide], high[kWide]; // extent along the normal, from the centre
+  float radius[kWide];           // across it; infinite where there is no cylinder
   std::int32_t child[kWide];
 };
 
 // A triangle in its own plane's frame: A at the origin, B on the x axis, C above it. The distance
-// of a point is then three edges in 2D and a height, without a division.
-struct PacketTriangle {
-  double origin[3];          // A
+// of a point is then three edges in 2D and a height, without a division. The first 24 floats are
+// read as three rows of eight, too.
+struct alignas(64) PacketTriangle {
   float a[3];                // A, rounded
   float axis[3][3];          // rows: along AB, in the plane towards C, normal
   float ab;                  // length of AB, the longest edge
@@ -29,7 +34,10 @@ struct PacketTriangle {
   float bc;                  // length
   float ac_x, ac_y, ac;      // unit direction and length of AC
   std::int32_t face;
+  float unused[2];
+  double origin[3]; // A
 };
+static_assert(sizeof(PacketTriangle) == 128);
 
 // The nodes origin + spacing (i, j, k), 0 <= i, j, k < side, x fastest.
 struct LatticeJob {

@@ -46,10 +46,14 @@ void boxDistances(const WideNode& node, const std::array<float, 3>& p, float* d2
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < kWide; ++i) {
       const float gap =
-          std::max(std::max(node.lo[axis][i] - p[axis], p[axis] - node.hi[axis][i]), 0.0f);
+          std::max(std::abs(p[axis] - node.centre[axis][i]) - node.half[axis][i], 0.0f);
       d2[i] += gap * gap;
     }
   }
+}
+
+bool isEmpty(const WideNode& node, std::size_t place) {
+  return node.half[0][place] < 0;
 }
 
 } // namespace
@@ -115,7 +119,7 @@ struct TriangleTree::Impl {
       boxDistances(node, f, d2.data());
       stack.beginNode();
       for (std::size_t i = 0; i < kWide; ++i)
-        if (d2[i] <= limit && node.lo[0][i] <= node.hi[0][i]) stack.push(d2[i], node.child[i]);
+        if (d2[i] <= limit && !isEmpty(node, i)) stack.push(d2[i], node.child[i]);
     }
     return result;
   }
@@ -166,6 +170,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
           }
         }
       });
+  fitCylinders(impl->nodes, impl->leaves);
   impl_ = std::move(impl);
 }
 
@@ -202,7 +207,7 @@ std::vector<std::int32_t> TriangleTree::facesInSphere(const Vec3& centre, double
     alignas(32) std::array<float, kWide> d2;
     boxDistances(node, f, d2.data());
     for (std::size_t i = 0; i < kWide; ++i) {
-      if (!(d2[i] <= limit) || node.lo[0][i] > node.hi[0][i]) continue;
+      if (!(d2[i] <= limit) || isEmpty(node, i)) continue;
       if (node.child[i] >= 0) {
         stack.beginNode();
         stack.push(0, node.child[i]);
@@ -261,10 +266,9 @@ struct ShearedRay {
 double entry(const WideNode& node, std::size_t place, const ShearedRay& ray, double max_t) {
   double near = 0, far = max_t;
   for (int axis = 0; axis < 3; ++axis) {
-    const double t0 =
-        (static_cast<double>(node.lo[axis][place]) - ray.origin[axis]) * ray.inverse[axis];
-    const double t1 =
-        (static_cast<double>(node.hi[axis][place]) - ray.origin[axis]) * ray.inverse[axis];
+    const double r = static_cast<double>(node.centre[axis][place]) - ray.origin[axis];
+    const double half = static_cast<double>(node.half[axis][place]);
+    const double t0 = (r - half) * ray.inverse[axis], t1 = (r + half) * ray.inverse[axis];
     near = std::max(near, std::min(t0, t1));
     far = std::min(far, std::max(t0, t1));
   }
@@ -302,7 +306,7 @@ std::optional<RayHit> TriangleTree::firstHit(const Vec3& origin, const Vec3& dir
     const WideNode& node = impl_->nodes[static_cast<std::size_t>(next.child)];
     stack.beginNode();
     for (std::size_t i = 0; i < kWide; ++i) {
-      if (node.lo[0][i] > node.hi[0][i]) continue;
+      if (isEmpty(node, i)) continue;
       const double t = entry(node, i, ray, limit + 1e-12);
       if (t < kInf) stack.push(std::nextafter(static_cast<float>(t), 0.0f), node.child[i]);
     }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
+#include <Eigen/Core>
 #include <tbb/parallel_for.h>
 
 namespace patina {
@@ -68,9 +70,13 @@ class Builder {
     const std::size_t at = nodes.size();
     nodes.emplace_back();
     for (int a = 0; a < 3; ++a) {
-      std::fill_n(nodes[at].lo[a], kWide, kInf);
-      std::fill_n(nodes[at].hi[a], kWide, -kInf);
+      std::fill_n(nodes[at].centre[a], kWide, 0.0f);
+      std::fill_n(nodes[at].half[a], kWide, -kInf);
+      std::fill_n(nodes[at].normal[a], kWide, 0.0f);
     }
+    std::fill_n(nodes[at].low, kWide, 0.0f);
+    std::fill_n(nodes[at].high, kWide, 0.0f);
+    std::fill_n(nodes[at].radius, kWide, kInf);
     std::fill_n(nodes[at].child, kWide, 0);
     if (piece.size() <= kWide) {
       for (std::size_t i = 0; i < piece.size(); ++i) {
@@ -131,8 +137,9 @@ class Builder {
 
   static void setBox(WideNode& node, std::size_t place, const float* lo, const float* hi) {
     for (std::size_t a = 0; a < 3; ++a) {
-      node.lo[a][place] = lo[a];
-      node.hi[a][place] = hi[a];
+      const float centre = 0.5f * (lo[a] + hi[a]);
+      node.centre[a][place] = centre;
+      node.half[a][place] = std::max(hi[a] - centre, centre - lo[a]) * (1 + 1e-6f);
     }
   }
 
@@ -204,10 +211,91 @@ class Builder {
   std::vector<BoxRef>& refs_;
 };
 
+// Larger subtrees are hardly flat.
+constexpr std::int32_t kMostInCylinder = 512;
+
+struct Range {
+  std::int32_t begin = std::numeric_limits<std::int32_t>::max(), end = 0;
+};
+
+using Vec3f = Eigen::Vector3f;
+
+Vec3f axisOf(const PacketTriangle& t, int which) {
+  return Eigen::Map<const Vec3f>(t.axis[which]);
+}
+
+void fitCylinder(WideNode& node, std::size_t place, const Range& range,
+                 const std::vector<PacketTriangle>& triangles) {
+  const auto begin = static_cast<std::size_t>(range.begin);
+  const auto end = static_cast<std::size_t>(range.end);
+  const Vec3f first = axisOf(triangles[begin], 2);
+  Vec3f sum = Vec3f::Zero();
+  for (std::size_t i = begin; i < end; ++i) {
+    const PacketTriangle& t = triangles[i];
+    const Vec3f normal = axisOf(t, 2);
+    const float area = t.ab * t.bc * t.bc_y;
+    sum += normal.dot(first) < 0 ? Vec3f(-area * normal) : Vec3f(area * normal);
+  }
+  const float length = sum.norm();
+  const Vec3f axis = length > 1e-20f ? Vec3f(sum / length) : first;
+  const Vec3f centre(node.centre[0][place], node.centre[1][place], node.centre[2][place]);
+  float low = kInf, high = -kInf, radius2 = 0;
+  const auto add = [&](const Vec3f& r) {
+    const float along = r.dot(axis);
+    low = std::min(low, along);
+    high = std::max(high, along);
+    radius2 = std::max(radius2, (r - along * axis).squaredNorm());
+  };
+  for (std::size_t i = begin; i < end; ++i) {
+    const PacketTriangle& t = triangles[i];
+    const Vec3f a = Eigen::Map<const Vec3f>(t.a) - centre;
+    const Vec3f along = axisOf(t, 0), across = axisOf(t, 1);
+    add(a);
+    add(a + t.ab * along);
+    add(a + t.ac * (t.ac_x * along + t.ac_y * across));
+  }
+  // Margins for what the kernel's float arithmetic loses; a thin rod would lose more.
+  const float thickness = std::max(std::abs(low), std::abs(high));
+  const float radius = std::max(std::sqrt(radius2) * (1 + 1e-3f), 0.1f * thickness) + 5e-7f;
+  const float margin = 2e-6f * (radius + thickness) + 5e-7f;
+  for (int a = 0; a < 3; ++a) node.normal[a][place] = axis[a];
+  node.low[place] = low - margin;
+  node.high[place] = high + margin;
+  node.radius[place] = radius;
+}
+
 } // namespace
 
 std::vector<WideNode> buildWideBvh(std::vector<BoxRef>& refs) {
   return Builder(refs).build();
+}
+
+void fitCylinders(std::vector<WideNode>& nodes, const std::vector<PacketTriangle>& triangles) {
+  // Children come after their parents, and a subtree's triangles are consecutive.
+  std::vector<Range> ranges(nodes.size());
+  const auto rangeOf = [&](const WideNode& node, std::size_t place) {
+    const std::int32_t child = node.child[place];
+    return child < 0 ? Range{~child, ~child + 1} : ranges[static_cast<std::size_t>(child)];
+  };
+  const auto present = [](const WideNode& node, std::size_t place) {
+    return node.half[0][place] >= 0;
+  };
+  for (std::size_t n = nodes.size(); n-- > 0;)
+    for (std::size_t place = 0; place < kWide; ++place) {
+      if (!present(nodes[n], place)) continue;
+      const Range range = rangeOf(nodes[n], place);
+      ranges[n].begin = std::min(ranges[n].begin, range.begin);
+      ranges[n].end = std::max(ranges[n].end, range.end);
+    }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 256), [&](const auto& r) {
+    for (std::size_t n = r.begin(); n < r.end(); ++n)
+      for (std::size_t place = 0; place < kWide; ++place) {
+        if (!present(nodes[n], place)) continue;
+        const Range range = rangeOf(nodes[n], place);
+        if (range.end - range.begin <= kMostInCylinder)
+          fitCylinder(nodes[n], place, range, triangles);
+      }
+  });
 }
 
 } // namespace patina

@@ -18,4 +18,7 @@ std::vector<WideNode> buildWideBvh(std::vector<BoxRef>& refs);
 
 inline constexpr int kMaxTreeDepth = 88;
 
+// Fits the children's cylinders, given the triangles in the order of refs.
+void fitCylinders(std::vector<WideNode>& nodes, const std::vector<PacketTriangle>& triangles);
+
 } // namespace patina
