@@ -54,6 +54,14 @@ std::string textOf(const Json& value) {
   return value.isString() ? value.asString() : formatNumber(value.asNumber());
 }
 
+// A whole number without the ".0" that a double carries.
+Json jsonOf(const std::string& text) {
+  const std::optional<double> number = parseNumber(text);
+  if (!number) return text;
+  const bool whole = text.find_first_not_of("0123456789") == std::string::npos && *number < 1e15;
+  return whole ? Json(static_cast<std::int64_t>(*number)) : Json(*number);
+}
+
 Manifest manifestFrom(const Json& json) {
   const std::int64_t version = json.at("version").asInteger();
   if (version != kWorkspaceVersion) {
@@ -82,8 +90,7 @@ Json toJson(const Manifest& manifest) {
   }
   Json list = Json::object();
   for (const auto& [key, text] : values(manifest.values)) {
-    const std::optional<double> number = parseNumber(text);
-    list.set(key, number ? Json(*number) : Json(text));
+    list.set(key, jsonOf(text));
   }
   Json json = Json::object();
   json.set("version", kWorkspaceVersion).set("units", "SI");

@@ -148,8 +148,8 @@ TEST_F(BrokenWorkspace, EveryTruncationIsAnError) {
 TEST_F(BrokenWorkspace, BadValuesAreNamed) {
   const std::string good = readFile(json);
   for (const auto& [from, to, says] : std::vector<std::array<std::string, 3>>{
-           {"\"stiffness\": 50.0", "\"stiffness\": -5", "stiffness = -5"},
-           {"\"stiffness\": 50.0", "\"stiffness\": [1]", "expected number, found array"},
+           {"\"stiffness\": 50", "\"stiffness\": -5", "stiffness = -5"},
+           {"\"stiffness\": 50", "\"stiffness\": [1]", "expected number, found array"},
            {"\"sampler\": \"high\"", "\"sampler\": \"best\"", "best"},
            {"\"name\": \"crate-1\"", "\"name\": \"ball\"", "used twice"},
            {"\"name\": \"crate-1\"", "\"name\": \"../x\"", "object name"},
