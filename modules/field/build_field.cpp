@@ -1,0 +1,82 @@
+#include "field/build_field.h"
+
+#include <chrono>
+#include <ctime>
+#include <optional>
+
+#include <tbb/parallel_for.h>
+
+#include "core/error.h"
+#include "field/distance_blocks.h"
+#include "field/signs.h"
+#include "geometry/triangle_tree.h"
+#include "geometry/winding_number.h"
+
+namespace patina {
+namespace {
+
+double cpuSeconds() {
+  std::timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// The sound triangles of a mesh, in order. Corners that only dropped triangles use may be NaN, so
+// they are moved to the origin.
+TriangleMesh onlyFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
+  TriangleMesh sound;
+  sound.positions = mesh.positions;
+  for (Vec3& p : sound.positions)
+    if (!p.allFinite()) p.setZero();
+  sound.triangles.reserve(faces.size());
+  for (const std::int32_t f : faces)
+    sound.triangles.push_back(mesh.triangles[static_cast<std::size_t>(f)]);
+  return sound;
+}
+
+void renumberFaces(FieldBuilder& builder, const std::vector<std::int32_t>& face_of) {
+  tbb::parallel_for(std::size_t{0}, builder.face.size(), [&](std::size_t slot) {
+    for (std::int32_t& face : builder.face[slot]->face)
+      if (face >= 0) face = face_of[static_cast<std::size_t>(face)];
+  });
+}
+
+} // namespace
+
+BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_start = cpuSeconds();
+  progress.throwIfCancelled();
+  progress.report(0, "triangles");
+
+  const std::vector<std::int32_t> usable = usableTriangles(mesh);
+  if (usable.empty()) throw Error("field: the mesh has no triangle with an area");
+  FieldReport report;
+  report.dropped_triangles = mesh.triangles.size() - usable.size();
+  std::optional<TriangleMesh> reduced;
+  if (report.dropped_triangles > 0) reduced = onlyFaces(mesh, usable);
+  const TriangleMesh& sound = reduced ? *reduced : mesh;
+
+  const FieldGrid grid = gridAround(bounds(sound), spec);
+  const TriangleTree tree(sound);
+  progress.throwIfCancelled();
+  progress.report(0.1, "distances");
+  FieldBuilder builder = distanceBlocks(sound, tree, grid, spec.band, progress, 0.1, 0.7);
+  progress.report(0.7, "signs");
+  const WindingNumber winding(sound);
+  progress.throwIfCancelled();
+  report.ambiguous_signs = assignSigns(builder, sound, tree, winding, progress);
+  progress.throwIfCancelled();
+  if (report.dropped_triangles > 0) renumberFaces(builder, usable);
+
+  auto field = std::make_shared<const SurfaceField>(frozen(std::move(builder)));
+  report.blocks = field->blockCount();
+  report.bytes = field->bytes();
+  report.dense_bytes = grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
+  report.cpu_seconds = cpuSeconds() - cpu_start;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  progress.report(1, "field");
+  return {std::move(field), report};
+}
+
+} // namespace patina
