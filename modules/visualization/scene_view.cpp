@@ -122,7 +122,7 @@ struct SceneView::Impl {
   bool cut_keeps_positive = true, cut_on = false;
   vtkMTimeType camera_time = 0;
 
-  Box3 meshBox() const { return mesh ? bounds(*mesh) : Box3(); }
+  Box3 mesh_box; // empty without a mesh
   Box3 gridBox() const {
     if (!field) return {};
     const Vec3 last(field->grid.nodes[0] - 1, field->grid.nodes[1] - 1, field->grid.nodes[2] - 1);
@@ -130,7 +130,7 @@ struct SceneView::Impl {
   }
   // What people mean by the size of the scene: the mesh where there is one.
   Box3 box() const {
-    Box3 all = mesh ? meshBox() : gridBox();
+    Box3 all = mesh ? mesh_box : gridBox();
     if (layers.count(Layer::band) && field) all.extend(gridBox());
     if (all.isEmpty()) all = Box3(Vec3::Constant(-0.05), Vec3::Constant(0.05));
     return all;
@@ -274,6 +274,7 @@ vtkRenderer& SceneView::renderer() {
 void SceneView::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   Impl& my = *impl_;
   my.mesh = std::move(mesh);
+  my.mesh_box = my.mesh ? bounds(*my.mesh) : Box3();
   auto* mapper = vtkPolyDataMapper::SafeDownCast(my.mesh_actor->GetMapper());
   mapper->SetInputData(my.mesh ? surfaceData(*my.mesh) : vtkSmartPointer<vtkPolyData>::New());
   my.applyVisibility();

@@ -1,0 +1,97 @@
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <vtkNew.h>
+
+#include "core/error.h"
+#include "visualization/camera.h"
+
+namespace patina {
+namespace {
+
+std::vector<Vec3> cloud() {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 400; ++i)
+    points.emplace_back(0.05 * unit(random), 0.02 * unit(random) + 0.3, 0.03 * unit(random));
+  return points;
+}
+
+// Where a point is in the picture: fractions of the height from the centre.
+Vec2 projected(vtkCamera& camera, const Vec3& point) {
+  const Ray centre = rayThrough(camera, 0, 0);
+  const Vec3 right = centre.direction.cross(Vec3(camera.GetViewUp())).normalized();
+  const Vec3 up = right.cross(centre.direction);
+  const Vec3 to = point - centre.origin;
+  const double high = 2 * to.dot(centre.direction) * std::tan(camera.GetViewAngle() * M_PI / 360);
+  return {to.dot(right) / high, to.dot(up) / high};
+}
+
+TEST(Camera, FitsEveryPointFromEverySideAndNotWithRoomToSpare) {
+  for (const ViewPreset view : allViews())
+    for (const double aspect : {0.5, 1.0, 2.0}) {
+      const vtkNew<vtkCamera> camera;
+      turnCamera(*camera, view);
+      fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), aspect);
+      double fullest = 0;
+      for (const Vec3& point : cloud()) {
+        const Vec2 at = projected(*camera, point);
+        fullest = std::max({fullest, std::abs(at[0]) / (0.5 * aspect), std::abs(at[1]) / 0.5});
+      }
+      EXPECT_LE(fullest, 1.0) << name(view) << aspect;
+      EXPECT_GT(fullest, 0.85) << name(view) << aspect;
+    }
+}
+
+TEST(Camera, PresetsLookAlongTheirAxis) {
+  const vtkNew<vtkCamera> camera;
+  turnCamera(*camera, ViewPreset::plus_x);
+  EXPECT_NEAR((viewDirection(*camera) + Vec3::UnitX()).norm(), 0, 1e-12);
+  turnCamera(*camera, ViewPreset::minus_z);
+  EXPECT_NEAR((viewDirection(*camera) - Vec3::UnitZ()).norm(), 0, 1e-12);
+}
+
+TEST(Camera, APointInTheViewPlaneProjectsBackToItsPlaceInThePicture) {
+  const vtkNew<vtkCamera> camera;
+  turnCamera(*camera, ViewPreset::iso);
+  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  const Vec3 through(0.01, 0.31, -0.02);
+  const Vec3 point = pointInViewPlane(*camera, 0.21, -0.34, through);
+  EXPECT_NEAR((projected(*camera, point) - Vec2(0.21, -0.34)).norm(), 0, 1e-12);
+  EXPECT_NEAR((point - through).dot(viewDirection(*camera)), 0, 1e-12);
+}
+
+TEST(Camera, OrbitKeepsTheDistanceAndPanMovesWithThePointer) {
+  const vtkNew<vtkCamera> camera;
+  turnCamera(*camera, ViewPreset::iso);
+  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  const double distance = camera->GetDistance();
+  orbit(*camera, 0.2, 0.1);
+  EXPECT_NEAR(camera->GetDistance(), distance, 1e-9);
+  const Vec3 focus(camera->GetFocalPoint());
+  pan(*camera, 0.1, -0.05);
+  EXPECT_NEAR((projected(*camera, focus) - Vec2(0.1, -0.05)).norm(), 0, 1e-9);
+  zoom(*camera, 2);
+  EXPECT_NEAR(camera->GetDistance(), distance / 2, 1e-9);
+}
+
+TEST(ViewOptions, WordsReadBackAndUnknownOnesListTheChoices) {
+  for (const Layer layer : allLayers()) EXPECT_EQ(parseLayers(name(layer)), std::set<Layer>{layer});
+  for (const ViewPreset view : allViews()) EXPECT_EQ(parseView(name(view)), view);
+  EXPECT_EQ(parseLayers("mesh,slice,band").size(), 3U);
+  for (const char* bad : {"", "mesh,", "Mesh", "mesh slice"}) {
+    try {
+      parseLayers(bad);
+      ADD_FAILURE() << bad;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("wireframe"), std::string::npos);
+    }
+  }
+  EXPECT_THROW(parseView("front"), Error);
+}
+
+} // namespace
+} // namespace patina
