@@ -19,7 +19,7 @@ BoxRef boxOf(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t id) {
     ref.lo[axis] = static_cast<float>(std::min({a[axis], b[axis], c[axis]})) - kPadding;
     ref.hi[axis] = static_cast<float>(std::max({a[axis], b[axis], c[axis]})) + kPadding;
   }
-  ref.id = static_cast<std::int32_t>(id);
+  ref.setId(static_cast<std::int32_t>(id));
   return ref;
 }
 

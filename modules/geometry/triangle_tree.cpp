@@ -159,7 +159,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, pieces.boxes.size(), 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          const std::int32_t id = pieces.boxes[i].id;
+          const std::int32_t id = pieces.boxes[i].id();
           if (id < faces) {
             impl->leaves[i] =
                 packetTriangle(impl->corner(id, 0), impl->corner(id, 1), impl->corner(id, 2), id);

@@ -18,21 +18,29 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr int kBalancedDepth = 48;
 constexpr std::size_t kParallelSize = 20000;
 
-struct Bounds {
-  std::array<float, 3> lo{kInf, kInf, kInf}, hi{-kInf, -kInf, -kInf};
+using Row = Eigen::Array4f;
+using RowMap = Eigen::Map<const Row, Eigen::Aligned16>;
 
-  void add(const float* l, const float* h) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      lo[a] = std::min(lo[a], l[a]);
-      hi[a] = std::max(hi[a], h[a]);
-    }
+struct Bounds {
+  Row lo = Row::Constant(kInf), hi = Row::Constant(-kInf);
+
+  void add(const Row& l, const Row& h) {
+    lo = lo.min(l);
+    hi = hi.max(h);
   }
-  void add(const Bounds& b) { add(b.lo.data(), b.hi.data()); }
   float halfArea() const {
-    const float x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
-    return x * y + y * z + z * x;
+    const Row size = hi - lo;
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
   }
 };
+
+Row lowOf(const BoxRef& ref) {
+  return RowMap(ref.lo);
+}
+
+Row highOf(const BoxRef& ref) {
+  return RowMap(ref.hi);
+}
 
 struct Piece {
   std::size_t begin = 0, end = 0;
@@ -47,11 +55,22 @@ float centroid(const BoxRef& ref, std::size_t axis) {
 Piece measured(const std::vector<BoxRef>& refs, std::size_t begin, std::size_t end) {
   Piece piece{begin, end, {}, {}};
   for (std::size_t i = begin; i < end; ++i) {
-    piece.bounds.add(refs[i].lo, refs[i].hi);
-    const std::array<float, 3> c{centroid(refs[i], 0), centroid(refs[i], 1), centroid(refs[i], 2)};
-    piece.centroids.add(c.data(), c.data());
+    const Row lo = lowOf(refs[i]), hi = highOf(refs[i]), sum = lo + hi;
+    piece.bounds.add(lo, hi);
+    piece.centroids.add(sum, sum);
   }
   return piece;
+}
+
+// Up to here pieces are cut in halves rounded to whole nodes, so that nodes are full: half as many
+// as the area rule would leave, and the area rule gains nothing among so few.
+constexpr std::size_t kFullNodes = 512;
+
+// Triangles below one child of a piece that small.
+std::size_t unitOf(std::size_t size) {
+  std::size_t unit = 1;
+  while (unit * kWide < size) unit *= kWide;
+  return unit;
 }
 
 class Builder {
@@ -89,13 +108,15 @@ class Builder {
     std::array<Piece, kWide> pieces;
     std::size_t count = 1;
     pieces[0] = piece;
+    const std::size_t unit = piece.size() <= kFullNodes ? unitOf(piece.size()) : 1;
     while (count < kWide) {
       std::size_t largest = count;
       for (std::size_t i = 0; i < count; ++i)
-        if (pieces[i].size() > 1 && (largest == count || cost(pieces[i]) > cost(pieces[largest])))
+        if (pieces[i].size() > unit &&
+            (largest == count || cost(pieces[i], unit) > cost(pieces[largest], unit)))
           largest = i;
       if (largest == count) break;
-      const auto [left, right] = split(pieces[largest], depth);
+      const auto [left, right] = split(pieces[largest], unit, depth);
       pieces[largest] = left;
       pieces[count++] = right;
     }
@@ -115,7 +136,7 @@ class Builder {
     std::array<std::vector<WideNode>, kWide> subtrees;
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
       if (pieces[i].size() == 1) return;
-      subtrees[i].reserve(pieces[i].size() / 4);
+      subtrees[i].reserve(pieces[i].size() / 6);
       node(pieces[i], depth + 1, subtrees[i]);
     });
     for (std::size_t i = 0; i < count; ++i) {
@@ -131,8 +152,9 @@ class Builder {
     }
   }
 
-  static float cost(const Piece& piece) {
-    return piece.bounds.halfArea() * static_cast<float>(piece.size());
+  static float cost(const Piece& piece, std::size_t unit) {
+    const auto size = static_cast<float>(piece.size());
+    return unit > 1 ? size : piece.bounds.halfArea() * size;
   }
 
   static void setBox(WideNode& node, std::size_t place, const float* lo, const float* hi) {
@@ -143,31 +165,36 @@ class Builder {
     }
   }
 
-  std::pair<Piece, Piece> split(const Piece& piece, int depth) {
+  std::pair<Piece, Piece> split(const Piece& piece, std::size_t unit, int depth) {
     std::size_t axis = 0;
     std::array<float, 3> size{};
     for (std::size_t a = 0; a < 3; ++a) {
       size[a] = piece.centroids.hi[a] - piece.centroids.lo[a];
       if (size[a] > size[axis]) axis = a;
     }
-    if (depth >= kBalancedDepth || !(size[axis] > 1e-30f)) return halves(piece, axis);
+    if (unit > 1) {
+      const std::size_t units = (piece.size() + unit - 1) / unit;
+      return cutAt(piece, axis, piece.begin + units / 2 * unit);
+    }
+    const std::size_t middle = piece.begin + piece.size() / 2;
+    if (depth >= kBalancedDepth || !(size[axis] > 1e-30f)) return cutAt(piece, axis, middle);
     const float origin = piece.centroids.lo[axis];
     const float scale = kBins * 0.9999f / size[axis];
     const auto bin = [&](const BoxRef& ref) {
       return std::min(static_cast<int>((centroid(ref, axis) - origin) * scale), kBins - 1);
     };
-    std::array<Piece, kBins> bins;
+    std::array<Bounds, kBins> bins;
     std::array<std::size_t, kBins> counts{};
     for (std::size_t i = piece.begin; i < piece.end; ++i) {
       const auto b = static_cast<std::size_t>(bin(refs_[i]));
-      bins[b].bounds.add(refs_[i].lo, refs_[i].hi);
+      bins[b].add(lowOf(refs_[i]), highOf(refs_[i]));
       ++counts[b];
     }
     std::array<float, kBins> right_cost{};
     Bounds sweep;
     std::size_t swept = 0;
     for (std::size_t b = kBins - 1; b > 0; --b) {
-      sweep.add(bins[b].bounds);
+      sweep.add(bins[b].lo, bins[b].hi);
       swept += counts[b];
       right_cost[b] = swept ? sweep.halfArea() * static_cast<float>(swept) : 0;
     }
@@ -176,7 +203,7 @@ class Builder {
     sweep = {};
     swept = 0;
     for (std::size_t b = 0; b + 1 < kBins; ++b) {
-      sweep.add(bins[b].bounds);
+      sweep.add(bins[b].lo, bins[b].hi);
       swept += counts[b];
       if (swept == 0 || swept == piece.size()) continue;
       const float total = sweep.halfArea() * static_cast<float>(swept) + right_cost[b + 1];
@@ -185,21 +212,20 @@ class Builder {
         cut = b + 1;
       }
     }
-    if (cut == 0) return halves(piece, axis);
+    if (cut == 0) return cutAt(piece, axis, middle);
     const auto first = refs_.begin() + static_cast<std::ptrdiff_t>(piece.begin);
     const auto last = refs_.begin() + static_cast<std::ptrdiff_t>(piece.end);
-    const auto middle = std::partition(
+    const auto second = std::partition(
         first, last, [&](const BoxRef& ref) { return static_cast<std::size_t>(bin(ref)) < cut; });
-    return parts(piece, static_cast<std::size_t>(middle - refs_.begin()));
+    return parts(piece, static_cast<std::size_t>(second - refs_.begin()));
   }
 
-  std::pair<Piece, Piece> halves(const Piece& piece, std::size_t axis) {
-    const std::size_t middle = piece.begin + piece.size() / 2;
+  std::pair<Piece, Piece> cutAt(const Piece& piece, std::size_t axis, std::size_t middle) {
     const auto at = [&](std::size_t i) { return refs_.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(piece.begin), at(middle), at(piece.end),
                      [axis](const BoxRef& a, const BoxRef& b) {
                        const float x = centroid(a, axis), y = centroid(b, axis);
-                       return x < y || (x == y && a.id < b.id);
+                       return x < y || (x == y && a.id() < b.id());
                      });
     return parts(piece, middle);
   }
@@ -212,7 +238,7 @@ class Builder {
 };
 
 // Larger subtrees are hardly flat.
-constexpr std::int32_t kMostInCylinder = 512;
+constexpr std::int32_t kMostInCylinder = 64;
 
 struct Range {
   std::int32_t begin = std::numeric_limits<std::int32_t>::max(), end = 0;

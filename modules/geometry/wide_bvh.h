@@ -7,9 +7,19 @@
 
 namespace patina {
 
-struct BoxRef {
-  float lo[3], hi[3];
-  std::int32_t id;
+// Two rows of four, for the builder's arithmetic. The fourth column holds the id in two exact
+// floats, since an integer's bits would be a denormal number, which is slow.
+struct alignas(16) BoxRef {
+  float lo[3], id_low;
+  float hi[3], id_high;
+
+  void setId(std::int32_t id) {
+    id_low = static_cast<float>(id & 0xfff);
+    id_high = static_cast<float>(id >> 12);
+  }
+  std::int32_t id() const {
+    return static_cast<std::int32_t>(id_low) + (static_cast<std::int32_t>(id_high) << 12);
+  }
 };
 
 // Splits by the surface-area rule with binned centroids. Permutes refs: a leaf child ~i is refs[i].
