@@ -97,11 +97,15 @@ run_fuzz() { # seconds each
     mkdir -p "build-fuzz/found/$reader"
     seeds=tests/fuzz/corpus/$reader
     [ -d "$seeds" ] || seeds=
-    echo "-- $reader"
     # A finding is a file that the reader must survive: keep it as a seed when it is mended.
-    "$program" -max_total_time="$1" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+    if ! "$program" -max_total_time="$1" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
       -artifact_prefix="build-fuzz/found/$reader-" "build-fuzz/found/$reader" ${seeds:+"$seeds"} \
-      </dev/null
+      </dev/null >"build-fuzz/$reader.log" 2>&1; then
+      tail -n 60 "build-fuzz/$reader.log"
+      echo "the $reader reader does not survive a file; it is kept in build-fuzz/found/"
+      return 1
+    fi
+    echo "$reader: $(awk '/number_of_executed_units/ {print $2}' "build-fuzz/$reader.log") inputs survived"
   done
 }
 
