@@ -203,4 +203,13 @@ std::string commandManPage(const Command& command) {
   return out + ".fi\n" + manExitCodes() + ".SH SEE ALSO\n.BR patina (1)\n";
 }
 
+std::string markdown(const std::vector<Command>& commands) {
+  std::string out = "# The command line\n\nWhat `patina --help` and `patina COMMAND --help` print; "
+                    "made by `patina man -o docs --markdown`.\n\n```\n" +
+                    programHelp(commands) + "```\n";
+  for (const Command& command : commands)
+    out += "\n## patina " + command.name + "\n\n```\n" + commandHelp(command) + "```\n";
+  return out;
+}
+
 } // namespace patina::cli

@@ -16,4 +16,7 @@ std::string commandHelp(const Command& command);
 std::string programManPage(const std::vector<Command>& commands);
 std::string commandManPage(const Command& command);
 
+// The --help of everything as one document.
+std::string markdown(const std::vector<Command>& commands);
+
 } // namespace patina::cli

@@ -7,12 +7,23 @@ namespace patina::cli {
 
 namespace {
 
-int runMan(const std::filesystem::path& folder, Console& console) {
+struct ManOptions {
+  std::filesystem::path folder;
+  bool markdown = false;
+};
+
+int runMan(const ManOptions& options, Console& console) {
+  const std::filesystem::path& folder = options.folder;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder))
     throw FileError(folder.string(), 0, "this folder cannot be made");
   const std::vector<Command> commands = allCommands();
+  if (options.markdown) {
+    writeFileAtomically(folder / "command_line.md", markdown(commands));
+    console.report(Json(), (folder / "command_line.md").string() + "\n");
+    return kDone;
+  }
   writeFileAtomically(folder / "patina.1", programManPage(commands));
   std::string list = (folder / "patina.1").string() + "\n";
   for (const Command& command : commands) {
@@ -27,7 +38,7 @@ int runMan(const std::filesystem::path& folder, Console& console) {
 } // namespace
 
 Command manCommand() {
-  auto folder = std::make_shared<std::filesystem::path>();
+  auto options = std::make_shared<ManOptions>();
   Command command;
   command.name = "man";
   command.summary = "write the manual pages";
@@ -35,8 +46,9 @@ Command manCommand() {
                         "of --help.";
   command.examples = {"patina man -o man/man1 && man -l man/man1/patina-feel.1"};
   command.reports = false;
-  command.output("FOLDER", "Where to; made if it is missing.", *folder);
-  command.run = [folder](Console& console) { return runMan(*folder, console); };
+  command.output("FOLDER", "Where to; made if it is missing.", options->folder);
+  command.flag("--markdown", "One command_line.md in place of the pages.", options->markdown);
+  command.run = [options](Console& console) { return runMan(*options, console); };
   return command;
 }
 

@@ -1,8 +1,8 @@
 // --help, --version, manual pages and the user's documents say the same.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <sstream>
+#include <sys/resource.h>
 
 #include "core/file.h"
 #include "integration/program.h"
@@ -113,15 +113,24 @@ TEST(Help, VersionIsOneLine) {
   }
 }
 
+// On a quiet machine the time on the wall; under load the processor's time is what stays true.
 TEST(Help, ComesWithinFiftyMilliseconds) {
+  const auto childSeconds = [] {
+    rusage usage{};
+    getrusage(RUSAGE_CHILDREN, &usage);
+    const auto seconds = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  };
   double best = 1e9;
   for (int i = 0; i < 10; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
+    const double before = childSeconds();
     run({"--help"});
-    best = std::min(
-        best, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    best = std::min(best, childSeconds() - before);
   }
   EXPECT_LE(best, 0.050);
+  EXPECT_GT(best, 0);
 }
 
 TEST(ManualPages, ExistForTheProgramAndEveryCommandWithTheHelpsOptions) {
@@ -158,16 +167,19 @@ std::string document(const std::string& name) {
   return std::filesystem::exists(path) ? readFile(path) : "";
 }
 
-TEST(Documents, ShowEveryCommand) {
-  const std::string text = document("docs/user_guide.md") + document("README.md");
-  if (text.empty()) GTEST_SKIP() << "docs/user_guide.md is not there";
+TEST(Documents, CommandLineIsTheHelpOfThisVersion) {
+  const ScratchFolder folder;
+  ASSERT_EQ(run({"man", "-o", folder.path().string(), "--markdown"}).exit, 0);
+  const std::string made = readFile(folder / "command_line.md");
+  EXPECT_TRUE(document("docs/command_line.md") == made)
+      << "make it again: patina man -o docs --markdown";
   for (const std::string& command : commands())
-    EXPECT_NE(text.find("patina " + command), std::string::npos) << command;
+    EXPECT_NE(made.find("patina " + command), std::string::npos) << command;
 }
 
 TEST(Documents, FileFormatsHaveTheColumnsThatTheProgramWrites) {
   const std::string text = document("docs/file_formats.md");
-  if (text.empty()) GTEST_SKIP() << "docs/file_formats.md is not there";
+  ASSERT_FALSE(text.empty());
   const ScratchFolder folder;
   const std::string box = folder / "box.ply";
   const std::string tips = folder.write("tip.csv", "t [s],x [m],y [m],z [m]\n0,0,0,0.1\n");
@@ -178,8 +190,40 @@ TEST(Documents, FileFormatsHaveTheColumnsThatTheProgramWrites) {
   ASSERT_EQ(
       run({"sample", box, "--points", points, "-o", folder / "s.csv", "--resolution", "40"}).exit,
       0);
-  for (const char* file : {"tip.csv", "points.csv", "f.csv", "s.csv"})
-    EXPECT_NE(text.find(firstLine(folder / file)), std::string::npos) << firstLine(folder / file);
+  // The samples' columns begin with those of the points.
+  const std::string given = firstLine(points);
+  const std::string samples = firstLine(folder / "s.csv");
+  ASSERT_TRUE(samples.starts_with(given + ","));
+  for (const std::string& columns :
+       {firstLine(tips), given, firstLine(folder / "f.csv"), samples.substr(given.size() + 1)})
+    EXPECT_NE(text.find("`" + columns + "`"), std::string::npos) << columns;
+}
+
+// A line such as "    patina field mesh.ply --voxel 1mm" must not promise what is not there.
+TEST(Documents, PromiseOnlyCommandsAndOptionsThatExist) {
+  const std::vector<std::string> known = commands();
+  int seen = 0;
+  for (const char* name : {"README.md", "docs/user_guide.md", "docs/tutorial.md", "docs/studies.md",
+                           "docs/file_formats.md", "data/scenes/README.md"}) {
+    std::istringstream text(document(name));
+    for (std::string line; std::getline(text, line);) {
+      const std::size_t at = line.find("    patina ");
+      if (at != 0) continue;
+      std::istringstream words(line.substr(11));
+      std::string command, word;
+      words >> command;
+      if (command.starts_with("-")) continue;
+      ASSERT_NE(std::find(known.begin(), known.end(), command), known.end())
+          << name << ": " << line;
+      const std::vector<std::string> valid = options(command);
+      while (words >> word && word != "#" && word != "|" && word != "&&") {
+        if (!word.starts_with("--")) continue;
+        EXPECT_NE(std::find(valid.begin(), valid.end(), word), valid.end()) << name << ": " << line;
+      }
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 0);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <sstream>
+#include <unistd.h>
 
 #include "core/file.h"
 #include "integration/program.h"
@@ -17,9 +18,15 @@ bool has(const std::string& tool) {
   return false;
 }
 
-// The words run under a virtual display.
+// The words run under a virtual display. Its number starts far from others': two xvfb-run that
+// look for a free one at the same moment may find the same.
 Outcome runOnDisplay(std::vector<std::string> words) {
-  std::vector<std::string> all = {"-a", "-s", "-screen 0 1280x800x24", programPath().string()};
+  std::vector<std::string> all = {"-a",
+                                  "-n",
+                                  std::to_string(100 + getpid() % 800),
+                                  "-s",
+                                  "-screen 0 1280x800x24",
+                                  programPath().string()};
   all.insert(all.end(), words.begin(), words.end());
   return Running(all, "xvfb-run").wait();
 }
