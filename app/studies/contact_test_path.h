@@ -45,10 +45,11 @@ struct ContactTestErrors {
 };
 ContactTestErrors contactTestErrors(const HapticSnapshot& snapshot, const ContactTest& test);
 
+inline constexpr int kTimingBatch = 50;
 struct ContactTestTiming {
   double p50 = 0, p99 = 0; // [ns] of one tick, clock included
   double clock = 0;        // [ns] of reading the clock alone, the part included above
-  double mean = 0;         // [ns] a tick of a whole pass, timed as one
+  double batch = 0;        // [ns] a tick, median over batches of kTimingBatch timed as one
 };
 // The least of `repeats` passes: what other work on the machine adds is not the tick's.
 ContactTestTiming contactTestTiming(const HapticSnapshot& snapshot, const ContactTest& test,

@@ -34,7 +34,9 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   if (friction_.slip == Friction::SlipDirection::displacement) follow(memory.trail, c);
 
   const double radius = memory.slipping ? slip : stick;
-  if ((memory.stuck - c).squaredNorm() <= radius * radius) {
+  const Vec3 dragged = memory.stuck - c;
+  const double dragged_squared = dragged.squaredNorm();
+  if (dragged_squared <= radius * radius) {
     memory.slipping = false;
     contact.stick_radius = stick;
     contact.vcp = memory.stuck;
@@ -42,7 +44,16 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   }
   Vec3 p = c;
   if (slip > 0) {
-    const Vec3 offset = slip * slipDirection(c, memory);
+    Vec3 offset = memory.trail - c;
+    double squared = offset.squaredNorm();
+    // Short of the trail's length the displacement says nothing yet.
+    const bool displaced =
+        friction_.slip == Friction::SlipDirection::displacement && squared > 0.25 * trail_ * trail_;
+    if (!displaced) {
+      offset = dragged;
+      squared = dragged_squared;
+    }
+    offset *= slip / std::sqrt(squared);
     // Where c itself is not on the surface there is nothing to project to.
     const bool on_surface = !contact.held && !contact.approximate && !memory.has_handover;
     p = c + (on_surface ? ontoSurface(contact, offset, slip) : offset);
@@ -57,16 +68,6 @@ void FrictionStage::follow(Vec3& trail, const Vec3& candidate) const noexcept {
   const Vec3 behind = trail - candidate;
   const double lag = behind.squaredNorm();
   if (lag > trail_ * trail_) trail = candidate + trail_ / std::sqrt(lag) * behind;
-}
-
-Vec3 FrictionStage::slipDirection(const Vec3& candidate,
-                                  const ContactMemory& memory) const noexcept {
-  if (friction_.slip == Friction::SlipDirection::displacement) {
-    const Vec3 behind = memory.trail - candidate;
-    const double lag = behind.squaredNorm();
-    if (lag > 0.25 * trail_ * trail_) return behind / std::sqrt(lag);
-  }
-  return (memory.stuck - candidate).normalized();
 }
 
 // The offset from c moved by one Newton step along the contact's normal, then brought back to its

@@ -25,7 +25,6 @@ class FrictionStage final : public ForceStage {
   std::string_view name() const noexcept override { return "friction"; }
 
  private:
-  Vec3 slipDirection(const Vec3& candidate, const ContactMemory& memory) const noexcept;
   void follow(Vec3& trail, const Vec3& candidate) const noexcept;
   Vec3 ontoSurface(const Contact& contact, const Vec3& offset, double length) const noexcept;
 

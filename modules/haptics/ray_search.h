@@ -11,8 +11,9 @@ namespace patina {
 
 // Voxels; values near the surface are good to some 2e-7 (float).
 inline constexpr double kRootTolerance = 1e-6;
-// The step after the last sample leaves about |f| times the variation of the slope, which |slope -
-// 1| tells: along its own direction a distance has the slope 1, except across creases.
+// The step after the last sample leaves about |f| times the variation of the slope, which its
+// difference from 1 tells: along its own direction a distance has the slope 1, except across
+// creases.
 inline constexpr double kStepTolerance = 2e-7;
 inline constexpr double kLeastVariation = 0.01;
 inline constexpr int kMaxRaySamples = 64;
@@ -39,10 +40,11 @@ inline RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n
   while (root.samples < kMaxRaySamples) {
     const double f = sampler.phiAtGrid(q + s * n) - iso;
     ++root.samples;
-    const double slope = (f - f_last) / (s - s_last);
-    double next = slope > 0.05 ? s - f / slope : s - f;
-    const double variation = std::max(std::abs(slope - 1), kLeastVariation);
-    if (std::abs(f) < std::max(kRootTolerance, kStepTolerance / variation)) {
+    // The reciprocal of the slope: the one division of this loop.
+    const double per_slope = (s - s_last) / (f - f_last);
+    double next = per_slope > 0 && per_slope < 20 ? s - f * per_slope : s - f;
+    const double variation = std::max(std::abs(per_slope - 1), kLeastVariation);
+    if (std::abs(f) < kRootTolerance || std::abs(f) * variation < kStepTolerance) {
       root.s = next;
       root.found = next > 0;
       return root;
