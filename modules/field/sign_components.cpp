@@ -24,20 +24,28 @@ std::uint16_t rootOf(Labels& parent, std::uint16_t label) {
 void labelNodes(const float* d, Labels& label, std::vector<Part>& parts) {
   Labels parent;
   std::uint16_t count = 0;
-  for (std::size_t i = 0; i < kBlockNodes; ++i) {
-    std::uint16_t mine = kNone;
-    for (std::size_t stride : kStride) {
-      if (i / stride % kBlockSide == 0 || !safe(d[i], d[i - stride])) continue;
-      const std::uint16_t other = rootOf(parent, label[i - stride]);
-      if (mine == kNone) mine = other;
-      parent[std::max(mine, other)] = std::min(mine, other);
-      mine = std::min(mine, other);
+  std::size_t i = 0;
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    for (std::size_t y = 0; y < kBlockSide; ++y) {
+      for (std::size_t x = 0; x < kBlockSide; ++x, ++i) {
+        std::uint16_t mine = kNone;
+        const auto meet = [&](std::size_t before) {
+          if (!safe(d[i], d[before])) return;
+          const std::uint16_t other = rootOf(parent, label[before]);
+          if (mine == other) return;
+          if (mine != kNone) parent[std::max(mine, other)] = std::min(mine, other);
+          mine = std::min(mine, other);
+        };
+        if (x > 0) meet(i - kStride[0]);
+        if (y > 0) meet(i - kStride[1]);
+        if (z > 0) meet(i - kStride[2]);
+        if (mine == kNone) {
+          mine = count++;
+          parent[mine] = mine;
+        }
+        label[i] = mine;
+      }
     }
-    if (mine == kNone) {
-      mine = count++;
-      parent[mine] = mine;
-    }
-    label[i] = mine;
   }
   Labels number;
   for (std::uint16_t l = 0; l < count; ++l) { // a root comes before all that point at it
@@ -45,7 +53,7 @@ void labelNodes(const float* d, Labels& label, std::vector<Part>& parts) {
     number[l] = static_cast<std::uint16_t>(parts.size());
     parts.emplace_back();
   }
-  for (std::size_t i = 0; i < kBlockNodes; ++i) label[i] = number[rootOf(parent, label[i])];
+  for (std::uint16_t& l : label) l = number[rootOf(parent, l)];
 }
 
 struct BlockParts {

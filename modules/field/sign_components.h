@@ -10,8 +10,9 @@
 
 namespace patina::signs {
 
-// d1 + d2 must exceed the length between two nodes by this [voxel]: more than both distances err.
-inline constexpr float kMargin = 1e-3F;
+// d1 + d2 must exceed the length between two nodes by this [voxel]. Above what both distances err,
+// it keeps components from leaking through cracks: midway in one of half-width c, d is c and not 0.
+inline constexpr float kMargin = 0.02F;
 
 // The nodes of one block that are connected inside it, or one whole block that is not stored.
 struct Part {

@@ -93,7 +93,7 @@ std::vector<std::int8_t> cutLeaks(const Components& components, const std::vecto
   }
   std::vector<std::int8_t> sign(parts);
   for (std::size_t i = 0; i < parts; ++i)
-    sign[i] = std::isnan(opinion[i]) ? std::int8_t{0} : std::int8_t{value[i] > 0 ? -1 : 1};
+    if (!std::isnan(opinion[i])) sign[i] = value[i] > 0 ? -1 : 1;
   return sign;
 }
 

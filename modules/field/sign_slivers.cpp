@@ -17,9 +17,11 @@ std::array<int, 3> nodeAt(const FieldBuilder& builder, std::int32_t slot, std::s
 
 bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, std::int32_t slot,
                        std::size_t node, NodePlace& found) {
+  // More than both distances err. A sliver joins nothing else, so that cracks need no more.
+  constexpr float kExact = 1e-3F;
   struct Candidate {
     NodePlace place;
-    Vec3 step;
+    std::array<int, 3> step;
     float margin; // by how much the distances exceed the length
   };
   std::array<Candidate, 26> candidates;
@@ -45,21 +47,29 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
                 ? static_cast<float>(field.band)
                 : std::abs(builder.distance[static_cast<std::size_t>(place.slot)]->phi[place.node]);
         if (d <= depth) continue;
-        const Vec3 step(dx, dy, dz);
-        candidates[count++] = {place, step, depth + d - static_cast<float>(step.norm())};
+        constexpr std::array<float, 4> kLength{0, 1, 1.41421356F, 1.73205081F};
+        const float margin =
+            depth + d - kLength[static_cast<std::size_t>(dx * dx + dy * dy + dz * dz)];
+        if (margin > kExact) {
+          found = place;
+          return true;
+        }
+        candidates[count++] = {place, {dx, dy, dz}, margin};
       }
     }
   }
-  std::stable_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
-                   [](const Candidate& a, const Candidate& b) { return a.margin > b.margin; });
-  constexpr std::size_t kRays = 4; // the likeliest; the rest is as well left to the winding number
+  // The likeliest first; beyond a few, the winding number is as cheap.
+  constexpr std::size_t kRays = 4;
   const Vec3 origin = field.grid.toWorld(Vec3(at[0], at[1], at[2]));
   for (std::size_t i = 0; i < std::min(count, kRays); ++i) {
-    const Candidate& candidate = candidates[i];
-    if (candidate.margin <= kMargin &&
-        tree.firstHit(origin, candidate.step, candidate.step.norm() * field.grid.voxel))
-      continue;
-    found = candidate.place;
+    const auto left = candidates.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto best = std::max_element(
+        left, candidates.begin() + static_cast<std::ptrdiff_t>(count),
+        [](const Candidate& a, const Candidate& b) { return a.margin < b.margin; });
+    std::swap(*left, *best);
+    const Vec3 step(left->step[0], left->step[1], left->step[2]);
+    if (tree.firstHit(origin, step, step.norm() * field.grid.voxel)) continue;
+    found = left->place;
     return true;
   }
   return false;

@@ -181,25 +181,42 @@ class Signer {
     return std::signbit(phi) ? kInside : kOutside;
   }
 
-  std::vector<Sliver> slivers() const {
+  std::vector<Sliver> slivers() {
     std::vector<Sliver> result;
-    std::vector<std::uint32_t> of_root(sign_.size());
+    sliver_of_.resize(sign_.size());
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i) {
       if (!isSliver(i)) continue;
       const std::uint32_t root = parts_.root[i];
       if (root == i) {
-        of_root[i] = static_cast<std::uint32_t>(result.size());
+        sliver_of_[i] = static_cast<std::uint32_t>(result.size());
         result.push_back({i, 0, false, {}});
       }
-      Sliver& sliver = result[of_root[root]];
+      Sliver& sliver = result[sliver_of_[root]];
       sliver.nodes += parts_.parts[i].nodes;
       if (parts_.parts[i].depth > parts_.parts[sliver.deepest].depth) sliver.deepest = i;
     }
-    // Each sees only what lies deeper, so that in this order the seen are signed before it.
-    std::stable_sort(result.begin(), result.end(), [&](const Sliver& a, const Sliver& b) {
-      return parts_.parts[a.deepest].depth > parts_.parts[b.deepest].depth;
-    });
     return result;
+  }
+
+  // What a sliver sees may be another's, always a deeper one's: the chain ends.
+  std::int8_t signOf(const Sliver& sliver, const std::vector<Sliver>& all,
+                     const std::vector<Tally>& tally) {
+    const std::uint32_t root = parts_.root[sliver.deepest];
+    if (sign_[root] != 0) return sign_[root];
+    if (sliver.sees) {
+      if (sliver.seen.slot >= 0) {
+        const std::uint32_t part = parts_.partOf(sliver.seen.slot, sliver.seen.node);
+        if (isSliver(part)) signOf(all[sliver_of_[parts_.root[part]]], all, tally);
+      }
+      sign_[root] = signAt(sliver.seen);
+    } else if (parts_.parts[sliver.deepest].depth > kOnSurface) {
+      sign_[root] = tally[root].majority();
+      ambiguous_ += std::min(tally[root].inside, tally[root].outside);
+    } else {
+      sign_[root] = kOutside;
+    }
+    if (contradicts(sliver, sign_[root])) ambiguous_ += sliver.nodes;
+    return sign_[root];
   }
 
   void signSlivers() {
@@ -223,18 +240,7 @@ class Signer {
         voters.push_back(i);
     vote(voters);
     std::vector<Tally> tally(voters.empty() ? std::vector<Tally>() : tallies());
-    for (const Sliver& sliver : all) {
-      const std::uint32_t root = parts_.root[sliver.deepest];
-      if (sliver.sees) {
-        sign_[root] = signAt(sliver.seen);
-      } else if (blind[root]) {
-        sign_[root] = tally[root].majority();
-        ambiguous_ += std::min(tally[root].inside, tally[root].outside);
-      } else {
-        sign_[root] = kOutside;
-      }
-      if (contradicts(sliver, sign_[root])) ambiguous_ += sliver.nodes;
-    }
+    for (const Sliver& sliver : all) signOf(sliver, all, tally);
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i)
       if (isSliver(i)) sign_[i] = sign_[parts_.root[i]];
   }
@@ -305,10 +311,11 @@ class Signer {
   const WindingNumber& winding_;
   Progress& progress_;
   Components parts_;
-  std::vector<float> depth_;      // by root: of the component
-  std::vector<float> vote_;       // by part: winding number at its deepest node
-  std::vector<std::int8_t> sign_; // by part
-  std::ptrdiff_t turned_ = 0;     // > 0: most faces turn outward
+  std::vector<float> depth_;             // by root: of the component
+  std::vector<float> vote_;              // by part: winding number at its deepest node
+  std::vector<std::int8_t> sign_;        // by part
+  std::vector<std::uint32_t> sliver_of_; // by root
+  std::ptrdiff_t turned_ = 0;            // > 0: most faces turn outward
   std::size_t ambiguous_ = 0;
 };
 
