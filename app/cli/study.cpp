@@ -1,5 +1,7 @@
 #include "app/studies/study.h"
 
+#include <algorithm>
+
 #include "app/cli/commands.h"
 #include "app/cli/reports.h"
 #include "core/error.h"
@@ -47,6 +49,12 @@ std::string baseName(const Study& study, std::size_t index, std::size_t count) {
   return count == 1 ? name : name + "-" + std::to_string(index + 1);
 }
 
+// A table of orders alone has nothing to plot against time.
+bool hasTimes(const WorkPrecisionTable& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [](const auto& row) { return row.ns > 0 && row.error > 0; });
+}
+
 void addRows(const Json& table, Json& rows) {
   for (const Json& row : table.at("rows").asArray()) {
     Json line = Json::object();
@@ -79,7 +87,7 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
       writeFileAtomically(folder / (base + ".json"), json.dump() + "\n");
       files.push(base + ".csv");
       files.push(base + ".json");
-      if (draws && !table.rows.empty()) {
+      if (draws && hasTimes(table)) {
         writePlot(workPrecisionPlot(table), folder / (base + ".png"));
         files.push(base + ".png");
       }
@@ -90,7 +98,7 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
       addRows(json, rows);
       tables.push(json);
       text += toText(table) + "  " + (folder / base).string() + ".csv .json" +
-              (draws ? " .png\n\n" : "\n\n");
+              (draws && hasTimes(table) ? " .png\n\n" : "\n\n");
     }
   }
   Json json = Json::object();
