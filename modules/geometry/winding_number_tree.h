@@ -44,6 +44,21 @@ struct Tree {
 
 Tree build(const TriangleMesh& mesh, double accuracy);
 
+// Symmetric parts of the integrals of n, n (x) d and n (x) d (x) d over a cluster, d = x - centre.
+struct Moments {
+  std::array<float, 3> centre{};
+  float radius = -1; // of a ball about the centre that holds the cluster; -1 = no cluster
+  float area = 0;
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(2), high = Eigen::Vector3f::Constant(-2); // box
+  std::array<float, 3> n{};
+  std::array<float, 6> m{};  // in the order of Quad::second
+  std::array<float, 10> s{}; // in the order of Quad::third
+};
+
+Moments leafMoments(const Packet* packets, std::size_t count); // count <= kLeafTriangles / 4
+Moments parentOf(const std::array<Moments, 4>& children);
+void store(const Moments& cluster, float accuracy, Quad& quad, int lane);
+
 // The triangles to sum, in Morton order.
 struct Item {
   std::uint32_t code;
