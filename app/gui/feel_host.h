@@ -16,8 +16,8 @@ class FeelHost {
   void close();
   bool running() const { return loop_ != nullptr; }
 
-  void setTarget(const Vec3& target);
-  std::vector<ToolSample> drain(); // since the last call, oldest first
+  void setTarget(const Vec3& target); // any one thread at a time; never waits
+  std::vector<ToolSample> drain();    // since the last call, oldest first
   ServoTiming timing() const;
   std::size_t dropped() const; // samples that nobody drained in time
 

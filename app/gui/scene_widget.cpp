@@ -56,6 +56,10 @@ bool SceneWidget::refresh() {
   return changed;
 }
 
+bool SceneWidget::settled() {
+  return smooth_ && !refresh();
+}
+
 Vec2 SceneWidget::fraction(const QPoint& pixel) const {
   const double high = std::max(1, height());
   return {(pixel.x() - 0.5 * width()) / high, (0.5 * height() - pixel.y()) / high};

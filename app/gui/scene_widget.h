@@ -32,6 +32,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
 
   // Renders if anything changed since the last call; false if nothing did.
   bool refresh();
+  // What is shown is up to date and smoothed.
+  bool settled();
   // Seconds that the last frame took in which something had changed.
   double frameSeconds() const { return frame_seconds_; }
 

@@ -1,7 +1,11 @@
 #include "app/gui/tour.h"
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <thread>
 
 #include <QApplication>
 #include <QElapsedTimer>
@@ -51,9 +55,24 @@ void openAndWait(MainWindow& window, const LoadRequest& request) {
   if (!in_time) throw Error("the scene was not ready after ten minutes");
 }
 
-void aim(MainWindow& window, const Vec3& target) {
-  window.view().setTarget(target);
-  emit window.view().tipMoved(target);
+// The hand of the tour: targets, one every few milliseconds. A thread of its own plays them, so
+// that the path does not depend on how fast this machine draws.
+constexpr std::chrono::milliseconds kBeat{4};
+
+void play(MainWindow& window, const std::vector<Vec3>& targets) {
+  if (targets.empty()) return;
+  std::atomic<bool> done{false};
+  std::thread hand([&] {
+    auto due = std::chrono::steady_clock::now();
+    for (const Vec3& target : targets) {
+      window.feel().setTarget(target);
+      std::this_thread::sleep_until(due += kBeat);
+    }
+    done = true;
+  });
+  waitUntil([&] { return done.load(); }, 120000);
+  hand.join();
+  window.view().setTarget(targets.back());
 }
 
 // The surface under a place of the picture, in fractions of its height from the centre.
@@ -75,15 +94,13 @@ Vec2 placeToTouch(MainWindow& window) {
   throw Error("there is no surface in the picture to touch");
 }
 
-// Calls step(0 .. 1) while the time passes, at the speed of a hand and not of the picture.
-void during(int milliseconds, const std::function<void(double)>& step) {
-  QElapsedTimer clock;
-  clock.start();
-  while (clock.elapsed() < milliseconds) {
-    step(static_cast<double>(clock.elapsed()) / milliseconds);
-    wait(8);
-  }
-  step(1);
+// One target a beat, at(0 .. 1).
+std::vector<Vec3> path(int milliseconds, const std::function<std::optional<Vec3>(double)>& at) {
+  std::vector<Vec3> targets;
+  const int beats = milliseconds / static_cast<int>(kBeat.count());
+  for (int beat = 0; beat <= beats; ++beat)
+    if (const auto target = at(static_cast<double>(beat) / beats)) targets.push_back(*target);
+  return targets;
 }
 
 // From the air onto the surface and in by `depth`.
@@ -92,17 +109,20 @@ void press(MainWindow& window, const Vec2& place, double depth, int milliseconds
   const auto hit = surfaceAt(window, place[0], place[1], inward);
   if (!hit) throw Error("the tour lost the surface");
   const double gap = 0.05 * window.view().view().extent().diagonal().norm();
-  during(milliseconds, [&](double t) { aim(window, *hit + inward * (t * (gap + depth) - gap)); });
+  play(window, path(milliseconds, [&](double t) -> std::optional<Vec3> {
+         return *hit + inward * (t * (gap + depth) - gap);
+       }));
 }
 
 // Along the surface, the depth below it swaying as a stroking hand's does.
 void slide(MainWindow& window, const Vec2& from, const Vec2& to, double depth, int milliseconds) {
-  during(milliseconds, [&](double t) {
-    const Vec2 place = from + (to - from) * t;
-    Vec3 inward;
-    if (const auto hit = surfaceAt(window, place[0], place[1], inward))
-      aim(window, *hit + inward * (depth * (0.7 + 0.3 * std::cos(4 * M_PI * t))));
-  });
+  play(window, path(milliseconds, [&](double t) -> std::optional<Vec3> {
+         const Vec2 place = from + (to - from) * t;
+         Vec3 inward;
+         const auto hit = surfaceAt(window, place[0], place[1], inward);
+         if (!hit) return std::nullopt;
+         return *hit + inward * (depth * (0.7 + 0.3 * std::cos(4 * M_PI * t)));
+       }));
 }
 
 bool isBlank(const QImage& image) {
@@ -114,7 +134,8 @@ bool isBlank(const QImage& image) {
 }
 
 void grab(MainWindow& window, const std::filesystem::path& path) {
-  wait(450); // the picture is smoothed once it stands still
+  wait(120);
+  waitUntil([&] { return window.view().settled(); }, 5000);
   if (isBlank(window.view().grabFramebuffer()))
     throw Error("nothing was drawn: OpenGL gave an empty picture");
   if (!window.grab().toImage().save(QString::fromStdString(path.string()), "PNG", 0))
@@ -178,7 +199,7 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   lookCloser(window, 1.8);
   grab(window, folder / "nodes.png");
 
-  aim(window, window.view().restingPlace());
+  play(window, {window.view().restingPlace()});
   wait(300);
   show(window, {Layer::mesh, Layer::slice, Layer::iso, Layer::band});
   window.display().setSlice({1, 0.5});

@@ -53,6 +53,7 @@ const std::vector<Library>& libraries() {
       {"CLI11", {"CLI/"}, {{"app/cli/", false}}},
       {"Qt", {"Q", "qt"}, {{"app/gui/", true}}},
       {"VTK", {"vtk"}, {{"modules/visualization/", true}, {"app/", true}}},
+      {"X11", {"X11/"}, {{"modules/visualization/", false}}},
   };
   return kLibraries;
 }
