@@ -201,7 +201,7 @@ TEST(Signs, LargeFlippedFacesAreOutvoted) {
   std::size_t different = 0;
   for (std::size_t slot = 0; slot < sound->blockCount(); ++slot)
     for (std::size_t n = 0; n < kBlockNodes; ++n)
-      different += sound->distance[slot]->phi[n] != flipped->distance[slot]->phi[n];
+      different += (sound->distance[slot]->phi[n] < 0) != (flipped->distance[slot]->phi[n] < 0);
   EXPECT_EQ(different, 0U);
 }
 
@@ -231,7 +231,9 @@ TEST(Signs, ThinPlatesHaveTwoOutsides) {
             wrong += (field->phiAt(i, j, k) < 0) != (d < 0);
           }
       EXPECT_EQ(wrong, 0U) << thickness << " " << shift;
-      if (thickness > 0.001) EXPECT_GT(inside, 0U);
+      if (thickness > 0.001) {
+        EXPECT_GT(inside, 0U);
+      }
     }
   }
 }
@@ -276,7 +278,9 @@ TEST(Signs, UnstoredBlocksAndCoarseNodesAreSigned) {
         const Vec3 p = field->grid.toWorld(8 * Vec3(x, y, z));
         const CoarseNode& node = field->coarse[corner];
         EXPECT_NEAR(node.phi, ballTruth(p) / field->grid.voxel, 0.1);
-        if (p.norm() > 0.01) EXPECT_GT(Vec3(node.gx, node.gy, node.gz).dot(p.normalized()), 0.99);
+        if (p.norm() > 0.01) {
+          EXPECT_GT(Vec3(node.gx, node.gy, node.gz).dot(p.normalized()), 0.99);
+        }
       }
 }
 
