@@ -45,13 +45,15 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& report, Json& json
   const Box3 box = bounds(mesh);
   json.set("triangles", report.triangles);
   json.set("vertices", report.vertices);
-  json.set("bounds", Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
+  json.set("bounds", box.isEmpty()
+                         ? Json()
+                         : Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
   json.set("watertight", report.watertight);
   json.set("components", report.components);
   json.set("defects", defectsJson(report));
   rows.emplace_back("triangles", formatCount(report.triangles));
   rows.emplace_back("vertices", formatCount(report.vertices));
-  const Vec3 size = box.sizes();
+  const Vec3 size = box.isEmpty() ? Vec3::Zero() : Vec3(box.sizes());
   rows.emplace_back("size", formatLength(size.x()) + " x " + formatLength(size.y()) + " x " +
                                 formatLength(size.z()));
   rows.emplace_back("watertight", report.watertight ? "yes" : "no");

@@ -110,6 +110,14 @@ TEST_F(Workspaces, RemovedObjectMakesRoomForAnother) {
                      {"no object"});
 }
 
+TEST_F(Workspaces, AnEmptyOneHasNoBoundsAndNoStages) {
+  ASSERT_EQ(run({"scene", "-o", workspace}).exit, 0);
+  const Json info = runJson({"info", workspace});
+  EXPECT_TRUE(info.at("bounds").isNull());
+  EXPECT_TRUE(info.at("stages").asArray().empty());
+  EXPECT_EQ(info.at("triangles").asInteger(), 0);
+}
+
 TEST_F(Workspaces, SettingsThatFitOnlyTogetherAreAccepted) {
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus, "--set", "friction.static=0.5", "--set",
                  "friction.dynamic=0.3"})
