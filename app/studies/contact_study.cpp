@@ -5,6 +5,7 @@
 #include <random>
 
 #include "app/studies/contact_test_path.h"
+#include "app/studies/query_timing.h"
 
 namespace patina {
 namespace {
@@ -128,18 +129,25 @@ WorkPrecisionTable vcpOrder(const std::vector<int>& resolutions, Progress& progr
       WorkPrecisionRow row;
       row.knobs = {{"resolution", resolution}, {"sampler", std::string(name(sampler))}};
       const int count = 4000;
-      double samples = 0;
+      std::vector<Vec3> tips;
       for (int i = 0; i < count; ++i) {
         const Vec3 n = Vec3(normal(random), normal(random), normal(random)).normalized();
+        tips.push_back((radius - depth(random)) * n);
+      }
+      const auto touch = [&](const Vec3& tip) {
         ContactMemory memory;
-        const Contact contact =
-            tick(*snapshot, memory, (radius - depth(random)) * n, kContactTestPeriod);
-        const double error = (contact.vcp - radius * n).norm();
+        return tick(*snapshot, memory, tip, kContactTestPeriod);
+      };
+      double samples = 0;
+      for (const Vec3& tip : tips) {
+        const Contact contact = touch(tip);
+        const double error = (contact.vcp - radius * tip.normalized()).norm();
         row.error += error * error / count;
         row.error_max = std::max(row.error_max, error);
         samples += contact.samples;
       }
       row.error = std::sqrt(row.error);
+      row.ns = nsPerQuery(tips, [&](const Vec3& tip) { return touch(tip).depth; });
       row.bytes = static_cast<double>(field->bytes());
       row.more = {{"field samples a tick", samples / count}};
       if (sampler == Sampler::kim) {

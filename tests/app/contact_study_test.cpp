@@ -1,0 +1,76 @@
+#include "app/studies/contact_study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/studies/contact_test_path.h"
+
+namespace patina {
+namespace {
+
+const std::vector<WorkPrecisionTable>& quickTables() {
+  static const std::vector<WorkPrecisionTable> tables = [] {
+    Progress progress;
+    return contactStudy(StudyOptions{.quick = true}, progress);
+  }();
+  return tables;
+}
+
+double more(const WorkPrecisionRow& row, const std::string& column) {
+  for (const auto& [name, value] : row.more)
+    if (name == column) return value;
+  return std::nan("");
+}
+
+TEST(ContactStudy, IsRegistered) {
+  const auto& all = studies();
+  EXPECT_TRUE(
+      std::any_of(all.begin(), all.end(), [](const Study& s) { return s.name == "contact"; }));
+}
+
+// T-K06b as the study reports it.
+TEST(ContactStudy, ContactPointIsOfOrderTwo) {
+  const WorkPrecisionTable& order = quickTables().back();
+  ASSERT_TRUE(order.order_fitted && order.order_expected);
+  EXPECT_NEAR(*order.order_fitted, *order.order_expected, 0.2);
+}
+
+TEST(ContactStudy, EveryRowIsMeasuredAndLosesNoTick) {
+  EXPECT_EQ(quickTables().size(), 5u);
+  for (const WorkPrecisionTable& table : quickTables()) {
+    EXPECT_GE(table.rows.size(), 4u) << table.title;
+    for (const WorkPrecisionRow& row : table.rows) {
+      EXPECT_GT(row.ns, 0) << table.title;
+      EXPECT_GT(row.bytes, 0) << table.title;
+      EXPECT_TRUE(std::isfinite(row.error) && row.error <= row.error_max) << table.title;
+      const double lost = more(row, "lost ticks");
+      EXPECT_TRUE(std::isnan(lost) || lost == 0) << table.title;
+      const double ratio = more(row, "Coulomb ratio");
+      EXPECT_TRUE(std::isnan(ratio) || std::abs(ratio - 0.3) <= 0.002) << table.title;
+    }
+  }
+}
+
+// The path's own mathematics: the reference is perpendicular where it must be, and moves as told.
+TEST(ContactTestPath, ReferenceFollowsItsDefinition) {
+  const ContactTest test = makeContactTest({.tip_radius = 0.02, .friction = true});
+  ASSERT_EQ(test.tips.size(), 20000u);
+  ASSERT_EQ(test.lead_in.size(), 300u);
+  EXPECT_NEAR(test.lead_in.front().norm(), 1.3 * 0.05, 1e-12);
+  for (std::size_t i = 1; i + 1 < test.tips.size(); i += 97) {
+    const double depth = 0.05 * 1.02 - test.tips[i].norm();
+    const Vec3 n = test.tips[i].normalized();
+    EXPECT_NEAR(test.reference[i].dot(n), 1000 * depth, 1e-9);
+    const Vec3 drag = test.reference[i] - 1000 * depth * n;
+    EXPECT_NEAR(drag.norm(), 300 * depth, 1e-9);
+    // Against the motion, by central differences.
+    Vec3 motion = test.tips[i + 1].normalized() - test.tips[i - 1].normalized();
+    motion -= motion.dot(n) * n;
+    EXPECT_NEAR(drag.normalized().dot(motion.normalized()), -1, 1e-4);
+  }
+}
+
+} // namespace
+} // namespace patina
