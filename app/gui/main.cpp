@@ -1,4 +1,6 @@
 // patina-gui: the window.
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -6,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include <cerrno>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <QApplication>
 #include <QSurfaceFormat>
+#include <QTimer>
 
 #include "app/gui/first_picture.h"
 #include "app/gui/main_window.h"
@@ -89,6 +91,8 @@ void giveRuntimeFolder() {
     setenv("XDG_RUNTIME_DIR", folder.c_str(), 0);
 }
 
+volatile std::sig_atomic_t interrupted = 0;
+
 int run(const Arguments& arguments, int argc, char** argv) {
   patina::requireDisplay();
   setenv("QT_QPA_PLATFORM", "xcb", 0);
@@ -111,6 +115,13 @@ int run(const Arguments& arguments, int argc, char** argv) {
   }
   window.open(arguments.request);
   if (arguments.log) window.startRecording();
+  // Ctrl-C is a way to close the window: what was recorded is still written.
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  QTimer watch;
+  QObject::connect(&watch, &QTimer::timeout, &window, [&] {
+    if (interrupted != 0) window.close();
+  });
+  watch.start(100);
   const int code = QApplication::exec();
   if (arguments.log) patina::writeToolSamplesCsv(*arguments.log, window.takeRecording());
   return code;

@@ -132,7 +132,6 @@ SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
     text->ItalicOff();
     text->BoldOff();
     text->ShadowOff();
-    text->SetFontSize(13);
   }
   bar_->GetTitleTextProperty()->BoldOn();
   bar_->SetBarRatio(0.22);
@@ -167,6 +166,11 @@ void SliceLayer::update(const SurfaceField& field, const SlicePlace& place) {
                                       std::max(0.6 * field.band, field.band - 1.75)}));
   bar_->SetLookupTable(map);
   bar_->SetLabelFormat(limit_mm < 1 ? "%+.2f" : limit_mm < 50 ? "%+.1f" : "%+.0f");
+}
+
+void SliceLayer::setTextSize(int pixels) {
+  for (vtkTextProperty* text : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()})
+    text->SetFontSize(pixels);
 }
 
 void SliceLayer::setVisible(bool on) {

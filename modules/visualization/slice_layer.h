@@ -30,6 +30,7 @@ class SliceLayer {
 
   void update(const SurfaceField& field, const SlicePlace& place);
   void setVisible(bool on);
+  void setTextSize(int pixels);
   // The plane itself, to cut the surfaces with; its normal is the slice's axis.
   vtkPlane& plane() { return *plane_; }
 

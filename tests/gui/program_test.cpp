@@ -92,6 +92,16 @@ TEST_F(Program, ATourOfAMissingFileFailsInOneLine) {
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
 }
 
+TEST_F(Program, CtrlCWritesTheLog) {
+  if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
+  writeMesh(folder_ / "sphere.obj", icosphere(30, 8));
+  const Outcome outcome =
+      run("--log" + quoted(folder_ / "log.csv") + quoted(folder_ / "sphere.obj"),
+          "timeout --preserve-status -s INT 8");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GT(readCsv(folder_ / "log.csv", {"t [s]", "x [m]"}).rows.size(), 100U);
+}
+
 TEST_F(Program, TheFirstPictureOf70000TrianglesTakesAtMostTwoSeconds) {
   if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
   writeMesh(folder_ / "sphere.obj", icosphere(30, 60)); // 72,000 triangles
