@@ -11,13 +11,11 @@ namespace patina {
 
 // Voxels; values near the surface are good to some 2e-7 (float).
 inline constexpr double kRootTolerance = 1e-6;
-// The step after the last sample leaves about |f| times the variation of the slope along the ray.
+// A step from the second sample on leaves about |f| times the variation of the slope along the ray.
 // The slope of a distance along its own direction is 1, except across creases, where the secant's
-// difference from 1 tells; a trilinear value adds some h / 2R, the higher order far less (F15).
-inline constexpr double kStepTolerance = 9e-7;
-inline double leastVariation(Sampler sampler) noexcept {
-  return sampler == Sampler::high ? 0.002 : 0.01;
-}
+// difference from 1 tells; a trilinear value adds some h / 2R.
+inline constexpr double kStepTolerance = 5e-7;
+inline constexpr double kLeastVariation = 0.01;
 inline constexpr int kMaxRaySamples = 64;
 
 struct RayRoot {
@@ -34,7 +32,6 @@ inline RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n
                        double iso) noexcept {
   RayRoot root;
   const double s_max = 4 * distance + 8;
-  const double least_variation = leastVariation(sampler.sampler());
   double inside = 0; // largest s known to lie inside
   double outside = -1;
   double s_last = 0;
@@ -43,13 +40,20 @@ inline RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n
   while (root.samples < kMaxRaySamples) {
     const double f = sampler.phiAtGrid(q + s * n) - iso;
     ++root.samples;
+    // s itself, not a corrected one: what follows need not wait for this sample, which only has to
+    // agree.
+    if (std::abs(f) < kRootTolerance) {
+      root.s = s;
+      root.found = true;
+      return root;
+    }
     // The reciprocal of the slope: the one division of this loop.
     const double per_slope = (s - s_last) / (f - f_last);
     double next = per_slope > 0 && per_slope < 20 ? s - f * per_slope : s - f;
-    const double variation = std::max(std::abs(per_slope - 1), least_variation);
-    if (std::abs(f) < kRootTolerance || std::abs(f) * variation < kStepTolerance) {
+    const double variation = std::max(std::abs(per_slope - 1), kLeastVariation);
+    if (root.samples > 1 && std::abs(f) * variation < kStepTolerance && next > inside) {
       root.s = next;
-      root.found = next > 0;
+      root.found = true;
       return root;
     }
     if (f < 0) {
