@@ -122,7 +122,8 @@ TEST(Contact, VcpOnAPlaneIsExact) {
   std::uniform_int_distribution<int> dyadic(0, 1 << 12);
   const double unit = 0x1p-11 / (1 << 10);
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 tip(dyadic(random) * unit, dyadic(random) * unit, -(1 + dyadic(random)) * unit);
+    const double x = 0x1p-11 * (dyadic(random) % 16), y = 0x1p-11 * (dyadic(random) % 16);
+    const Vec3 tip(x, y, -(1 + dyadic(random)) * unit);
     const Contact contact = touchOnce(*snapshot, tip);
     EXPECT_LT((contact.vcp - Vec3(tip.x(), tip.y(), 0)).norm(), 1e-12);
   }
