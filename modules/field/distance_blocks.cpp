@@ -97,13 +97,13 @@ std::vector<CoarseNode> coarseNodes(const TriangleMesh& mesh, const TriangleTree
 
 struct Block {
   std::shared_ptr<DistanceBlock> distance;
-  std::shared_ptr<FaceBlock> face;
+  std::shared_ptr<FaceNodes> face;
 };
 
 // Null if no node is within the band.
 Block blockAt(const TriangleTree& tree, const FieldGrid& grid, double band, const Index3& at) {
   Block block{std::make_shared_for_overwrite<DistanceBlock>(),
-              std::make_shared_for_overwrite<FaceBlock>()};
+              std::make_shared_for_overwrite<FaceNodes>()};
   const Vec3 corner = grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
   auto& phi = block.distance->phi;
   auto& face = block.face->face;

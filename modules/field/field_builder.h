@@ -18,7 +18,7 @@ struct FieldBuilder {
   // By slot. phi >= 0 in voxels (exact where <= band, kBeyondBand elsewhere) until signed.
   std::vector<std::shared_ptr<DistanceBlock>> distance;
   // By slot. Faces of the mesh that the distances were taken from; -1 beyond the band.
-  std::vector<std::shared_ptr<FaceBlock>> face;
+  std::vector<std::shared_ptr<FaceNodes>> face;
   // Coarse nodes, too, hold unsigned phi >= 0 and the gradient of the unsigned distance until
   // signed: a negative sign flips all four numbers. Nodes of padding blocks that reach past the
   // grid's last node are real points with real distances.
@@ -28,8 +28,11 @@ inline SurfaceField frozen(FieldBuilder&& builder) {
   SurfaceField field = std::move(builder.field);
   field.distance.assign(std::make_move_iterator(builder.distance.begin()),
                         std::make_move_iterator(builder.distance.end()));
-  field.face.assign(std::make_move_iterator(builder.face.begin()),
-                    std::make_move_iterator(builder.face.end()));
+  field.face.reserve(builder.face.size());
+  for (std::shared_ptr<FaceNodes>& nodes : builder.face) {
+    field.face.push_back(std::make_shared<const FaceBlock>(*nodes));
+    nodes.reset();
+  }
   builder.distance.clear();
   builder.face.clear();
   return field;

@@ -131,6 +131,12 @@ std::size_t layerSize(const std::vector<std::shared_ptr<const Block>>& layer) {
   return layer.size() * (sizeof(Block) + sizeof(layer[0]));
 }
 
+std::size_t layerSize(const std::vector<std::shared_ptr<const FaceBlock>>& layer) {
+  std::size_t sum = layer.size() * sizeof(layer[0]);
+  for (const auto& block : layer) sum += block->bytes();
+  return sum;
+}
+
 } // namespace
 
 float SurfaceField::phiAt(int i, int j, int k) const {
@@ -142,7 +148,7 @@ float SurfaceField::phiAt(int i, int j, int k) const {
 std::int32_t SurfaceField::faceAt(int i, int j, int k) const {
   const NodePlace place = placeOf(*this, i, j, k);
   if (place.slot < 0 || face.empty()) return -1;
-  return face[static_cast<std::size_t>(place.slot)]->face[place.index];
+  return face[static_cast<std::size_t>(place.slot)]->at(place.index);
 }
 
 std::vector<LayerBytes> SurfaceField::layerBytes() const {

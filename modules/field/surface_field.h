@@ -11,12 +11,10 @@
 #include <vector>
 
 #include "core/types.h"
+#include "field/face_block.h"
 #include "field/field_grid.h"
 
 namespace patina {
-
-inline constexpr int kBlockSide = 8;                                     // nodes
-inline constexpr int kBlockNodes = kBlockSide * kBlockSide * kBlockSide; // 512, x fastest
 
 // Signed distance in voxels (so that nothing depends on the scale), negative inside. A node farther
 // than the band holds +-kBeyondBand with the right sign.
@@ -24,11 +22,6 @@ struct DistanceBlock {
   std::array<float, kBlockNodes> phi;
 };
 inline constexpr float kBeyondBand = 1e6f;
-
-// Nearest face of each node (K02); -1 where phi is beyond the band.
-struct FaceBlock {
-  std::array<std::int32_t, kBlockNodes> face;
-};
 
 // What the servo reads: one block look-up serves any point of its 8^3 cells. The 9^3 nodes are
 // those of the block and the first layer of its upper neighbours; each holds phi and the nodal

@@ -98,7 +98,7 @@ struct BlockReader {
   std::array<int, 3> first{};
 
   // False if every node is beyond the band; `inside` is then the sign that the nodes share.
-  bool read(DistanceBlock& distance, FaceBlock& faces, bool& inside) const {
+  bool read(DistanceBlock& distance, FaceNodes& faces, bool& inside) const {
     bool stored = false;
     std::size_t at = 0;
     for (int k = first[2]; k < first[2] + kBlockSide; ++k)
@@ -212,16 +212,16 @@ SurfaceField readField(const std::filesystem::path& path) {
       for (int bx = 0; bx < field.blocks[0]; ++bx) {
         reader.first = {bx * kBlockSide, by * kBlockSide, bz * kBlockSide};
         auto distance = std::make_shared<DistanceBlock>();
-        auto faces = std::make_shared<FaceBlock>();
+        FaceNodes faces{};
         bool inside = false;
-        if (!reader.read(*distance, *faces, inside)) {
+        if (!reader.read(*distance, faces, inside)) {
           field.top.push_back(inside ? SurfaceField::kInside : SurfaceField::kOutside);
           continue;
         }
         field.top.push_back(static_cast<std::int32_t>(field.block_at.size()));
         field.block_at.push_back({bx, by, bz});
         field.distance.push_back(std::move(distance));
-        if (has_face) field.face.push_back(std::move(faces));
+        if (has_face) field.face.push_back(std::make_shared<const FaceBlock>(faces));
       }
 
   if (image->GetFieldData()->HasArray(kCoarse) != 0) {

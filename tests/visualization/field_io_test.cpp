@@ -51,10 +51,10 @@ SurfaceField sphereField() {
 void addFaces(SurfaceField& field) {
   std::int32_t next = 7;
   for (const auto& distance : field.distance) {
-    auto faces = std::make_shared<FaceBlock>();
-    for (std::size_t n = 0; n < faces->face.size(); ++n)
-      faces->face[n] = std::abs(distance->phi[n]) < kBeyondBand ? next++ : -1;
-    field.face.push_back(std::move(faces));
+    FaceNodes faces{};
+    for (std::size_t n = 0; n < faces.face.size(); ++n)
+      faces.face[n] = std::abs(distance->phi[n]) < kBeyondBand ? next++ : -1;
+    field.face.push_back(std::make_shared<const FaceBlock>(faces));
   }
 }
 
