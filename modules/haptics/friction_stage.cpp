@@ -31,7 +31,9 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
     memory.has_stuck = true;
     memory.slipping = false;
   }
-  if (friction_.slip == Friction::SlipDirection::displacement) follow(memory.trail, c);
+  const Vec3 against = friction_.slip == Friction::SlipDirection::displacement
+                           ? againstDisplacement(memory.trail, c)
+                           : Vec3::Zero();
 
   const double radius = memory.slipping ? slip : stick;
   const Vec3 dragged = memory.stuck - c;
@@ -44,16 +46,8 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   }
   Vec3 p = c;
   if (slip > 0) {
-    Vec3 offset = memory.trail - c;
-    double squared = offset.squaredNorm();
-    // Short of the trail's length the displacement says nothing yet.
-    const bool displaced =
-        friction_.slip == Friction::SlipDirection::displacement && squared > 0.25 * trail_ * trail_;
-    if (!displaced) {
-      offset = dragged;
-      squared = dragged_squared;
-    }
-    offset *= slip / std::sqrt(squared);
+    const Vec3 offset =
+        slip * (against.isZero(0) ? Vec3(dragged / std::sqrt(dragged_squared)) : against);
     // Where c itself is not on the surface there is nothing to project to.
     const bool on_surface = !contact.held && !contact.approximate && !memory.has_handover;
     p = c + (on_surface ? ontoSurface(contact, offset, slip) : offset);
@@ -64,10 +58,15 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   contact.vcp = p;
 }
 
-void FrictionStage::follow(Vec3& trail, const Vec3& candidate) const noexcept {
+// Draws the trail behind the candidate; the unit vector towards it, or zero while it is too short
+// to say.
+Vec3 FrictionStage::againstDisplacement(Vec3& trail, const Vec3& candidate) const noexcept {
   const Vec3 behind = trail - candidate;
-  const double lag = behind.squaredNorm();
-  if (lag > trail_ * trail_) trail = candidate + trail_ / std::sqrt(lag) * behind;
+  const double squared = behind.squaredNorm();
+  if (!(squared > 0.25 * trail_ * trail_)) return Vec3::Zero();
+  const Vec3 direction = 1 / std::sqrt(squared) * behind;
+  if (squared > trail_ * trail_) trail = candidate + trail_ * direction;
+  return direction;
 }
 
 // The offset from c moved by one Newton step along the contact's normal, then brought back to its

@@ -25,7 +25,7 @@ class FrictionStage final : public ForceStage {
   std::string_view name() const noexcept override { return "friction"; }
 
  private:
-  void follow(Vec3& trail, const Vec3& candidate) const noexcept;
+  Vec3 againstDisplacement(Vec3& trail, const Vec3& candidate) const noexcept;
   Vec3 ontoSurface(const Contact& contact, const Vec3& offset, double length) const noexcept;
 
   std::shared_ptr<const SurfaceField> field_;
