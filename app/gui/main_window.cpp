@@ -8,6 +8,7 @@
 #include <QScrollArea>
 #include <QVBoxLayout>
 
+#include "app/gui/haptic_ramp.h"
 #include "app/gui/load_dialogs.h"
 #include "app/gui/window_style.h"
 #include "core/error.h"
@@ -199,6 +200,8 @@ void MainWindow::showCurrent() {
   status_->showScene(&scene);
   save_action_->setEnabled(true);
   record_action_->setEnabled(true);
+  haptics_edited_ = false;
+  last_sample_ = {};
   plot_->clear();
   const Vec3 start = view_->restingPlace();
   view_->setTarget(start);
@@ -206,12 +209,17 @@ void MainWindow::showCurrent() {
 }
 
 void MainWindow::applyHaptics() {
-  haptics_edited_ = false;
   if (current_ == nullptr) return;
   try {
-    current_ = recompile(*current_, haptics_->values());
+    Scene wanted = current_->scene;
+    wanted.haptics = haptics_->values();
+    validate(wanted);
+    const HapticProperties next = steppedTowards(current_->scene.haptics, wanted.haptics);
+    current_ = recompile(*current_, next);
+    haptics_edited_ = !same(next, wanted.haptics);
     haptics_->setProblem({});
   } catch (const std::exception& error) {
+    haptics_edited_ = false;
     haptics_->setProblem(QString::fromStdString(error.what()));
     return;
   }
@@ -231,7 +239,10 @@ void MainWindow::tick() {
   }
   view_->refresh();
   plot_->refresh();
-  if (ticks_++ % 10 == 0) status_->showTiming(feel_.timing(), feel_.running());
+  if (ticks_++ % 10 == 0) {
+    status_->showTiming(feel_.timing(), feel_.running());
+    status_->showFault(feel_.running() && last_sample_.fault);
+  }
 }
 
 void MainWindow::setMode(SceneWidget::Mode mode) {
@@ -253,8 +264,9 @@ std::vector<ToolSample> MainWindow::takeRecording() {
 
 void MainWindow::saveWorkspaceTo(const QString& folder) {
   if (current_ == nullptr) throw Error("there is no scene to save");
-  if (haptics_edited_) applyHaptics();
-  saveWorkspace(current_->scene, folder.toStdString());
+  Scene scene = current_->scene;
+  scene.haptics = haptics_->values(); // where the servo may still be on its way to
+  saveWorkspace(scene, folder.toStdString());
   recent_->add(folder);
 }
 

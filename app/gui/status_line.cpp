@@ -14,6 +14,12 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
     bar->addWidget(made);
     return made;
   };
+  fault_ = label("fault");
+  fault_->setText(tr("force faded: lift the tip off the surface"));
+  fault_->setStyleSheet(QStringLiteral("background: #a12a1a; color: white;"));
+  fault_->setToolTip(tr("The force would have jumped, so it was faded to zero. It comes back when "
+                        "the tip has left the surface."));
+  showFault(false);
   rate_ = label("rate");
   late_ = label("late");
   missed_ = label("missed");
@@ -24,6 +30,10 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   missed_->setToolTip(tr("Ticks that came more than a period late since the servo began"));
   showTiming({}, false);
   showScene(nullptr);
+}
+
+void StatusLine::showFault(bool on) {
+  fault_->setVisible(on);
 }
 
 void StatusLine::showTiming(const ServoTiming& timing, bool running) {

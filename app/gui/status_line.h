@@ -15,9 +15,11 @@ class StatusLine : public QObject {
   explicit StatusLine(QStatusBar* bar);
   void showScene(const CompiledScene* scene); // nullptr: no scene, no stage
   void showTiming(const ServoTiming& timing, bool running);
+  void showFault(bool on); // the force jumped and was faded to zero (F13)
   QString stagesText() const { return stages_->text(); }
 
  private:
+  QLabel* fault_;
   QLabel* rate_;
   QLabel* late_;
   QLabel* missed_;

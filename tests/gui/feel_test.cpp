@@ -104,17 +104,40 @@ TEST_F(MouseFeels, EditsReachTheServoWhileItRuns) {
   haptics.stiffness = 250;
   window_->haptics().setValues(haptics);
   emit window_->haptics().edited(haptics);
-  wait(500);
+  ASSERT_TRUE(waitUntil([&] { return window_->scene()->scene.haptics.stiffness == 250; }, 20000));
+  wait(200);
   EXPECT_NEAR(window_->lastSample().force.norm(), 0.5 * before, 0.05 * before);
+}
+
+TEST_F(MouseFeels, ALargeEditUnderAPressedTipRampsAndIsNoFault) {
+  send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
+  turnWheel(14);
+  settle();
+  ASSERT_TRUE(window_->lastSample().contact);
+  window_->startRecording();
+  HapticProperties haptics = window_->haptics().values();
+  haptics.stiffness = 3000;
+  haptics.force_limit = 20;
+  window_->haptics().setValues(haptics);
+  emit window_->haptics().edited(haptics);
+  ASSERT_TRUE(waitUntil([&] { return window_->scene()->scene.haptics.stiffness == 3000; }, 20000));
+  wait(200);
+  double jump = 0;
+  const auto samples = window_->takeRecording();
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    ASSERT_FALSE(samples[i].fault);
+    jump = std::max(jump, (samples[i].force - samples[i - 1].force).norm());
+  }
+  EXPECT_GT(samples.back().force.norm(), 3 * samples.front().force.norm());
+  EXPECT_LT(jump, 0.2 * samples.back().force.norm());
 }
 
 TEST_F(MouseFeels, FrictionHoldsTheProxyBackWhenTheTipMovesSideways) {
   HapticProperties haptics = window_->haptics().values();
   haptics.friction = Friction{0.8, 0.8, 0, {}};
-  emit window_->haptics().edited(haptics); // values() unchanged: the row's own edit is tested below
   window_->haptics().setValues(haptics);
   emit window_->haptics().edited(haptics);
-  wait(200);
+  wait(600);
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(5);
   settle();

@@ -3,6 +3,7 @@
 #include <QMenu>
 #include <QToolButton>
 
+#include "app/gui/haptic_ramp.h"
 #include "app/gui/value_row.h"
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
@@ -24,7 +25,17 @@ class Panels : public WindowTest {
     auto* button = window_->haptics().findChild<QToolButton*>(QStringLiteral("add_property"));
     for (QAction* action : button->menu()->actions())
       if (action->text() == what) action->trigger();
-    wait(150);
+    settle();
+  }
+  // The servo's values have come where the panel wants them.
+  void settle() {
+    waitUntil(
+        [&] {
+          return window_->scene() != nullptr &&
+                 same(window_->scene()->scene.haptics, window_->haptics().values());
+        },
+        20000);
+    wait(60);
   }
   double warmShare() {
     return share([](int r, int g, int b) { return r > b + 40 && r > g + 25; });
@@ -39,7 +50,7 @@ TEST_F(Panels, FrictionHasNoRowAndNoStageUntilItIsAdded) {
   EXPECT_TRUE(window_->status().stagesText().contains(QStringLiteral("friction")));
   EXPECT_TRUE(window_->scene()->scene.haptics.friction.has_value());
   emit row("friction_static")->removed();
-  wait(150);
+  settle();
   EXPECT_EQ(row("friction_static"), nullptr);
   EXPECT_FALSE(window_->scene()->scene.haptics.friction.has_value());
   EXPECT_FALSE(window_->status().stagesText().contains(QStringLiteral("friction")));
@@ -52,17 +63,17 @@ TEST_F(Panels, DampingAndTipRadiusAppearWhenAdded) {
   ASSERT_NE(row("tip_radius"), nullptr);
   EXPECT_EQ(window_->scene()->scene.haptics.tip_radius, 1e-3);
   emit row("tip_radius")->edited(2.0);
-  wait(100);
+  settle();
   EXPECT_EQ(window_->scene()->scene.haptics.tip_radius, 2e-3);
 }
 
 TEST_F(Panels, StaticFrictionNeverFallsBelowDynamic) {
   add(QStringLiteral("Friction"));
   emit row("friction_dynamic")->edited(0.9);
-  wait(100);
+  settle();
   EXPECT_EQ(window_->scene()->scene.haptics.friction->static_coefficient, 0.9);
   emit row("friction_static")->edited(0.2);
-  wait(100);
+  settle();
   EXPECT_EQ(window_->scene()->scene.haptics.friction->dynamic_coefficient, 0.2);
 }
 
