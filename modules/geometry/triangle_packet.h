@@ -43,6 +43,7 @@ static_assert(sizeof(PacketTriangle) == 128);
 struct LatticeJob {
   const WideNode* nodes;
   const PacketTriangle* triangles;
+  float triangle_size; // the mean longest edge
   double origin[3];
   double spacing;
   int side;            // even

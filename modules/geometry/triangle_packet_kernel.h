@@ -56,6 +56,19 @@ struct EightTriangles {
   PATINA_MEMBER Lanes ac() const { return row[20]; }
 };
 
+PATINA_INLINE void gather(const PacketTriangle* triangles, const std::int32_t (&index)[kWide],
+                          EightTriangles& t) {
+  const float* rows[3][kWide];
+  for (int i = 0; i < kWide; ++i) {
+    rows[0][i] = triangles[index[i]].a;
+    rows[1][i] = rows[0][i] + 8;
+    rows[2][i] = rows[0][i] + 16;
+  }
+  transpose(rows[0], t.row);
+  transpose(rows[1], t.row + 8);
+  transpose(rows[2], t.row + 16);
+}
+
 // Squared distance, given the points relative to the triangle's corner A.
 template <typename T>
 PATINA_INLINE Lanes squaredDistance(const T& t, const Lanes& rx, const Lanes& ry, const Lanes& rz) {
@@ -151,16 +164,17 @@ PATINA_INLINE Lanes childDistance(const WideNode& node, int place, const Points&
                                       spread(node.radius[place])));
 }
 
-// Of one point, in every lane, from eight children.
-PATINA_INLINE Lanes childDistances(const WideNode& node, const Points& p) {
-  const Lanes x = p.x - load(node.centre[0]);
-  const Lanes y = p.y - load(node.centre[1]);
-  const Lanes z = p.z - load(node.centre[2]);
-  const Lanes box = lengthSquared(gap(x, load(node.half[0])), gap(y, load(node.half[1])),
-                                  gap(z, load(node.half[2])));
-  return larger(box, cylinderDistance(x, y, z, load(node.normal[0]), load(node.normal[1]),
-                                      load(node.normal[2]), load(node.low), load(node.high),
-                                      load(node.radius)));
+// Of one point, in every lane, from eight children (of a node, or listed).
+template <typename Rows>
+PATINA_INLINE Lanes childDistances(const Rows& c, int first, const Points& p) {
+  const Lanes x = p.x - load(c.centre[0] + first);
+  const Lanes y = p.y - load(c.centre[1] + first);
+  const Lanes z = p.z - load(c.centre[2] + first);
+  const Lanes box = lengthSquared(gap(x, load(c.half[0] + first)), gap(y, load(c.half[1] + first)),
+                                  gap(z, load(c.half[2] + first)));
+  return larger(box, cylinderDistance(x, y, z, load(c.normal[0] + first), load(c.normal[1] + first),
+                                      load(c.normal[2] + first), load(c.low + first),
+                                      load(c.high + first), load(c.radius + first)));
 }
 
 struct Entry {
@@ -209,8 +223,32 @@ inline void search(const LatticeJob& job, const Points& p, const Box& box, std::
   }
 }
 
+// The same where the limits are tight already: then order gains nothing, and costs.
+inline void searchWarm(const LatticeJob& job, const Points& p, const Box& box, std::int32_t at,
+                       Answer& answer) {
+  std::int32_t stack[kStack];
+  int top = 0;
+  stack[top++] = at;
+  while (top > 0) {
+    const WideNode& node = job.nodes[stack[--top]];
+    unsigned near = bits(boxDistances(node.centre, node.half, box) <= spread(answer.max_limit));
+    while (near) {
+      const int place = __builtin_ctz(near);
+      near &= near - 1;
+      const std::int32_t child = node.child[place];
+      if (child < 0)
+        tryTriangle(job.triangles, ~child, p, answer);
+      else if (any(childDistance(node, place, p) <= answer.limit))
+        stack[top++] = child;
+    }
+  }
+}
+
 // ---- One point, eight triangles: better than packets where triangles are smaller than the
 // lattice's cells, so that eight nodes have little in common ----
+
+// Where triangles are this much smaller than a cell, points are searched one by one.
+constexpr float kFine = 0.4f;
 
 struct Nearest {
   float best, limit, face_d2;
@@ -219,18 +257,17 @@ struct Nearest {
 
 PATINA_INLINE void tryTriangles(const PacketTriangle* triangles, std::int32_t (&index)[kWide],
                                 int count, const Points& p, Nearest& nearest) {
-  for (int i = count; i < kWide; ++i) index[i] = index[0];
-  const float* rows[3][kWide];
-  for (int i = 0; i < kWide; ++i) {
-    rows[0][i] = triangles[index[i]].a;
-    rows[1][i] = rows[0][i] + 8;
-    rows[2][i] = rows[0][i] + 16;
+  Lanes d2;
+  if (count == 1) {
+    const PacketTriangle& t = triangles[index[0]];
+    d2 = squaredDistance(OneTriangle{t}, p.x - spread(t.a[0]), p.y - spread(t.a[1]),
+                         p.z - spread(t.a[2]));
+  } else {
+    for (int i = count; i < kWide; ++i) index[i] = index[0];
+    EightTriangles t;
+    gather(triangles, index, t);
+    d2 = squaredDistance(t, p.x - t.a(0), p.y - t.a(1), p.z - t.a(2));
   }
-  EightTriangles t;
-  transpose(rows[0], t.row);
-  transpose(rows[1], t.row + 8);
-  transpose(rows[2], t.row + 16);
-  const Lanes d2 = squaredDistance(t, p.x - t.a(0), p.y - t.a(1), p.z - t.a(2));
   unsigned near = bits(d2 <= spread(nearest.limit)) & ((1u << count) - 1);
   if (!near) return;
   alignas(32) float distance[kWide];
@@ -257,13 +294,12 @@ struct PointEntry {
   std::int32_t node;
 };
 
-inline void searchPoint(const LatticeJob& job, const Points& p, Nearest& nearest) {
+inline void searchPoint(const LatticeJob& job, const Points& p, std::int32_t at, Nearest& nearest) {
   PointEntry stack[kStack];
   int top = 0;
-  std::int32_t at = 0;
   for (;;) {
     const WideNode& node = job.nodes[at];
-    const Lanes d2 = childDistances(node, p);
+    const Lanes d2 = childDistances(node, 0, p);
     unsigned near = bits(d2 <= spread(nearest.limit));
     alignas(32) float distance[kWide];
     store(distance, d2);
@@ -299,27 +335,19 @@ inline void searchPoint(const LatticeJob& job, const Points& p, Nearest& nearest
 PATINA_INLINE Lanes refined(const LatticeJob& job, const double (&px)[kWide],
                             const double (&py)[kWide], const double (&pz)[kWide],
                             const std::int32_t (&triangle)[kWide]) {
-  alignas(32) float result[kWide];
-  unsigned todo = 0;
+  std::int32_t index[kWide];
+  alignas(32) float rx[kWide], ry[kWide], rz[kWide], missing[kWide];
   for (int i = 0; i < kWide; ++i) {
-    result[i] = __builtin_inff();
-    if (triangle[i] >= 0) todo |= 1u << i;
+    index[i] = triangle[i] < 0 ? 0 : triangle[i];
+    missing[i] = triangle[i] < 0 ? __builtin_inff() : 0.0f;
+    const PacketTriangle& t = job.triangles[index[i]];
+    rx[i] = static_cast<float>(px[i] - t.origin[0]);
+    ry[i] = static_cast<float>(py[i] - t.origin[1]);
+    rz[i] = static_cast<float>(pz[i] - t.origin[2]);
   }
-  while (todo) {
-    const std::int32_t index = triangle[__builtin_ctz(todo)];
-    const PacketTriangle& t = job.triangles[index];
-    alignas(32) float rx[kWide], ry[kWide], rz[kWide], d2[kWide];
-    for (int i = 0; i < kWide; ++i) rx[i] = static_cast<float>(px[i] - t.origin[0]);
-    for (int i = 0; i < kWide; ++i) ry[i] = static_cast<float>(py[i] - t.origin[1]);
-    for (int i = 0; i < kWide; ++i) rz[i] = static_cast<float>(pz[i] - t.origin[2]);
-    store(d2, squaredDistance(OneTriangle{t}, load(rx), load(ry), load(rz)));
-    for (int i = 0; i < kWide; ++i) {
-      const bool mine = triangle[i] == index;
-      result[i] = mine ? d2[i] : result[i];
-      todo &= ~(static_cast<unsigned>(mine) << i);
-    }
-  }
-  return root(load(result));
+  EightTriangles t;
+  gather(job.triangles, index, t);
+  return root(squaredDistance(t, load(rx), load(ry), load(rz))) + load(missing);
 }
 
 // Eight points, at the corners of a cube.
@@ -385,54 +413,9 @@ PATINA_INLINE Snake snake(int count, int n) {
   return {(count / n) & 1 ? n - 1 - i : i, k & 1 ? n - 1 - j : j, k};
 }
 
-// The packet's points one after the other, each from the last one's answer.
-PATINA_INLINE Answer searchPoints(const LatticeJob& job, const Packet& packet, std::int32_t warm) {
-  alignas(32) float x[kWide], y[kWide], z[kWide];
-  alignas(32) std::int32_t found[kWide];
-  store(x, packet.points.x);
-  store(y, packet.points.y);
-  store(z, packet.points.z);
-  Answer answer = nothingWithin(job.max_distance);
-  for (int lane = 0; lane < kWide; ++lane) {
-    const Points p{spread(x[lane]), spread(y[lane]), spread(z[lane])};
-    Nearest nearest{answer.max_limit, answer.max_limit, __builtin_inff(), 0x7fffffff, -1};
-    if (warm >= 0) {
-      std::int32_t index[kWide] = {warm};
-      tryTriangles(job.triangles, index, 1, p, nearest);
-    }
-    searchPoint(job, p, nearest);
-    found[lane] = nearest.triangle;
-    if (nearest.triangle >= 0) warm = nearest.triangle;
-  }
-  answer.triangle = load(found);
-  return answer;
-}
-
-// Where triangles are this much smaller than a cell, points are searched one by one.
-constexpr float kFine = 1.0f;
-
 PATINA_INLINE bool isFine(const LatticeJob& job, std::int32_t triangle) {
   const float size = job.triangles[triangle].ab;
   return size < kFine * static_cast<float>(job.spacing);
-}
-
-// Every packet from the root.
-inline void latticeFromRoot(const LatticeJob& job, bool fine) {
-  const int packets = job.side / 2;
-  std::int32_t warm[kWide] = {-1, -1, -1, -1, -1, -1, -1, -1};
-  for (int count = 0; count < packets * packets * packets; ++count) {
-    const Snake at = snake(count, packets);
-    Packet packet;
-    place(job, {2.0 * at.i, 2.0 * at.j, 2.0 * at.k}, 1, packet);
-    Answer answer = nothingWithin(job.max_distance);
-    if (fine) {
-      answer = searchPoints(job, packet, warm[0]);
-    } else {
-      tryEach(job, warm, packet.points, answer);
-      search(job, packet.points, packet.box, 0, answer);
-    }
-    write(job, 2 * at.i, 2 * at.j, 2 * at.k, packet, answer, warm);
-  }
 }
 
 // ---- 8^3 lattices: the tree is descended once, for all 64 packets ----
@@ -440,7 +423,7 @@ inline void latticeFromRoot(const LatticeJob& job, bool fine) {
 constexpr int kItems = 1024;
 // Subtrees smaller than this many spacings are listed whole: beyond, a list of smaller pieces is
 // longer to read than the subtree is to search.
-constexpr float kSmall = 4.0f;
+constexpr float kSmall = 8.0f;
 
 // A child of a node.
 struct Item {
@@ -449,7 +432,8 @@ struct Item {
 };
 
 struct Items {
-  alignas(32) float centre[3][kItems], half[3][kItems];
+  alignas(32) float centre[3][kItems], half[3][kItems], normal[3][kItems];
+  alignas(32) float low[kItems], high[kItems], radius[kItems];
   std::int32_t node[kItems], place[kItems];
   int count;
 };
@@ -497,15 +481,22 @@ PATINA_INLINE void select(const LatticeJob& job, const Item (&items)[kItems], in
     for (int a = 0; a < 3; ++a) {
       chosen.centre[a][n] = node.centre[a][items[i].place];
       chosen.half[a][n] = node.half[a][items[i].place];
+      chosen.normal[a][n] = node.normal[a][items[i].place];
     }
+    chosen.low[n] = node.low[items[i].place];
+    chosen.high[n] = node.high[items[i].place];
+    chosen.radius[n] = node.radius[items[i].place];
     chosen.node[n] = items[i].node;
     chosen.place[n] = items[i].place;
     ++n;
   }
   chosen.count = n;
-  for (; n % kWide; ++n) {
-    for (int a = 0; a < 3; ++a) chosen.centre[a][n] = 0;
-    for (int a = 0; a < 3; ++a) chosen.half[a][n] = -__builtin_inff();
+  for (; n % kWide; ++n) { // places of no child
+    for (int a = 0; a < 3; ++a) {
+      chosen.centre[a][n] = chosen.normal[a][n] = 0;
+      chosen.half[a][n] = -__builtin_inff();
+    }
+    chosen.low[n] = chosen.high[n] = chosen.radius[n] = 0;
   }
 }
 
@@ -525,8 +516,76 @@ inline void searchItems(const LatticeJob& job, const Points& p, const Box& box, 
       if (child < 0)
         tryTriangle(job.triangles, ~child, p, answer);
       else if (any(childDistance(node, items.place[at], p) <= answer.limit))
-        search(job, p, box, child, answer);
+        searchWarm(job, p, box, child, answer);
     }
+  }
+}
+
+PATINA_INLINE void searchItems(const LatticeJob& job, const Points& p, const Items& items,
+                               Nearest& nearest) {
+  for (int first = 0; first < items.count; first += kWide) {
+    unsigned near = bits(childDistances(items, first, p) <= spread(nearest.limit));
+    while (near) {
+      const int at = first + __builtin_ctz(near);
+      near &= near - 1;
+      const std::int32_t child = job.nodes[items.node[at]].child[items.place[at]];
+      if (child < 0) {
+        std::int32_t index[kWide] = {~child};
+        tryTriangles(job.triangles, index, 1, p, nearest);
+      } else {
+        searchPoint(job, p, child, nearest);
+      }
+    }
+  }
+}
+
+// The packet's points one after the other, each from the last one's answer; among the items, or
+// from the root if there are none.
+PATINA_INLINE Answer searchPoints(const LatticeJob& job, const Packet& packet, float limit,
+                                  std::int32_t warm, const Items* items) {
+  alignas(32) float x[kWide], y[kWide], z[kWide];
+  alignas(32) std::int32_t found[kWide];
+  store(x, packet.points.x);
+  store(y, packet.points.y);
+  store(z, packet.points.z);
+  alignas(32) float best[kWide];
+  for (int lane = 0; lane < kWide; ++lane) {
+    const Points p{spread(x[lane]), spread(y[lane]), spread(z[lane])};
+    Nearest nearest{limit, limit, __builtin_inff(), 0x7fffffff, -1};
+    if (warm >= 0) {
+      std::int32_t index[kWide] = {warm};
+      tryTriangles(job.triangles, index, 1, p, nearest);
+    }
+    if (items)
+      searchItems(job, p, *items, nearest);
+    else
+      searchPoint(job, p, 0, nearest);
+    found[lane] = nearest.triangle;
+    best[lane] = nearest.best;
+    if (nearest.triangle >= 0) warm = nearest.triangle;
+  }
+  Answer answer{};
+  answer.best = load(best);
+  answer.triangle = load(found);
+  return answer;
+}
+
+// Every packet from the root.
+inline void latticeFromRoot(const LatticeJob& job, bool fine) {
+  const int packets = job.side / 2;
+  std::int32_t warm[kWide] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  for (int count = 0; count < packets * packets * packets; ++count) {
+    const Snake at = snake(count, packets);
+    Packet packet;
+    place(job, {2.0 * at.i, 2.0 * at.j, 2.0 * at.k}, 1, packet);
+    Answer answer = nothingWithin(job.max_distance);
+    if (fine) {
+      answer = searchPoints(job, packet, answer.max_limit, warm[0], nullptr);
+    } else {
+      tryEach(job, warm, packet.points, answer);
+      search(job, packet.points, packet.box, 0, answer);
+    }
+    write(job, 2 * at.i, 2 * at.j, 2 * at.k, packet, answer, warm);
   }
 }
 
@@ -536,12 +595,14 @@ inline void lattice8(const LatticeJob& job) {
   Packet centres;
   place(job, {1.5, 1.5, 1.5}, 4, centres);
   Answer nearest = nothingWithin(job.max_distance + kRadius * job.spacing);
-  search(job, centres.points, centres.box, 0, nearest);
+  if (job.triangle_size < 4 * kFine * job.spacing)
+    nearest = searchPoints(job, centres, nearest.max_limit, -1, nullptr);
+  else
+    search(job, centres.points, centres.box, 0, nearest);
   alignas(32) std::int32_t found[kWide];
   store(found, nearest.triangle);
   int fine = 0;
   for (int o = 0; o < kWide; ++o) fine += found[o] < 0 ? 0 : isFine(job, found[o]) ? 1 : -1;
-  if (fine > 0) return latticeFromRoot(job, true);
   alignas(32) float reach2[kWide], centre_d2[kWide], x[kWide], y[kWide], z[kWide];
   store(centre_d2, nearest.best);
   float max_reach2 = -1;
@@ -585,7 +646,9 @@ inline void lattice8(const LatticeJob& job) {
       Packet packet;
       place(job, {1.0 * i, 1.0 * j, 1.0 * k}, 1, packet);
       Answer answer = nothingWithin(job.max_distance);
-      if (chosen.count > 0) {
+      if (chosen.count > 0 && fine > 0) {
+        answer = searchPoints(job, packet, answer.max_limit, warm[0], &chosen);
+      } else if (chosen.count > 0) {
         tryEach(job, warm, packet.points, answer);
         searchItems(job, packet.points, packet.box, chosen, answer);
       }
@@ -598,7 +661,7 @@ void lattice(const LatticeJob& job) {
   if (job.side == 8)
     lattice8(job);
   else
-    latticeFromRoot(job, job.max_distance > 1e30);
+    latticeFromRoot(job, job.triangle_size < kFine * job.spacing);
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -65,6 +65,7 @@ struct TriangleTree::Impl {
   std::vector<Triangle> triangles;
   std::vector<WideNode> nodes;
   std::vector<PacketTriangle> leaves;
+  float mean_edge = 0; // longest edge of a leaf
 
   Vec3 toTree(const Vec3& p) const { return (p - centre) / unit; }
   const Vec3& corner(std::int32_t face, std::size_t which) const {
@@ -171,6 +172,9 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
         }
       });
   fitCylinders(impl->nodes, impl->leaves);
+  double edges = 0;
+  for (const PacketTriangle& leaf : impl->leaves) edges += static_cast<double>(leaf.ab);
+  impl->mean_edge = static_cast<float>(edges / static_cast<double>(impl->leaves.size()));
   impl_ = std::move(impl);
 }
 
@@ -324,14 +328,9 @@ void TriangleTree::closestOnLattice(const Vec3& origin, double spacing, int side
       !origin.allFinite() || !(spacing > 0))
     throw std::invalid_argument("closestOnLattice: side must be even and the answers side^3");
   const Vec3 at = impl_->toTree(origin);
-  const LatticeJob job{impl_->nodes.data(),
-                       impl_->leaves.data(),
-                       {at[0], at[1], at[2]},
-                       spacing / impl_->unit,
-                       side,
-                       max_distance / impl_->unit,
-                       face.data(),
-                       distance.data()};
+  const LatticeJob job{impl_->nodes.data(),        impl_->leaves.data(),  impl_->mean_edge,
+                       {at[0], at[1], at[2]},      spacing / impl_->unit, side,
+                       max_distance / impl_->unit, face.data(),           distance.data()};
   patina::closestOnLattice(job);
   for (std::size_t i = 0; i < count; ++i) {
     distance[i] *= static_cast<float>(impl_->unit / spacing);
