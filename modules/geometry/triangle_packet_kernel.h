@@ -8,10 +8,9 @@
 
 namespace patina::PATINA_KERNEL {
 
-// Distances that differ by less are ties, which the lower face wins: squared, relative and (in
-// squared units of the tree) absolute. Above what float loses here, far below what matters.
-constexpr float kTie = 1.0f + 4e-6f;
-constexpr float kTieFloor = 1e-14f;
+// Distances that differ by less are ties, which the lower face wins: relative, and in units of the
+// tree. Above what float loses here, far below what matters.
+constexpr float kTie = 2e-6f, kTieFloor = 1e-7f;
 constexpr float kPadding = 2.5e-7f; // of boxes, against float's rounding of coordinates
 constexpr int kStack = 640;         // 7 more a level; the tree's depth is bounded by its builder
 
@@ -92,6 +91,12 @@ PATINA_INLINE Lanes squaredDistance(const T& t, const Lanes& rx, const Lanes& ry
   return madd(z, z, choose(inside, zero, edge));
 }
 
+// Squared distances up to this are ties with `best`.
+PATINA_INLINE Lanes tieLimit(const Lanes& best) {
+  const Lanes limit = madd(root(best), spread(1 + kTie), spread(kTieFloor));
+  return limit * limit;
+}
+
 PATINA_INLINE void tryTriangle(const PacketTriangle* triangles, std::int32_t index, const Points& p,
                                Answer& answer) {
   const PacketTriangle& t = triangles[index];
@@ -99,7 +104,7 @@ PATINA_INLINE void tryTriangle(const PacketTriangle* triangles, std::int32_t ind
                                    p.z - spread(t.a[2]));
   if (!any(d2 <= answer.limit)) return;
   answer.best = smaller(answer.best, d2);
-  answer.limit = madd(answer.best, spread(kTie), spread(kTieFloor));
+  answer.limit = tieLimit(answer.best);
   const Mask take =
       (d2 <= answer.limit) & ((spread(t.face) < answer.face) | (answer.limit < answer.face_d2));
   answer.face = choose(take, spread(t.face), answer.face);
@@ -278,7 +283,8 @@ PATINA_INLINE void tryTriangles(const PacketTriangle* triangles, std::int32_t (&
     if (distance[i] > nearest.limit) continue;
     if (distance[i] < nearest.best) {
       nearest.best = distance[i];
-      nearest.limit = nearest.best * kTie + kTieFloor;
+      const float limit = __builtin_sqrtf(nearest.best) * (1 + kTie) + kTieFloor;
+      nearest.limit = limit * limit;
     }
     const std::int32_t face = triangles[index[i]].face;
     if (face < nearest.face || nearest.limit < nearest.face_d2) {

@@ -45,9 +45,10 @@ class TriangleTree {
   std::vector<std::int32_t> facesInSphere(const Vec3& centre, double radius) const;
 
   // Distances and faces of the side^3 points origin + spacing * (i, j, k), x fastest; side even.
-  // Distances count in spacings, to 1e-6 relative to the triangles nearby; where nothing is within
-  // max_distance [m] they are infinite and the face is -1. Of faces whose distances agree to about
-  // 1e-6, the lowest. Several times faster than one query a point. Any number of threads.
+  // Distances count in spacings; where nothing is within max_distance [m] they are infinite and the
+  // face is -1. Faces whose distances agree to 2e-6 relative plus 1e-7 of the mesh's extent are a
+  // tie, which the lowest wins: up to there the distance is that of the face named. Several times
+  // faster than one query a point; side 8 is the fastest. Any number of threads.
   void closestOnLattice(const Vec3& origin, double spacing, int side, double max_distance,
                         std::span<float> distance, std::span<std::int32_t> face) const;
 

@@ -257,6 +257,7 @@ void expectLatticeAgreement(const TriangleMesh& mesh, const Vec3& origin, double
                             double max_distance) {
   constexpr int kSide = 8;
   const TriangleTree tree(mesh);
+  const double extent = bounds(mesh).sizes().maxCoeff();
   std::vector<float> distance(kSide * kSide * kSide);
   std::vector<std::int32_t> face(distance.size());
   tree.closestOnLattice(origin, spacing, kSide, max_distance, distance, face);
@@ -272,11 +273,12 @@ void expectLatticeAgreement(const TriangleMesh& mesh, const Vec3& origin, double
           continue;
         }
         if (truth.distance > max_distance) continue;
+        const double tolerance = 4e-6 * truth.distance + 1e-7 * extent;
         ASSERT_GE(face[at], 0);
-        ASSERT_NEAR(distance[at] * spacing, truth.distance, 3e-6 * truth.distance + 1e-6 * spacing);
+        ASSERT_NEAR(distance[at] * spacing, truth.distance, tolerance);
         const auto f = static_cast<std::size_t>(face[at]);
         ASSERT_NEAR(triangleDistance(p, mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)),
-                    truth.distance, 5e-6 * truth.distance + 1e-6 * spacing);
+                    truth.distance, tolerance);
       }
 }
 
