@@ -116,10 +116,10 @@ std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress) {
   progress.throwIfCancelled();
   auto compiled = std::make_shared<CompiledScene>();
   compiled->scene = std::move(scene);
-  compiled->mesh = worldMesh(compiled->scene);
-  compiled->mesh_report = inspect(compiled->mesh);
+  compiled->mesh = std::make_shared<const TriangleMesh>(worldMesh(compiled->scene));
+  compiled->mesh_report = inspect(*compiled->mesh);
   progress.throwIfCancelled();
-  compiled->built = buildField(compiled->mesh, compiled->scene.field, progress);
+  compiled->built = buildField(*compiled->mesh, compiled->scene.field, progress);
   progress.throwIfCancelled();
   compiled->built.field = withSamples(std::move(compiled->built.field));
   compiled->snapshot = compileStages(compiled->scene, compiled->built.field);

@@ -42,7 +42,7 @@ TriangleMesh worldMesh(const Scene& scene);
 // Everything that a scene compiles to. Immutable.
 struct CompiledScene {
   Scene scene;
-  TriangleMesh mesh; // world frame
+  std::shared_ptr<const TriangleMesh> mesh; // world frame; shared by versions that differ in feel
   MeshReport mesh_report;
   BuiltField built; // with the sample layer
   std::shared_ptr<const HapticSnapshot> snapshot;

@@ -40,7 +40,7 @@ double timerNs() {
 
 std::vector<double> stageNs(const CompiledScene& compiled) {
   const HapticSnapshot& snapshot = *compiled.snapshot;
-  const TriangleMesh& mesh = compiled.mesh;
+  const TriangleMesh& mesh = *compiled.mesh;
   const double voxel = compiled.built.field->grid.voxel;
   const double radius = compiled.scene.haptics.tip_radius.value_or(0.0);
   const double timer = timerNs();

@@ -23,7 +23,7 @@ CsvTable vertexTable(const CompiledScene& compiled) {
   CsvTable table;
   table.columns = {"x [m]", "y [m]", "z [m]", "phi [m]", "nx", "ny", "nz"};
   const FieldSampler sampler(*compiled.built.field, compiled.scene.sampler);
-  for (const Vec3& p : compiled.mesh.positions) {
+  for (const Vec3& p : compiled.mesh->positions) {
     const GridSample sample = sampler.at(p);
     const double length = sample.gradient.norm();
     const Vec3 n = length > 0 ? Vec3(sample.gradient / length) : Vec3::Zero();
@@ -48,7 +48,7 @@ int runExport(const ExportOptions& options, Console& console) {
     throw FileError(folder.string(), 0, "this folder cannot be made");
   std::vector<std::pair<std::string, std::string>> blocks = {
       {"mesh", "mesh.vtp"}, {"surface", "surface.vtp"}, {"field", "field.vti"}};
-  writeMeshVtp(folder / "mesh.vtp", compiled->mesh);
+  writeMeshVtp(folder / "mesh.vtp", *compiled->mesh);
   // With a finite tip the surface that is felt lies its radius outside.
   const double iso = compiled->scene.haptics.tip_radius.value_or(0.0);
   writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->built.field, iso));

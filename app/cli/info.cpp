@@ -122,7 +122,7 @@ int runInfo(const InfoOptions& options, Console& console) {
     json.set("stages", Json::array());
   } else {
     const auto compiled = compile(std::move(scene), console.progress());
-    describeMesh(compiled->mesh, compiled->mesh_report, json, rows);
+    describeMesh(*compiled->mesh, compiled->mesh_report, json, rows);
     if (is_field) { // the numbers of the file, not of the field that its surface compiles to
       const SurfaceField field = readField(options.input);
       FieldReport report;
@@ -137,7 +137,7 @@ int runInfo(const InfoOptions& options, Console& console) {
       json.set("field", fieldJson(*compiled->built.field, compiled->built.report));
       const TextRows more = fieldRows(*compiled->built.field, compiled->built.report);
       rows.insert(rows.end(), more.begin(), more.end());
-      describeLayers(*compiled->built.field, bytesOf(compiled->mesh), json, rows);
+      describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), json, rows);
     }
     describeStages(*compiled, json, rows);
   }

@@ -53,7 +53,7 @@ template <typename Value> std::string choices(const std::vector<Value>& all) {
 
 // The tool as the servo leaves it when it comes to `tip` from outside.
 ToolSample toolAt(const CompiledScene& compiled, const Vec3& tip, Progress& progress) {
-  const CleanMesh clean = cleaned(compiled.mesh);
+  const CleanMesh clean = cleaned(*compiled.mesh);
   const ClosestPoint nearest = TriangleTree(clean.mesh).closestPoint(tip);
   const Box3 box = bounds(clean.mesh);
   const bool inside = FieldSampler(*compiled.built.field, compiled.scene.sampler).at(tip).phi < 0;
@@ -86,7 +86,7 @@ int runRender(const RenderOptions& options, Console& console) {
     view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
   } else {
     const auto compiled = compile(std::move(scene), console.progress());
-    view.setMesh(std::shared_ptr<const TriangleMesh>(compiled, &compiled->mesh));
+    view.setMesh(compiled->mesh);
     view.setField(compiled->built.field);
     if (const auto radius = compiled->scene.haptics.tip_radius) {
       view.setTipRadius(*radius);

@@ -78,7 +78,7 @@ SampledSurface open(const SampleOptions& options, Console& console) {
   const auto compiled =
       compile(openWith(options.input, options.scene, console), console.progress());
   surface.field = compiled->built.field;
-  surface.oracle.emplace(compiled->mesh);
+  surface.oracle.emplace(*compiled->mesh);
   surface.sampler = compiled->scene.sampler;
   surface.haptics = compiled->scene.haptics;
   return surface;

@@ -185,7 +185,7 @@ void MainWindow::showCurrent() {
   load_bar_->end();
   const CompiledScene& scene = *current_;
   // A preview has set mesh and camera already; a failed load has replaced both.
-  view_->view().setMesh(std::shared_ptr<const TriangleMesh>(current_, &scene.mesh));
+  view_->view().setMesh(scene.mesh);
   view_->view().setField(scene.built.field);
   view_->view().setTipRadius(scene.scene.haptics.tip_radius.value_or(0));
   view_->setField(scene.built.field);

@@ -87,7 +87,7 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
   QStringList names;
   for (const SceneObject& object : scene.scene.objects) names << text(object.name);
   heading(names.join(QStringLiteral(", ")));
-  meshRows(scene.mesh);
+  meshRows(*scene.mesh);
   const MeshReport& report = scene.mesh_report;
   row(tr("Watertight"), report.watertight ? tr("yes") : tr("no"),
       tr("Every edge has two faces. Contact works either way; inside and outside are then told by "

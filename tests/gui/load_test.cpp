@@ -92,7 +92,7 @@ TEST_F(Loading, AnOddSizeAsksForTheUnitAndTheAnswerCounts) {
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
   dialog->accept(); // the first choice: 100 mm
   ASSERT_TRUE(waitUntil([&] { return ready; }));
-  EXPECT_NEAR(bounds(window_->scene()->mesh).sizes().maxCoeff(), 0.1, 1e-9);
+  EXPECT_NEAR(bounds(*window_->scene()->mesh).sizes().maxCoeff(), 0.1, 1e-9);
 }
 
 TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {
@@ -124,7 +124,7 @@ TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
   dialog->accept(); // a distance: 0 is offered
   ASSERT_TRUE(waitUntil([&] { return ready; }));
-  EXPECT_NEAR(bounds(window_->scene()->mesh).sizes().maxCoeff(), 0.030, 1e-4);
+  EXPECT_NEAR(bounds(*window_->scene()->mesh).sizes().maxCoeff(), 0.030, 1e-4);
 }
 
 TEST_F(Loading, AWorkspaceThatWasSavedOpensAgainWithItsValues) {
@@ -155,7 +155,7 @@ TEST_F(Loading, ANewLoadTakesThePlaceOfOneUnderWay) {
   window_->open(requestFor(slow));
   wait(20);
   ASSERT_TRUE(open(quick));
-  EXPECT_EQ(window_->scene()->mesh.triangles.size(), 20U * 64U);
+  EXPECT_EQ(window_->scene()->mesh->triangles.size(), 20U * 64U);
 }
 
 } // namespace
