@@ -35,21 +35,27 @@ void sleepUntil(std::int64_t monotonic_ns) noexcept {
   }
 }
 
-RealtimeGrant requestRealtime() {
+RealtimeGrant requestRealtime() noexcept {
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   prefaultStack();
   sched_param parameter{};
   parameter.sched_priority = kPriority;
-  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+  RealtimeGrant grant;
+  grant.fifo_error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
   // ONFAULT: what is in memory stays there, without reading in every page of the program at once.
-  const bool locked = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
-  const std::string memory =
-      locked ? "memory locked" : std::string("memory not locked: ") + std::strerror(errno);
-  if (refused != 0) {
-    return {false, std::string("SCHED_OTHER (SCHED_FIFO refused: ") + std::strerror(refused) +
-                       "), " + memory};
-  }
-  return {true, "SCHED_FIFO " + std::to_string(kPriority) + ", " + memory};
+  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) grant.lock_error = errno;
+  return grant;
+}
+
+std::string policyText(const RealtimeGrant& grant) {
+  if (grant.fifo_error < 0) return "not started";
+  const auto reason = [](int error) { return std::string(std::strerror(error)); };
+  std::string text = grant.fifo_error == 0
+                         ? "SCHED_FIFO " + std::to_string(kPriority)
+                         : "SCHED_OTHER (SCHED_FIFO refused: " + reason(grant.fifo_error) + ")";
+  text += grant.lock_error == 0 ? ", memory locked"
+                                : ", memory not locked: " + reason(grant.lock_error);
+  return text;
 }
 
 } // namespace patina

@@ -10,12 +10,14 @@ std::int64_t monotonicNs() noexcept;
 void sleepUntil(std::int64_t monotonic_ns) noexcept; // absolute; not woken early by signals
 
 struct RealtimeGrant {
-  bool realtime = false;
-  std::string policy; // what was granted, or what was refused and why, for the status bar
+  int fifo_error = 0; // errno of what was refused; 0 = granted, -1 = not asked yet
+  int lock_error = 0;
 };
+// What was granted, or what was refused and why, for the status bar.
+std::string policyText(const RealtimeGrant& grant);
 // For the calling thread: SCHED_FIFO 50, memory locked as it is touched, the least timer slack, and
 // a stack that will not fault. Carries on where the system refuses, and says so.
-RealtimeGrant requestRealtime();
+RealtimeGrant requestRealtime() noexcept;
 
 // Deadlines one period apart. After a late wake-up the missed ones are counted and skipped, so that
 // the loop never runs a burst of ticks to catch up.

@@ -1,7 +1,7 @@
 #include "haptics/servo_loop.h"
 
 #include <algorithm>
-#include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -24,8 +24,8 @@ double checkedRate(double rate_hz) {
 
 ServoTiming summary(const TimingWindow& window, const RealtimeGrant& grant) {
   ServoTiming timing;
-  timing.policy = grant.policy;
-  timing.realtime = grant.realtime;
+  timing.policy = policyText(grant);
+  timing.realtime = grant.fifo_error == 0;
   const TimingWindow::Percentiles late = window.late();
   const TimingWindow::Percentiles step = window.step();
   timing.late_p50 = late.p50 * 1e-3;
@@ -50,9 +50,7 @@ struct ServoLoop::Impl {
   }
 
   void run() noexcept {
-    // The only allocation of this thread: before the first tick, and handed over by `granted`.
-    grant = requestRealtime();
-    granted.store(true, std::memory_order_release);
+    grant.store(requestRealtime(), std::memory_order_release);
 
     const std::int64_t start = monotonicNs();
     rate_mark = start;
@@ -73,7 +71,9 @@ struct ServoLoop::Impl {
       const HapticSnapshot* snapshot = exchange.latest();
       const SurfaceField* field = snapshot ? snapshot->field.get() : nullptr;
       if (field != felt) {
-        memory.reset(); // contact points of another surface mean nothing here
+        // Contact points of another surface mean nothing here; a fault goes on, and so do counts.
+        memory.leaveContact();
+        memory.clearance = std::numeric_limits<double>::infinity();
         felt = field;
       }
       ToolSample sample;
@@ -127,10 +127,9 @@ struct ServoLoop::Impl {
   TimingWindow window;
   std::thread thread;
   std::atomic<bool> stopping{false};
-  std::atomic<bool> granted{false};
   std::atomic<std::uint64_t> missed{0};
   std::atomic<double> measured_rate{0};
-  RealtimeGrant grant;        // written before `granted`, constant after
+  std::atomic<RealtimeGrant> grant{RealtimeGrant{-1, -1}}; // before the first start
   std::int64_t rate_mark = 0; // servo thread's own, as the next
   int ticks_since_mark = 0;
 };
@@ -145,7 +144,6 @@ ServoLoop::~ServoLoop() {
 void ServoLoop::start() {
   if (running()) return;
   impl_->stopping.store(false);
-  impl_->granted.store(false);
   impl_->thread = std::thread([this] { impl_->run(); });
 }
 
@@ -161,8 +159,9 @@ bool ServoLoop::running() const {
 
 void ServoLoop::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
   impl_->exchange.publish(std::move(snapshot));
-  if (!running()) return;
-  std::this_thread::sleep_for(std::chrono::nanoseconds(2 * impl_->period_ns));
+}
+
+void ServoLoop::collect() {
   impl_->exchange.collect();
 }
 
@@ -175,8 +174,7 @@ const Device& ServoLoop::device() const {
 }
 
 ServoTiming ServoLoop::timing() const {
-  const bool granted = impl_->granted.load(std::memory_order_acquire);
-  ServoTiming timing = summary(impl_->window, granted ? impl_->grant : RealtimeGrant{});
+  ServoTiming timing = summary(impl_->window, impl_->grant.load(std::memory_order_acquire));
   timing.missed = impl_->missed.load(std::memory_order_relaxed);
   timing.rate_hz = impl_->measured_rate.load(std::memory_order_relaxed);
   return timing;

@@ -26,6 +26,7 @@ struct ServoTiming {
   double rate_hz = 0;
 };
 
+// All of it belongs to one thread (the window's), except what says otherwise.
 class ServoLoop {
  public:
   // Does not start. rate in 100 .. 10000 Hz.
@@ -38,7 +39,10 @@ class ServoLoop {
   void stop();
   bool running() const;
 
-  void publish(std::shared_ptr<const HapticSnapshot> snapshot); // any one thread
+  // publish: felt at the next tick, never waits. collect: frees snapshots that the servo has left,
+  // as publish does too; call it now and then.
+  void publish(std::shared_ptr<const HapticSnapshot> snapshot);
+  void collect();
   Ring<ToolSample>& samples();  // consumer: one thread; holds 1 s at least
   ServoTiming timing() const;   // any thread
   const Device& device() const; // for info(); keep your own pointer to a MouseDevice

@@ -111,8 +111,11 @@ TEST(ServoLoop, FreesSnapshotsThatItHasLeft) {
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_FALSE(first.expired()) << "the servo still reads it";
-  const auto second = sphereSnapshot(600);
-  for (int i = 0; i < 50 && !first.expired(); ++i) loop.publish(second);
+  loop.publish(sphereSnapshot(600));
+  for (int i = 0; i < 1000 && !first.expired(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    loop.collect();
+  }
   EXPECT_TRUE(first.expired());
 }
 

@@ -16,6 +16,8 @@
 #include <mutex>
 #include <thread>
 
+#include "field/build_field.h"
+#include "geometry/shapes.h"
 #include "haptics/servo_loop.h"
 
 namespace {
@@ -48,6 +50,11 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
   ++allocations;
   return __libc_memalign(alignment, size);
 }
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
+  ++allocations;
+  *block = __libc_memalign(alignment, size);
+  return *block ? 0 : 12;
+}
 void free(void* block) {
   if (block) ++allocations;
   __libc_free(block);
@@ -79,11 +86,13 @@ Cost costOfThisThread() {
   return {allocations, locks, usage.ru_minflt + usage.ru_majflt};
 }
 
-// Circles in and out of the sphere, so that contact, friction, its loss and the free path all run.
-class CirclingDevice final : public Device {
+// In and out of a solid block with a thin fin, deep into the block, through the fin in one tick,
+// off the grid and back: contact, friction, deep and held contact, a fault and the free path all
+// run.
+class WanderingDevice final : public Device {
  public:
-  static constexpr int kWarmUp = 300;
-  static constexpr int kTicks = 3000;
+  static constexpr int kWarmUp = 500;
+  static constexpr int kTicks = 6000;
 
   DeviceState exchange(const Vec3&, double) noexcept override {
     if (tick_ == kWarmUp) before = costOfThisThread();
@@ -91,11 +100,16 @@ class CirclingDevice final : public Device {
       after = costOfThisThread();
       done.store(true);
     }
-    const double angle = 0.01 * tick_++;
-    const double r = 0.05 + 0.002 * std::sin(3.7 * angle);
-    return {r * Vec3(std::cos(angle), std::sin(angle), 0.3 * std::sin(0.7 * angle)), false, false};
+    const int phase = tick_++ % 1000;
+    const double s = phase * 1e-3;
+    if (phase < 400) return {Vec3(0.01 * std::sin(40 * s), 0, 0.021 - 0.003 * s), false, false};
+    if (phase < 600) return {Vec3(0, 0, 0.02 - 0.05 * (s - 0.4)), false, false};
+    if (phase < 700) return {Vec3(0.03 + 2e-3 * (phase % 2), 0.001, 0.002), false, false};
+    if (phase < 750) return {Vec3(1, 1, 1), false, false};
+    if (phase < 760) return {Vec3::Constant(std::nan("")), false, false};
+    return {Vec3(0, 0, phase % 2 ? 0.05 : 0.015), false, false};
   }
-  DeviceInfo info() const override { return {"circling", 0, 0, ""}; }
+  DeviceInfo info() const override { return {"wandering", 0, 0, ""}; }
 
   Cost before, after;
   std::atomic<bool> done{false};
@@ -105,28 +119,39 @@ class CirclingDevice final : public Device {
 };
 
 TEST(ServoThread, NeitherAllocatesNorLocksNorFaultsAfterWarmUp) {
-  const double radius = 0.05;
+  const TriangleMesh fin = transformed(box(Vec3(0.0005, 0.02, 0.02)),
+                                       Eigen::Affine3d(Eigen::Translation3d(0.031, 0, 0)));
   FieldSpec spec;
-  spec.resolution = 64;
-  const FieldGrid grid = gridAround(Box3(Vec3::Constant(-radius), Vec3::Constant(radius)), spec);
-  auto field = std::make_shared<const SurfaceField>(
-      sampleFunction([=](const Vec3& p) { return p.norm() - radius; }, grid, spec.band));
+  spec.resolution = 100;
+  Progress progress;
+  const auto field =
+      withSamples(buildField(joined(box(Vec3::Constant(0.04), 4), fin), spec, progress).field);
   Scene scene;
   scene.haptics.friction = Friction{0.5, 0.3, 0.1, Friction::SlipDirection::paper};
   scene.haptics.damping = 1.0;
-  auto owned = std::make_unique<CirclingDevice>();
-  CirclingDevice& device = *owned;
+  auto owned = std::make_unique<WanderingDevice>();
+  WanderingDevice& device = *owned;
   ServoLoop loop(std::move(owned), 5000);
-  loop.publish(compileStages(scene, withSamples(field)));
+  loop.publish(compileStages(scene, field));
   loop.start();
+  bool contact = false, deep = false, fault = false, face = false;
   for (int i = 0; i < 20000 && !device.done.load(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (i % 100 == 50) {
+      scene.haptics.stiffness = 500 + i % 7;
+      loop.publish(compileStages(scene, field));
+    }
     ToolSample sample;
     while (loop.samples().pop(sample)) {
+      contact |= sample.contact;
+      deep |= sample.deep;
+      fault |= sample.fault;
+      face |= sample.face >= 0;
     }
   }
   loop.stop();
   ASSERT_TRUE(device.done.load());
+  EXPECT_TRUE(contact && deep && fault && face) << contact << deep << fault << face;
   EXPECT_EQ(device.after.allocations - device.before.allocations, 0);
   EXPECT_EQ(device.after.locks - device.before.locks, 0);
   EXPECT_EQ(device.after.page_faults - device.before.page_faults, 0);

@@ -207,8 +207,13 @@ TEST(ContactExtremes, TeleportsOf50MmStayWithinTheLimit) {
   }
 }
 
-// Force finite and within the limit whatever the tip and the period. 1e6 ticks; 1e7 with
-// PATINA_LONG_TESTS set (about ten times as long).
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kAnyTips = 1000000;
+#else
+constexpr int kAnyTips = 10000000;
+#endif
+
+// Force finite and within the limit whatever the tip and the period.
 TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
   const Field plate = plateField();
   Scene scene = withFriction(wallScene(500), 0.5, 0.3, 0.5);
@@ -216,7 +221,7 @@ TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
   scene.haptics.tip_radius = 0.1e-3;
   scene.haptics.friction->slip = Friction::SlipDirection::displacement;
   const auto snapshot = compileStages(scene, plate);
-  const int count = std::getenv("PATINA_LONG_TESTS") ? 10000000 : 1000000;
+  const int count = kAnyTips;
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> coordinate(-5e-3, 5e-3);
   ContactMemory memory;
