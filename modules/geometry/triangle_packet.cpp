@@ -18,4 +18,8 @@ void closestOnLattice(const LatticeJob& job) {
   packet_plain::lattice(job);
 }
 
+void closestOnLatticePlain(const LatticeJob& job) {
+  packet_plain::lattice(job);
+}
+
 } // namespace patina

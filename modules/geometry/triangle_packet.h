@@ -53,7 +53,9 @@ struct LatticeJob {
   float* distance;
 };
 
-// The same algorithm for the processor at hand; the difference is in the last bits.
+// The same algorithm in the instructions of the processor at hand, or in those that every
+// processor has; the difference is in the last bits.
 void closestOnLattice(const LatticeJob& job);
+void closestOnLatticePlain(const LatticeJob& job);
 
 } // namespace patina
