@@ -1,0 +1,49 @@
+// Whether a time that was measured is the program's own or the machine's, which had more to do.
+#pragma once
+
+#include <ctime>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace patina::test {
+
+// A pass during which its thread had less than this share of a core says nothing.
+inline constexpr double kCleanShare = 0.98;
+
+// Share of one core that the calling thread got since construction; for work that never waits.
+class CpuShare {
+ public:
+  double value() const {
+    const double wall = seconds(CLOCK_MONOTONIC) - wall_;
+    return wall > 0 ? (seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_) / wall : 0;
+  }
+
+ private:
+  static double seconds(clockid_t clock) {
+    timespec time{};
+    clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  double wall_ = seconds(CLOCK_MONOTONIC);
+  double cpu_ = seconds(CLOCK_THREAD_CPUTIME_ID);
+};
+
+// What `pass` returns, unless other work took the core away meanwhile.
+template <class Pass> auto ifClean(Pass&& pass) -> std::optional<decltype(pass())> {
+  const CpuShare share;
+  auto result = pass();
+  if (share.value() < kCleanShare) return std::nullopt;
+  return result;
+}
+
+// Results of the clean ones among up to `tries` passes, at most `wanted`. Empty: skip the row.
+template <class Pass>
+auto cleanPasses(int wanted, int tries, Pass&& pass) -> std::vector<decltype(pass())> {
+  std::vector<decltype(pass())> clean;
+  for (int i = 0; i < tries && static_cast<int>(clean.size()) < wanted; ++i)
+    if (auto result = ifClean(pass)) clean.push_back(std::move(*result));
+  return clean;
+}
+
+} // namespace patina::test
