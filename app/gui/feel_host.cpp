@@ -1,12 +1,27 @@
 #include "app/gui/feel_host.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace patina {
+
+namespace {
+constexpr double kRate = 1000; // [Hz]
+}
 
 void FeelHost::open(std::shared_ptr<const HapticSnapshot> snapshot, const Vec3& start) {
   close();
+  const auto now = std::chrono::steady_clock::now();
+  if (began_once_) {
+    const double since = std::chrono::duration<double>(now - began_).count();
+    offset_ = std::max(since, last_t_ + 1 / kRate);
+  } else {
+    began_ = now;
+    began_once_ = true;
+  }
   auto mouse = makeMouseDevice(start);
   mouse_ = mouse.get();
-  loop_ = std::make_unique<ServoLoop>(std::move(mouse), 1000);
+  loop_ = std::make_unique<ServoLoop>(std::move(mouse), kRate);
   loop_->publish(std::move(snapshot));
   loop_->start();
 }
@@ -17,7 +32,21 @@ void FeelHost::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
 
 void FeelHost::close() {
   mouse_ = nullptr;
+  if (!loop_) return;
+  loop_->stop();
+  empty(left_);
+  dropped_before_ += loop_->samples().dropped();
   loop_.reset();
+}
+
+void FeelHost::empty(std::vector<ToolSample>& into) {
+  // A servo that outruns this loop must not hold up the window.
+  const std::size_t most = into.size() + 20000;
+  ToolSample sample;
+  while (into.size() < most && loop_->samples().pop(sample)) {
+    last_t_ = sample.t += offset_;
+    into.push_back(sample);
+  }
 }
 
 void FeelHost::setTarget(const Vec3& target) {
@@ -25,10 +54,8 @@ void FeelHost::setTarget(const Vec3& target) {
 }
 
 std::vector<ToolSample> FeelHost::drain() {
-  std::vector<ToolSample> samples;
-  if (!loop_) return samples;
-  ToolSample sample;
-  while (samples.size() < 20000 && loop_->samples().pop(sample)) samples.push_back(sample);
+  std::vector<ToolSample> samples = std::exchange(left_, {});
+  if (loop_) empty(samples);
   return samples;
 }
 
@@ -37,7 +64,7 @@ ServoTiming FeelHost::timing() const {
 }
 
 std::size_t FeelHost::dropped() const {
-  return loop_ ? loop_->samples().dropped() : 0;
+  return dropped_before_ + (loop_ ? loop_->samples().dropped() : 0);
 }
 
 } // namespace patina

@@ -1,6 +1,7 @@
 // The servo as the window sees it: publish, aim, drain. UI thread only.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -13,17 +14,26 @@ class FeelHost {
   // Starts a new loop whose mouse device rests at `start`. The old loop, if any, stops first.
   void open(std::shared_ptr<const HapticSnapshot> snapshot, const Vec3& start);
   void publish(std::shared_ptr<const HapticSnapshot> snapshot); // values changed, contact goes on
-  void close();
+  void close(); // what the loop has left is still there for drain()
   bool running() const { return loop_ != nullptr; }
 
   void setTarget(const Vec3& target); // any one thread at a time; never waits
-  std::vector<ToolSample> drain();    // since the last call, oldest first
+  // Since the last call, oldest first. t counts from the first loop's start and increases over all
+  // loops of this host.
+  std::vector<ToolSample> drain();
   ServoTiming timing() const;
-  std::size_t dropped() const; // samples that nobody drained in time
+  std::size_t dropped() const; // samples that nobody drained in time, of all loops
 
  private:
+  void empty(std::vector<ToolSample>& into);
+
   std::unique_ptr<ServoLoop> loop_;
   MouseDevice* mouse_ = nullptr; // owned by the loop
+  std::vector<ToolSample> left_;
+  std::chrono::steady_clock::time_point began_;
+  bool began_once_ = false;
+  double offset_ = 0, last_t_ = 0; // [s]
+  std::size_t dropped_before_ = 0;
 };
 
 } // namespace patina

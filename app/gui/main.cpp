@@ -22,7 +22,6 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "visualization/display.h"
-#include "visualization/export_files.h"
 
 namespace {
 
@@ -94,6 +93,7 @@ void giveRuntimeFolder() {
 volatile std::sig_atomic_t interrupted = 0;
 
 int run(const Arguments& arguments, int argc, char** argv) {
+  if (arguments.log) patina::requireWritable(*arguments.log);
   patina::requireDisplay();
   setenv("QT_QPA_PLATFORM", "xcb", 0);
   giveRuntimeFolder();
@@ -103,6 +103,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
   QApplication::setOrganizationName(QStringLiteral("patina"));
   patina::applyStyle(application);
   patina::MainWindow window;
+  window.setAsks(!arguments.tour && !arguments.log && !arguments.first_picture_time);
   window.resize(1280, 800);
   window.show();
   if (arguments.tour) {
@@ -114,16 +115,27 @@ int run(const Arguments& arguments, int argc, char** argv) {
     return 0;
   }
   window.open(arguments.request);
-  if (arguments.log) window.startRecording();
-  // Ctrl-C is a way to close the window: what was recorded is still written.
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  if (arguments.log) window.startLog();
+  // Ctrl-C, kill and a lost terminal are ways to close the window: the log is still written.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(signal, [](int) { interrupted = 1; });
   QTimer watch;
   QObject::connect(&watch, &QTimer::timeout, &window, [&] {
-    if (interrupted != 0) window.close();
+    if (interrupted == 0) return;
+    window.setAsks(false);
+    window.close();
+    // A question that is still open would keep the program alive.
+    if (!window.isVisible()) QApplication::quit();
   });
   watch.start(100);
   const int code = QApplication::exec();
-  if (arguments.log) patina::writeToolSamplesCsv(*arguments.log, window.takeRecording());
+  if (arguments.log) {
+    const std::size_t lost = window.log().lost();
+    window.log().save(*arguments.log);
+    if (lost > 0)
+      std::cerr << "patina-gui: " << arguments.log->string() << ": " << lost
+                << " ticks came too fast to be kept\n";
+  }
   return code;
 }
 

@@ -135,7 +135,7 @@ void MainWindow::open(const LoadRequest& request) {
 
 void MainWindow::showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name) {
   previewing_ = true;
-  feel_.close();
+  closeFeel();
   view_->setField(nullptr);
   view_->view().setField(nullptr);
   view_->view().setMesh(mesh);
@@ -166,7 +166,7 @@ void MainWindow::restore() {
   load_bar_->end();
   if (current_ == nullptr) {
     previewing_ = false;
-    feel_.close();
+    closeFeel();
     view_->setField(nullptr);
     view_->view().setField(nullptr);
     view_->view().setMesh(nullptr);
@@ -201,6 +201,7 @@ void MainWindow::showCurrent() {
   save_action_->setEnabled(true);
   record_action_->setEnabled(true);
   haptics_edited_ = false;
+  closeFeel();
   last_sample_ = {};
   plot_->clear();
   const Vec3 start = view_->restingPlace();
@@ -228,15 +229,24 @@ void MainWindow::applyHaptics() {
   status_->showScene(current_.get());
 }
 
+void MainWindow::collect() {
+  const std::vector<ToolSample> samples = feel_.drain();
+  recording_.add(samples, feel_.dropped());
+  log_.add(samples, feel_.dropped());
+  if (samples.empty()) return;
+  last_sample_ = samples.back();
+  plot_->add(samples);
+}
+
+void MainWindow::closeFeel() {
+  feel_.close();
+  collect();
+}
+
 void MainWindow::tick() {
   if (haptics_edited_) applyHaptics();
-  const std::vector<ToolSample> samples = feel_.drain();
-  if (!samples.empty()) {
-    last_sample_ = samples.back();
-    view_->view().setTool(last_sample_);
-    plot_->add(samples);
-    if (recording_) record_.insert(record_.end(), samples.begin(), samples.end());
-  }
+  collect();
+  if (feel_.running()) view_->view().setTool(last_sample_);
   view_->refresh();
   plot_->refresh();
   if (ticks_++ % 10 == 0) {
@@ -252,14 +262,25 @@ void MainWindow::setMode(SceneWidget::Mode mode) {
 }
 
 void MainWindow::startRecording() {
-  record_.clear();
-  recording_ = true;
+  collect();
+  recording_.start(feel_.dropped());
 }
 
 std::vector<ToolSample> MainWindow::takeRecording() {
-  tick();
-  recording_ = false;
-  return std::exchange(record_, {});
+  collect();
+  std::vector<ToolSample> samples = recording_.samples();
+  recording_.clear();
+  return samples;
+}
+
+void MainWindow::startLog() {
+  collect();
+  log_.start(feel_.dropped());
+}
+
+Recording& MainWindow::log() {
+  collect();
+  return log_;
 }
 
 void MainWindow::saveWorkspaceTo(const QString& folder) {
@@ -282,9 +303,10 @@ void MainWindow::dropEvent(QDropEvent* event) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+  if (asks_ && !settleRecording()) return event->ignore();
   timer_.stop();
   loader_->cancel();
-  feel_.close();
+  closeFeel();
   event->accept();
 }
 

@@ -13,6 +13,7 @@
 #include "app/gui/load_bar.h"
 #include "app/gui/object_panel.h"
 #include "app/gui/recent_files.h"
+#include "app/gui/recording.h"
 #include "app/gui/scene_loader.h"
 #include "app/gui/scene_widget.h"
 #include "app/gui/status_line.h"
@@ -27,9 +28,14 @@ class MainWindow : public QMainWindow {
 
   void open(const LoadRequest& request);
   void saveWorkspaceTo(const QString& folder); // throws Error
-  void startRecording();
+  void startRecording();                       // what R does; the log is a recording of its own
   // Every tick since startRecording(), and recording ends.
   std::vector<ToolSample> takeRecording();
+  const Recording& recording() const { return recording_; }
+  void startLog();
+  Recording& log(); // up to this tick
+  // Whether closing asks about what is not saved; a script's window has nobody to ask.
+  void setAsks(bool asks) { asks_ = asks; }
 
   const CompiledScene* scene() const { return current_.get(); }
   SceneWidget& view() { return *view_; }
@@ -65,6 +71,10 @@ class MainWindow : public QMainWindow {
   void saveDialog();
   void exportDialog();
   void recordDialog(bool on);
+  bool saveRecordingDialog(); // false: not written, the samples are kept
+  bool settleRecording();     // saved or dropped; false: the person goes on
+  void collect();             // what the servo has said since the last time
+  void closeFeel();           // and nothing that it said is lost
 
   SceneWidget* view_;
   LoadBar* load_bar_;
@@ -89,8 +99,8 @@ class MainWindow : public QMainWindow {
   bool haptics_edited_ = false;
   int ticks_ = 0;
   ToolSample last_sample_;
-  bool recording_ = false;
-  std::vector<ToolSample> record_;
+  Recording recording_, log_;
+  bool asks_ = true;
 };
 
 } // namespace patina

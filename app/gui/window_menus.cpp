@@ -10,7 +10,6 @@
 #include "app/gui/load_dialogs.h"
 #include "app/gui/main_window.h"
 #include "core/error.h"
-#include "visualization/export_files.h"
 
 namespace patina {
 namespace {
@@ -60,7 +59,7 @@ void MainWindow::buildMenus() {
   record_action_->setCheckable(true);
   record_action_->setShortcut(Qt::Key_R);
   record_action_->setToolTip(tr("Record every tick, then save a CSV table"));
-  connect(record_action_, &QAction::toggled, this, &MainWindow::recordDialog);
+  connect(record_action_, &QAction::triggered, this, &MainWindow::recordDialog);
   file->addSeparator();
   file->addAction(tr("&Quit"), this, &QWidget::close, QKeySequence::Quit);
 
@@ -192,17 +191,50 @@ void MainWindow::exportDialog() {
 
 void MainWindow::recordDialog(bool on) {
   if (on) return startRecording();
-  const std::vector<ToolSample> samples = takeRecording();
+  collect();
+  recording_.pause();
+  if (saveRecordingDialog() || settleRecording()) return;
+  recording_.resume();
+  record_action_->setChecked(true);
+}
+
+bool MainWindow::saveRecordingDialog() {
   const QString path = QFileDialog::getSaveFileName(
       this, tr("Save the recorded forces"), QStringLiteral("feel.csv"), tr("Tables (*.csv)"));
-  if (path.isEmpty()) return;
+  if (path.isEmpty()) return false;
+  const std::size_t count = recording_.samples().size(), lost = recording_.lost();
   try {
-    writeToolSamplesCsv(path.toStdString(), samples);
-    statusBar()->showMessage(tr("Saved %1 ticks to %2").arg(samples.size()).arg(path), 4000);
+    recording_.save(path.toStdString());
   } catch (const std::exception& error) {
     showProblem(this, tr("The recording cannot be saved"), QString::fromStdString(error.what()),
-                tr("Choose a folder that you may write to."));
+                tr("Choose a folder that you may write to. The recording is kept."));
+    return false;
   }
+  record_action_->setChecked(false);
+  QString words = tr("Saved %1 ticks to %2").arg(count).arg(path);
+  if (lost > 0) words += tr("; %1 ticks came too fast to be kept").arg(lost);
+  statusBar()->showMessage(words, lost > 0 ? 0 : 4000);
+  return true;
+}
+
+bool MainWindow::settleRecording() {
+  collect();
+  while (!recording_.samples().empty()) {
+    QMessageBox box(QMessageBox::Question, tr("The recording is not saved"),
+                    tr("%1 recorded ticks are in no file yet.").arg(recording_.samples().size()),
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
+    box.setObjectName(QStringLiteral("unsaved_recording"));
+    const int answer = box.exec();
+    if (answer == QMessageBox::Discard) {
+      recording_.clear();
+      record_action_->setChecked(false);
+    } else if (answer != QMessageBox::Save) {
+      return false;
+    } else {
+      saveRecordingDialog();
+    }
+  }
+  return true;
 }
 
 } // namespace patina

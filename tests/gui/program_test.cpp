@@ -92,14 +92,25 @@ TEST_F(Program, ATourOfAMissingFileFailsInOneLine) {
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
 }
 
-TEST_F(Program, CtrlCWritesTheLog) {
+TEST_F(Program, CtrlCAndKillAndALostTerminalWriteTheLog) {
   if (!hasDisplay()) GTEST_SKIP() << "no DISPLAY";
   writeMesh(folder_ / "sphere.obj", icosphere(30, 8));
-  const Outcome outcome =
-      run("--log" + quoted(folder_ / "log.csv") + quoted(folder_ / "sphere.obj"),
-          "timeout --preserve-status -s INT 8");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_GT(readCsv(folder_ / "log.csv", {"t [s]", "x [m]"}).rows.size(), 100U);
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    const fs::path log = folder_ / (signal + ".csv");
+    const Outcome outcome = run("--log" + quoted(log) + quoted(folder_ / "sphere.obj"),
+                                "timeout --preserve-status -s " + signal + " 5");
+    EXPECT_EQ(outcome.code, 0) << signal << ": " << outcome.err;
+    ASSERT_TRUE(fs::exists(log)) << signal;
+    EXPECT_GT(readCsv(log, {"t [s]", "x [m]"}).rows.size(), 100U) << signal;
+  }
+}
+
+TEST_F(Program, ALogThatCannotBeWrittenIsRefusedBeforeTheWindowOpens) {
+  const Outcome outcome = run("--log" + quoted(folder_ / "absent" / "log.csv"), "timeout 20");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("log.csv"), std::string::npos);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_EQ(run("--log" + quoted(folder_), "timeout 20").code, 2);
 }
 
 TEST_F(Program, TheFirstPictureOf70000TrianglesTakesAtMostTwoSeconds) {
