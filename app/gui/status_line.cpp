@@ -26,7 +26,7 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   policy_ = label("policy");
   stages_ = label("stages");
   bytes_ = label("bytes");
-  late_->setToolTip(tr("How late 99 % of the servo's wake-ups are at most, over the last second"));
+  late_->setToolTip(tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
   missed_->setToolTip(tr("Ticks that came more than a period late since the servo began"));
   showTiming({}, false);
   showScene(nullptr);
