@@ -68,22 +68,42 @@ std::vector<std::string> meshWarnings(const MeshReport& report) {
   return lines;
 }
 
+std::optional<std::string> thinSheetWarning(const MeshReport& report) {
+  if (report.boundary_edges == 0) return std::nullopt;
+  return formatCount(report.boundary_edges) + (report.boundary_edges == 1 ? " edge" : " edges") +
+         " of one triangle: thin sheets have no inside; set tip.radius to feel them from both "
+         "sides";
+}
+
+namespace {
+
+void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMesh& mesh,
+                 bool has_tip_radius) {
+  const MeshReport report = inspect(mesh);
+  for (const std::string& line : meshWarnings(report))
+    opened.warnings.push_back(where + ": " + line);
+  const auto thin = thinSheetWarning(report);
+  if (thin && !has_tip_radius) opened.warnings.push_back(where + ": " + *thin);
+}
+
+} // namespace
+
 OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options) {
   if (!std::filesystem::exists(path)) throw FileError(path.string(), 0, "no such file or folder");
   OpenedScene opened;
   if (std::filesystem::is_directory(path)) {
     opened.scene = loadWorkspace(path);
+    const bool has_radius =
+        options.tip_radius_chosen || opened.scene.haptics.tip_radius.value_or(0.0) > 0;
     for (const SceneObject& object : opened.scene.objects)
-      for (const std::string& line : meshWarnings(inspect(*object.mesh)))
-        opened.warnings.push_back(path.string() + ": " + object.name + ": " + line);
+      addWarnings(opened, path.string() + ": " + object.name, *object.mesh, has_radius);
     return opened;
   }
   bool in_metres = false;
   TriangleMesh mesh =
       lowerExtension(path) == ".vti" ? meshOfVolume(path, options, in_metres) : readMesh(path);
   if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");
-  for (const std::string& line : meshWarnings(inspect(mesh)))
-    opened.warnings.push_back(path.string() + ": " + line);
+  addWarnings(opened, path.string(), mesh, options.tip_radius_chosen);
   ScaledMesh scaled = inMetres(std::move(mesh), in_metres ? MeshUnit::m : options.unit);
   if (!scaled.warning.empty()) opened.warnings.push_back(path.string() + ": " + scaled.warning);
   opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));

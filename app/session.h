@@ -19,7 +19,8 @@ namespace patina {
 
 struct OpenOptions {
   MeshUnit unit = MeshUnit::mm;
-  std::optional<double> iso; // needed for a volume from elsewhere
+  std::optional<double> iso{};    // needed for a volume from elsewhere
+  bool tip_radius_chosen = false; // what is opened gets a tip radius: no advice to set one
 };
 
 struct OpenedScene {
@@ -29,6 +30,8 @@ struct OpenedScene {
 
 // What the engines leave out of a mesh, in words: one line a kind, nothing if nothing.
 std::vector<std::string> meshWarnings(const MeshReport& report);
+// The line that a mesh with edges of one face needs unless the tip has a radius; else nothing.
+std::optional<std::string> thinSheetWarning(const MeshReport& report);
 
 // A mesh (.obj .ply .stl), a workspace folder, a volume (.vti). Throws FileError; nothing is kept.
 OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options);

@@ -85,7 +85,10 @@ int runScene(const SceneCommandOptions& options, Console& console) {
     if (!scene.objects.empty())
       throw Error("--add: the scene has '" + scene.objects.front().name +
                   "' already and this version feels one object; --remove it first");
-    scene.objects.push_back(readObject(text, options.open, console));
+    OpenOptions open = options.open;
+    open.tip_radius_chosen =
+        scene.haptics.tip_radius.value_or(0.0) > 0 || setsTipRadius(options.settings);
+    scene.objects.push_back(readObject(text, open, console));
   }
   applySettings(scene, options.settings);
   validate(scene);
@@ -137,9 +140,9 @@ Command sceneCommand() {
   command.examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
                       "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3"};
   command.output("WORKSPACE", "The folder.", options->workspace);
-  command.arguments.push_back({"--add", "MESH[@POSE.txt]", "Put a mesh into the scene.", "", false,
-                               true,
-                               [options](const auto& text) { options->added.push_back(text); }});
+  command.arguments.push_back(
+      {"--add", "MESH[@POSE.txt]", "Put a mesh into the scene: one object in this version.", "",
+       false, true, [options](const auto& text) { options->added.push_back(text); }});
   command.arguments.push_back({"--remove", "NAME", "Take an object out.", "", false, true,
                                [options](const auto& text) { options->removed.push_back(text); }});
   command.arguments.push_back({"--set", "KEY=VALUE", "Change a value.", "", false, true,

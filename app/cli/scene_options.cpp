@@ -96,8 +96,20 @@ void applySettings(Scene& scene, const Settings& settings) {
   }
 }
 
+bool setsTipRadius(const Settings& settings) {
+  for (auto setting = settings.rbegin(); setting != settings.rend(); ++setting)
+    if (setting->first == "tip.radius") {
+      Scene scene;
+      setValue(scene, setting->first, setting->second);
+      return scene.haptics.tip_radius.value_or(0.0) > 0;
+    }
+  return false;
+}
+
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console) {
-  OpenedScene opened = openScene(path, options.open);
+  OpenOptions open = options.open;
+  open.tip_radius_chosen = setsTipRadius(options.settings);
+  OpenedScene opened = openScene(path, open);
   for (const std::string& warning : opened.warnings) console.warn(warning);
   applySettings(opened.scene, options.settings);
   return std::move(opened.scene);

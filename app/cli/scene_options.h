@@ -30,6 +30,9 @@ void addHapticOptions(Command& command, SceneOptions& options);
 // All of them or, with an Error, none. Their order matters only where they contradict one another.
 void applySettings(Scene& scene, const Settings& settings);
 
+// Whether they leave a scene with a tip radius above zero.
+bool setsTipRadius(const Settings& settings);
+
 // Opens, warns, and applies the settings. Throws FileError or Error; see openScene().
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console);
 

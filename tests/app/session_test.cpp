@@ -62,6 +62,25 @@ TEST_F(Session, WarnsOfEveryKindOfTriangleThatIsLeftOut) {
   EXPECT_TRUE(meshWarnings(inspect(icosphere(20, 4))).empty());
 }
 
+TEST_F(Session, AdvisesATipRadiusForSheetsUntilThereIsOne) {
+  const auto advice = [](const OpenedScene& opened) {
+    return std::count_if(opened.warnings.begin(), opened.warnings.end(), [](const auto& line) {
+      return line.find("set tip.radius") != std::string::npos;
+    });
+  };
+  writeMesh(folder / "ship.ply", galleon(100));
+  EXPECT_EQ(advice(openScene(folder / "ship.ply", {})), 1);
+  OpenOptions chosen;
+  chosen.tip_radius_chosen = true;
+  EXPECT_EQ(advice(openScene(folder / "ship.ply", chosen)), 0);
+  Scene scene = sceneOf(galleon(0.1), "ship");
+  saveWorkspace(scene, folder / "bare");
+  EXPECT_EQ(advice(openScene(folder / "bare", {})), 1);
+  scene.haptics.tip_radius = 0.001;
+  saveWorkspace(scene, folder / "round");
+  EXPECT_EQ(advice(openScene(folder / "round", {})), 0);
+}
+
 TEST_F(Session, OpensAWorkspaceAsItWasSaved) {
   Scene scene = smallSphere();
   scene.haptics.stiffness = 321;

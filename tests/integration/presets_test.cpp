@@ -4,6 +4,8 @@
 #include <sstream>
 
 #include "core/file.h"
+#include "core/numbers.h"
+#include "geometry/triangle_tree.h"
 #include "integration/program.h"
 #include "workspace/workspace.h"
 
@@ -76,10 +78,49 @@ TEST(Presets, AreMadeByTheCommandsInTheirReadme) {
   }
 }
 
-TEST(Presets, CanBeFelt) {
+TEST(Presets, HaveStages) {
   for (const std::string& name : presets()) {
     const Json info = runJson({"info", (kScenes / name).string()});
     EXPECT_FALSE(info.at("stages").asArray().empty()) << name;
+  }
+}
+
+// Every preset is pressed at faces spread over it, a sheet also from behind: where the way to a
+// face is free, the tip must meet something.
+TEST(Presets, CanBeFelt) {
+  const ScratchFolder folder;
+  for (const std::string& name : presets()) {
+    const TriangleMesh mesh = *loadWorkspace(kScenes / name).objects.at(0).mesh;
+    const TriangleTree tree(mesh);
+    int front = 0, behind = 0;
+    for (std::size_t face = 0; face < mesh.triangles.size() && front + behind < 8; face += 97) {
+      const Vec3 normal = faceNormal(mesh, face);
+      if (normal.isZero(0.0)) continue;
+      Vec3 centre = Vec3::Zero();
+      for (const auto vertex : mesh.triangles[face])
+        centre += mesh.positions[static_cast<std::size_t>(vertex)] / 3;
+      for (const double side : {1.0, -1.0}) {
+        if ((side > 0 ? front : behind) == 4) continue;
+        if (side < 0 && name != "galleon") continue; // the others are solid
+        const Vec3 out = side * normal.normalized();
+        if (tree.closestPoint(centre + 0.003 * out).distance < 0.0029) continue;
+        std::string path = "t [s],x [m],y [m],z [m]\n";
+        for (int i = 0; i <= 120; ++i) { // from 3 mm off to 0.2 mm within the face's own plane
+          const Vec3 tip = centre + (0.003 - 0.0032 * i / 120) * out;
+          path += formatNumber(0.001 * i);
+          for (const double x : tip) path += "," + formatNumber(x);
+          path += "\n";
+        }
+        SCOPED_TRACE(name + " face " + std::to_string(face) + (side > 0 ? " front" : " behind"));
+        const Json felt = runJson({"feel", (kScenes / name).string(), "--path",
+                                   folder.write("tip.csv", path), "-o", folder / "f.csv"});
+        EXPECT_GT(felt.at("contact_ticks").asInteger(), name == "dinosaur" ? 2 : 25);
+        EXPECT_GT(felt.at("max_force").asNumber(), 0.0);
+        ++(side > 0 ? front : behind);
+      }
+    }
+    EXPECT_EQ(front, 4) << name;
+    EXPECT_EQ(behind, name == "galleon" ? 4 : 0) << name;
   }
 }
 
