@@ -16,7 +16,9 @@ namespace {
 
 constexpr double kVelocityCutoff = 200; // [Hz]
 constexpr double kVelocityTime = 1 / (2 * 3.14159265358979323846 * kVelocityCutoff);
-constexpr double kMinBandBeyondTip = 3; // voxels
+constexpr double kMinVelocityPeriod = 1e-6; // [s]; less measures nothing
+constexpr double kMaxVelocity = 1e6;        // [m/s]; beyond it the tip was set, not moved
+constexpr double kMinBandBeyondTip = 3;     // voxels
 
 void checkField(const SurfaceField* field, const HapticProperties& haptics) {
   if (!field) throw std::invalid_argument("compileStages: no field");
@@ -110,9 +112,11 @@ Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& 
     return contact;
   }
   memory.gap = 0;
-  if (memory.has_last_tip && contact.dt > 0) {
+  if (memory.has_last_tip && contact.dt >= kMinVelocityPeriod) {
     const Vec3 difference = 1 / contact.dt * (tip - memory.last_tip);
     memory.velocity += contact.dt / (contact.dt + kVelocityTime) * (difference - memory.velocity);
+    // Also where it is infinite or NaN, which no filter would ever forget.
+    if (!(memory.velocity.squaredNorm() < kMaxVelocity * kMaxVelocity)) memory.velocity.setZero();
   }
   contact.velocity = memory.velocity;
   for (const auto& stage : snapshot.stages) stage->apply(contact, memory);

@@ -149,6 +149,27 @@ TEST(JumpFault, SpeedScalesWithTheModel) {
   }
 }
 
+// At the default K the scaled speed alone would allow 10 N a tick, three times the limit.
+TEST(JumpFault, FiresOnAModelOfAMetreToo) {
+  Scene scene = sceneOf(500);
+  scene.haptics.force_limit = 3.3;
+  const auto snapshot = compileStages(scene, planeField(0x1p-6)); // 1 m
+  for (const double depth : {8e-3, 50e-3}) {
+    ContactMemory memory;
+    tick(*snapshot, memory, Vec3(0, 0, 1e-3), kPeriod);
+    const Contact contact = tick(*snapshot, memory, Vec3(0, 0, -depth), kPeriod);
+    EXPECT_TRUE(contact.fault) << depth;
+    EXPECT_EQ(contact.force, Vec3::Zero().eval());
+  }
+  // Quicker than a hand and yet no fault: 3 m/s.
+  ContactMemory memory;
+  for (double z = 3e-3; z > -50e-3; z -= 3e-3) {
+    const Contact contact = tick(*snapshot, memory, Vec3(0, 0, z), kPeriod);
+    EXPECT_FALSE(contact.fault) << z;
+    EXPECT_NEAR(contact.force.z(), std::clamp(-500 * z, 0.0, 3.3), 1e-4) << z;
+  }
+}
+
 TEST(JumpFault, NonFiniteForceIsAFault) {
   const LimitStage stage{LimitSpec{}};
   ContactMemory memory;

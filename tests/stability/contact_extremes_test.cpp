@@ -227,8 +227,22 @@ TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
   ContactMemory memory;
   std::uint64_t bad = 0;
   Vec3 tip = Vec3::Zero();
-  int touching = 0;
+  int touching = 0, pressed = 0;
   for (int i = 0; i < count; ++i) {
+    if (i % 5000 == 4999) { // it must have survived that, not be silent
+      tick(*snapshot, memory, Vec3(0, 0, 2e-3), kPeriod);
+      for (int k = 0; k < 100; ++k) tick(*snapshot, memory, Vec3(0, 0, 1e-3), kPeriod);
+      glide(*snapshot, memory, Vec3(0, 0, 0.4e-3), 0.02e-3);
+      const Vec3 inside(0, 0, 0.15e-3);
+      glide(*snapshot, memory, inside, 0.02e-3);
+      for (int k = 0; k < 40; ++k) tick(*snapshot, memory, inside, kPeriod);
+      const Contact calm = tick(*snapshot, memory, inside, kPeriod);
+      ASSERT_FALSE(calm.fault) << i;
+      // The plate's top is at 0.25 mm, the tip's radius 0.1 mm.
+      ASSERT_NEAR(calm.force.z(), 500 * 0.2e-3, 1e-5) << i;
+      ++pressed;
+      tip = inside;
+    }
     const auto kind = random() % 64;
     if (kind < 40) {
       tip =
@@ -255,9 +269,31 @@ TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
     ASSERT_TRUE(contact.force.allFinite()) << i;
     ASSERT_LE(contact.force.norm(), kLimit) << i;
   }
+  EXPECT_EQ(pressed, count / 5000);
   EXPECT_EQ(memory.bad_tips, bad);
   EXPECT_GT(bad, static_cast<std::uint64_t>(count) / 100);
   EXPECT_GT(touching, count / 20);
+}
+
+// One tick without duration, or a tip set beyond all bounds, must not stay in the velocity.
+TEST(ContactExtremes, ForgetsAVelocityThatCannotBe) {
+  Scene scene = wallScene(500);
+  scene.haptics.damping = 2;
+  const auto snapshot = compileStages(scene, wall());
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  for (const auto& [z, dt] : std::vector<std::pair<double, double>>{
+           {1e-3, tiny}, {1e-3, 1e-300}, {1e306, kPeriod}, {-1e306, 1e-5}, {1e200, kPeriod}}) {
+    ContactMemory memory;
+    tick(*snapshot, memory, Vec3(0, 0, 2e-3), kPeriod);
+    tick(*snapshot, memory, Vec3(0, 0, z), dt);
+    EXPECT_TRUE(memory.velocity.allFinite()) << z << ' ' << dt;
+    for (int i = 0; i < 60; ++i) tick(*snapshot, memory, Vec3(0, 0, 1e-3), kPeriod);
+    glide(*snapshot, memory, Vec3(0, 0, -2e-3), 0.1e-3);
+    for (int i = 0; i < 30; ++i) tick(*snapshot, memory, Vec3(0, 0, -2e-3), kPeriod);
+    const Contact contact = tick(*snapshot, memory, Vec3(0, 0, -2e-3), kPeriod);
+    EXPECT_FALSE(contact.fault);
+    EXPECT_NEAR(contact.force.z(), 1.0, 1e-4) << z << ' ' << dt;
+  }
 }
 
 // A tip at rest has the same force after a million ticks, bit for bit, with every stage on.
