@@ -1,9 +1,7 @@
 // A field while it is being made: its blocks may still be written.
 #pragma once
 
-#include <iterator>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "field/surface_field.h"
@@ -24,18 +22,7 @@ struct FieldBuilder {
   // grid's last node are real points with real distances.
 };
 
-inline SurfaceField frozen(FieldBuilder&& builder) {
-  SurfaceField field = std::move(builder.field);
-  field.distance.assign(std::make_move_iterator(builder.distance.begin()),
-                        std::make_move_iterator(builder.distance.end()));
-  field.face.reserve(builder.face.size());
-  for (std::shared_ptr<FaceNodes>& nodes : builder.face) {
-    field.face.push_back(std::make_shared<const FaceBlock>(*nodes));
-    nodes.reset();
-  }
-  builder.distance.clear();
-  builder.face.clear();
-  return field;
-}
+// Immutable from here on; the face blocks take their small form. Parallel.
+SurfaceField frozen(FieldBuilder&& builder);
 
 } // namespace patina
