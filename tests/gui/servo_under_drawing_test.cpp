@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "geometry/shapes.h"
+#include "gui/load_average.h"
 #include "gui/window_fixture.h"
 #include "visualization/camera.h"
 
@@ -36,6 +37,8 @@ TEST_F(ServoUnderDrawing, WakesInTimeWhileTheWindowDraws500000Triangles) {
   if (!timing.realtime)
     GTEST_SKIP() << "no real-time priority here (" << timing.policy
                  << "): lateness is shown and not judged";
+  if (machineIsCrowded())
+    GTEST_SKIP() << "more runs here than there are processors: lateness is shown and not judged";
   EXPECT_LE(timing.late_p99, 100);
   EXPECT_LE(timing.late_p999, 500);
 }
