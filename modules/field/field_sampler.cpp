@@ -35,6 +35,8 @@ constexpr std::size_t kRow = kSampleSide, kLayer = kSampleSide * kSampleSide;
 
 // Depth at which every cell is still complete is band - sqrt(3); the hand-over ends before it.
 constexpr double kHandOverEnd = 1.75, kHandOverWidth = 1;
+// However narrow the band, values at the surface stay those of the nodes.
+constexpr double kShallowestHandOver = -0.25;
 
 struct Blend {
   Float4 sum;        // trilinear phi and gradient
@@ -71,8 +73,9 @@ FieldSampler::FieldSampler(const SurfaceField& field, Sampler sampler)
       last_node_(field.grid.nodes[0] - 1, field.grid.nodes[1] - 1, field.grid.nodes[2] - 1) {
   if (field.sample.size() != field.blockCount())
     throw std::invalid_argument("FieldSampler: the field has no sample layer; call withSamples()");
-  hand_over_ = field.coarse.empty() ? -std::numeric_limits<double>::infinity()
-                                    : -(field.band - kHandOverEnd - kHandOverWidth);
+  hand_over_ = field.coarse.empty()
+                   ? -std::numeric_limits<double>::infinity()
+                   : std::min(-(field.band - kHandOverEnd - kHandOverWidth), kShallowestHandOver);
 }
 
 // False unless all eight nodes are stored. NaN and infinity fail the comparisons, so that nothing

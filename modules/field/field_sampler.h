@@ -19,7 +19,7 @@ std::string_view name(Sampler sampler);
 enum class FieldRegion : std::uint8_t {
   band,    // all eight nodes stored
   outside, // farther than the band: phi is a lower bound of the distance, gradient zero
-  deep,    // inside, deeper than band - 2.75 voxels: from the coarse nodes
+  deep,    // inside, deeper than band - 2.75 voxels (at least 0.25): from the coarse nodes
   nowhere, // a NaN point: phi = +infinity
 };
 
@@ -33,8 +33,9 @@ struct GridSample {
 // A view: the field must outlive it and must have its sample layer. Any thread.
 //
 // From band to deep the value passes over one voxel of depth to the coarse one, which is held at
-// band - 1.75 or deeper: depth is continuous and never falls on the way in. Without a coarse layer
-// points deeper than the band report phi = -band and a zero gradient.
+// band - 1.75 or deeper: in bands of 3 voxels or more depth is continuous and never falls on the
+// way in. Without a coarse layer points deeper than the band report phi = -band and a zero
+// gradient.
 class FieldSampler {
  public:
   FieldSampler(const SurfaceField& field, Sampler sampler); // invalid_argument without samples

@@ -221,6 +221,26 @@ TEST(FieldSampler, DepthGrowsMonotonicallyAndContinuouslyBeyondTheBand) {
   }
 }
 
+TEST(FieldSampler, NarrowBandsAreExactAtTheSurface) {
+  std::mt19937 random(12);
+  for (const double band : {2.0, 2.5, 2.75, 3.0}) {
+    const FieldGrid grid = cubeGrid(kRadius, 100, band);
+    const auto field = sampledField(sphereDistance(kRadius), grid, band);
+    for (const Sampler kind : kSamplers) {
+      const FieldSampler sampler(*field, kind);
+      for (int n = 0; n < 2000; ++n) {
+        const Vec3 normal = randomDirection(random);
+        const double depth = -0.2 + 2e-4 * n;
+        const GridSample sample =
+            sampler.atGrid(grid.toGrid(normal * (kRadius - depth * grid.voxel)));
+        ASSERT_EQ(sample.region, FieldRegion::band) << band << " " << depth;
+        ASSERT_NEAR(sample.phi, -depth, 0.01) << band;
+        ASSERT_LT(angleBetween(sample.gradient, normal), 0.01) << band;
+      }
+    }
+  }
+}
+
 TEST(FieldSampler, DeepPointsWithoutACoarseLayerReportTheBand) {
   const FieldGrid grid = cubeGrid(kRadius, 64);
   SurfaceField bare = sampleFunction(sphereDistance(kRadius), grid, 8);
