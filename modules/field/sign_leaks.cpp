@@ -32,20 +32,30 @@ std::vector<std::int32_t> welded(const std::vector<Vec3>& positions) {
 
 bool isClosed(const TriangleMesh& mesh) {
   const std::vector<std::int32_t> vertex = welded(mesh.positions);
-  std::vector<std::uint64_t> edges;
-  edges.reserve(3 * mesh.triangles.size());
+  std::vector<Triangle> faces;
+  faces.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::uint64_t>(vertex[static_cast<std::size_t>(t[k])]);
-      const auto b = static_cast<std::uint64_t>(vertex[static_cast<std::size_t>(t[(k + 1) % 3])]);
-      if (a != b) edges.push_back(std::min(a, b) << 32 | std::max(a, b));
-    }
+    Triangle face;
+    for (std::size_t k = 0; k < 3; ++k) face[k] = vertex[static_cast<std::size_t>(t[k])];
+    std::sort(face.begin(), face.end());
+    faces.push_back(face);
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  std::vector<std::uint64_t> edges;
+  edges.reserve(3 * faces.size());
+  for (const Triangle& face : faces) {
+    const auto a = static_cast<std::uint64_t>(face[0]), b = static_cast<std::uint64_t>(face[1]),
+               c = static_cast<std::uint64_t>(face[2]);
+    if (a != b) edges.push_back(a << 32 | b);
+    if (b != c) edges.push_back(b << 32 | c);
+    if (a != c) edges.push_back(a << 32 | c);
   }
   std::sort(edges.begin(), edges.end());
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i;
     while (j < edges.size() && edges[j] == edges[i]) ++j;
-    if ((j - i) % 2 != 0) return false;
+    if (j - i == 1) return false;
     i = j;
   }
   return true;

@@ -9,8 +9,8 @@
 
 namespace patina::signs {
 
-// Every edge, vertices at equal positions being one, has an even number of faces: no component can
-// run from inside to outside, whichever way the faces are turned.
+// No edge, vertices at equal positions being one and coincident faces too, has a single face: no
+// component can run from inside to outside, whichever way the faces are turned.
 bool isClosed(const TriangleMesh& mesh);
 
 // A cut of leaking components that follows the parts' opinions (1 = surely inside, -1 = surely

@@ -158,6 +158,16 @@ TEST(Signs, FewWrongWithHoles) {
   }
 }
 
+TEST(Signs, FewWrongWithHolesInADoubledMesh) {
+  const TriangleMesh mesh = withHoles(ball(), 12, 0.1 * kRadius, 1);
+  for (const TriangleMesh& doubled : {joined(mesh, mesh), joined(mesh, inverted(mesh))}) {
+    const Wrong wrong = wrongSigns(doubled, ballTruth, 150);
+    EXPECT_LE(wrong.points, 0.001);
+    EXPECT_LE(wrong.nodes, 0.003);
+    EXPECT_GT(wrong.ambiguous, 0U);
+  }
+}
+
 TEST(Signs, NoneWrongWithFlippedFacesButSomeAmbiguous) {
   for (unsigned seed : {1U, 2U, 3U}) {
     const Wrong wrong = wrongSigns(withFlippedFaces(ball(), 0.05, seed), ballTruth, 80, seed);
