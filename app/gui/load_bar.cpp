@@ -37,6 +37,13 @@ void LoadBar::report(double fraction, const QString& what) {
   bar_->setValue(static_cast<int>(std::lround(1000 * fraction)));
 }
 
+void LoadBar::showClosing() {
+  words_->setText(tr("Closing when the file that is being read is done…"));
+  bar_->setRange(0, 0);
+  cancel_->setEnabled(false);
+  show();
+}
+
 void LoadBar::end() {
   hide();
 }

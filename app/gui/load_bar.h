@@ -14,6 +14,7 @@ class LoadBar : public QWidget {
   explicit LoadBar(QWidget* parent = nullptr);
   void begin(const QString& name);
   void report(double fraction, const QString& what);
+  void showClosing();
   void end();
 
  signals:

@@ -30,18 +30,30 @@ bool oddSize(double metres) {
 SceneLoader::SceneLoader(QObject* parent) : QObject(parent) {}
 
 SceneLoader::~SceneLoader() {
-  stop();
+  silence();
+  for (Job& job : jobs_) job.thread.join();
 }
 
-void SceneLoader::stop() {
-  if (progress_) progress_->cancel();
-  if (thread_.joinable()) thread_.join();
+void SceneLoader::silence() {
+  for (Job& job : jobs_) job.progress->cancel();
   ++load_;
   busy_ = false;
 }
 
 void SceneLoader::cancel() {
-  if (progress_) progress_->cancel();
+  if (!busy_) return;
+  silence();
+  deliver(load_, true, [this] { emit cancelled(); });
+}
+
+void SceneLoader::reap() {
+  const std::size_t before = jobs_.size();
+  jobs_.remove_if([](Job& job) {
+    if (!job.done) return false;
+    job.thread.join();
+    return true;
+  });
+  if (before > 0 && jobs_.empty()) emit rested();
 }
 
 // Runs `work` in this object's thread, unless another load has begun by then.
@@ -57,19 +69,25 @@ template <typename Work> void SceneLoader::deliver(std::uint64_t load, bool last
 }
 
 void SceneLoader::start(const LoadRequest& request) {
-  stop();
+  silence();
   request_ = request;
   busy_ = true;
   const std::uint64_t load = load_;
   // Workers report every few microseconds; the bar wants a hundred steps.
   auto shown = std::make_shared<std::pair<double, std::string>>(-1, "");
-  progress_ = std::make_unique<Progress>([=, this](double fraction, std::string_view what) {
+  Job& job = jobs_.emplace_back();
+  job.progress = std::make_unique<Progress>([=, this](double fraction, std::string_view what) {
     if (what == shown->second && fraction < shown->first + 0.01 && fraction >= shown->first) return;
     *shown = {fraction, std::string(what)};
     const QString words = QString::fromUtf8(what.data(), static_cast<int>(what.size()));
     deliver(load, false, [this, fraction, words] { emit progressed(fraction, words); });
   });
-  thread_ = std::thread([this, request, load] { run(request, *progress_, load); });
+  job.thread = std::thread([this, &job, request, load] {
+    run(request, *job.progress, load);
+    job.done = true;
+    QMetaObject::invokeMethod(
+        this, [this] { reap(); }, Qt::QueuedConnection);
+  });
 }
 
 void SceneLoader::run(const LoadRequest& request, Progress& progress, std::uint64_t load) {
