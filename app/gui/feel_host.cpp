@@ -9,7 +9,8 @@ namespace {
 constexpr double kRate = 1000; // [Hz]
 }
 
-void FeelHost::open(std::shared_ptr<const HapticSnapshot> snapshot, const Vec3& start) {
+void FeelHost::open(std::shared_ptr<const HapticSnapshot> snapshot,
+                    std::unique_ptr<MouseDevice> device) {
   close();
   const auto now = std::chrono::steady_clock::now();
   if (began_once_) {
@@ -19,9 +20,8 @@ void FeelHost::open(std::shared_ptr<const HapticSnapshot> snapshot, const Vec3& 
     began_ = now;
     began_once_ = true;
   }
-  auto mouse = makeMouseDevice(start);
-  mouse_ = mouse.get();
-  loop_ = std::make_unique<ServoLoop>(std::move(mouse), kRate);
+  mouse_ = device.get();
+  loop_ = std::make_unique<ServoLoop>(std::move(device), kRate);
   loop_->publish(std::move(snapshot));
   loop_->start();
 }

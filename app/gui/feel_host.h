@@ -11,8 +11,8 @@ namespace patina {
 
 class FeelHost {
  public:
-  // Starts a new loop whose mouse device rests at `start`. The old loop, if any, stops first.
-  void open(std::shared_ptr<const HapticSnapshot> snapshot, const Vec3& start);
+  // Starts a new loop with this device, which setTarget() moves. The old loop, if any, stops first.
+  void open(std::shared_ptr<const HapticSnapshot> snapshot, std::unique_ptr<MouseDevice> device);
   void publish(std::shared_ptr<const HapticSnapshot> snapshot); // values changed, contact goes on
   void close(); // what the loop has left is still there for drain()
   bool running() const { return loop_ != nullptr; }

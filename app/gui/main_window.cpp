@@ -8,6 +8,7 @@
 #include <QScrollArea>
 #include <QVBoxLayout>
 
+#include "app/gui/hand_device.h"
 #include "app/gui/haptic_ramp.h"
 #include "app/gui/load_dialogs.h"
 #include "app/gui/window_style.h"
@@ -20,7 +21,7 @@ MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), view_(new SceneWidget), load_bar_(new LoadBar), warnings_(new QLabel),
       object_(new ObjectPanel), haptics_(new HapticsPanel), display_(new DisplayPanel),
       plot_(new ForcePlot), status_(new StatusLine(statusBar())), loader_(new SceneLoader(this)) {
-  setWindowTitle(tr("Patina"));
+  setWindowTitle(tr("Patina[*]"));
   setAcceptDrops(true);
   buildLayout();
   buildMenus();
@@ -33,7 +34,10 @@ MainWindow::MainWindow(QWidget* parent)
           [this](const SlicePlace& place) { view_->view().setSlice(place); });
   connect(display_, &DisplayPanel::isoMoved, this,
           [this](double iso) { view_->view().setIso(iso); });
-  connect(haptics_, &HapticsPanel::edited, this, [this] { haptics_edited_ = true; });
+  connect(haptics_, &HapticsPanel::edited, this, [this] {
+    haptics_edited_ = true;
+    setWindowModified(true);
+  });
   connect(load_bar_, &LoadBar::cancelled, loader_, &SceneLoader::cancel);
   restore();
   // One timer draws everything; what did not change is not drawn again.
@@ -105,6 +109,7 @@ void MainWindow::connectLoader() {
     emit loadFailed(message);
   });
   connect(loader_, &SceneLoader::cancelled, this, [this] {
+    if (closing_) return;
     restore();
     emit loadCancelled();
   });
@@ -155,8 +160,9 @@ void MainWindow::take(std::shared_ptr<const CompiledScene> scene, const QStringL
   warnings_->setVisible(!warnings.isEmpty());
   const auto& path = loader_->request().path;
   setWindowTitle(path.empty()
-                     ? tr("Patina")
-                     : tr("%1 – Patina").arg(QString::fromStdString(path.filename().string())));
+                     ? tr("Patina[*]")
+                     : tr("%1[*] – Patina").arg(QString::fromStdString(path.filename().string())));
+  setWindowModified(false);
   if (!path.empty()) recent_->add(QString::fromStdString(path.string()));
   showCurrent();
   emit sceneReady();
@@ -206,7 +212,8 @@ void MainWindow::showCurrent() {
   plot_->clear();
   const Vec3 start = view_->restingPlace();
   view_->setTarget(start);
-  feel_.open(scene.snapshot, start);
+  feel_.open(scene.snapshot,
+             scene.scene.device == "simulated" ? makeHandDevice(start) : makeMouseDevice(start));
 }
 
 void MainWindow::applyHaptics() {
@@ -288,6 +295,7 @@ void MainWindow::saveWorkspaceTo(const QString& folder) {
   Scene scene = current_->scene;
   scene.haptics = haptics_->values(); // where the servo may still be on its way to
   saveWorkspace(scene, folder.toStdString());
+  setWindowModified(false);
   recent_->add(folder);
 }
 
@@ -299,14 +307,23 @@ void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
 void MainWindow::dropEvent(QDropEvent* event) {
   LoadRequest request;
   request.path = event->mimeData()->urls().front().toLocalFile().toStdString();
-  open(request);
+  // A question must not hold up the program that the file is dragged from.
+  QMetaObject::invokeMethod(
+      this, [this, request] { openAsked(request); }, Qt::QueuedConnection);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (asks_ && !settleRecording()) return event->ignore();
+  if (asks_ && !closing_ && !(settleRecording() && settleEdits())) return event->ignore();
+  closing_ = true;
   timer_.stop();
   loader_->cancel();
   closeFeel();
+  if (!loader_->resting()) {
+    // A reader cannot be stopped within a file: the window says so and goes when it is done.
+    load_bar_->showClosing();
+    connect(loader_, &SceneLoader::rested, this, &QWidget::close, Qt::UniqueConnection);
+    return event->ignore();
+  }
   event->accept();
 }
 

@@ -68,13 +68,15 @@ class MainWindow : public QMainWindow {
   void showCurrent();
   void applyHaptics();
   void openDialog();
-  void saveDialog();
+  bool saveDialog();                          // false: nothing was saved
+  void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
   void exportDialog();
   void recordDialog(bool on);
   bool saveRecordingDialog(); // false: not written, the samples are kept
-  bool settleRecording();     // saved or dropped; false: the person goes on
-  void collect();             // what the servo has said since the last time
-  void closeFeel();           // and nothing that it said is lost
+  bool settleEdits();
+  bool settleRecording(); // saved or dropped; false: the person goes on
+  void collect();         // what the servo has said since the last time
+  void closeFeel();       // and nothing that it said is lost
 
   SceneWidget* view_;
   LoadBar* load_bar_;
@@ -101,6 +103,7 @@ class MainWindow : public QMainWindow {
   ToolSample last_sample_;
   Recording recording_, log_;
   bool asks_ = true;
+  bool closing_ = false;
 };
 
 } // namespace patina

@@ -26,7 +26,8 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   policy_ = label("policy");
   stages_ = label("stages");
   bytes_ = label("bytes");
-  late_->setToolTip(tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
+  late_->setToolTip(
+      tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
   missed_->setToolTip(tr("Ticks that came more than a period late since the servo began"));
   showTiming({}, false);
   showScene(nullptr);

@@ -48,9 +48,9 @@ void MainWindow::buildMenus() {
   connect(recent_, &RecentFiles::chosen, this, [this](const QString& path) {
     LoadRequest request;
     request.path = path.toStdString();
-    open(request);
+    openAsked(request);
   });
-  file->addAction(tr("Open the toy &dinosaur"), this, [this] { open({}); });
+  file->addAction(tr("Open the toy &dinosaur"), this, [this] { openAsked({}); });
   file->addSeparator();
   save_action_ =
       file->addAction(tr("&Save workspace…"), this, &MainWindow::saveDialog, QKeySequence::Save);
@@ -161,23 +161,43 @@ void MainWindow::openDialog() {
     request.path = path.toStdString();
     // Of a workspace, which is a folder, people see the file in it.
     if (request.path.filename() == "workspace.json") request.path = request.path.parent_path();
-    open(request);
+    openAsked(request);
   });
   dialog->open();
 }
 
-void MainWindow::saveDialog() {
+bool MainWindow::saveDialog() {
   const QString folder = QFileDialog::getSaveFileName(
       this, tr("Save the workspace as a folder"), QStringLiteral("scene.patina"), {}, nullptr,
       QFileDialog::DontConfirmOverwrite | QFileDialog::HideNameFilterDetails);
-  if (folder.isEmpty()) return;
+  if (folder.isEmpty()) return false;
   try {
     saveWorkspaceTo(folder);
     statusBar()->showMessage(tr("Saved %1").arg(folder), 4000);
+    return true;
   } catch (const std::exception& error) {
     showProblem(this, tr("The workspace cannot be saved"), QString::fromStdString(error.what()),
                 tr("Choose a folder that you may write to."));
+    return false;
   }
+}
+
+bool MainWindow::settleEdits() {
+  while (isWindowModified()) {
+    QMessageBox box(QMessageBox::Question, tr("The edits are not saved"),
+                    tr("The scene's values were edited and are in no workspace yet."),
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
+    box.setObjectName(QStringLiteral("unsaved_edits"));
+    const int answer = box.exec();
+    if (answer == QMessageBox::Discard) return true;
+    if (answer != QMessageBox::Save) return false;
+    saveDialog();
+  }
+  return true;
+}
+
+void MainWindow::openAsked(const LoadRequest& request) {
+  if (!asks_ || settleEdits()) open(request);
 }
 
 void MainWindow::exportDialog() {

@@ -14,6 +14,8 @@
 #include "gui/window_fixture.h"
 #include "workspace/workspace.h"
 
+#include <sys/stat.h>
+
 namespace patina {
 namespace {
 
@@ -147,6 +149,29 @@ TEST_F(Loading, OpenedFilesAreRemembered) {
   ASSERT_TRUE(open(path));
   EXPECT_TRUE(
       window_->findChild<RecentFiles*>()->paths().contains(QString::fromStdString(path.string())));
+}
+
+TEST_F(Loading, NeitherCancelNorANewLoadWaitsForAReader) {
+  // A pipe that nobody writes into: its reader cannot notice that it was cancelled.
+  const auto pipe = folder_ / "endless.obj";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  bool cancelled = false;
+  QObject::connect(window_.get(), &MainWindow::loadCancelled, [&] { cancelled = true; });
+  window_->open(requestFor(pipe));
+  wait(100);
+  window_->loader().cancel();
+  ASSERT_TRUE(waitUntil([&] { return cancelled; }, 5000));
+  ASSERT_TRUE(open(saved(icosphere(0.03, 8), "sphere.obj")));
+  EXPECT_FALSE(window_->loader().resting());
+  window_->open(requestFor(saved(torus(0.035, 0.015, 400, 200), "torus.obj")));
+  // Closing asks nothing and says what it waits for; the window goes when the reader has ended.
+  EXPECT_FALSE(window_->close());
+  wait(200);
+  EXPECT_TRUE(window_->findChild<LoadBar*>()->isVisible());
+  EXPECT_FALSE(window_->feel().running());
+  { std::ofstream end(pipe); }
+  EXPECT_TRUE(waitUntil([&] { return !window_->isVisible(); }, 10000));
+  EXPECT_TRUE(window_->loader().resting());
 }
 
 TEST_F(Loading, ANewLoadTakesThePlaceOfOneUnderWay) {

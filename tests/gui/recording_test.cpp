@@ -127,5 +127,21 @@ TEST_F(Recorded, WithNobodyToAskClosingJustCloses) {
   EXPECT_EQ(asked_, 0);
 }
 
+TEST_F(Recorded, EditsAreAskedAboutUntilTheyAreSaved) {
+  EXPECT_FALSE(window_->isWindowModified());
+  HapticProperties haptics = window_->haptics().values();
+  haptics.stiffness = 321;
+  window_->haptics().setValues(haptics);
+  emit window_->haptics().edited(haptics);
+  EXPECT_TRUE(window_->isWindowModified());
+  answerWith(QMessageBox::Cancel);
+  EXPECT_FALSE(window_->close());
+  EXPECT_EQ(asked_, 1);
+  window_->saveWorkspaceTo(QString::fromStdString((folder_ / "ws").string()));
+  EXPECT_FALSE(window_->isWindowModified());
+  EXPECT_TRUE(window_->close());
+  EXPECT_EQ(asked_, 1);
+}
+
 } // namespace
 } // namespace patina
