@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "field/distance_blocks.h"
 #include "field/signs.h"
+#include "geometry/orientation.h"
 #include "geometry/triangle_tree.h"
 #include "geometry/winding_number.h"
 
@@ -63,9 +64,18 @@ BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress&
   progress.report(0.1, "distances");
   FieldBuilder builder = distanceBlocks(sound, tree, grid, spec.band, progress, 0.1, 0.7);
   progress.report(0.7, "signs");
-  const WindingNumber winding(sound);
+  std::optional<TriangleMesh> turned;
+  if (const auto wrong = misorientedTriangles(sound); !wrong.empty()) {
+    turned = sound;
+    for (const std::int32_t f : wrong) {
+      Triangle& t = turned->triangles[static_cast<std::size_t>(f)];
+      std::swap(t[1], t[2]);
+    }
+  }
+  const TriangleMesh& oriented = turned ? *turned : sound;
+  const WindingNumber winding(oriented);
   progress.throwIfCancelled();
-  report.ambiguous_signs = assignSigns(builder, sound, tree, winding, progress);
+  report.ambiguous_signs = assignSigns(builder, oriented, tree, winding, progress);
   progress.throwIfCancelled();
   if (report.dropped_triangles > 0) renumberFaces(builder, usable);
 
