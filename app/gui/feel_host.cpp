@@ -54,6 +54,7 @@ void FeelHost::setTarget(const Vec3& target) {
 }
 
 std::vector<ToolSample> FeelHost::drain() {
+  if (loop_) loop_->collect();
   std::vector<ToolSample> samples = std::exchange(left_, {});
   if (loop_) empty(samples);
   return samples;
