@@ -53,6 +53,15 @@ TEXT
   fi
 }
 
+# With PATINA_INSTALL=no nothing has looked for these yet.
+need_tools() {
+  for tool in "$@"; do
+    command -v "$tool" >/dev/null && continue
+    echo "$tool is not on the PATH: install it, or let this script do so (unset PATINA_INSTALL)" >&2
+    exit 2
+  done
+}
+
 # $as_root and the list are meant to split into words.
 # shellcheck disable=SC2086
 install_packages() {

@@ -12,20 +12,35 @@ case "${1:-}" in
   sed -n '2,5s/^# \{0,1\}//p' "$0"
   exit 0
   ;;
--*) ;;
-?*)
-  if [ ! -e "$1" ]; then
-    echo "$1: there is no such file or folder" >&2
-    exit 2
-  fi
-  ;;
 esac
+# Options alone name nothing to feel: then it is the dinosaur, in its own unit.
+named=no
+value=no
+for word in "$@"; do
+  if [ "$value" = yes ]; then
+    value=no
+    continue
+  fi
+  case "$word" in
+  --unit | --iso | --log) value=yes ;;
+  -*) ;;
+  *)
+    if [ ! -e "$word" ]; then
+      echo "$word: there is no such file or folder" >&2
+      exit 2
+    fi
+    named=yes
+    ;;
+  esac
+done
 
 # shellcheck disable=SC2086 # lists of words
 if [ -n "${DISPLAY:-}" ]; then
   need_packages $PATINA_BUILD_PACKAGES
+  need_tools cmake ninja
 else
   need_packages $PATINA_BUILD_PACKAGES $PATINA_HEADLESS_PACKAGES
+  need_tools cmake ninja xvfb-run
 fi
 
 say "Building (the first time takes some minutes)"
@@ -40,7 +55,7 @@ fi
 
 out=${PATINA_OUT:-$here/out}
 mkdir -p "$out"
-if [ $# -eq 0 ]; then
+if [ "$named" = no ]; then
   "$bin/patina" model dinosaur -o "$out/dinosaur.ply"
   set -- "$out/dinosaur.ply"
 fi
