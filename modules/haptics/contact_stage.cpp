@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "haptics/ray_search.h"
@@ -13,6 +14,9 @@ constexpr double kMinGradient = 0.1; // K05
 constexpr int kRefinements = 2;
 constexpr double kDeepFrom = 2.75;     // voxels before the band's end, where the sampler turns deep
 constexpr double kHandoverTime = 5e-3; // [s]
+// Grid sides a second at most: across a deep solid the difference is of the solid's size, and to
+// lose it in 5 ms would be a jump fault. A quarter of that threshold.
+constexpr double kHandoverSpeed = 5;
 
 const SurfaceField& sampled(const std::shared_ptr<const SurfaceField>& field) {
   if (!field) throw std::invalid_argument("contact: no field");
@@ -73,7 +77,9 @@ bool ContactStage::hold(const Vec3& q, const GridSample& sample, const Vec3& dir
     const double turned = direction.dot(memory.last_normal);
     const bool wrong_side = f < 0 ? (memory.held() ? turned < 0.5 : turned < 0)
                                   : (q - last).dot(memory.last_normal) < 0;
-    return wrong_side && follow(q, {last, memory.last_normal}, found);
+    // Inside, letting go would turn the force around; there it has no limit.
+    const double limit = f < 0 ? std::numeric_limits<double>::infinity() : hold_limit_;
+    return wrong_side && follow(q, {last, memory.last_normal}, limit, found);
   }
   // Slow motion ends here: a 1-Lipschitz field has no surface between two points whose clearances
   // together exceed their distance, and a tip that enters moves against the direction.
@@ -83,16 +89,18 @@ bool ContactStage::hold(const Vec3& q, const GridSample& sample, const Vec3& dir
   if (!suspicious || !(memory.clearance >= 0 && memory.clearance < step)) return false;
   const std::optional<SurfaceContact> entry = firstCrossing(sampler_, from, q, iso_);
   if (!entry || (f < 0 && entry->normal.dot(direction) > 0)) return false;
-  return follow(q, *entry, found);
+  return follow(q, *entry, hold_limit_, found);
 }
 
-bool ContactStage::follow(const Vec3& q, const SurfaceContact& from, Found& found) const noexcept {
+// Leaves `found` alone unless it succeeds.
+bool ContactStage::follow(const Vec3& q, const SurfaceContact& from, double limit,
+                          Found& found) const noexcept {
   const std::optional<SurfaceContact> foot = trackFoot(sampler_, q, from, iso_);
   if (!foot) return false;
-  found.normal = foot->normal;
-  found.depth = (foot->point - q).dot(foot->normal);
-  found.mode = ContactMode::held;
-  return found.depth > 0 && found.depth < hold_limit_;
+  const double depth = (foot->point - q).dot(foot->normal);
+  if (!(depth > 0 && depth < limit)) return false;
+  found = {foot->normal, depth, ContactMode::held};
+  return true;
 }
 
 void ContactStage::alongRay(const Vec3& q, const GridSample& sample, const Vec3& direction,
@@ -158,7 +166,10 @@ void ContactStage::finish(const Found& found, Contact& contact,
     if (memory.has_handover) {
       contact.candidate += memory.handover;
       contact.depth += along;
-      memory.handover *= kHandoverTime / (kHandoverTime + std::max(contact.dt, 0.0));
+      const double dt = std::max(contact.dt, 0.0);
+      const double gone = kHandoverSpeed * 4 * hold_limit_ * voxel_ * dt;
+      memory.handover *=
+          std::max(kHandoverTime / (kHandoverTime + dt), 1 - gone / memory.handover.norm());
     }
   }
   contact.vcp = contact.candidate;

@@ -17,8 +17,10 @@ namespace patina {
 // than 90 degrees, is held: the VCP walks on the side where it entered, until
 //  - the tip is in front of the tangent plane there, or
 //  - the tip is inside and the field's own direction is within 60 degrees of the held one, or
-//  - it is held deeper than a quarter of the grid's longest side, or the surface is lost.
-// Where the way of finding the VCP changes in contact, the difference fades over some 5 ms.
+//  - the tip is outside and held deeper than a quarter of the grid's longest side (inside there is
+//    no such limit: letting go there would turn the force around), or the surface is lost.
+// Where the way of finding the VCP changes in contact, the difference fades over some 5 ms, but by
+// no more than five grid sides a second.
 class ContactStage final : public ForceStage {
  public:
   // Throws std::invalid_argument without a sample layer. sweep = false is for the test that shows
@@ -37,7 +39,7 @@ class ContactStage final : public ForceStage {
   };
   bool hold(const Vec3& q, const GridSample& sample, const Vec3& direction,
             const ContactMemory& memory, Found& found) const noexcept;
-  bool follow(const Vec3& q, const SurfaceContact& from, Found& found) const noexcept;
+  bool follow(const Vec3& q, const SurfaceContact& from, double limit, Found& found) const noexcept;
   void alongRay(const Vec3& q, const GridSample& sample, const Vec3& direction, Contact& contact,
                 Found& found) const noexcept;
   void refine(const Vec3& q, Contact& contact, Found& found) const noexcept;

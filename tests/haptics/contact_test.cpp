@@ -301,6 +301,45 @@ TEST(Contact, DeeperThanTheBandForceGoesOnContinuously) {
   }
 }
 
+// Past the middle of a solid body the tip is still inside: no force may turn around or vanish.
+TEST(Contact, PressingThroughTheMiddleOfASolidKeepsTheForce) {
+  Scene scene = sceneOf(500);
+  scene.haptics.force_limit = 3.3;
+  const Field sphere = sphereField();
+  for (const double aside : {0.0, 0.3e-3, 2e-3}) {
+    const auto snapshot = compileStages(scene, sphere);
+    ContactMemory memory;
+    Vec3 last = Vec3::Zero();
+    for (double z = 0.0305; z > -0.0295; z -= 0.02e-3) {
+      const Vec3 tip(aside, 0.7 * aside, z);
+      const Contact contact = tick(*snapshot, memory, tip, 1e-3);
+      ASSERT_FALSE(contact.fault) << aside << ' ' << z;
+      ASSERT_LT((contact.force - last).norm(), 0.5) << aside << ' ' << z;
+      last = contact.force;
+      const double depth = 0.03 - tip.norm();
+      if (z < 0.0295 && depth > 0) {
+        ASSERT_GT(contact.force.norm(), std::min(3.3, 500 * depth) * 0.9) << aside << ' ' << z;
+      }
+    }
+  }
+}
+
+// A walk that fails leaves nothing behind: the ray's own direction and mode are what is used.
+TEST(Contact, RefusedHoldLeavesTheRayAlone) {
+  const Field plate = plateField();
+  const auto snapshot = compileStages(sceneOf(500), plate);
+  ContactMemory memory;
+  tick(*snapshot, memory, Vec3(0, 0, 0.3e-3), 1e-3);
+  tick(*snapshot, memory, Vec3(0, 0, 0.2e-3), 1e-3);
+  memory.last_candidate = Vec3(3.9e-3, 0, 3.9e-3); // a surface that is lost: nothing to walk on
+  const Vec3 tip(0, 0, -0.2e-3);
+  const Contact contact = tick(*snapshot, memory, tip, 1e-3);
+  EXPECT_FALSE(contact.held);
+  EXPECT_EQ(contact.normal, touchOnce(*snapshot, tip).normal);
+  EXPECT_EQ(memory.mode, ContactMode::ray);
+  EXPECT_EQ(contact.candidate, touchOnce(*snapshot, tip).candidate);
+}
+
 TEST(Contact, DeepWithoutCoarseNodesHoldsTheLastDirection) {
   SurfaceField field = *planeField();
   field.coarse.clear();
