@@ -74,24 +74,62 @@ std::vector<std::size_t> candidates(const TriangleTree& tree, const FieldGrid& g
   return result;
 }
 
+struct Foot {
+  double distance = 0; // [m]
+  Vec3 direction = Vec3::Zero();
+};
+
+Foot footOn(const TriangleMesh& mesh, std::int32_t face, const Vec3& p, double voxel) {
+  const auto f = static_cast<std::size_t>(face);
+  const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+  const Vec3 w = closestBarycentric(p, a, b, c);
+  const Vec3 r = p - (w[0] * a + w[1] * b + w[2] * c);
+  const double d = r.norm();
+  return {d, d > 1e-6 * voxel ? Vec3(r / d) : faceNormal(mesh, f)};
+}
+
+// On a medial axis the nearest faces of the nodes about are as near: the mean of their directions
+// is short there, which says that none is to be trusted.
 std::vector<CoarseNode> coarseNodes(const TriangleMesh& mesh, const TriangleTree& tree,
                                     const FieldGrid& grid, const Index3& blocks,
                                     const Progress& progress) {
+  constexpr double kAsNear = 0.1; // [voxel]
+  constexpr double kAlike = 0.5;  // cosine
   const Index3 corners{blocks[0] + 1, blocks[1] + 1, blocks[2] + 1};
-  std::vector<CoarseNode> coarse(cellCount(corners));
+  std::vector<std::int32_t> nearest(cellCount(corners), -1);
   forLattice(tree, grid.origin, kBlockSide * grid.voxel, corners,
              std::numeric_limits<double>::infinity(), progress,
-             [&](const Index3& at, float, std::int32_t face, std::size_t i) {
-               const Vec3 p = grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
-               const auto f = static_cast<std::size_t>(face);
-               const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
-               const Vec3 w = closestBarycentric(p, a, b, c);
-               const Vec3 r = p - (w[0] * a + w[1] * b + w[2] * c);
-               const double d = r.norm();
-               const Vec3 g = d > 1e-6 * grid.voxel ? Vec3(r / d) : faceNormal(mesh, f);
-               coarse[i] = {static_cast<float>(d / grid.voxel), static_cast<float>(g[0]),
-                            static_cast<float>(g[1]), static_cast<float>(g[2])};
-             });
+             [&](const Index3&, float, std::int32_t face, std::size_t i) { nearest[i] = face; });
+  progress.throwIfCancelled(); // nothing is missing below
+  std::vector<CoarseNode> coarse(nearest.size());
+  const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(corners[0]),
+                                          static_cast<std::size_t>(corners[0] * corners[1])};
+  tbb::parallel_for(std::size_t{0}, coarse.size(), [&](std::size_t i) {
+    const Index3 at = cellAt(i, corners);
+    const Vec3 p = grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
+    const Foot foot = footOn(mesh, nearest[i], p, grid.voxel);
+    Vec3 sum = foot.direction;
+    std::array<std::int32_t, 7> faces{nearest[i]};
+    std::size_t known = 1, count = 1;
+    const auto meet = [&](std::int32_t face) {
+      const auto end = faces.begin() + static_cast<std::ptrdiff_t>(known);
+      if (std::find(faces.begin(), end, face) != end) return;
+      faces[known++] = face;
+      const Foot other = footOn(mesh, face, p, grid.voxel);
+      if (other.distance > foot.distance + kAsNear * grid.voxel ||
+          other.direction.dot(foot.direction) > kAlike)
+        return;
+      sum += other.direction;
+      ++count;
+    };
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (at[a] > 0) meet(nearest[i - stride[a]]);
+      if (at[a] + 1 < corners[a]) meet(nearest[i + stride[a]]);
+    }
+    const Vec3 g = sum / static_cast<double>(count);
+    coarse[i] = {static_cast<float>(foot.distance / grid.voxel), static_cast<float>(g[0]),
+                 static_cast<float>(g[1]), static_cast<float>(g[2])};
+  });
   return coarse;
 }
 
