@@ -64,6 +64,7 @@ double parseLength(std::string_view text) {
 }
 
 std::string formatNumber(double value) {
+  if (std::isnan(value)) return "nan"; // its sign bit means nothing
   std::array<char, 64> buffer{};
   const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   return {buffer.data(), result.ptr};

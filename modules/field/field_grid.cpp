@@ -45,7 +45,7 @@ FieldGrid gridAround(const Box3& box, const FieldSpec& spec) {
     if (!(cells[axis] < kMostNodes))
       throw Error("field: a voxel of " + formatLength(grid.voxel) + " needs " +
                   formatNumber(cells[axis]) + " cells on a side; the most is " +
-                  std::to_string(kMostNodes - 1));
+                  std::to_string(kMostNodes - 1) + "; choose a larger voxel or --unit");
     grid.nodes[static_cast<std::size_t>(axis)] = static_cast<int>(cells[axis]) + 1;
   }
   // Centred, so that a symmetric shape gets a symmetric field.

@@ -49,7 +49,7 @@ void validate(const FieldSpec& field) {
     requirePositive("voxel", *field.voxel, 1000, "m");
     return;
   }
-  requireBetween("resolution", field.resolution, 8, 4096, "cells");
+  requireBetween("resolution", field.resolution, 8, 4095, "cells");
   require(field.resolution > 2 * field.band + 2, "resolution", field.resolution,
           "above 2 band + 2 = " + formatNumber(2 * field.band + 2) +
               ", because the band lies on both ends");

@@ -84,15 +84,14 @@ vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path) {
     reader->SetReaderErrorObserver(errors);
     reader->SetParserErrorObserver(errors);
     reader->Update();
-  } catch (const std::exception& error) {
-    throw FileError(path.string(), 0, std::string("is damaged: ") + error.what());
+  } catch (const std::exception&) {
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
   }
   if (!errors->cause.empty() || reader->GetErrorCode() != 0)
-    throw FileError(path.string(), 0,
-                    "is damaged" + (errors->cause.empty() ? "" : ": " + errors->cause));
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
   vtkSmartPointer<vtkImageData> image = reader->GetOutput();
   if (image == nullptr || image->GetNumberOfPoints() == 0)
-    throw FileError(path.string(), 0, "holds no nodes");
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged, or without nodes");
   return image;
 }
 

@@ -61,7 +61,7 @@ TEST(Scene, ExtremesInRangeAreValid) {
   scene.haptics.tip_radius = 0;
   scene.field.resolution = 19;
   EXPECT_EQ(errorOf(scene), "");
-  scene.field.resolution = 4096;
+  scene.field.resolution = 4095;
   EXPECT_EQ(errorOf(scene), "");
 }
 
