@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -9,6 +10,7 @@
 #include "field/iso_surface.h"
 #include "geometry/mesh_io.h"
 #include "visualization/field_io.h"
+#include "workspace/manifest.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -36,7 +38,13 @@ TriangleMesh meshOfVolume(const std::filesystem::path& path, const OpenOptions& 
                           bool& in_metres) {
   if (isField(path)) {
     in_metres = true;
-    return isoSurface(readField(path), options.iso.value_or(0.0));
+    const SurfaceField field = readField(path);
+    const double iso = options.iso.value_or(0.0), band = field.band * field.grid.voxel;
+    if (!(std::abs(iso) < band))
+      throw FileError(path.string(), 0,
+                      "--iso " + formatNumber(iso) + ": the field holds distances between " +
+                          formatNumber(-band) + " and " + formatNumber(band) + " m");
+    return isoSurface(field, iso);
   }
   if (!options.iso) {
     const VolumeRange range = scalarRange(path);
@@ -80,6 +88,11 @@ namespace {
 void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMesh& mesh,
                  bool has_tip_radius) {
   const MeshReport report = inspect(mesh);
+  if (report.non_finite + report.degenerate == report.triangles)
+    throw FileError(where, 0,
+                    "no triangle of it can be used: " + formatCount(report.non_finite) +
+                        " with a NaN or infinite corner, " + formatCount(report.degenerate) +
+                        " without area");
   for (const std::string& line : meshWarnings(report))
     opened.warnings.push_back(where + ": " + line);
   const auto thin = thinSheetWarning(report);
@@ -88,11 +101,32 @@ void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMe
 
 } // namespace
 
-OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options) {
+bool isVolumeFile(const std::filesystem::path& path) {
+  return lowerExtension(path) == ".vti";
+}
+
+bool isFieldFile(const std::filesystem::path& path) {
+  return isVolumeFile(path) && isField(path);
+}
+
+std::filesystem::path inputPath(const std::filesystem::path& path) {
+  if (path.filename() != kManifestName || std::filesystem::is_directory(path)) return path;
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& options) {
+  const std::filesystem::path path = inputPath(input);
   if (!std::filesystem::exists(path)) throw FileError(path.string(), 0, "no such file or folder");
   OpenedScene opened;
+  const auto warnOf = [&](const char* option, const char* what) {
+    opened.warnings.push_back(path.string() + ": " + option + " has no effect on a " + what);
+  };
   if (std::filesystem::is_directory(path)) {
+    if (!isWorkspace(path))
+      throw FileError(path.string(), 0, "is a folder without workspace.json, not a workspace");
     opened.scene = loadWorkspace(path);
+    if (options.unit_chosen) warnOf("--unit", "workspace");
+    if (options.iso) warnOf("--iso", "workspace");
     const bool has_radius =
         options.tip_radius_chosen || opened.scene.haptics.tip_radius.value_or(0.0) > 0;
     for (const SceneObject& object : opened.scene.objects)
@@ -100,8 +134,10 @@ OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& opti
     return opened;
   }
   bool in_metres = false;
-  TriangleMesh mesh =
-      lowerExtension(path) == ".vti" ? meshOfVolume(path, options, in_metres) : readMesh(path);
+  const bool is_volume = isVolumeFile(path);
+  TriangleMesh mesh = is_volume ? meshOfVolume(path, options, in_metres) : readMesh(path);
+  if (options.unit_chosen && in_metres) warnOf("--unit", "field");
+  if (options.iso && !is_volume) warnOf("--iso", "mesh");
   if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");
   addWarnings(opened, path.string(), mesh, options.tip_radius_chosen);
   ScaledMesh scaled = inMetres(std::move(mesh), in_metres ? MeshUnit::m : options.unit);

@@ -20,6 +20,7 @@ namespace patina {
 struct OpenOptions {
   MeshUnit unit = MeshUnit::mm;
   std::optional<double> iso{};    // needed for a volume from elsewhere
+  bool unit_chosen = false;       // so that a unit without an effect is warned of
   bool tip_radius_chosen = false; // what is opened gets a tip radius: no advice to set one
 };
 
@@ -33,7 +34,15 @@ std::vector<std::string> meshWarnings(const MeshReport& report);
 // The line that a mesh with edges of one face needs unless the tip has a radius; else nothing.
 std::optional<std::string> thinSheetWarning(const MeshReport& report);
 
-// A mesh (.obj .ply .stl), a workspace folder, a volume (.vti). Throws FileError; nothing is kept.
+// By the extension, in either case: .vti or .VTI.
+bool isVolumeFile(const std::filesystem::path& path);
+// Such a file that holds a field of ours. Throws FileError if it is a volume but cannot be read.
+bool isFieldFile(const std::filesystem::path& path);
+// The folder for a workspace.json that is named itself; any other path as it is.
+std::filesystem::path inputPath(const std::filesystem::path& path);
+
+// A mesh (.obj .ply .stl), a workspace folder or its workspace.json, a volume (.vti). Throws
+// FileError; nothing is kept.
 OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options);
 
 // A mesh in metres as a scene of one object.

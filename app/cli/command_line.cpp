@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
+#include <sstream>
 
 #include "app/cli/command.h"
 #include "app/cli/help.h"
@@ -31,6 +33,8 @@ void addArgument(CLI::App& parser, const Argument& argument) {
       names, [set](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) set(text);
       });
+  // Else an option's list of values goes on over the input that follows it.
+  if (!argument.positional()) option->allow_extra_args(false);
   if (argument.positional() && argument.repeated)
     option->expected(-1);
   else if (argument.positional())
@@ -39,6 +43,42 @@ void addArgument(CLI::App& parser, const Argument& argument) {
     option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   else
     option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+// What the parser cannot say in our words: an option that does not exist, a word too many. `words`
+// follow the command's name.
+void requireKnown(const Command& command, const std::vector<std::string>& words) {
+  const std::string see = "; see patina " + command.name + " --help";
+  const Argument* input = nullptr;
+  std::map<std::string, bool> takes_value = {
+      {"-h", false}, {"--help", false}, {"--version", false}};
+  if (command.reports) takes_value["--json"] = false;
+  for (const Argument& argument : command.arguments) {
+    if (argument.positional()) input = &argument;
+    std::istringstream names(argument.positional() ? "" : argument.names);
+    for (std::string name; std::getline(names, name, ',');)
+      takes_value[name] = !argument.value.empty();
+  }
+  std::size_t inputs = 0;
+  bool only_inputs = false; // after "--"
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (!only_inputs && word == "--") {
+      only_inputs = true;
+    } else if (only_inputs || word.size() < 2 || word[0] != '-') {
+      if (++inputs > 1 && input && !input->repeated)
+        throw Error(command.name + ": one " + input->value + " at a time: '" + word +
+                    "' is one too many" + see);
+      if (!input) throw Error(command.name + ": '" + word + "' is one word too many" + see);
+    } else {
+      // "--name=value" and "-ovalue" carry their value with them.
+      const bool is_long = word[1] == '-';
+      const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
+      const auto known = takes_value.find(name);
+      if (known == takes_value.end()) throw Error("unknown option " + name + see);
+      if (known->second && name == word) ++i;
+    }
+  }
 }
 
 // What the parser cannot say in our words: a required argument that is missing.
@@ -78,6 +118,8 @@ int runCommandLine(int argc, char** argv) {
   // Asking for help must work however incomplete or wrong the rest of the line is.
   for (int i = 1; i < argc; ++i) help = help || std::string(argv[i]) == "--help";
   if (!help) {
+    for (const Command& command : commands)
+      if (argc > 1 && command.name == argv[1]) requireKnown(command, {argv + 2, argv + argc});
     try {
       program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -20,6 +20,8 @@ struct FeelOptions {
 int runFeel(const FeelOptions& options, Console& console) {
   requireWritable(options.output);
   const std::vector<TimedTip> path = readTipPath(options.path);
+  const auto bad_tips = static_cast<std::size_t>(std::count_if(
+      path.begin(), path.end(), [](const TimedTip& tip) { return !tip.tip.allFinite(); }));
   const auto compiled =
       compile(openWith(options.input, options.scene, console), console.progress());
   const std::vector<ToolSample> samples = feel(*compiled->snapshot, path, console.progress());
@@ -56,6 +58,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   json.set("contact_ticks", contact_ticks);
   json.set("deep_ticks", deep_ticks);
   json.set("fault_ticks", faults);
+  json.set("bad_tips", bad_tips);
   json.set("max_force", max_force);
   json.set("max_depth", max_depth);
   json.set("field", fieldJson(*compiled->built.field, compiled->built.report));
@@ -73,6 +76,9 @@ int runFeel(const FeelOptions& options, Console& console) {
   if (faults) rows.emplace_back("faults", formatCount(faults) + " ticks faded by a force jump");
   const TextRows field = fieldRows(*compiled->built.field, compiled->built.report);
   rows.insert(rows.end(), field.begin(), field.end());
+  if (bad_tips)
+    console.warn(options.path.string() + ": " + formatCount(bad_tips) +
+                 (bad_tips == 1 ? " tip is" : " tips are") + " NaN or infinite: no force there");
   console.report(json, aligned(rows));
   return kDone;
 }
@@ -89,7 +95,8 @@ Command feelCommand() {
       "and the time of the step. The path has the columns t [s],x [m],y [m],z [m], its times "
       "increasing; the time between two rows is the tick.\n"
       "JSON: ticks, stages, step_ns (p50, p99, p999, max, and timer: what reading the clock adds), "
-      "contact_ticks, deep_ticks, fault_ticks, max_force [N], max_depth [m], field (as patina "
+      "contact_ticks, deep_ticks, fault_ticks, bad_tips (NaN or infinite), max_force [N], "
+      "max_depth [m], field (as patina "
       "field).";
   command.examples = {"patina feel bunny.ply --path tip.csv -o forces.csv --stiffness 800",
                       "patina feel workspace --path tip.csv -o forces.csv --tip-radius 1mm --json"};

@@ -14,7 +14,7 @@ struct FieldOptions {
 };
 
 int runField(const FieldOptions& options, Console& console) {
-  if (options.output.extension() != ".vti")
+  if (!isVolumeFile(options.output))
     throw Error("--output: a field is a .vti file, not '" + options.output.string() + "'");
   requireWritable(options.output);
   const Scene scene = openWith(options.input, options.scene, console);

@@ -98,47 +98,51 @@ std::size_t bytesOf(const TriangleMesh& mesh) {
          mesh.corner_uvs.size() * sizeof(mesh.corner_uvs[0]);
 }
 
+void describeField(const SurfaceField& field, const FieldReport& report, Json& json,
+                   TextRows& rows) {
+  json.set("field", fieldJson(field, report));
+  const TextRows more = fieldRows(field, report);
+  rows.insert(rows.end(), more.begin(), more.end());
+}
+
 int runInfo(const InfoOptions& options, Console& console) {
   Scene scene = openWith(options.input, options.scene, console);
-  const bool is_folder = std::filesystem::is_directory(options.input);
-  const bool is_field = !is_folder && options.input.extension() == ".vti" && isField(options.input);
+  const bool is_folder = std::filesystem::is_directory(inputPath(options.input));
+  const bool is_field = !is_folder && isFieldFile(options.input);
   const char* kind = is_folder ? "workspace" : is_field ? "field" : "mesh";
   Json json = Json::object();
   TextRows rows = {{"file", options.input.string()}, {"kind", kind}};
   json.set("file", options.input.string());
   json.set("kind", kind);
   if (is_folder) {
-    Json settings = Json::object();
-    for (const auto& [key, value] : values(scene)) {
-      settings.set(key, value);
-      rows.emplace_back(key, withUnit(key, value));
-    }
-    json.set("values", settings);
+    for (const auto& [key, value] : values(scene)) rows.emplace_back(key, withUnit(key, value));
+    json.set("values", valuesJson(scene));
   }
   if (options.no_field || scene.objects.empty()) {
     const TriangleMesh mesh = worldMesh(scene);
     describeMesh(mesh, inspect(mesh), json, rows);
     json.set("layers", Json::array());
     json.set("stages", Json::array());
+  } else if (is_field) {
+    // What the file holds, and no stages: they would be those of another field, built anew from
+    // its surface.
+    for (const auto& [key, value] : options.scene.settings)
+      console.warn(options.input.string() + ": --" + key + " has no effect on a field");
+    const TriangleMesh mesh = worldMesh(scene);
+    describeMesh(mesh, inspect(mesh), json, rows);
+    const SurfaceField field = readField(options.input);
+    FieldReport report;
+    report.blocks = field.blockCount();
+    report.bytes = field.bytes();
+    report.dense_bytes = field.grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
+    describeField(field, report, json, rows);
+    describeLayers(field, 0, json, rows);
+    json.set("stages", Json::array());
   } else {
     const auto compiled = compile(std::move(scene), console.progress());
     describeMesh(*compiled->mesh, compiled->mesh_report, json, rows);
-    if (is_field) { // the numbers of the file, not of the field that its surface compiles to
-      const SurfaceField field = readField(options.input);
-      FieldReport report;
-      report.blocks = field.blockCount();
-      report.bytes = field.bytes();
-      report.dense_bytes = field.grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
-      json.set("field", fieldJson(field, report));
-      const TextRows more = fieldRows(field, report);
-      rows.insert(rows.end(), more.begin(), more.end());
-      describeLayers(field, 0, json, rows);
-    } else {
-      json.set("field", fieldJson(*compiled->built.field, compiled->built.report));
-      const TextRows more = fieldRows(*compiled->built.field, compiled->built.report);
-      rows.insert(rows.end(), more.begin(), more.end());
-      describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), json, rows);
-    }
+    describeField(*compiled->built.field, compiled->built.report, json, rows);
+    describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), json, rows);
     describeStages(*compiled, json, rows);
   }
   console.report(json, aligned(rows));
@@ -156,7 +160,8 @@ Command infoCommand() {
       "Size, defects and whether the mesh is watertight; the bytes of each layer of its field; the "
       "stages of the servo that are on, why, and what each costs in bytes and ns (measured here, "
       "on "
-      "short strokes over the mesh).\n"
+      "short strokes over the mesh). Of a field (.vti) written by patina: the file's own grid and "
+      "layers, and its surface as the mesh; stages stay empty.\n"
       "JSON: kind, triangles, vertices, bounds [m], watertight, components, defects (non_finite, "
       "degenerate, duplicate, boundary_edges, non_manifold_edges, misoriented_edges), layers "
       "(name, bytes), stages (name, why, bytes, ns), field (as patina field).";

@@ -77,8 +77,10 @@ int runRender(const RenderOptions& options, Console& console) {
   if (!options.tip &&
       (options.layers.contains(Layer::tip) || options.layers.contains(Layer::nodes)))
     throw Error("--show: the layers tip and nodes need --tip X,Y,Z");
-  requireDisplay();
   Scene scene = openWith(options.input, options.scene, console);
+  if (scene.objects.empty())
+    throw FileError(options.input.string(), 0, "the scene has no object: nothing to draw");
+  requireDisplay();
   const bool only_mesh = options.layers == std::set<Layer>{Layer::mesh} ||
                          options.layers == std::set<Layer>{Layer::mesh, Layer::wireframe};
   SceneView view;

@@ -106,6 +106,15 @@ std::string withUnit(const std::string& key, const std::string& value) {
   return value;
 }
 
+Json valuesJson(const Scene& scene) {
+  Json json = Json::object();
+  for (const auto& [key, value] : values(scene)) {
+    const auto number = parseNumber(value);
+    json.set(key, number ? Json(*number) : Json(value));
+  }
+  return json;
+}
+
 void requireWritable(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder))

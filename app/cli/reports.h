@@ -9,6 +9,7 @@
 #include "core/json.h"
 #include "field/build_field.h"
 #include "geometry/mesh_report.h"
+#include "scene/scene.h"
 
 namespace patina::cli {
 
@@ -30,6 +31,9 @@ std::string rounded(double value);
 
 // A scene's value by its key, with the unit: "stiffness", "800" -> "800 N/m".
 std::string withUnit(const std::string& key, const std::string& value);
+
+// A scene's values by their keys: numbers as numbers, words as words.
+Json valuesJson(const Scene& scene);
 
 // Throws FileError now rather than after a minute's work if `path` cannot become a file.
 void requireWritable(const std::filesystem::path& path);

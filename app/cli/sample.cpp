@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -64,7 +65,9 @@ struct SampledSurface {
 
 SampledSurface open(const SampleOptions& options, Console& console) {
   SampledSurface surface;
-  if (options.input.extension() == ".vti" && isField(options.input)) {
+  if (isFieldFile(options.input)) {
+    if (options.scene.open.unit_chosen)
+      console.warn(options.input.string() + ": --unit has no effect on a field");
     if (options.scene.open.iso) throw Error("--iso: a field is sampled as it is; phi is given");
     Scene scene;
     for (const auto& [key, value] : options.scene.settings) {
@@ -87,12 +90,16 @@ SampledSurface open(const SampleOptions& options, Console& console) {
 std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler& sampler,
                               const Vec3& p) {
   const GridSample sample = sampler.at(p);
-  const bool in_band = sample.region == FieldRegion::band;
+  const bool in_band = p.allFinite() && sample.region == FieldRegion::band;
   double phi = sample.phi;
   Vec3 normal = sample.gradient.norm() > 0 ? Vec3(sample.gradient.normalized()) : Vec3::Zero();
   Vec3 closest = p - phi * normal;
   std::int32_t face = -1;
-  if (surface.oracle && p.allFinite()) {
+  if (!p.allFinite()) {
+    phi = std::numeric_limits<double>::quiet_NaN();
+    normal.setConstant(phi);
+    closest.setConstant(phi);
+  } else if (surface.oracle) {
     const ClosestPoint exact = surface.oracle->closest(p);
     closest = exact.point;
     face = exact.surface.face;
@@ -101,7 +108,7 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
       phi = sign * exact.distance;
       normal = exact.distance > 0 ? Vec3(sign * (p - closest) / exact.distance) : Vec3::Zero();
     }
-  } else if (!surface.oracle) {
+  } else {
     face = sampler.faceNear(p);
   }
   const double friction =
@@ -130,11 +137,12 @@ int runSample(const SampleOptions& options, Console& console) {
   CsvTable table;
   table.columns = kColumns;
   table.rows.reserve(points.rows.size());
-  std::size_t in_band = 0;
+  std::size_t in_band = 0, bad_points = 0;
   for (const std::vector<double>& row : points.rows) {
     if (table.rows.size() % 1024 == 0) console.progress().throwIfCancelled();
     table.rows.push_back(sampleRow(surface, sampler, {row[0], row[1], row[2]}));
     in_band += table.rows.back()[11] != 0;
+    bad_points += std::isnan(table.rows.back()[3]);
   }
   console.progress().throwIfCancelled();
   writeCsv(options.output, table);
@@ -142,8 +150,12 @@ int runSample(const SampleOptions& options, Console& console) {
   Json json = Json::object();
   json.set("points", points.rows.size());
   json.set("in_band", in_band);
+  json.set("bad_points", bad_points);
   json.set("sampler", std::string(name(surface.sampler)));
   json.set("voxel", surface.field->grid.voxel);
+  if (bad_points)
+    console.warn(options.points.string() + ": " + formatCount(bad_points) +
+                 (bad_points == 1 ? " point is" : " points are") + " NaN or infinite");
   console.report(json, aligned({{"points", formatCount(points.rows.size()) + ", in the band " +
                                                formatCount(in_band)},
                                 {"sampler", std::string(name(surface.sampler))},
@@ -166,7 +178,7 @@ Command sampleCommand() {
       "With a mesh or workspace the face and closest point are exact, and so are phi and the "
       "direction beyond the band. With a field alone they are what the field knows: closest point "
       "= point - phi n, and beyond the band phi is a bound and the direction zero.\n"
-      "JSON: points, in_band, sampler, voxel [m].";
+      "JSON: points, in_band, bad_points (NaN or infinite), sampler, voxel [m].";
   command.examples = {"patina sample bunny.ply --points points.csv -o samples.csv",
                       "patina sample bunny.vti --points points.csv -o samples.csv --sampler kim"};
   command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

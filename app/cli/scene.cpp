@@ -107,16 +107,12 @@ int runScene(const SceneCommandOptions& options, Console& console) {
     rows.emplace_back("object", object.name + ", " + formatCount(object.mesh->triangles.size()) +
                                     " triangles");
   }
-  Json settings = Json::object();
-  for (const auto& [key, value] : values(scene)) {
-    settings.set(key, value);
-    rows.emplace_back(key, withUnit(key, value));
-  }
+  for (const auto& [key, value] : values(scene)) rows.emplace_back(key, withUnit(key, value));
   Json json = Json::object();
   json.set("workspace", folder.string());
   json.set("saved", changed || !old);
   json.set("objects", objects);
-  json.set("values", settings);
+  json.set("values", valuesJson(scene));
   console.report(json, aligned(rows));
   return kDone;
 }

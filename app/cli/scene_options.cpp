@@ -11,7 +11,7 @@ namespace {
 Scene trialFor(const std::string& key) {
   Scene trial;
   if (key == "resolution") trial.field.band = 2;
-  if (key == "band") trial.field.resolution = 4096;
+  if (key == "band") trial.field.resolution = 4095;
   return trial;
 }
 
@@ -38,8 +38,10 @@ void addOpenOptions(Command& command, OpenOptions& open) {
   command.arguments.push_back({"--unit", "mm|cm|m|in|fit",
                                "Unit of a mesh file; fit scales its longest side to 100 mm. "
                                "Workspaces and fields written by patina are in metres already.",
-                               "mm", false, false,
-                               [&open](const auto& text) { open.unit = parseMeshUnit(text); }});
+                               "mm", false, false, [&open](const auto& text) {
+                                 open.unit = parseMeshUnit(text);
+                                 open.unit_chosen = true;
+                               }});
   command.number("--iso", "VALUE", "Value at which a volume (.vti) from elsewhere is a surface.",
                  open.iso);
 }

@@ -70,7 +70,8 @@ TEST_F(BadInput, TablesNameTheLineAndTheDecimalComma) {
 TEST_F(BadInput, MissingFilesAreNamed) {
   expectOneLineError(feel(folder / "none.ply", path), {"none.ply"});
   expectOneLineError(feel(box, folder / "none.csv"), {"none.csv"});
-  expectOneLineError(feel(folder.path().string(), path), {folder.path().filename().string()});
+  expectOneLineError(feel(folder.path().string(), path),
+                     {folder.path().filename().string(), "is a folder without workspace.json"});
   expectOneLineError(run({"info", folder.write("mesh.xyz", "1 2 3")}), {"mesh.xyz"});
   expectOneLineError(run({"info", folder.write("empty.vti", "")}), {"empty.vti"});
 }
@@ -124,6 +125,66 @@ TEST_F(BadInput, WordsOfTheCommandLineAreChecked) {
   expectOneLineError(run({"render", box, "-o", folder / "p.png", "--show", "tip"}), {"--tip"});
 }
 
+TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
+  expectOneLineError(run({"feel", box, "--path", path, "-o", out, "--offset", "1mm"}),
+                     {"unknown option --offset; see patina feel --help"});
+  expectOneLineError(run({"info", box, "--offset=1mm"}), {"unknown option --offset;"});
+  expectOneLineError(run({"info", box, "-q"}), {"unknown option -q;"});
+  expectOneLineError(run({"info", box, "b"}), {"one FILE at a time: 'b' is one too many"});
+  expectOneLineError(run({"devices", "b"}), {"'b' is one word too many"});
+  // A value may look like an option or an input, and may hang on its option.
+  EXPECT_EQ(run({"info", "--voxel=1mm", box}).exit, 0);
+  EXPECT_EQ(run({"feel", "--path", path, box, "-o" + out}).exit, 0);
+  expectOneLineError(run({"render", box, "-o", folder / "p.png", "--view", "-w"}), {"--view"});
+}
+
+TEST_F(BadInput, TipsAndPointsThatAreNotNumbersAreCountedAndWarnedOf) {
+  const std::string tips = folder.write(
+      "bad.csv", "t [s],x [m],y [m],z [m]\n0,0,0,0.1\n1,nan,0,0\n2,0,inf,0\n3,-nan,0,0\n");
+  const Outcome felt = run({"feel", box, "--path", tips, "-o", out, "--json"});
+  ASSERT_EQ(felt.exit, 0) << felt.err;
+  EXPECT_EQ(parseJson(felt.out, "stdout").at("bad_tips").asInteger(), 3);
+  EXPECT_NE(felt.err.find("bad.csv: 3 tips"), std::string::npos) << felt.err;
+  EXPECT_EQ(readFile(out).find("-nan"), std::string::npos);
+  const std::string points =
+      folder.write("bad.csv", "x [m],y [m],z [m]\n0,0,0.1\nnan,0,0\n0,inf,0\n-nan,0,0\n");
+  const std::string field = folder / "box.VTI";
+  ASSERT_EQ(run({"field", box, "-o", field, "--resolution", "40"}).exit, 0);
+  for (const std::string& input : {box, field}) {
+    const Outcome sampled = run({"sample", input, "--points", points, "-o", out, "--json"});
+    ASSERT_EQ(sampled.exit, 0) << sampled.err;
+    EXPECT_EQ(parseJson(sampled.out, "stdout").at("bad_points").asInteger(), 3);
+    EXPECT_NE(sampled.err.find("bad.csv: 3 points"), std::string::npos) << sampled.err;
+    EXPECT_NE(readFile(out).find("nan"), std::string::npos);
+    EXPECT_EQ(readFile(out).find("-nan"), std::string::npos);
+  }
+}
+
+TEST_F(BadInput, FieldFilesSayWhatIsWrongWithThem) {
+  const std::string field = folder / "box.vti";
+  ASSERT_EQ(run({"field", box, "-o", field, "--resolution", "40"}).exit, 0);
+  expectOneLineError(run({"info", field, "--iso", "5"}), {"box.vti", "--iso 5", "between -0.0"});
+  const std::string bytes = readFile(field);
+  const std::string half = folder.write("half.vti", bytes.substr(0, bytes.size() / 2));
+  expectOneLineError(run({"info", half}), {"half.vti", "truncated or damaged"});
+  const Outcome useless = run({"info", field, "--unit", "cm", "--resolution", "60"});
+  EXPECT_EQ(useless.exit, 0);
+  EXPECT_NE(useless.err.find("--unit has no effect on a field"), std::string::npos) << useless.err;
+  EXPECT_NE(useless.err.find("--resolution has no effect"), std::string::npos) << useless.err;
+  EXPECT_NE(
+      run({"info", box, "--no-field", "--iso", "1"}).err.find("--iso has no effect on a mesh"),
+      std::string::npos);
+}
+
+TEST_F(BadInput, GridsThatAreTooFineSayWhatToDo) {
+  const std::string field = folder / "f.vti";
+  expectOneLineError(run({"field", box, "-o", field, "--voxel", "1e-9"}),
+                     {"choose a larger voxel or --unit"});
+  // The scene's limit is the grid's own.
+  expectOneLineError(run({"field", box, "-o", field, "--resolution", "4096"}),
+                     {"--resolution", "between 8 and 4095"});
+}
+
 TEST_F(BadInput, NonFiniteVerticesAreLeftOutCountedAndWarnedOf) {
   std::string text = readFile(box) + "v nan 0 0\nv 1 inf 0\n";
   const std::size_t n = static_cast<std::size_t>(std::count(text.begin(), text.end(), 'v'));
@@ -139,10 +200,11 @@ TEST_F(BadInput, NonFiniteVerticesAreLeftOutCountedAndWarnedOf) {
     EXPECT_EQ(json.at("field").at("dropped_triangles").asInteger(), 2);
   }
   const std::string only = folder.write("only.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const Outcome nothing = run({"info", only});
-  EXPECT_EQ(nothing.exit, 2);
-  EXPECT_EQ(nothing.out, "");
-  EXPECT_NE(nothing.err.find("\npatina: "), std::string::npos) << nothing.err;
+  expectOneLineError(run({"info", only}), {"only.obj", "no triangle", "1 with a NaN"});
+  expectOneLineError(run({"render", only, "-o", folder / "p.png"}), {"only.obj", "no triangle"});
+  ASSERT_EQ(run({"scene", "-o", folder / "bare"}).exit, 0);
+  expectOneLineError(run({"render", folder / "bare", "-o", folder / "p.png"}), {"no object"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "p.png"));
 }
 
 TEST_F(BadInput, VolumesFromElsewhereNeedAValue) {

@@ -90,6 +90,11 @@ TEST_F(Commands, FieldIsWrittenAndOpensAgain) {
 
   const Json info = runJson({"info", field});
   EXPECT_EQ(info.at("kind").asString(), "field");
+  EXPECT_EQ(info.at("field").at("band_voxels").asNumber(), 8);
+  EXPECT_FALSE(info.at("layers").asArray().empty());
+  EXPECT_TRUE(info.at("stages").asArray().empty()); // those of no servo: it has no scene
+  std::filesystem::copy_file(field, folder / "UPPER.VTI");
+  EXPECT_EQ(runJson({"info", folder / "UPPER.VTI"}).at("layers").dump(), info.at("layers").dump());
   EXPECT_EQ(info.at("field").at("voxel").asNumber(), report.at("voxel").asNumber());
   EXPECT_TRUE(info.at("watertight").asBool());
   EXPECT_NEAR(info.at("bounds").asArray()[1].asArray()[0].asNumber(), 0.02, 1e-4);

@@ -63,7 +63,8 @@ TEST_F(Workspaces, ListsWhatItHoldsWithoutChangingIt) {
   ASSERT_EQ(listed.at("objects").asArray().size(), 1u);
   EXPECT_EQ(listed.at("objects").asArray()[0].at("name").asString(), "torus");
   EXPECT_EQ(listed.at("objects").asArray()[0].at("triangles").asInteger(), 2 * 48 * 24);
-  EXPECT_EQ(listed.at("values").at("stiffness").asString(), "500");
+  EXPECT_EQ(listed.at("values").at("stiffness").asNumber(), 500);
+  EXPECT_EQ(listed.at("values").at("sampler").asString(), "high");
   EXPECT_EQ(listed.at("values").find("damping"), nullptr); // an absent feature is an absent value
 }
 
@@ -128,8 +129,8 @@ TEST_F(Workspaces, SettingsThatFitOnlyTogetherAreAccepted) {
                 .exit,
             0);
   const Json values = runJson({"scene", "-o", workspace}).at("values");
-  EXPECT_EQ(values.at("resolution").asString(), "12");
-  EXPECT_EQ(values.at("friction.static").asString(), "0.2");
+  EXPECT_EQ(values.at("resolution").asNumber(), 12);
+  EXPECT_EQ(values.at("friction.static").asNumber(), 0.2);
 }
 
 TEST_F(Workspaces, AFolderOfSomethingElseIsNeverTakenOver) {
@@ -139,6 +140,17 @@ TEST_F(Workspaces, AFolderOfSomethingElseIsNeverTakenOver) {
   expectOneLineError(run({"scene", "-o", photos, "--add", torus}), {"photos", "not a workspace"});
   EXPECT_EQ(readFile(photos + "/cat.txt"), "meow");
   EXPECT_FALSE(std::filesystem::exists(photos + "/workspace.json"));
+}
+
+TEST_F(Workspaces, TheirWorkspaceJsonStandsForTheFolder) {
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus, "--set", "stiffness=700"}).exit, 0);
+  const Json info = runJson({"info", workspace + "/workspace.json", "--no-field"});
+  EXPECT_EQ(info.at("kind").asString(), "workspace");
+  EXPECT_EQ(info.at("values").at("stiffness").asNumber(), 700);
+  const Outcome useless = run({"info", workspace, "--no-field", "--unit", "cm", "--iso", "1"});
+  EXPECT_EQ(useless.exit, 0);
+  EXPECT_NE(useless.err.find("--unit has no effect on a workspace"), std::string::npos);
+  EXPECT_NE(useless.err.find("--iso has no effect on a workspace"), std::string::npos);
 }
 
 TEST_F(Workspaces, ChangedFilesAreNoticed) {
