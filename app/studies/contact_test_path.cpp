@@ -95,10 +95,13 @@ ContactTestErrors contactTestErrors(const HapticSnapshot& snapshot, const Contac
     const Vec3& force = contact.force;
     errors.force.push_back(force);
     errors.faults += contact.fault;
-    errors.lost += force.isZero();
+    errors.lost += force.dot(test.normals[i]) < 0.5 * test.reference[i].dot(test.normals[i]);
     if (i < first) continue;
     const Vec3& reference = test.reference[i];
-    const double angle = angleDegrees(force, reference);
+    const Vec3& n = test.normals[i];
+    const auto slide = [&n](const Vec3& f) { return Vec3(f - f.dot(n) * n); };
+    const double angle = test.spec.friction ? angleDegrees(slide(force), slide(reference))
+                                            : angleDegrees(force, reference);
     const double relative = 100 * std::abs(force.norm() / reference.norm() - 1);
     direction += angle;
     magnitude += relative;

@@ -35,11 +35,12 @@ ContactTest makeContactTest(const ContactTestSpec& spec);
 Scene contactTestScene(const ContactTestSpec& spec); // haptic values only
 
 struct ContactTestErrors {
-  double direction_mean = 0, direction_max = 0; // [deg], of the force
+  double direction_mean = 0, direction_max = 0; // [deg], of the force; with friction,
+  // of the friction alone: F - (F.n) n against -v_t
   double magnitude_mean = 0, magnitude_max = 0; // [%]
   double jump_rms = 0;      // [N], of tick-to-tick changes against the reference's own
   double coulomb_ratio = 0; // mean |F_t| / |F_n| about the sphere's normal
-  int lost = 0;             // ticks with no force
+  int lost = 0;             // ticks with less than half the normal force
   int faults = 0;
   std::vector<Vec3> force; // every tick [N]
 };

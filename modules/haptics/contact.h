@@ -36,8 +36,9 @@ struct ContactMemory {
 
   Vec3 stuck = Vec3::Zero(); // p_s of K09, world
   bool has_stuck = false;
-  bool slipping = false;     // until |p_s - c| < mu_d d
-  Vec3 trail = Vec3::Zero(); // trails the candidate closely: the direction of its displacement
+  bool slipping = false;          // until |p_s - c| < mu_d d
+  Vec3 trail = Vec3::Zero();      // trails the tip closely over the surface: where it comes from
+  Vec3 last_slide = Vec3::Zero(); // from tip to trail, a tick ago
 
   Vec3 last_raw = Vec3::Zero();    // [N], before limit and fade
   Vec3 fault_force = Vec3::Zero(); // [N], what is being faded

@@ -6,6 +6,7 @@ namespace patina {
 namespace {
 
 constexpr double kTrailVoxels = 0.05;
+constexpr double kMaxTurn = 0.1; // [rad] a tick
 
 } // namespace
 
@@ -27,12 +28,13 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   const Vec3& c = contact.candidate;
   if (!memory.has_stuck) {
     memory.stuck = c;
-    memory.trail = c;
+    memory.trail = contact.tip;
+    memory.last_slide.setZero();
     memory.has_stuck = true;
     memory.slipping = false;
   }
   const Vec3 against = friction_.slip == Friction::SlipDirection::displacement
-                           ? againstDisplacement(memory.trail, c)
+                           ? againstMotion(contact, memory)
                            : Vec3::Zero();
 
   const double radius = memory.slipping ? slip : stick;
@@ -58,15 +60,27 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   contact.vcp = p;
 }
 
-// Draws the trail behind the candidate; the unit vector towards it, or zero while it is too short
-// to say.
-Vec3 FrictionStage::againstDisplacement(Vec3& trail, const Vec3& candidate) const noexcept {
-  const Vec3 behind = trail - candidate;
-  const double squared = behind.squaredNorm();
-  if (!(squared > 0.25 * trail_ * trail_)) return Vec3::Zero();
-  const Vec3 direction = 1 / std::sqrt(squared) * behind;
-  if (squared > trail_ * trail_) trail = candidate + trail_ * direction;
-  return direction;
+// Draws the trail behind the tip over the tangent plane at the candidate. A chord is the direction
+// half its length ago; it is turned on as much as the path turned since the chord before. Zero
+// while the trail is too short to say.
+Vec3 FrictionStage::againstMotion(const Contact& contact, ContactMemory& memory) const noexcept {
+  const auto tangential = [&n = contact.normal](const Vec3& v) { return Vec3(v - v.dot(n) * n); };
+  const Vec3 behind = tangential(memory.trail - contact.tip);
+  const double length = behind.norm();
+  memory.trail = contact.tip + behind;
+  if (!(length > 0.5 * trail_)) return Vec3::Zero();
+  const Vec3 direction = 1 / length * behind;
+  if (length > trail_) memory.trail = contact.tip + trail_ * direction;
+
+  const Vec3 before = tangential(memory.last_slide);
+  memory.last_slide = behind;
+  const double length_before = before.norm();
+  const double between = 0.5 * (length + length_before) - trail_;
+  // At less than a trail's length a tick the noise of the tip would be turned on with it.
+  if (!(length > 2 * trail_ && length_before > 2 * trail_)) return direction;
+  const Vec3 turn = direction - 1 / length_before * before;
+  if (turn.squaredNorm() > kMaxTurn * kMaxTurn) return direction; // a corner, not a curve
+  return (direction + 0.5 * length / between * turn).normalized();
 }
 
 // The offset from c moved by one Newton step along the contact's normal, then brought back to its

@@ -14,8 +14,10 @@ inline constexpr double kFrictionDepthReference = 1e-3; // d_ref of K10 [m]
 // The VCP p stays where it is until |p - c| exceeds mu_s d, then trails the frictionless candidate
 // c at mu_d d until |p - c| < mu_d d. Where p trails:
 //  paper         in the direction from c to where p was: on a curved path it lags by up to mu_d d;
-//  displacement  against the displacement of c, measured over 0.05 voxel so that noise of the tip
-//                does not choose the direction.
+//  displacement  against the motion over the tangent plane at c, measured at the tip, so that the
+//                field's noise is not in it, over 0.05 voxel, so that the tip's noise does not
+//                choose the direction; carried on to the end of the tick by the turn since the last
+//                one.
 class FrictionStage final : public ForceStage {
  public:
   FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
@@ -25,7 +27,7 @@ class FrictionStage final : public ForceStage {
   std::string_view name() const noexcept override { return "friction"; }
 
  private:
-  Vec3 againstDisplacement(Vec3& trail, const Vec3& candidate) const noexcept;
+  Vec3 againstMotion(const Contact& contact, ContactMemory& memory) const noexcept;
   Vec3 ontoSurface(const Contact& contact, const Vec3& offset, double length) const noexcept;
 
   std::shared_ptr<const SurfaceField> field_;
