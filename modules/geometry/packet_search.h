@@ -79,13 +79,16 @@ struct PointEntry {
   std::int32_t node;
 };
 
-inline void searchPoint(const LatticeJob& job, const Points& p, std::int32_t at, Nearest& nearest) {
+// From the node `at`; `visit` gets triangles at hand and tightens the limit, which it returns.
+template <typename Visit>
+PATINA_INLINE void descend(const WideNode* nodes, const Points& p, std::int32_t at, float limit,
+                           const Visit& visit) {
   PointEntry stack[kStack];
   int top = 0;
   for (;;) {
-    const WideNode& node = job.nodes[at];
+    const WideNode& node = nodes[at];
     const Lanes d2 = childDistances(node, p);
-    unsigned near = bits(d2 <= spread(nearest.limit));
+    unsigned near = bits(d2 <= spread(limit));
     alignas(32) float distance[kWide];
     store(distance, d2);
     std::int32_t triangle[kWide];
@@ -106,13 +109,21 @@ inline void searchPoint(const LatticeJob& job, const Points& p, std::int32_t at,
       }
       stack[slot] = {distance[place], child};
     }
-    if (triangles > 0) tryTriangles(job.triangles, triangle, triangles, p, nearest);
+    if (triangles > 0) limit = visit(triangle, triangles);
     do {
       if (top == 0) return;
       --top;
-    } while (stack[top].d2 > nearest.limit);
+    } while (stack[top].d2 > limit);
     at = stack[top].node;
   }
+}
+
+inline void searchPoint(const LatticeJob& job, const Points& p, Nearest& nearest) {
+  const auto visit = [&](std::int32_t(&triangle)[kWide], int count) __attribute__((always_inline)) {
+    tryTriangles(job.triangles, triangle, count, p, nearest);
+    return nearest.limit;
+  };
+  descend(job.nodes, p, 0, nearest.limit, visit);
 }
 
 } // namespace patina::PATINA_KERNEL

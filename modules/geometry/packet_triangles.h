@@ -111,19 +111,23 @@ struct Nearest {
   std::int32_t face, triangle;
 };
 
-PATINA_INLINE void tryTriangles(const PacketTriangle* triangles, std::int32_t (&index)[kWide],
-                                int count, const Points& p, Nearest& nearest) {
-  Lanes d2;
+// Squared distances of one point from `count` triangles; other lanes repeat the first.
+PATINA_INLINE Lanes triangleDistances(const PacketTriangle* triangles, std::int32_t (&index)[kWide],
+                                      int count, const Points& p) {
   if (count == 1) {
     const PacketTriangle& t = triangles[index[0]];
-    d2 = squaredDistance(OneTriangle{t}, p.x - spread(t.a[0]), p.y - spread(t.a[1]),
-                         p.z - spread(t.a[2]));
-  } else {
-    for (int i = count; i < kWide; ++i) index[i] = index[0];
-    EightTriangles t;
-    gather(triangles, index, t);
-    d2 = squaredDistance(t, p.x - t.a(0), p.y - t.a(1), p.z - t.a(2));
+    return squaredDistance(OneTriangle{t}, p.x - spread(t.a[0]), p.y - spread(t.a[1]),
+                           p.z - spread(t.a[2]));
   }
+  for (int i = count; i < kWide; ++i) index[i] = index[0];
+  EightTriangles t;
+  gather(triangles, index, t);
+  return squaredDistance(t, p.x - t.a(0), p.y - t.a(1), p.z - t.a(2));
+}
+
+PATINA_INLINE void tryTriangles(const PacketTriangle* triangles, std::int32_t (&index)[kWide],
+                                int count, const Points& p, Nearest& nearest) {
+  const Lanes d2 = triangleDistances(triangles, index, count, p);
   unsigned near = bits(d2 <= spread(nearest.limit)) & ((1u << count) - 1);
   if (!near) return;
   alignas(32) float distance[kWide];

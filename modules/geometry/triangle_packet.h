@@ -53,9 +53,25 @@ struct LatticeJob {
   float* distance;
 };
 
-// The same algorithm in the instructions of the processor at hand, or in those that every
+// All triangles that may be nearest to a point: those whose distance, as float knows it, is at most
+// `slack` above the least. Slack must cover what float loses.
+struct PointJob {
+  const WideNode* nodes;
+  const PacketTriangle* triangles;
+  float point[3];
+  float reach; // nothing farther matters
+  float slack;
+  static constexpr int kMost = 64;
+  std::int32_t triangle[kMost];
+  float distance2[kMost];
+  int count; // the answer's; -1 if there are too many
+};
+
+// The same algorithms in the instructions of the processor at hand, or in those that every
 // processor has; the difference is in the last bits.
 void closestOnLattice(const LatticeJob& job);
+void trianglesNear(PointJob& job);
 void closestOnLatticePlain(const LatticeJob& job);
+void trianglesNearPlain(PointJob& job);
 
 } // namespace patina

@@ -208,7 +208,7 @@ PATINA_INLINE Answer searchPoints(const LatticeJob& job, const Packet& packet, f
       std::int32_t index[kWide] = {warm};
       tryTriangles(job.triangles, index, 1, p, nearest);
     }
-    searchPoint(job, p, 0, nearest);
+    searchPoint(job, p, nearest);
     found[lane] = nearest.triangle;
     best[lane] = nearest.best;
     if (nearest.triangle >= 0) warm = nearest.triangle;
@@ -308,6 +308,52 @@ void lattice(const LatticeJob& job) {
     lattice8(job);
   else
     latticeFromRoot(job);
+}
+
+// ---- One point for all its candidates ----
+
+PATINA_INLINE int keepWithin(PointJob& job, int count, float limit) {
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    if (job.distance2[i] > limit) continue;
+    job.triangle[kept] = job.triangle[i];
+    job.distance2[kept++] = job.distance2[i];
+  }
+  return kept;
+}
+
+void pointCandidates(PointJob& job) {
+  const Points p{spread(job.point[0]), spread(job.point[1]), spread(job.point[2])};
+  const auto withSlack = [&](float distance) {
+    return (distance + job.slack) * (distance + job.slack);
+  };
+  float limit = withSlack(job.reach);
+  int count = 0;
+  bool full = false;
+  const auto visit = [&](std::int32_t(&triangle)[kWide], int triangles)
+      __attribute__((always_inline)) {
+    const Lanes d2 = triangleDistances(job.triangles, triangle, triangles, p);
+    unsigned near = bits(d2 <= spread(limit)) & ((1u << triangles) - 1);
+    if (!near) return limit;
+    alignas(32) float distance2[kWide];
+    store(distance2, d2);
+    while (near) {
+      const int i = __builtin_ctz(near);
+      near &= near - 1;
+      const float sharper = withSlack(__builtin_sqrtf(distance2[i]));
+      if (sharper < limit) limit = sharper;
+      if (count == PointJob::kMost) count = keepWithin(job, count, limit);
+      if (count == PointJob::kMost) {
+        full = true;
+        return limit = -1; // ends the descent
+      }
+      job.triangle[count] = triangle[i];
+      job.distance2[count++] = distance2[i];
+    }
+    return limit;
+  };
+  descend(job.nodes, p, 0, limit, visit);
+  job.count = full ? -1 : keepWithin(job, count, limit);
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -102,6 +102,30 @@ struct TriangleTree::Impl {
     Nearest result;
     result.best = max_d2;
     if (warm >= 0 && static_cast<std::size_t>(warm) < triangles.size()) tryFace(p, warm, result);
+    if (!nearestAmongCandidates(p, result)) nearestByDescent(p, result);
+    return result;
+  }
+
+  // Float finds the few faces that double has to decide between. False if they are not few, or the
+  // point is too far for float.
+  bool nearestAmongCandidates(const Vec3& p, Nearest& result) const {
+    const double far = p.cwiseAbs().maxCoeff();
+    if (far > 1e3) return false;
+    PointJob job;
+    job.nodes = nodes.data();
+    job.triangles = leaves.data();
+    for (int i = 0; i < 3; ++i) job.point[i] = static_cast<float>(p[i]);
+    const double slack = 2e-6 * (1 + far);
+    job.reach = static_cast<float>(std::min(std::sqrt(result.best) * (1 + 1e-6), 1e6));
+    job.slack = static_cast<float>(slack);
+    trianglesNear(job);
+    if (job.count < 0) return false;
+    for (int i = 0; i < job.count; ++i)
+      tryFace(p, leaves[static_cast<std::size_t>(job.triangle[i])].face, result);
+    return true;
+  }
+
+  void nearestByDescent(const Vec3& p, Nearest& result) const {
     const std::array<float, 3> f{static_cast<float>(p[0]), static_cast<float>(p[1]),
                                  static_cast<float>(p[2])};
     Stack stack;
@@ -122,7 +146,6 @@ struct TriangleTree::Impl {
       for (std::size_t i = 0; i < kWide; ++i)
         if (d2[i] <= limit && !isEmpty(node, i)) stack.push(d2[i], node.child[i]);
     }
-    return result;
   }
 
   ClosestPoint answer(const Vec3& p, const Nearest& nearest) const {
