@@ -115,12 +115,26 @@ class Signer {
       sign_[i] = tally[parts_.root[i]].majority();
       mixed = mixed || tally[parts_.root[i]].mixed();
     }
+    countFaced(voters);
     if (!mixed) return;
     if (!signs::isClosed(mesh_)) cutLeaks(tally);
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i)
       if (!std::isnan(vote_[i]) && sign_[i] != kByNode &&
           saysInside(vote_[i]) != (sign_[i] == kInside))
         ambiguous_ += parts_.parts[i].nodes;
+  }
+
+  // A component that sees faces from both sides and yet votes as nothing were there: fewer nodes.
+  void countFaced(const std::vector<std::uint32_t>& voters) {
+    std::vector<Tally> seen(sign_.size()); // inside: sees a back
+    for (std::uint32_t i : voters) {
+      if (sign_[i] == kInside || std::abs(vote_[i]) > 0.5F) continue;
+      const double side = sideOfNearest(parts_.parts[i]);
+      Tally& t = seen[parts_.root[i]];
+      if (side < 0) t.inside += parts_.parts[i].nodes;
+      if (side > 0) t.outside += parts_.parts[i].nodes;
+    }
+    for (const Tally& t : seen) ambiguous_ += std::min(t.inside, t.outside);
   }
 
   void cutLeaks(const std::vector<Tally>& tally) {
@@ -245,20 +259,24 @@ class Signer {
       if (isSliver(i)) sign_[i] = sign_[parts_.root[i]];
   }
 
-  // Whether the nearest face, if the node stands over its interior, shows the other side.
-  bool contradicts(const Sliver& sliver, std::int8_t sign) const {
-    const Part& part = parts_.parts[sliver.deepest];
-    if (turned_ == 0 || part.depth < 1e-2F) return false;
+  // On which side of its nearest face the deepest node stands: > 0 where the face turns to it, 0
+  // unless it stands over the face's interior.
+  double sideOfNearest(const Part& part) const {
     const std::int32_t face =
         builder_.face[static_cast<std::size_t>(part.slot)]->face[part.deepest];
-    if (face < 0) return false;
+    if (face < 0) return 0;
     const auto f = static_cast<std::size_t>(face);
     const Vec3 a = mesh_.corner(f, 0), b = mesh_.corner(f, 1), c = mesh_.corner(f, 2);
     const Vec3 p = world(part.slot, part.deepest);
     const Vec3 w = closestBarycentric(p, a, b, c);
-    if (w.minCoeff() < 1e-3) return false;
-    const double side = (b - a).cross(c - a).dot(p - a) * (turned_ > 0 ? 1 : -1);
-    return side * sign < 0;
+    return w.minCoeff() < 1e-3 ? 0 : (b - a).cross(c - a).dot(p - a);
+  }
+
+  // Whether the nearest face shows the other side.
+  bool contradicts(const Sliver& sliver, std::int8_t sign) const {
+    const Part& part = parts_.parts[sliver.deepest];
+    if (turned_ == 0 || part.depth < 1e-2F) return false;
+    return sideOfNearest(part) * (turned_ > 0 ? 1 : -1) * sign < 0;
   }
 
   void write() {

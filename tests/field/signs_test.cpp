@@ -188,6 +188,13 @@ TEST(Signs, NoneWrongWithFlippedFaces) {
   }
 }
 
+// No edge says which of these faces is wrong: the inside is lost, but not in silence.
+TEST(Signs, LooseFacesThatFaceAnywhereAreCounted) {
+  const TriangleMesh loose = withShrunkenTriangles(ball(), 0.002);
+  EXPECT_EQ(wrongSigns(loose, ballTruth).points, 0);
+  EXPECT_GT(wrongSigns(withFlippedFaces(loose, 0.5, 1), ballTruth).ambiguous, 1000U);
+}
+
 TEST(Signs, NoneWrongInTheUnionOfBodiesThatFaceOppositeWays) {
   const Vec3 by(0.03, 0.01, 0.005);
   const Truth both = [by](const Vec3& p) { return std::min(ballTruth(p), ballTruth(p - by)); };
