@@ -1,22 +1,21 @@
 // The fixed contact test against what must hold: accuracy from one run, times from the least of
 // several passes (p50 and p99 of a pass include two readings of the clock, 20 to 29 ns).
 //
-// Times are those of an idle core of about 2020. While other programs keep more runnable threads
-// than there are processors, each limit is taken times kBusyFactor.
+// Times are those of an idle core of about 2020. A pass counts only if its thread had the core to
+// itself; without such a pass the row is printed and skipped.
 #include "app/studies/contact_test_path.h"
+#include "support/busy_machine.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <map>
-#include <thread>
 
 namespace patina {
 namespace {
 
 constexpr double kRadius = 0.05;
 constexpr double kTip = 0.02;
-constexpr double kBusyFactor = 1.6;
 constexpr int kRepeats = 15;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -44,18 +43,48 @@ std::shared_ptr<const HapticSnapshot> snapshotOf(int frequency, const ContactTes
 ContactTestErrors errorsOf(int frequency, const ContactTestSpec& spec, double crack = 0) {
   const auto snapshot = compileStages(contactTestScene(spec), sphereOf(frequency, crack));
   const ContactTestErrors errors = contactTestErrors(*snapshot, makeContactTest(spec));
-  EXPECT_EQ(errors.lost, 0);
+  EXPECT_EQ(errors.lost, 0); // F.n < K d / 2 counts
   EXPECT_EQ(errors.faults, 0);
   return errors;
 }
 
-double busyFactor() {
-  double load = 0;
-  const bool known = getloadavg(&load, 1) == 1;
-  return known && load > std::thread::hardware_concurrency() ? kBusyFactor : 1.0;
+// p50 the least, p99 the median: a tail is not made better by picking the best of it.
+struct CleanTiming {
+  double p50 = 0, p99 = 0, clock = 0;
+  int clean = 0; // passes; if none, the figures are of all
+};
+CleanTiming summary(const std::vector<ContactTestTiming>& all,
+                    const std::vector<ContactTestTiming>& clean) {
+  CleanTiming result;
+  result.clean = static_cast<int>(clean.size());
+  std::vector<double> p50, p99, clock;
+  for (const ContactTestTiming& pass : clean.empty() ? all : clean) {
+    p50.push_back(pass.p50);
+    p99.push_back(pass.p99);
+    clock.push_back(pass.clock);
+  }
+  std::sort(p99.begin(), p99.end());
+  result.p50 = *std::min_element(p50.begin(), p50.end());
+  result.p99 = p99[p99.size() / 2];
+  result.clock = *std::min_element(clock.begin(), clock.end());
+  return result;
+}
+// Each snapshot once a round, so that what else the machine does falls on all alike.
+std::vector<CleanTiming> timed(const std::vector<std::shared_ptr<const HapticSnapshot>>& snapshots,
+                               const ContactTest& test) {
+  std::vector<std::vector<ContactTestTiming>> all(snapshots.size()), clean(snapshots.size());
+  for (int round = 0; round < kRepeats; ++round)
+    for (std::size_t i = 0; i < snapshots.size(); ++i) {
+      const patina::test::CpuShare share;
+      all[i].push_back(contactTestTiming(*snapshots[i], test, 1));
+      if (share.value() >= patina::test::kCleanShare) clean[i].push_back(all[i].back());
+    }
+  std::vector<CleanTiming> result;
+  for (std::size_t i = 0; i < snapshots.size(); ++i) result.push_back(summary(all[i], clean[i]));
+  return result;
 }
 
-bool clockUsable(const ContactTestTiming& timing) {
+bool clockUsable(const CleanTiming& timing) {
   return timing.clock > 0 && timing.clock < 100;
 }
 
@@ -109,9 +138,18 @@ TEST_P(ContactBenchmark, FrictionFollowsCoulomb) {
 }
 
 TEST(ContactCracks, LoseNoTick) {
-  for (const int surface : {k10k, k100k})
-    for (const double crack : {1e-4, 1e-3, 1e-2})
-      EXPECT_EQ(errorsOf(surface, {}, crack).lost, 0) << surface << ' ' << crack;
+  for (const int surface : {k10k, k100k}) {
+    const ContactTestErrors whole = errorsOf(surface, {});
+    for (const double crack : {1e-4, 1e-3, 1e-2}) {
+      const ContactTestErrors errors = errorsOf(surface, {}, crack);
+      // A hundredth is a gap that the distance itself feels: a tenth more is allowed there.
+      const double allowance = crack > 5e-3 ? 1.1 : 1.02;
+      EXPECT_LE(errors.direction_mean, allowance * whole.direction_mean) << crack;
+      EXPECT_LE(errors.direction_max, allowance * whole.direction_max) << crack;
+      EXPECT_LE(errors.magnitude_mean, allowance * whole.magnitude_mean) << crack;
+      EXPECT_LE(errors.magnitude_max, allowance * whole.magnitude_max) << crack;
+    }
+  }
 }
 
 TEST_P(ContactBenchmark, ForceIsTheSameAtEverySize) {
@@ -128,48 +166,61 @@ TEST_P(ContactBenchmark, ForceIsTheSameAtEverySize) {
   }
 }
 
+// The same from triangles. Sizes that differ by a power of two round alike; others round the nodes'
+// floats differently, and the search then ends elsewhere within its millionth of a voxel.
+TEST(ContactScale, ForceIsTheSameAtEverySizeOfMesh) {
+  std::vector<Vec3> reference;
+  for (const double radius : {0.05, 0.8, 12.8, 1.0, 10.0}) {
+    Progress progress;
+    const ContactTestSpec spec{.radius = radius};
+    const auto snapshot =
+        compileStages(contactTestScene(spec), meshSphere(radius, k10k, 0, progress));
+    const std::vector<Vec3> force = contactTestErrors(*snapshot, makeContactTest(spec)).force;
+    if (reference.empty()) reference = force;
+    double worst = 0;
+    for (std::size_t i = 0; i < force.size(); ++i)
+      worst = std::max(worst, (force[i] - reference[i]).norm() / reference[i].norm());
+    std::printf("R = %g m: %.2g\n", radius, worst);
+    EXPECT_LE(worst, radius == 0.8 || radius == 12.8 ? 1e-9 : 1e-5) << radius;
+  }
+}
+
 TEST(ContactTiming, TickWithFrictionIsQuickAtAnySizeOfMesh) {
   if (kSanitized) GTEST_SKIP() << "times mean nothing under a sanitizer";
   const ContactTestSpec spec{.friction = true};
   const ContactTest test = makeContactTest(spec);
-  // In turns, so that what else the machine does falls on all alike.
   const std::vector<int> surfaces = {k1k, k10k, k100k, k1M};
   std::vector<std::shared_ptr<const HapticSnapshot>> snapshots;
   for (const int surface : surfaces) snapshots.push_back(snapshotOf(surface, spec));
-  std::vector<ContactTestTiming> best;
-  for (int round = 0; round < kRepeats; ++round)
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      const ContactTestTiming timing = contactTestTiming(*snapshots[i], test, 1);
-      if (round == 0) best.push_back(timing);
-      best[i].p50 = std::min(best[i].p50, timing.p50);
-      best[i].p99 = std::min(best[i].p99, timing.p99);
-      best[i].batch = std::min(best[i].batch, timing.batch);
-      best[i].clock = std::min(best[i].clock, timing.clock);
-    }
-  double least = best[0].batch, most = least;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const ContactTestTiming& timing = best[i];
+  const std::vector<CleanTiming> timings = timed(snapshots, test);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    std::printf("%8d triangles: p50 %.0f, p99 %.0f ns (clock %.0f, %d clean passes)\n",
+                20 * surfaces[i] * surfaces[i], timings[i].p50, timings[i].p99, timings[i].clock,
+                timings[i].clean);
+  double least = timings[0].p50, most = least;
+  for (const CleanTiming& timing : timings) {
     if (!clockUsable(timing)) GTEST_SKIP() << "reading the clock takes " << timing.clock << " ns";
-    std::printf("%8d triangles: p50 %.0f, p99 %.0f, in batches %.1f ns (clock %.0f)\n",
-                20 * surfaces[i] * surfaces[i], timing.p50, timing.p99, timing.batch, timing.clock);
-    EXPECT_LE(timing.p50, 200 * busyFactor());
-    EXPECT_LE(timing.p99, 700 * busyFactor());
-    least = std::min(least, timing.batch);
-    most = std::max(most, timing.batch);
+    if (timing.clean == 0) GTEST_SKIP() << "the machine is busy: no pass had a core to itself";
   }
-  EXPECT_LE(most / least, busyFactor() > 1 ? 1.3 : 1.1);
+  for (const CleanTiming& timing : timings) {
+    EXPECT_LE(timing.p50, 200);
+    EXPECT_LE(timing.p99, 700);
+    least = std::min(least, timing.p50);
+    most = std::max(most, timing.p50);
+  }
+  EXPECT_LE(most / least, 1.1);
 }
 
 TEST(ContactTiming, FiniteTipIsQuickAt1MTriangles) {
   if (kSanitized) GTEST_SKIP() << "times mean nothing under a sanitizer";
   for (const bool friction : {false, true}) {
     const ContactTestSpec spec{.tip_radius = kTip, .friction = friction};
-    const ContactTestTiming timing =
-        contactTestTiming(*snapshotOf(k1M, spec), makeContactTest(spec), kRepeats);
+    const CleanTiming timing = timed({snapshotOf(k1M, spec)}, makeContactTest(spec)).front();
+    std::printf("finite tip%s: p50 %.0f, p99 %.0f ns (%d clean passes)\n",
+                friction ? " with friction" : "", timing.p50, timing.p99, timing.clean);
     if (!clockUsable(timing)) GTEST_SKIP() << "reading the clock takes " << timing.clock << " ns";
-    std::printf("finite tip%s: p50 %.0f, p99 %.0f ns\n", friction ? " with friction" : "",
-                timing.p50, timing.p99);
-    EXPECT_LE(timing.p50, 250 * busyFactor());
+    if (timing.clean == 0) GTEST_SKIP() << "the machine is busy: no pass had a core to itself";
+    EXPECT_LE(timing.p50, 250);
   }
 }
 
