@@ -79,6 +79,13 @@ struct Foot {
   Vec3 direction = Vec3::Zero();
 };
 
+double distanceTo(const TriangleMesh& mesh, std::int32_t face, const Vec3& p) {
+  const auto f = static_cast<std::size_t>(face);
+  const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+  const Vec3 w = closestBarycentric(p, a, b, c);
+  return (w[0] * (p - a) + w[1] * (p - b) + w[2] * (p - c)).norm();
+}
+
 Foot footOn(const TriangleMesh& mesh, std::int32_t face, const Vec3& p, double voxel) {
   const auto f = static_cast<std::size_t>(face);
   const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
@@ -138,19 +145,28 @@ struct Block {
   std::shared_ptr<FaceNodes> face;
 };
 
-// Null if no node is within the band.
-Block blockAt(const TriangleTree& tree, const FieldGrid& grid, double band, const Index3& at) {
+// Null if no node is within the band. The search is in float, in places that depend on the scale by
+// their last bit; the distance that is stored is the winner's own in double, which does not.
+Block blockAt(const TriangleMesh& mesh, const TriangleTree& tree, const FieldGrid& grid,
+              double band, const Index3& at) {
   Block block{std::make_shared_for_overwrite<DistanceBlock>(),
               std::make_shared_for_overwrite<FaceNodes>()};
-  const Vec3 corner = grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
+  const Index3 first{kBlockSide * at[0], kBlockSide * at[1], kBlockSide * at[2]};
+  const Vec3 corner = grid.toWorld(Vec3(first[0], first[1], first[2]));
   auto& phi = block.distance->phi;
   auto& face = block.face->face;
   tree.closestOnLattice(corner, grid.voxel, kBlockSide, band * grid.voxel, phi, face);
-  const auto most = static_cast<float>(band);
   std::int32_t any = -1;
   for (std::size_t i = 0; i < phi.size(); ++i) {
-    phi[i] = face[i] >= 0 ? std::min(phi[i], most) : kBeyondBand;
     any = std::max(any, face[i]);
+    if (face[i] < 0) {
+      phi[i] = kBeyondBand;
+      continue;
+    }
+    const Index3 in = cellAt(i, {kBlockSide, kBlockSide, kBlockSide});
+    const Vec3 p = grid.toWorld(Vec3(first[0] + in[0], first[1] + in[1], first[2] + in[2]));
+    const double d = distanceTo(mesh, face[i], p) / grid.voxel;
+    phi[i] = static_cast<float>(std::min(d, band));
   }
   return any >= 0 ? block : Block{};
 }
@@ -175,7 +191,7 @@ FieldBuilder distanceBlocks(const TriangleMesh& mesh, const TriangleTree& tree,
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, near.size(), 8), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (progress.cancelled()) return;
-      blocks[i] = blockAt(tree, grid, band, cellAt(near[i], field.blocks));
+      blocks[i] = blockAt(mesh, tree, grid, band, cellAt(near[i], field.blocks));
       const std::size_t count = done.fetch_add(1, std::memory_order_relaxed);
       if (count % kReportEvery == 0)
         progress.report(from_fraction + (to_fraction - from_fraction) * static_cast<double>(count) /

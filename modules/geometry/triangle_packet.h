@@ -1,5 +1,5 @@
 // Nearest triangles of eight points at a time: the data and the kernel behind TriangleTree's
-// lattice query. Everything is in the tree's own unit (the mesh's half extent is 0.5 to 1) about
+// lattice query. Everything is in the tree's own unit (half the mesh's longest side) about
 // its own centre.
 #pragma once
 

@@ -60,7 +60,7 @@ bool isEmpty(const WideNode& node, std::size_t place) {
 
 struct TriangleTree::Impl {
   Vec3 centre = Vec3::Zero();
-  double unit = 1; // metres; a power of two, so that scaling is exact
+  double unit = 1; // metres: half the longest side, so that sizes differ by double rounding only
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::vector<WideNode> nodes;
@@ -170,7 +170,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     }
   impl->centre = 0.5 * box.min() + 0.5 * box.max();
   const double half = 0.5 * box.sizes().maxCoeff();
-  impl->unit = half > 0 ? std::exp2(std::ceil(std::log2(half))) : 1.0;
+  impl->unit = half > 0 ? half : 1.0;
   impl->triangles = mesh.triangles;
   impl->positions.resize(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
