@@ -72,6 +72,8 @@ cat <<TEXT
   window.png  feel.png  slice.png  nodes.png   the window before and during the touch
   picture.png                                  the object alone
   feel.csv                                     one row a servo tick of the session
-  forces.csv  feel.json                        the same path felt again in simulated time
+  forces.csv  feel.json                        the same path felt again in simulated time, with the
+                                               scene as it was opened: without the friction that
+                                               the tour adds half way
   info.json                                    the mesh, its defects, the stages and their costs
 TEXT

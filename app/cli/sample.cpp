@@ -177,7 +177,8 @@ Command sampleCommand() {
       "[m], in_band (1 or 0), stiffness [N/m] and static friction.\n"
       "With a mesh or workspace the face and closest point are exact, and so are phi and the "
       "direction beyond the band. With a field alone they are what the field knows: closest point "
-      "= point - phi n, and beyond the band phi is a bound and the direction zero.\n"
+      "= point - phi n, and beyond the band phi is a bound outside, the coarse nodes' estimate "
+      "inside; trust neither where in_band is 0.\n"
       "JSON: points, in_band, bad_points (NaN or infinite), sampler, voxel [m].";
   command.examples = {"patina sample bunny.ply --points points.csv -o samples.csv",
                       "patina sample bunny.vti --points points.csv -o samples.csv --sampler kim"};

@@ -160,8 +160,7 @@ Plot workPrecisionPlot(const WorkPrecisionTable& table) {
     groups[key].emplace_back(row.ns, row.error);
   }
   for (const std::string& key : order) {
-    auto& points = groups[key];
-    std::sort(points.begin(), points.end());
+    const auto& points = groups[key]; // in the order of the rows: refinement, not time
     PlotSeries series;
     series.name = key;
     for (const auto& [ns, error] : points) {

@@ -49,7 +49,8 @@ TEST_F(ServoUnderDrawing, WakesInTimeWhileTheWindowDraws500000Triangles) {
   if (!timing.realtime)
     GTEST_SKIP() << "no real-time priority here (" << timing.policy
                  << "): lateness is shown and not judged";
-  if (machineIsCrowded())
+  const bool holds = timing.late_p99 <= 100 && timing.late_p999 <= 500;
+  if (!holds && machineIsCrowded())
     GTEST_SKIP() << "more runs here than there are processors: lateness is shown and not judged";
   EXPECT_LE(timing.late_p99, 100);
   EXPECT_LE(timing.late_p999, 500);
