@@ -79,6 +79,9 @@ int runFeel(const FeelOptions& options, Console& console) {
   if (bad_tips)
     console.warn(options.path.string() + ": " + formatCount(bad_tips) +
                  (bad_tips == 1 ? " tip is" : " tips are") + " NaN or infinite: no force there");
+  if (contact_ticks == 0 && bad_tips < samples.size())
+    console.warn(options.path.string() +
+                 ": the path never touches the object; compare their positions and check --unit");
   console.report(json, aligned(rows));
   return kDone;
 }

@@ -1,6 +1,8 @@
 // Every command on our own data: exit codes, JSON keys (DESIGN section 9) and CSV headers.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include <cmath>
 
 #include "core/csv.h"
@@ -158,6 +160,17 @@ TEST_F(Commands, FeelGivesHookesForceAndItsReport) {
   EXPECT_NEAR(pressed[6], 0.8, 0.02); // 1 mm at 800 N/m, straight up
   EXPECT_NEAR(pressed[8], 0.001, 3e-5);
   EXPECT_NEAR(report.at("max_force").asNumber(), 0.8, 0.02);
+}
+
+TEST_F(Commands, FeelSaysThatAPathNeverTouches) {
+  const std::string far = folder / "far.csv";
+  std::ofstream(far) << "t [s],x [m],y [m],z [m]\n0,1,1,1\n0.001,1,1,1\n";
+  const std::string forces = folder / "forces.csv";
+  const Outcome missed = run({"feel", sphere, "--path", far, "-o", forces, "--resolution", "40"});
+  EXPECT_EQ(missed.exit, 0);
+  EXPECT_NE(missed.err.find("never touches"), std::string::npos) << missed.err;
+  const Outcome met = run({"feel", sphere, "--path", path, "-o", forces, "--resolution", "40"});
+  EXPECT_EQ(met.err.find("never touches"), std::string::npos) << met.err;
 }
 
 TEST_F(Commands, FeelOptionsReachTheServo) {
