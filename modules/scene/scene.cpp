@@ -35,11 +35,30 @@ void validate(const Friction& friction) {
           "at most friction.static = " + formatNumber(friction.static_coefficient));
 }
 
+void validate(const Magnet& magnet) {
+  requireBetween("magnet.range", magnet.range, 0, 1, "m");
+  requireBetween("magnet.strength", magnet.strength, 0, 1e7, "N/m");
+}
+
+void validate(const DeviceModel& device) {
+  requirePositive("device.mass", device.mass, 100, "kg");
+  requireBetween("device.damping", device.damping, 0, 1e4, "N s/m");
+  requireBetween("device.coulomb", device.coulomb, 0, 100, "N");
+  requireBetween("device.encoder", device.encoder_step, 0, 0.01, "m");
+  requireBetween("device.rate", device.rate, 100, 10000, "Hz");
+  requireBetween("device.delay", device.delay, 0, 20, "samples");
+}
+
 void validate(const HapticProperties& haptics) {
   requireBetween("stiffness", haptics.stiffness, 0, 1e7, "N/m");
   if (haptics.damping) requireBetween("damping", *haptics.damping, 0, 1e4, "N s/m");
+  if (haptics.damping_cutoff) requirePositive("damping.cutoff", *haptics.damping_cutoff, 1e5, "Hz");
   if (haptics.friction) validate(*haptics.friction);
   if (haptics.tip_radius) requireBetween("tip.radius", *haptics.tip_radius, 0, 1, "m");
+  if (haptics.offset) requireBetween("offset", *haptics.offset, 0, 1, "m");
+  if (haptics.magnet) validate(*haptics.magnet);
+  if (haptics.offset.value_or(0) > 0 && haptics.magnet)
+    throw Error("offset and magnet use the same band: set one of them to none");
   requirePositive("force.limit", haptics.force_limit, 1000, "N");
 }
 
@@ -93,6 +112,7 @@ void validate(const Scene& scene) {
   validate(scene.haptics);
   if (scene.device != "mouse" && scene.device != "simulated")
     throw Error("device = " + scene.device + ": it must be mouse or simulated");
+  if (scene.device_model) validate(*scene.device_model);
 }
 
 } // namespace patina

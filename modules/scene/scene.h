@@ -11,6 +11,8 @@
 #include "field/field_grid.h"
 #include "field/field_sampler.h"
 #include "geometry/triangle_mesh.h"
+#include "scene/device_model.h"
+#include "scene/haptic_properties.h"
 
 namespace patina {
 
@@ -20,29 +22,17 @@ struct SceneObject {
   Pose world_from_object = Pose::Identity();
 };
 
-struct Friction {
-  double static_coefficient = 0;  // mu_s >= mu_d
-  double dynamic_coefficient = 0; // mu_d >= 0
-  double depth_gain = 0;          // gamma of K10 (ii): mu (1 + gamma d / d_ref), d_ref = 1 mm
-  // K09 moves the VCP towards the tip's candidate; `displacement` opposes the motion over the
-  // tangent plane, which on a curved path is nearer to Coulomb's law (docs/papers.md).
-  enum class SlipDirection { paper, displacement } slip = SlipDirection::paper;
-};
-
-struct HapticProperties {
-  double stiffness = 500;        // K [N/m]
-  std::optional<double> damping; // B [N s/m]
-  std::optional<Friction> friction;
-  std::optional<double> tip_radius; // [m]: the tip's centre feels the iso-surface at this value
-  double force_limit = 3.3;         // [N], the magnitude; never left out
-};
-
 struct Scene {
   std::vector<SceneObject> objects;
   FieldSpec field;
+  // Several objects are one field by min (K14): right outside and, where they overlap, too shallow
+  // inside (F9). true = distances inside are those to the union's own surface.
+  bool redistance = false;
   Sampler sampler = Sampler::high;
   HapticProperties haptics;
-  std::string device = "mouse"; // "mouse", "simulated"
+  std::string device = "mouse";            // "mouse", "simulated"
+  std::optional<DeviceModel> device_model; // absent: nothing is known that could be unstable
+  std::optional<Stabilisers> stabilisers;  // absent: chosen from device_model (auto)
 };
 
 // Throws Error in one line, naming the key and the allowed range, if a value makes no sense.

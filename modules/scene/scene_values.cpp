@@ -70,11 +70,92 @@ std::optional<std::string> text(const std::optional<double>& value) {
 
 using Text = std::optional<std::string>;
 
+bool yesOrNo(const std::string& key, const std::string& text) {
+  if (text == "on" || text == "true") return true;
+  if (text == "off" || text == "false") return false;
+  throw Error(key + " = '" + text + "': it must be on or off");
+}
+
+Text onOff(bool value) {
+  return Text(value ? "on" : "off");
+}
+
+int wholeFor(const std::string& key, const std::string& text, const char* what) {
+  const double value = numberFor(key, text);
+  if (!(value == std::floor(value) && std::abs(value) <= 1e6))
+    throw Error(key + " = '" + text + "': it must be a whole number of " + what);
+  return static_cast<int>(value);
+}
+
+Magnet& magnetOf(Scene& scene) {
+  if (!scene.haptics.magnet) scene.haptics.magnet.emplace();
+  return *scene.haptics.magnet;
+}
+
+DeviceModel& deviceOf(Scene& scene) {
+  if (!scene.device_model) scene.device_model.emplace();
+  return *scene.device_model;
+}
+
+std::optional<Stabilisers> stabilisersFor(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  if (text == "none") return Stabilisers{};
+  if (text == "coupling") return Stabilisers{true, false};
+  if (text == "passivity") return Stabilisers{false, true};
+  if (text == "coupling,passivity") return Stabilisers{true, true};
+  throw Error("stabiliser = '" + text +
+              "': it must be auto, none, coupling, passivity or coupling,passivity");
+}
+
+std::string nameOf(const std::optional<Stabilisers>& chosen) {
+  if (!chosen) return "auto";
+  if (chosen->coupling) return chosen->passivity ? "coupling,passivity" : "coupling";
+  return chosen->passivity ? "passivity" : "none";
+}
+
 struct Entry {
   const char* key;
   std::function<void(Scene&, const std::string&)> set;
   std::function<Text(const Scene&)> get;
 };
+
+// A number of the haptic properties that may be absent.
+Entry optionalEntry(const char* key, std::optional<double> HapticProperties::*member,
+                    double (*read)(const std::string&, const std::string&)) {
+  return {key,
+          [=](Scene& s, const std::string& t) {
+            s.haptics.*member = isNone(t) ? std::nullopt : std::optional<double>(read(key, t));
+          },
+          [=](const Scene& s) { return text(s.haptics.*member); }};
+}
+
+// A number of the magnet; "none" takes the magnet away.
+Entry magnetEntry(const char* key, double Magnet::*member,
+                  double (*read)(const std::string&, const std::string&)) {
+  return {key,
+          [=](Scene& s, const std::string& t) {
+            if (isNone(t)) return s.haptics.magnet.reset();
+            const double value = read(key, t);
+            magnetOf(s).*member = value;
+          },
+          [=](const Scene& s) {
+            return s.haptics.magnet ? Text(formatNumber((*s.haptics.magnet).*member)) : Text();
+          }};
+}
+
+// A number of the device's model; "none" takes the model away.
+Entry deviceEntry(const char* key, double DeviceModel::*member,
+                  double (*read)(const std::string&, const std::string&)) {
+  return {key,
+          [=](Scene& s, const std::string& t) {
+            if (isNone(t)) return s.device_model.reset();
+            const double value = read(key, t);
+            deviceOf(s).*member = value;
+          },
+          [=](const Scene& s) {
+            return s.device_model ? Text(formatNumber((*s.device_model).*member)) : Text();
+          }};
+}
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> kEntries = {
@@ -84,12 +165,8 @@ const std::vector<Entry>& entries() {
          s.haptics.stiffness = numberFor("stiffness", t);
        },
        [](const Scene& s) { return Text(formatNumber(s.haptics.stiffness)); }},
-      {"damping",
-       [](Scene& s, const std::string& t) {
-         s.haptics.damping.reset();
-         if (!isNone(t)) s.haptics.damping = numberFor("damping", t);
-       },
-       [](const Scene& s) { return text(s.haptics.damping); }},
+      optionalEntry("damping", &HapticProperties::damping, numberFor),
+      optionalEntry("damping.cutoff", &HapticProperties::damping_cutoff, numberFor),
       {"friction.static",
        [](Scene& s, const std::string& t) {
          if (isNone(t)) return s.haptics.friction.reset();
@@ -129,12 +206,23 @@ const std::vector<Entry>& entries() {
        [](const Scene& s) {
          return s.haptics.friction ? Text(slipName(s.haptics.friction->slip)) : Text();
        }},
-      {"tip.radius",
+      optionalEntry("offset", &HapticProperties::offset, lengthFor),
+      magnetEntry("magnet.range", &Magnet::range, lengthFor),
+      magnetEntry("magnet.strength", &Magnet::strength, numberFor),
+      {"magnet.fades",
        [](Scene& s, const std::string& t) {
-         s.haptics.tip_radius.reset();
-         if (!isNone(t)) s.haptics.tip_radius = lengthFor("tip.radius", t);
+         if (!isNone(t)) {
+           magnetOf(s).fades = yesOrNo("magnet.fades", t);
+         } else if (s.haptics.magnet) {
+           s.haptics.magnet->fades = false;
+         }
        },
-       [](const Scene& s) { return text(s.haptics.tip_radius); }},
+       [](const Scene& s) {
+         return s.haptics.magnet && s.haptics.magnet->fades ? onOff(true) : Text();
+       }},
+      {"history", [](Scene& s, const std::string& t) { s.haptics.history = yesOrNo("history", t); },
+       [](const Scene& s) { return s.haptics.history ? Text() : onOff(false); }},
+      optionalEntry("tip.radius", &HapticProperties::tip_radius, lengthFor),
       {"force.limit",
        [](Scene& s, const std::string& t) {
          if (isNone(t)) refuseNone("force.limit");
@@ -144,10 +232,7 @@ const std::vector<Entry>& entries() {
       {"resolution",
        [](Scene& s, const std::string& t) {
          if (isNone(t)) refuseNone("resolution");
-         const double cells = numberFor("resolution", t);
-         if (!(cells == std::floor(cells) && std::abs(cells) <= 1e6))
-           throw Error("resolution = '" + t + "': it must be a whole number of cells");
-         s.field.resolution = static_cast<int>(cells);
+         s.field.resolution = wholeFor("resolution", t, "cells");
          s.field.voxel.reset(); // whichever of the two was set last holds
        },
        [](const Scene& s) {
@@ -171,6 +256,25 @@ const std::vector<Entry>& entries() {
          s.sampler = parseSampler(t);
        },
        [](const Scene& s) { return Text(std::string(name(s.sampler))); }},
+      {"merge.redistance",
+       [](Scene& s, const std::string& t) { s.redistance = yesOrNo("merge.redistance", t); },
+       [](const Scene& s) { return s.redistance ? onOff(true) : Text(); }},
+      {"stabiliser", [](Scene& s, const std::string& t) { s.stabilisers = stabilisersFor(t); },
+       [](const Scene& s) { return s.stabilisers ? Text(nameOf(s.stabilisers)) : Text(); }},
+      deviceEntry("device.mass", &DeviceModel::mass, numberFor),
+      deviceEntry("device.damping", &DeviceModel::damping, numberFor),
+      deviceEntry("device.coulomb", &DeviceModel::coulomb, numberFor),
+      deviceEntry("device.encoder", &DeviceModel::encoder_step, lengthFor),
+      deviceEntry("device.rate", &DeviceModel::rate, numberFor),
+      {"device.delay",
+       [](Scene& s, const std::string& t) {
+         if (isNone(t)) return s.device_model.reset();
+         const int delay = wholeFor("device.delay", t, "samples");
+         deviceOf(s).delay = delay;
+       },
+       [](const Scene& s) {
+         return s.device_model ? Text(std::to_string(s.device_model->delay)) : Text();
+       }},
       {"device", [](Scene& s, const std::string& t) { s.device = t; },
        [](const Scene& s) { return Text(s.device); }},
   };

@@ -7,12 +7,31 @@ namespace {
 using List = std::vector<std::pair<std::string, std::string>>;
 
 List withEverything() {
-  return {{"stiffness", "800"},       {"damping", "1.5"},
-          {"friction.static", "0.5"}, {"friction.dynamic", "0.3"},
-          {"friction.depth", "2"},    {"friction.slip", "displacement"},
-          {"tip.radius", "0.0015"},   {"force.limit", "5"},
-          {"voxel", "0.001"},         {"band", "6"},
-          {"sampler", "kim"},         {"device", "simulated"}};
+  return {{"stiffness", "800"},
+          {"damping", "1.5"},
+          {"damping.cutoff", "300"},
+          {"friction.static", "0.5"},
+          {"friction.dynamic", "0.3"},
+          {"friction.depth", "2"},
+          {"friction.slip", "displacement"},
+          {"magnet.range", "0.002"},
+          {"magnet.strength", "250"},
+          {"magnet.fades", "on"},
+          {"history", "off"},
+          {"tip.radius", "0.0015"},
+          {"force.limit", "5"},
+          {"voxel", "0.001"},
+          {"band", "6"},
+          {"sampler", "kim"},
+          {"merge.redistance", "on"},
+          {"stabiliser", "coupling,passivity"},
+          {"device.mass", "0.2"},
+          {"device.damping", "1"},
+          {"device.coulomb", "0.03"},
+          {"device.encoder", "3e-05"},
+          {"device.rate", "4000"},
+          {"device.delay", "2"},
+          {"device", "simulated"}};
 }
 
 TEST(SceneValues, EveryKeyIsSetAndListed) {
@@ -55,6 +74,33 @@ TEST(SceneValues, NoneMakesAFeatureAbsent) {
   EXPECT_FALSE(scene.field.voxel);
   for (const char* key : {"stiffness", "force.limit", "resolution", "band", "sampler", "device"})
     EXPECT_THROW(setValue(scene, key, "none"), Error) << key;
+}
+
+TEST(SceneValues, OffsetAndMagnetExcludeEachOther) {
+  Scene scene;
+  setValue(scene, "offset", "2mm");
+  EXPECT_DOUBLE_EQ(*scene.haptics.offset, 0.002);
+  EXPECT_THROW(setValues(scene, {{"magnet.range", "1mm"}, {"magnet.strength", "300"}}), Error);
+  EXPECT_FALSE(scene.haptics.magnet);
+  setValues(scene, {{"offset", "none"}, {"magnet.range", "1mm"}, {"magnet.strength", "300"}});
+  EXPECT_EQ(scene.haptics.magnet, (Magnet{0.001, 300, false}));
+  setValue(scene, "magnet.range", "none");
+  EXPECT_FALSE(scene.haptics.magnet);
+}
+
+TEST(SceneValues, BadValuesOfTheLoopAreRefused) {
+  Scene scene;
+  for (const auto& [key, value] : List{{"history", "maybe"},
+                                       {"stabiliser", "naive"},
+                                       {"device.delay", "1.5"},
+                                       {"device.mass", "0"},
+                                       {"device.rate", "50"},
+                                       {"magnet.strength", "-1"},
+                                       {"offset", "-1mm"},
+                                       {"damping.cutoff", "0"}}) {
+    EXPECT_THROW(setValue(scene, key, value), Error) << key;
+    EXPECT_EQ(values(scene), values(Scene{})) << key;
+  }
 }
 
 TEST(SceneValues, LengthsTakeUnits) {
@@ -123,9 +169,11 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()),
-              "unknown key 'stifness'; known are: stiffness damping friction.static "
-              "friction.dynamic friction.depth friction.slip tip.radius force.limit resolution "
-              "voxel band sampler device");
+              "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
+              "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
+              "magnet.fades history tip.radius force.limit resolution voxel band sampler "
+              "merge.redistance stabiliser device.mass device.damping device.coulomb "
+              "device.encoder device.rate device.delay device");
   }
 }
 
