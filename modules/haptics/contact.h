@@ -15,11 +15,13 @@ enum class ContactMode : std::uint8_t {
   newton, // the ray found no surface (F9): one Newton step
 };
 
+inline constexpr int kMaxDelay = 20; // samples, of a device model
+
 // Survives from tick to tick; owned by the servo thread. reset() = the first tick again.
 struct ContactMemory {
   Vec3 last_tip = Vec3::Zero();
   bool has_last_tip = false;
-  Vec3 velocity = Vec3::Zero();    // [m/s], filtered
+  Vec3 velocity = Vec3::Zero();    // [m/s], of the filter stage, where there is one
   double gap = 0;                  // [s] since last_tip, spent on ticks without a finite tip
   std::uint64_t bad_tips = 0;      // NaN or infinite
   std::uint64_t outside_ticks = 0; // tip out of the field's grid
@@ -36,14 +38,27 @@ struct ContactMemory {
 
   Vec3 stuck = Vec3::Zero(); // p_s of K09, world
   bool has_stuck = false;
+  Vec3 last_stretch = Vec3::Zero(); // p - x a tick ago, of the coupling stage
+  bool has_stretch = false;
+
   bool slipping = false;          // until |p_s - c| < mu_d d
   Vec3 trail = Vec3::Zero();      // trails the tip closely over the surface: where it comes from
   Vec3 last_slide = Vec3::Zero(); // from tip to trail, a tick ago
 
+  bool attracted = false; // a magnet pulled
+
   Vec3 last_raw = Vec3::Zero();    // [N], before limit and fade
+  bool has_last_raw = false;       // there is a force that the next one can be compared with
   Vec3 fault_force = Vec3::Zero(); // [N], what is being faded
   double fade = 1;                 // 1 = whole force, 0 = faded by a fault
   bool faulted = false;
+
+  // Of the passivity stage; `applied` is kept by tick().
+  Vec3 applied = Vec3::Zero(); // [N], what the last tick gave to the device
+  double energy = 0;           // [J], what the surface may still give back
+  Eigen::Matrix<double, 3, kMaxDelay + 1> in_flight =
+      Eigen::Matrix<double, 3, kMaxDelay + 1>::Zero(); // [N], forces on their way, a ring
+  int newest_in_flight = 0;
 
   bool held() const noexcept { return in_contact && mode == ContactMode::held; }
   void leaveContact() noexcept {
@@ -51,6 +66,7 @@ struct ContactMemory {
     mode = ContactMode::ray;
     has_handover = false;
     has_stuck = false;
+    has_stretch = false;
     slipping = false;
   }
   void reset() noexcept { *this = ContactMemory{}; }
@@ -59,23 +75,28 @@ struct ContactMemory {
 // One tick. Inputs are set by tick(); stages fill in the rest, in order.
 struct Contact {
   Vec3 tip = Vec3::Zero();      // [m], world
-  Vec3 velocity = Vec3::Zero(); // [m/s], filtered backward difference
+  Vec3 velocity = Vec3::Zero(); // [m/s], backward difference; filtered only by a stage
   double dt = 0;                // [s], since the last finite tip
 
   bool touching = false;
   bool deep = false; // deeper than the band: the direction is the coarse nodes'
   bool held = false; // see ContactMode
   bool fault = false;
+  bool attracted = false;        // out of contact, pulled by a magnet
   bool approximate = false;      // see ContactMode::newton
   int samples = 0;               // field evaluations of the contact stage (T-K06d)
   Vec3 normal = Vec3::Zero();    // unit, outward; zero if there is no direction (K05)
   Vec3 candidate = Vec3::Zero(); // frictionless VCP c
   Vec3 vcp = Vec3::Zero();       // p, after friction; the tip if not touching
   double depth = 0;              // d = (c - x).n [m]
-  double stiffness = 0;          // K at the contact [N/m]
-  double stick_radius = 0;       // [m], how far p may be from c while it sticks; 0 = it does not
-  double slip_step = 0;          // [m], how far the VCP let go this tick as slip began
-  Vec3 force = Vec3::Zero();     // on the hand [N]
+  // The nearest point of the original surface: where contact is seen and where an edit acts.
+  // Differs from the candidate by the tip's radius and the offset. The tip where nothing is near.
+  Vec3 surface = Vec3::Zero();
+  double stiffness = 0;      // K at the contact [N/m]
+  double stick_radius = 0;   // [m], how far p may be from c while it sticks; 0 = it does not
+  double slip_step = 0;      // [m], how far the VCP let go this tick as slip began
+  double known_step = 0;     // [N], a step of the force that the model itself makes this tick
+  Vec3 force = Vec3::Zero(); // on the hand [N]
 };
 
 } // namespace patina

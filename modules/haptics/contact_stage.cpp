@@ -40,12 +40,12 @@ Vec3 directionAt(const GridSample& sample, const ContactMemory& memory) noexcept
 
 } // namespace
 
-ContactStage::ContactStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                           double tip_radius, bool sweep)
+ContactStage::ContactStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double iso,
+                           bool history)
     : field_(std::move(field)), sampler_(sampled(field_), sampler), voxel_(field_->grid.voxel),
-      per_voxel_(1 / voxel_), iso_(tip_radius * per_voxel_),
+      per_voxel_(1 / voxel_), iso_(iso * per_voxel_),
       hold_limit_(0.25 * *std::max_element(field_->grid.nodes.begin(), field_->grid.nodes.end())),
-      sweep_(sweep) {}
+      history_(history) {}
 
 void ContactStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const Vec3 q = toGrid(contact.tip);
@@ -56,7 +56,7 @@ void ContactStage::apply(Contact& contact, ContactMemory& memory) const noexcept
   const Vec3 direction = f < 0 ? directionAt(sample, memory) : Vec3::Zero();
 
   Found found;
-  if (sweep_ && hold(q, sample, direction, memory, found)) {
+  if (history_ && hold(q, sample, direction, memory, found)) {
     finish(found, contact, memory);
   } else if (f < 0) {
     alongRay(q, sample, direction, contact, found);
@@ -173,6 +173,7 @@ void ContactStage::finish(const Found& found, Contact& contact,
     }
   }
   contact.vcp = contact.candidate;
+  contact.surface = contact.candidate - iso_ * voxel_ * found.normal;
   memory.in_contact = true;
   memory.mode = found.mode;
   memory.last_candidate = contact.candidate;

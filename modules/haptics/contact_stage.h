@@ -9,7 +9,7 @@
 
 namespace patina {
 
-// Sets touching, normal, candidate, vcp (= candidate) and depth.
+// Sets touching, normal, candidate, vcp (= candidate), depth and surface.
 //
 // Deeper than the band the first direction comes from the coarse nodes; the ray still ends on the
 // surface, and the normals found there improve it. A tip that has passed through the surface
@@ -23,10 +23,11 @@ namespace patina {
 // no more than five grid sides a second.
 class ContactStage final : public ForceStage {
  public:
-  // Throws std::invalid_argument without a sample layer. sweep = false is for the test that shows
-  // what the swept test is for.
-  ContactStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
-               bool sweep = true);
+  // iso [m]: the tip's radius, plus the offset (K12). history = false is the paper's own form: no
+  // swept test, and past the middle of a part the force turns round. Throws std::invalid_argument
+  // without a sample layer.
+  ContactStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double iso,
+               bool history = true);
 
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "contact"; }
@@ -52,7 +53,7 @@ class ContactStage final : public ForceStage {
   double per_voxel_;  // [1/m]: a product is quicker than grid().toGrid()'s division
   double iso_;        // voxels
   double hold_limit_; // voxels
-  bool sweep_;
+  bool history_;
 };
 
 } // namespace patina

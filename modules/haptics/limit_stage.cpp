@@ -15,6 +15,7 @@ void LimitStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
     memory.leaveContact(); // a held or stuck point does not outlive the jump
   }
   memory.last_raw = raw;
+  memory.has_last_raw = true;
   if (!memory.faulted) {
     contact.force = limited(raw);
     return;
@@ -29,12 +30,12 @@ void LimitStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
 }
 
 bool LimitStage::jumped(const Contact& contact, const ContactMemory& memory) const noexcept {
-  if (!memory.has_last_tip) return false;
+  if (!memory.has_last_raw) return false;
   const double period = std::clamp(contact.dt, 1e-4, 0.05);
   const double per_speed = 2 * (spec_.stiffness * period + spec_.damping);
   const double cap = std::max(spec_.force_limit, kHandSpeed * per_speed);
-  const double allowed =
-      std::min(spec_.max_speed * per_speed, cap) + spec_.stiffness * contact.slip_step;
+  const double allowed = std::min(spec_.max_speed * per_speed, cap) +
+                         spec_.stiffness * contact.slip_step + contact.known_step;
   return (contact.force - memory.last_raw).squaredNorm() > allowed * allowed;
 }
 

@@ -9,27 +9,33 @@
 #include "haptics/contact_stage.h"
 #include "haptics/friction_stage.h"
 #include "haptics/limit_stage.h"
+#include "haptics/magnet_stage.h"
+#include "haptics/offset_stage.h"
 #include "haptics/spring_stage.h"
 
 namespace patina {
 namespace {
 
-constexpr double kVelocityCutoff = 200; // [Hz]
-constexpr double kVelocityTime = 1 / (2 * 3.14159265358979323846 * kVelocityCutoff);
 constexpr double kMinVelocityPeriod = 1e-6; // [s]; less measures nothing
 constexpr double kMaxVelocity = 1e6;        // [m/s]; beyond it the tip was set, not moved
-constexpr double kMinBandBeyondTip = 3;     // voxels
+constexpr double kMinBandBeyondReach = 3;   // voxels
 
 void checkField(const SurfaceField* field, const HapticProperties& haptics) {
   if (!field) throw std::invalid_argument("compileStages: no field");
   if (field->sample.size() != field->blockCount()) {
     throw std::invalid_argument("compileStages: the field has no sample layer");
   }
-  const double radius = haptics.tip_radius.value_or(0) / field->grid.voxel;
-  if (radius + kMinBandBeyondTip > field->band) {
-    throw Error("tip.radius = " + formatLength(*haptics.tip_radius) +
-                " does not fit into the band of " + formatNumber(field->band) +
-                " voxels; set band to " + formatNumber(std::ceil(radius + kMinBandBeyondTip)) +
+  const double reach = reachOf(haptics) / field->grid.voxel;
+  if (reach + kMinBandBeyondReach > field->band) {
+    std::string what;
+    if (haptics.tip_radius) what = "tip.radius = " + formatLength(*haptics.tip_radius);
+    const auto with = [&](const char* key, double length) {
+      what += (what.empty() ? "" : " with ") + (key + (" = " + formatLength(length)));
+    };
+    if (haptics.offset) with("offset", *haptics.offset);
+    if (haptics.magnet) with("magnet.range", haptics.magnet->range);
+    throw Error(what + " does not fit into the band of " + formatNumber(field->band) +
+                " voxels; set band to " + formatNumber(std::ceil(reach + kMinBandBeyondReach)) +
                 " or more");
   }
 }
@@ -50,11 +56,8 @@ double maxSpeed(const FieldGrid& grid) {
   return kHandSpeed * std::max(1.0, cells * grid.voxel / kHandWorkspace);
 }
 
-std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene,
-                                               std::shared_ptr<const SurfaceField> field,
-                                               const std::optional<Friction>& friction,
-                                               const std::optional<double>& damping) {
-  const HapticProperties& haptics = scene.haptics;
+std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticProperties& haptics,
+                                               std::shared_ptr<const SurfaceField> field) {
   checkField(field.get(), haptics);
   auto snapshot = std::make_shared<HapticSnapshot>();
   const auto add = [&](std::unique_ptr<const ForceStage> stage, std::string why,
@@ -63,19 +66,36 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene,
     snapshot->stages.push_back(std::move(stage));
   };
   const double radius = haptics.tip_radius.value_or(0);
-  add(std::make_unique<ContactStage>(field, scene.sampler, radius),
+  const double iso = radius + haptics.offset.value_or(0);
+  add(std::make_unique<ContactStage>(field, scene.sampler, iso, haptics.history),
       haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always", bytesRead(*field));
-  if (friction) {
-    add(std::make_unique<FrictionStage>(field, scene.sampler, radius, *friction),
-        "friction.static = " + formatNumber(friction->static_coefficient));
+  if (haptics.offset) {
+    add(std::make_unique<OffsetStage>(field, scene.sampler),
+        "offset = " + formatNumber(*haptics.offset));
+  }
+  if (haptics.friction) {
+    add(std::make_unique<FrictionStage>(field, scene.sampler, iso, *haptics.friction),
+        "friction.static = " + formatNumber(haptics.friction->static_coefficient));
   }
   add(std::make_unique<SpringStage>(haptics.stiffness),
       "stiffness = " + formatNumber(haptics.stiffness));
-  if (damping) {
-    add(std::make_unique<DampingStage>(*damping), "damping = " + formatNumber(*damping));
+  const bool pulls = haptics.magnet && haptics.magnet->range * haptics.magnet->strength > 0;
+  if (haptics.magnet) {
+    add(std::make_unique<MagnetStage>(field, scene.sampler, radius, *haptics.magnet),
+        "magnet.range = " + formatNumber(haptics.magnet->range));
   }
-  add(std::make_unique<LimitStage>(LimitSpec{haptics.force_limit, haptics.stiffness,
-                                             damping.value_or(0), maxSpeed(field->grid)}),
+  if (haptics.damping_cutoff) {
+    add(std::make_unique<VelocityFilterStage>(*haptics.damping_cutoff),
+        "damping.cutoff = " + formatNumber(*haptics.damping_cutoff));
+  }
+  if (haptics.damping) {
+    add(std::make_unique<DampingStage>(*haptics.damping, pulls),
+        "damping = " + formatNumber(*haptics.damping));
+  }
+  const double stiffest =
+      std::max(haptics.stiffness, haptics.magnet ? haptics.magnet->strength : 0.0);
+  add(std::make_unique<LimitStage>(LimitSpec{haptics.force_limit, stiffest,
+                                             haptics.damping.value_or(0), maxSpeed(field->grid)}),
       "always");
   snapshot->field = std::move(field);
   return snapshot;
@@ -83,19 +103,29 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene,
 
 } // namespace
 
+double reachOf(const HapticProperties& haptics) {
+  return haptics.tip_radius.value_or(0) +
+         std::max(haptics.offset.value_or(0), haptics.magnet ? haptics.magnet->range : 0.0);
+}
+
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field) {
-  std::optional<Friction> friction = scene.haptics.friction;
-  if (friction && friction->static_coefficient == 0) friction.reset();
-  std::optional<double> damping = scene.haptics.damping;
-  if (damping && *damping == 0) damping.reset();
-  return compiled(scene, std::move(field), friction, damping);
+  HapticProperties needed = scene.haptics;
+  if (needed.friction && needed.friction->static_coefficient == 0) needed.friction.reset();
+  if (needed.damping == 0.0) needed.damping.reset();
+  if (needed.offset == 0.0) needed.offset.reset();
+  if (needed.magnet && needed.magnet->range * needed.magnet->strength == 0) needed.magnet.reset();
+  if (!needed.damping) needed.damping_cutoff.reset();
+  return compiled(scene, needed, std::move(field));
 }
 
 std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
                                                        std::shared_ptr<const SurfaceField> field) {
-  return compiled(scene, std::move(field), scene.haptics.friction.value_or(Friction{}),
-                  scene.haptics.damping.value_or(0.0));
+  HapticProperties all = scene.haptics;
+  if (!all.friction) all.friction = Friction{};
+  if (!all.damping) all.damping = 0;
+  if (!all.magnet) all.magnet = Magnet{};
+  return compiled(scene, all, std::move(field));
 }
 
 Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
@@ -104,24 +134,25 @@ Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& 
   contact.tip = tip;
   contact.candidate = tip;
   contact.vcp = tip;
+  contact.surface = tip;
   const double period = dt > 0 && dt < 1e6 ? dt : 0;
   contact.dt = memory.gap + period;
   if (!tip.allFinite()) {
     ++memory.bad_tips;
     memory.gap = contact.dt;
+    memory.applied.setZero();
     return contact;
   }
   memory.gap = 0;
   if (memory.has_last_tip && contact.dt >= kMinVelocityPeriod) {
-    const Vec3 difference = 1 / contact.dt * (tip - memory.last_tip);
-    memory.velocity += contact.dt / (contact.dt + kVelocityTime) * (difference - memory.velocity);
+    contact.velocity = 1 / contact.dt * (tip - memory.last_tip);
     // Also where it is infinite or NaN, which no filter would ever forget.
-    if (!(memory.velocity.squaredNorm() < kMaxVelocity * kMaxVelocity)) memory.velocity.setZero();
+    if (!(contact.velocity.squaredNorm() < kMaxVelocity * kMaxVelocity)) contact.velocity.setZero();
   }
-  contact.velocity = memory.velocity;
   for (const auto& stage : snapshot.stages) stage->apply(contact, memory);
   memory.last_tip = tip;
   memory.has_last_tip = true;
+  memory.applied = contact.force;
   return contact;
 }
 

@@ -22,12 +22,17 @@ struct HapticSnapshot {
   std::vector<StageInfo> why; // one entry a stage
 };
 
+// How far from the surface its properties are felt: tip radius plus offset or magnetic range [m].
+// The field's band must be 3 voxels more; compileStages throws Error otherwise.
+double reachOf(const HapticProperties& haptics);
+
 // Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never
 // left out. `field` is the field of the scene's objects in the world frame.
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field);
 
-// For the proof that pruning changes nothing: every stage present, absent values neutral.
+// For the proof that pruning changes nothing: every stage that has a neutral value is present with
+// it where the scene has none. (A cut-off and an offset have none: they are other laws.)
 std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
                                                        std::shared_ptr<const SurfaceField> field);
 

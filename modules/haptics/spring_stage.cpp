@@ -1,5 +1,7 @@
 #include "haptics/spring_stage.h"
 
+#include <numbers>
+
 namespace patina {
 
 void SpringStage::apply(Contact& contact, ContactMemory&) const noexcept {
@@ -8,13 +10,22 @@ void SpringStage::apply(Contact& contact, ContactMemory&) const noexcept {
   contact.force = stiffness_ * (contact.vcp - contact.tip);
 }
 
+VelocityFilterStage::VelocityFilterStage(double cutoff_hz)
+    : time_(1 / (2 * std::numbers::pi * cutoff_hz)) {}
+
+void VelocityFilterStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  const double share = contact.dt > 0 ? contact.dt / (contact.dt + time_) : 0;
+  memory.velocity += share * (contact.velocity - memory.velocity);
+  contact.velocity = memory.velocity;
+}
+
 void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
-  if (!contact.touching) return;
+  if (!contact.touching && !contact.attracted) return;
   const Vec3& n = contact.normal;
   const double v_n = contact.velocity.dot(n);
   contact.force -= damping_ * v_n * n;
   const double f_n = contact.force.dot(n);
-  if (f_n < 0) contact.force -= f_n * n;
+  if (f_n < 0 && !magnetic_) contact.force -= f_n * n;
 
   if (!(contact.stick_radius > 0)) return;
   contact.force -= damping_ * (contact.velocity - v_n * n);

@@ -16,16 +16,31 @@ class SpringStage final : public ForceStage {
   double stiffness_; // [N/m]
 };
 
-// F -= B (v.n) n, then F.n >= 0: the surface never pulls. While the VCP sticks, its tangential
-// motion is damped as well (section 2.6), within what sticking can bear.
+// contact.velocity through a first-order low-pass: less noise of a coarse encoder for a delay that
+// lowers the stability limit of the damping behind it (2.1.4).
+class VelocityFilterStage final : public ForceStage {
+ public:
+  explicit VelocityFilterStage(double cutoff_hz);
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "velocity filter"; }
+
+ private:
+  double time_; // [s]
+};
+
+// F -= B (v.n) n, then F.n >= 0: the surface never pulls, unless it is magnetic (K08); there the
+// pull is damped as well. While the VCP sticks, its tangential motion is damped as well (section
+// 2.6), within what sticking can bear.
 class DampingStage final : public ForceStage {
  public:
-  explicit DampingStage(double damping) : damping_(damping) {}
+  explicit DampingStage(double damping, bool magnetic = false)
+      : damping_(damping), magnetic_(magnetic) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "damping"; }
 
  private:
   double damping_; // [N s/m]
+  bool magnetic_;
 };
 
 } // namespace patina

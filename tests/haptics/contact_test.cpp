@@ -262,13 +262,25 @@ TEST(Contact, StaticForceDoesNotDependOnDamping) {
   EXPECT_EQ(first.force, second.force);
 }
 
-TEST(Contact, VelocityIsAFilteredBackwardDifference) {
+TEST(Contact, VelocityIsTheBackwardDifference) {
   const auto snapshot = compileStages(sceneOf(500), planeField());
+  ContactMemory memory;
+  for (int i = 0; i < 3; ++i) {
+    const Contact contact = tick(*snapshot, memory, Vec3(0, 0, 2e-4 * i), 1e-3);
+    EXPECT_NEAR(contact.velocity.z(), i ? 0.2 : 0, 1e-12);
+  }
+}
+
+TEST(Contact, ACutoffFiltersTheVelocityThatDampingSees) {
+  Scene scene = sceneOf(500);
+  scene.haptics.damping = 1;
+  scene.haptics.damping_cutoff = 200;
+  const auto snapshot = compileStages(scene, planeField());
   ContactMemory memory;
   Contact contact;
   for (int i = 0; i < 50; ++i) contact = tick(*snapshot, memory, Vec3(0, 0, 2e-4 * i), 1e-3);
   EXPECT_NEAR(contact.velocity.z(), 0.2, 1e-12);
-  // 200 Hz: the first tick of a step passes dt / (dt + 1 / (2 pi 200)).
+  // The first tick of a step passes dt / (dt + 1 / (2 pi 200)).
   contact = tick(*snapshot, memory, memory.last_tip, 1e-3);
   EXPECT_NEAR(contact.velocity.z() / 0.2, 1 - 1 / (1 + 1 / (0.4 * std::numbers::pi)), 1e-9);
 }

@@ -146,6 +146,7 @@ TEST(Friction, StickSlipPeriodFollowsItsClosedForm) {
     const auto device = makeSimulatedDevice(spec);
     ContactMemory memory;
     tick(*snapshot, memory, Vec3(0, 0, 1e-5), dt);
+    glide(*snapshot, memory, Vec3(0, 0, -d), 1e-6, dt);
     double x = 0, friction = 0, last_onset = 0;
     bool was_slipping = false;
     std::vector<double> periods;

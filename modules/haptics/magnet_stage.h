@@ -1,0 +1,33 @@
+// The magnetic surface: near the model the tip is pulled onto it (K13).
+#pragma once
+
+#include <memory>
+
+#include "field/field_sampler.h"
+#include "haptics/stage.h"
+#include "scene/haptic_properties.h"
+
+namespace patina {
+
+// Out of contact, in the band 0 < phi < w above the surface that the tip's radius makes:
+// F = -k_m phi n. Inside, contact's own stages act. With `fades` the pull falls linearly from its
+// value at 3/4 w to zero at w. Where two parts are equally near (a groove) the blended gradient is
+// short; below half its length the pull falls with it, so that the force has no jump there. The
+// step that the paper's form makes at phi = w is announced as Contact::known_step.
+class MagnetStage final : public ForceStage {
+ public:
+  MagnetStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
+              const Magnet& magnet);
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "magnet"; }
+
+ private:
+  std::shared_ptr<const SurfaceField> field_;
+  FieldSampler sampler_;
+  Magnet magnet_;
+  double per_voxel_; // [1/m]
+  double iso_;       // voxels
+  double range_;     // voxels
+};
+
+} // namespace patina
