@@ -1,0 +1,91 @@
+#include "haptics/exact_step.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "haptics/device.h"
+
+namespace patina {
+namespace {
+
+constexpr int kMostCrossings = 64; // of a step; a spring that swings faster is not a hand's
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+Motion moved(const HeldStep& s, const Motion& m, double force) noexcept {
+  return {s.xx * m.x + s.xv * m.v + s.xf * force, s.vx * m.x + s.vv * m.v + s.vf * force};
+}
+
+// exp of the system with F as a third state, scaled and squared: no term of it is a difference of
+// nearly equal numbers.
+HeldStep stepWithSpring(const Oscillator& body, double dt) noexcept {
+  Eigen::Matrix3d rate;
+  rate << 0, 1, 0, -body.spring / body.mass, -body.damping / body.mass, 1 / body.mass, 0, 0, 0;
+  rate *= dt;
+  int halvings = 0;
+  while (rate.block<2, 2>(0, 0).cwiseAbs().maxCoeff() > 0.25 && halvings < 200) {
+    rate *= 0.5;
+    ++halvings;
+  }
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Identity();
+  for (int term = 14; term > 0; --term)
+    sum = Eigen::Matrix3d::Identity() + rate * sum / static_cast<double>(term);
+  for (int i = 0; i < halvings; ++i) sum = (sum * sum).eval();
+  return {sum(0, 0), sum(0, 1), sum(0, 2), sum(1, 0), sum(1, 1), sum(1, 2)};
+}
+
+// When the velocity is next zero under a constant force; v e^(st) = v0 C(t) + w0 S(t), where C and
+// S are cos and sin, 1 and t, or cosh and sinh.
+double nextRest(const Oscillator& body, const Motion& m, double force) noexcept {
+  const double s = 0.5 * body.damping / body.mass;
+  const double square = s * s - body.spring / body.mass;
+  const double w0 = (force - body.damping * m.v - body.spring * m.x) / body.mass + s * m.v;
+  const double q = std::sqrt(std::abs(square));
+  if (square < 0) {
+    double angle = std::atan2(-m.v * q, w0);
+    if (angle <= 0) angle += std::numbers::pi;
+    return angle / q;
+  }
+  const double t = -m.v / w0;
+  if (!(t > 0)) return kNever;
+  if (!(t * q > 1e-150)) return t;
+  return t * q < 1 ? std::atanh(t * q) / q : kNever;
+}
+
+} // namespace
+
+HeldStep heldStep(const Oscillator& body, double dt) noexcept {
+  if (body.spring > 0) return stepWithSpring(body, dt);
+  const HeldForceStep free = heldForceStep(body.mass, body.damping, dt);
+  return {1, free.c, free.d, 0, free.a, free.e};
+}
+
+ExactStep::ExactStep(const Oscillator& body, double dt) : body_(body), dt_(dt) {
+  const bool sound = body.mass > 0 && body.damping >= 0 && body.spring >= 0 && body.friction >= 0 &&
+                     dt >= 0 &&
+                     std::isfinite(body.mass + body.damping + body.spring + body.friction + dt);
+  if (!sound) throw std::invalid_argument("exact step: mass must be > 0 and the rest >= 0");
+  whole_ = heldStep(body, dt);
+}
+
+Motion ExactStep::operator()(const Motion& from, double force) const noexcept {
+  if (body_.friction == 0) return moved(whole_, from, force);
+  Motion m = from;
+  double left = dt_;
+  for (int i = 0; i < kMostCrossings && left > 0; ++i) {
+    const double drive = m.v != 0 ? m.v : force - body_.spring * m.x;
+    if (m.v == 0 && std::abs(drive) <= body_.friction) return m;
+    const double net = force - std::copysign(body_.friction, drive);
+    const double rest = nextRest(body_, m, net);
+    if (rest >= left) return moved(i == 0 ? whole_ : heldStep(body_, left), m, net);
+    m = moved(heldStep(body_, rest), m, net);
+    m.v = 0;
+    left -= rest;
+  }
+  return m;
+}
+
+} // namespace patina

@@ -1,0 +1,24 @@
+// The exact plane z = 0, solid below: no grid, so that no depth is too deep.
+#pragma once
+
+#include <memory>
+
+#include "haptics/snapshot.h"
+#include "haptics/stabilisers.h"
+
+namespace patina {
+
+// Contact with it: the VCP is straight above the tip (K06).
+class PlaneStage final : public ForceStage {
+ public:
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "plane"; }
+};
+
+// Spring, damping, stabilisers and limit as compileStages() makes them, on the plane. Has no field.
+// Throws std::invalid_argument for friction, offset, magnet or tip radius, which need one. An
+// infinite force limit is allowed.
+std::shared_ptr<const HapticSnapshot> planeSnapshot(const HapticProperties& haptics,
+                                                    const StabiliserPlan& plan);
+
+} // namespace patina

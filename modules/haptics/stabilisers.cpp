@@ -1,0 +1,74 @@
+#include "haptics/stabilisers.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+constexpr double kMargin = 2;          // of K* over the stiffness
+constexpr double kDampingShare = 0.01; // B T/m: far from where B itself buzzes, up to 20 samples
+constexpr double kEncoderNoise = 0.03; // [N] that one step of the encoder may make
+constexpr double kLeastCoupling = 0.4; // of the rule of thumb
+
+// "stiffness = 1e+05, limit 1001 N/m".
+std::string reasonFor(double stiffest, double limit, const std::optional<Stabilisers>& chosen) {
+  char limit_text[32];
+  std::snprintf(limit_text, sizeof limit_text, "%.4g N/m", limit);
+  const std::string facts = formatNumber(stiffest) + " N/m, limit " + limit_text;
+  return chosen ? "chosen; stiffness " + facts : "stiffness " + facts;
+}
+
+} // namespace
+
+double stiffestLaw(const HapticProperties& haptics) {
+  return std::max(haptics.stiffness, haptics.magnet ? haptics.magnet->strength : 0.0);
+}
+
+SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device,
+                      const HandModel& hand) {
+  SampledLoop loop = sampledLoop(device, hand);
+  loop.virtual_damping = haptics.damping.value_or(0);
+  if (haptics.damping) loop.cutoff = haptics.damping_cutoff;
+  return loop;
+}
+
+CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& device) {
+  SampledLoop loop = sampledLoop(device);
+  double damping = kDampingShare * loop.mass / loop.period;
+  if (device.encoder_step > 0)
+    damping = std::min(damping, kEncoderNoise * loop.period / device.encoder_step);
+  if (haptics.damping.value_or(0) > damping)
+    damping = std::max(damping, std::min(*haptics.damping, dampingLimit(loop) / kMargin));
+  loop.virtual_damping = damping;
+  return {std::max(stiffnessLimit(loop) / kMargin, kLeastCoupling * ruleOfThumb(loop)), damping};
+}
+
+StabiliserPlan planStabilisers(const HapticProperties& haptics,
+                               const std::optional<DeviceModel>& device,
+                               const std::optional<Stabilisers>& chosen) {
+  StabiliserPlan plan;
+  if (!device && !chosen) return plan;
+  const DeviceModel model = device.value_or(DeviceModel{});
+  plan.predicted_limit = stiffnessLimit(sceneLoop(haptics, model));
+  const double stiffest = stiffestLaw(haptics);
+  const bool safe = kMargin * stiffest <= *plan.predicted_limit;
+  const Stabilisers wanted = chosen.value_or(Stabilisers{!safe, false});
+  if (!wanted.coupling && !wanted.passivity) return plan;
+
+  plan.why = reasonFor(stiffest, *plan.predicted_limit, chosen);
+  if (wanted.coupling) plan.coupling = planCoupling(haptics, model);
+  if (wanted.passivity) {
+    PassivitySpec spec;
+    spec.delay = model.delay;
+    spec.most = 0.5 * dampingLimit(sampledLoop(model));
+    if (haptics.magnet)
+      spec.reserve = 0.5 * haptics.magnet->strength * haptics.magnet->range * haptics.magnet->range;
+    plan.passivity = spec;
+  }
+  return plan;
+}
+
+} // namespace patina

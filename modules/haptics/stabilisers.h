@@ -1,0 +1,46 @@
+// Which safety nets a scene needs on a device, and how strong (F13, MATH 2.3).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "haptics/passivity_stage.h"
+#include "haptics/stability_limit.h"
+#include "scene/device_model.h"
+#include "scene/haptic_properties.h"
+
+namespace patina {
+
+struct CouplingPlan {
+  double stiffness = 0; // k_c [N/m]
+  double damping = 0;   // B [N s/m], of spring and surface together
+};
+
+struct StabiliserPlan {
+  std::optional<CouplingPlan> coupling;   // absent: no stage
+  std::optional<PassivitySpec> passivity; // absent: no stage
+  // K* of the loop without these, with the scene's own damping [N/m]; absent without a device.
+  std::optional<double> predicted_limit;
+  std::string why; // "stiffness 1e+05 N/m, limit 1001 N/m"; empty without any
+};
+
+// The stiffest law of the scene in one direction: spring, magnet or sticking friction.
+double stiffestLaw(const HapticProperties& haptics);
+
+// The loop of `device` with the scene's own damping.
+SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device,
+                      const HandModel& hand = {});
+
+// The coupling for a device, whatever the surface: B = 0.01 m/T, less where the encoder would make
+// it felt as noise (0.03 N a step), more where the scene itself has more; k_c half of K* with that
+// B. So b_eff >= (b + B)/2, and what is left of a touch halves within some 0.2 s.
+CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& device);
+
+// chosen absent = automatic: nothing without a device model, nothing where the scene is stable with
+// a margin of two, else the coupling. A chosen stabiliser without a device model takes
+// DeviceModel{}.
+StabiliserPlan planStabilisers(const HapticProperties& haptics,
+                               const std::optional<DeviceModel>& device,
+                               const std::optional<Stabilisers>& chosen);
+
+} // namespace patina
