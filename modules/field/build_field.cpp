@@ -42,27 +42,33 @@ void renumberFaces(FieldBuilder& builder, const std::vector<std::int32_t>& face_
   });
 }
 
-} // namespace
+std::vector<std::int32_t> someUsable(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> usable = usableTriangles(mesh);
+  if (usable.empty()) throw Error("field: the mesh has no triangle with an area");
+  return usable;
+}
 
-BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress) {
+// grid_for(box of the sound triangles) chooses the grid.
+template <class GridFor>
+BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
+                 Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = cpuSeconds();
   progress.throwIfCancelled();
   progress.report(0, "triangles");
 
-  const std::vector<std::int32_t> usable = usableTriangles(mesh);
-  if (usable.empty()) throw Error("field: the mesh has no triangle with an area");
+  const std::vector<std::int32_t> usable = someUsable(mesh);
   FieldReport report;
   report.dropped_triangles = mesh.triangles.size() - usable.size();
   std::optional<TriangleMesh> reduced;
   if (report.dropped_triangles > 0) reduced = onlyFaces(mesh, usable);
   const TriangleMesh& sound = reduced ? *reduced : mesh;
 
-  const FieldGrid grid = gridAround(bounds(sound), spec);
+  const FieldGrid grid = grid_for(bounds(sound));
   const TriangleTree tree(sound);
   progress.throwIfCancelled();
   progress.report(0.1, "distances");
-  FieldBuilder builder = distanceBlocks(sound, tree, grid, spec.band, progress, 0.1, 0.7);
+  FieldBuilder builder = distanceBlocks(sound, tree, grid, band, progress, 0.1, 0.7);
   progress.report(0.7, "signs");
   std::optional<TriangleMesh> turned;
   if (const auto wrong = misorientedTriangles(sound); !wrong.empty()) {
@@ -87,6 +93,26 @@ BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress&
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   progress.report(1, "field");
   return {std::move(field), report};
+}
+
+} // namespace
+
+BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress) {
+  return build(
+      mesh, [&](const Box3& box) { return gridAround(box, spec); }, spec.band, progress);
+}
+
+BuiltField buildField(const TriangleMesh& mesh, const FieldGrid& grid, double band,
+                      Progress& progress) {
+  return build(
+      mesh, [&](const Box3&) { return grid; }, band, progress);
+}
+
+Box3 fieldBounds(const TriangleMesh& mesh) {
+  Box3 box;
+  for (const std::int32_t f : someUsable(mesh))
+    for (int c = 0; c < 3; ++c) box.extend(mesh.corner(static_cast<std::size_t>(f), c));
+  return box;
 }
 
 } // namespace patina

@@ -18,6 +18,7 @@ struct FieldReport {
   std::size_t dense_bytes = 0;       // distance + face for every node of the same grid
   std::size_t dropped_triangles = 0; // non-finite and degenerate
   std::size_t ambiguous_signs = 0;   // nodes where the sign rules disagree; the majority stands
+  std::size_t redistanced_nodes = 0; // of several objects in one: see redistance.h
 };
 
 struct BuiltField {
@@ -31,5 +32,12 @@ struct BuiltField {
 // non-finite triangles are dropped and counted. Face indices refer to `mesh` as given. Throws Error
 // if no triangle is left or the grid is impossible.
 BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress);
+
+// The same on a given grid, which must reach at least `band` voxels past the mesh on each side.
+BuiltField buildField(const TriangleMesh& mesh, const FieldGrid& grid, double band,
+                      Progress& progress);
+
+// Of the triangles that a field is built from. Throws Error if there is none.
+Box3 fieldBounds(const TriangleMesh& mesh);
 
 } // namespace patina

@@ -42,4 +42,10 @@ FaceBlock::FaceBlock(const FaceNodes& nodes) {
   code_.assign(code.begin(), code.end());
 }
 
+FaceBlock::FaceBlock(const FaceBlock& block, std::int32_t offset)
+    : faces_(block.faces_), code_(block.code_) {
+  for (std::int32_t& face : faces_)
+    if (face >= 0) face += offset;
+}
+
 } // namespace patina

@@ -20,6 +20,8 @@ struct FaceNodes {
 class FaceBlock {
  public:
   explicit FaceBlock(const FaceNodes& nodes);
+  // The same with `offset` added to every face but -1: faces of one mesh among those of several.
+  FaceBlock(const FaceBlock& block, std::int32_t offset);
 
   std::int32_t at(std::size_t node) const {
     return code_.empty() ? faces_[node] : faces_[code_[node]];

@@ -10,8 +10,6 @@
 namespace patina {
 namespace {
 
-constexpr int kMostNodes = 4096;
-
 double voxelFor(double longest, const FieldSpec& spec) {
   if (spec.voxel) {
     if (!(*spec.voxel > 0) || !std::isfinite(*spec.voxel))

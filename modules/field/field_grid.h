@@ -8,6 +8,8 @@
 
 namespace patina {
 
+inline constexpr int kMostNodes = 4096; // a side
+
 // Node (i, j, k) lies at origin + voxel * (i, j, k). "Grid coordinates" of p: (p - origin) / voxel.
 struct FieldGrid {
   Vec3 origin = Vec3::Zero(); // [m]

@@ -206,6 +206,32 @@ GridSample FieldSampler::deepSample(const Vec3& q) const noexcept {
   return sample;
 }
 
+std::optional<Vec3> FieldSampler::nearestFoot(const Vec3& q) const noexcept {
+  constexpr float kOneDirection = 0.9F; // shorter: several feet were as near, none was kept
+  if (field_->coarse.empty() || q.hasNaN()) return std::nullopt;
+  std::array<int, 3> at{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    at[axis] =
+        clampedIndex(q[static_cast<Eigen::Index>(axis)] / kBlockSide, field_->blocks[axis] - 1);
+  std::optional<Vec3> nearest;
+  double nearest_squared = std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    const int x = at[0] + (corner & 1), y = at[1] + (corner >> 1 & 1), z = at[2] + (corner >> 2);
+    const CoarseNode& node = field_->coarse[static_cast<std::size_t>(
+        (z * (field_->blocks[1] + 1) + y) * (field_->blocks[0] + 1) + x)];
+    if (!(node.phi < 0) ||
+        node.gx * node.gx + node.gy * node.gy + node.gz * node.gz < kOneDirection * kOneDirection)
+      continue;
+    const Vec3 foot = kBlockSide * Vec3(x, y, z) -
+                      static_cast<double>(node.phi) * Vec3(node.gx, node.gy, node.gz);
+    const double squared = (q - foot).squaredNorm();
+    if (squared >= nearest_squared) continue;
+    nearest = foot;
+    nearest_squared = squared;
+  }
+  return nearest;
+}
+
 GridSample FieldSampler::handOver(const Vec3& q, const GridSample& sample) const noexcept {
   const double w = std::min((hand_over_ - sample.phi) / kHandOverWidth, 1.0);
   GridSample deep = deepSample(q);

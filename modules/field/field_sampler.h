@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "field/surface_field.h"
@@ -49,6 +50,10 @@ class FieldSampler {
     sample.phi *= grid_.voxel;
     return sample;
   }
+  // Deep inside, where the blended direction may vanish: of the surface points nearest to the eight
+  // coarse nodes about q the one nearest to q; exact to second order in q's distance from its node.
+  // In grid coordinates. Nothing where no coarse node about is inside and knows its own.
+  std::optional<Vec3> nearestFoot(const Vec3& q) const noexcept;
   // Nearest face of the nearest stored node of p's cell; -1 if none.
   std::int32_t faceNear(const Vec3& p) const noexcept;
 

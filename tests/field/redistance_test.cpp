@@ -1,0 +1,184 @@
+// F9: after re-distancing a union's depth is that to its own surface.
+#include "field/redistance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "field/field_sampler.h"
+#include "field/merged_shapes.h"
+#include "field/union_surface.h"
+#include "geometry/triangle_tree.h"
+
+namespace patina {
+namespace {
+
+using test::mergedShapes;
+using test::MergedShapes;
+using test::movedBy;
+
+constexpr double kR = 0.02, kOff = 0.01;
+const double kCrease = std::sqrt(kR * kR - kOff * kOff); // 17.32 mm
+
+std::vector<TriangleMesh> pair() {
+  return {movedBy(icosphere(kR, 24), Vec3(-kOff, 0, 0)),
+          movedBy(icosphere(kR, 24), Vec3(kOff, 0, 0))};
+}
+
+// At h = 2^-11 m, by min alone and re-distanced: made once.
+const MergedShapes& thePair(bool redistance = false) {
+  static const MergedShapes min = mergedShapes(pair()), exact = mergedShapes(pair(), 0x1p-11, true);
+  return redistance ? exact : min;
+}
+
+double depthInPair(const Vec3& p) {
+  double depth = std::hypot(p.x(), std::hypot(p.y(), p.z()) - kCrease);
+  for (const double x : {-kOff, kOff}) {
+    const Vec3 from = p - Vec3(x, 0, 0);
+    const Vec3 foot = Vec3(x, 0, 0) + kR / from.norm() * from;
+    if ((foot + Vec3(x, 0, 0)).norm() >= kR) depth = std::min(depth, std::abs(kR - from.norm()));
+  }
+  return depth;
+}
+
+std::vector<TriangleMesh> bars() {
+  return {box(Vec3(0.06, 0.02, 0.06)), box(Vec3(0.02, 0.06, 0.06))};
+}
+
+// Two bars that cross, of one length along z.
+double depthInCross(const Vec3& p) {
+  const double wide = 0.03, narrow = 0.01;
+  double depth = wide - std::abs(p.z());
+  for (int swap = 0; swap < 2; ++swap) {
+    const double x = std::abs(p[swap]), y = std::abs(p[1 - swap]);
+    depth = std::min(depth, std::hypot(std::max(narrow - x, 0.0), y - narrow)); // y = narrow
+    depth = std::min(depth, std::hypot(std::max(y - narrow, 0.0), wide - x));   // x = wide
+  }
+  return depth;
+}
+
+template <class Depth> double worstNode(const SurfaceField& field, const Depth& depth) {
+  double worst = 0;
+  for (const auto& at : field.block_at)
+    for (int n = 0; n < kBlockNodes; ++n) {
+      const std::array<int, 3> i{kBlockSide * at[0] + n % kBlockSide,
+                                 kBlockSide * at[1] + n / kBlockSide % kBlockSide,
+                                 kBlockSide * at[2] + n / (kBlockSide * kBlockSide)};
+      const auto phi = static_cast<double>(field.phiAt(i[0], i[1], i[2]));
+      if (!(phi < 0)) continue;
+      const double exact = depth(field.grid.toWorld(Vec3(i[0], i[1], i[2]))) / field.grid.voxel;
+      if (std::abs(phi) < static_cast<double>(kBeyondBand))
+        worst = std::max(worst, std::abs(-phi - exact));
+      else
+        worst = std::max(worst, field.band - exact);
+    }
+  return worst;
+}
+
+template <class Depth> double worstCoarse(const SurfaceField& field, const Depth& depth) {
+  double worst = 0;
+  std::size_t i = 0;
+  for (int z = 0; z <= field.blocks[2]; ++z)
+    for (int y = 0; y <= field.blocks[1]; ++y)
+      for (int x = 0; x <= field.blocks[0]; ++x, ++i) {
+        const auto phi = static_cast<double>(field.coarse[i].phi);
+        const double exact =
+            depth(field.grid.toWorld(kBlockSide * Vec3(x, y, z))) / field.grid.voxel;
+        if (phi < 0) worst = std::max(worst, std::abs(-phi - exact));
+      }
+  return worst;
+}
+
+TEST(Redistance, DepthInTwoSpheresIsThatOfTheClosedForm) {
+  const MergedShapes &before = thePair(), &after = thePair(true);
+  EXPECT_GT(worstCoarse(*before.field, depthInPair), 10); // F9: 10 mm for 17.32
+  EXPECT_GT(worstNode(*before.field, depthInPair), 1);
+  EXPECT_LT(worstNode(*after.field, depthInPair), 0.1); // the bound is h / 2
+  EXPECT_LT(worstCoarse(*after.field, depthInPair), 0.1);
+  EXPECT_GT(after.redistanced, 1000u);
+  EXPECT_LT(after.field->blockCount(), before.field->blockCount());
+}
+
+TEST(Redistance, DepthInACrossOfBarsIsThatOfTheClosedForm) {
+  const MergedShapes after = mergedShapes(bars(), 0x1p-11, true);
+  EXPECT_GT(worstNode(*mergedShapes(bars()).field, depthInCross), 2);
+  EXPECT_LT(worstNode(*after.field, depthInCross), 0.1);
+  EXPECT_LT(worstCoarse(*after.field, depthInCross), 0.1);
+}
+
+TEST(Redistance, ErrorAtTheCreaseFallsWithTheVoxel) {
+  for (const double voxel : {0x1p-9, 0x1p-10, 0x1p-11}) {
+    const MergedShapes m = mergedShapes(bars(), voxel, true);
+    EXPECT_LT(worstCoarse(*m.field, depthInCross), 0.1) << voxel; // in voxels
+  }
+}
+
+TEST(Redistance, LeavesEveryNodeThatMinHadRight) {
+  const MergedShapes& m = thePair();
+  Progress progress;
+  const SurfaceField before = mergeFields(m.parts, m.lattice);
+  const SurfaceField after = redistanced(before, m.parts, m.lattice, m.joint, progress).field;
+  std::size_t same = 0;
+  for (std::size_t s = 0; s < before.blockCount(); ++s) {
+    const auto& at = before.block_at[s];
+    const std::int32_t now = after.slotOf(at[0], at[1], at[2]);
+    if (now < 0) continue;
+    const auto& new_phi = after.distance[static_cast<std::size_t>(now)]->phi;
+    for (std::size_t n = 0; n < kBlockNodes; ++n) {
+      const float phi = before.distance[s]->phi[n];
+      if (phi > 0) {
+        ASSERT_EQ(new_phi[n], phi);
+      } else {
+        ASSERT_LE(new_phi[n], phi); // deeper or the same
+      }
+    }
+    same += before.distance[s] == after.distance[static_cast<std::size_t>(now)];
+  }
+  EXPECT_GT(same, before.blockCount() / 2); // shared, not copied
+}
+
+TEST(Redistance, ObjectsThatDoNotMeetOrCoincideChangeNothing) {
+  const MergedShapes apart = mergedShapes({movedBy(icosphere(0.01, 12), Vec3(-0.02, 0, 0)),
+                                           movedBy(icosphere(0.01, 12), Vec3(0.02, 0, 0))},
+                                          0x1p-11, true);
+  EXPECT_EQ(apart.redistanced, 0u);
+  const MergedShapes twice =
+      mergedShapes({icosphere(0.02, 12), icosphere(0.02, 12)}, 0x1p-11, true);
+  EXPECT_EQ(twice.redistanced, 0u);
+}
+
+TEST(Redistance, UnionSurfaceHasTheAreaOfTheClosedForm) {
+  const MergedShapes& m = thePair();
+  Progress progress;
+  const UnionSurface surface = unionSurface(m.parts, m.lattice, m.joint, progress);
+  const double cap =
+      4 * M_PI * kR * kR - 2 * M_PI * kR * (kR - kOff); // a sphere less the hidden cap
+  EXPECT_NEAR(area(surface.mesh) / (2 * cap), 1, 2e-3);
+  ASSERT_EQ(surface.face.size(), surface.mesh.triangles.size());
+}
+
+TEST(Redistance, CancelledThrows) {
+  const MergedShapes& m = thePair();
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(
+      (void)redistanced(mergeFields(m.parts, m.lattice), m.parts, m.lattice, m.joint, progress),
+      Cancelled);
+}
+
+// The blended gradient vanishes at the centre; the corners' own feet do not.
+TEST(NearestFoot, FindsTheCreaseFromTheCentreOfTwoSpheres) {
+  const MergedShapes m = mergedShapes(pair(), 0.07 / 134, true);
+  const FieldSampler sampler(*m.field, Sampler::high);
+  for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1e-4, 0, 0), Vec3(0, 1e-4, 0), Vec3(-7e-5, 0, 7e-5)}) {
+    const auto foot = sampler.nearestFoot(m.field->grid.toGrid(p));
+    ASSERT_TRUE(foot);
+    EXPECT_NEAR((m.field->grid.toWorld(*foot) - p).norm(), kCrease, m.lattice.voxel);
+  }
+  EXPECT_FALSE(sampler.nearestFoot(Vec3(-100, 0, 0)));
+  EXPECT_FALSE(sampler.nearestFoot(Vec3::Constant(std::nan(""))));
+}
+
+} // namespace
+} // namespace patina
