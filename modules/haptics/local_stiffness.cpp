@@ -1,0 +1,92 @@
+#include "haptics/local_stiffness.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+
+namespace patina {
+namespace {
+
+constexpr double kForce = 1;         // [N]
+constexpr double kStep = 0.02;       // voxels
+constexpr double kMinGradient = 0.1; // K05
+constexpr double kStart = 0.5;       // voxels outside, where the way in begins
+// Ticks so far apart that no velocity is left over from the way in, and no ramp half done.
+constexpr double kRest = 1e5; // [s]
+
+Scene wallOf(const Scene& scene) {
+  Scene wall = scene;
+  wall.haptics.friction.reset();
+  wall.haptics.damping.reset();
+  wall.haptics.magnet.reset();
+  wall.haptics.force_limit = std::numeric_limits<double>::infinity();
+  wall.stabilisers = Stabilisers{};
+  return wall;
+}
+
+} // namespace
+
+struct StiffnessProbe::WayIn {
+  Vec3 surface, outward; // where the tip touches
+  ContactMemory memory;  // of a tick just outside
+};
+
+StiffnessProbe::StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field)
+    : wall_(compileStages(wallOf(scene), std::move(field))), sampler_(*wall_->field, scene.sampler),
+      reach_(scene.haptics.tip_radius.value_or(0) + scene.haptics.offset.value_or(0)),
+      depth_(std::min(kForce, scene.haptics.force_limit) / scene.haptics.stiffness) {}
+
+Vec3 StiffnessProbe::forceAt(const WayIn& way, const Vec3& tip) const {
+  ContactMemory memory = way.memory;
+  return tick(*wall_, memory, tip, kRest).force;
+}
+
+Eigen::Matrix3d StiffnessProbe::differenced(const WayIn& way, const Vec3& tip, double step) const {
+  Eigen::Matrix3d slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 move = step * Vec3::Unit(axis);
+    slope.col(axis) = (forceAt(way, tip - move) - forceAt(way, tip + move)) / (2 * step);
+  }
+  return 0.5 * (slope + slope.transpose());
+}
+
+std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point,
+                                                 std::optional<double> depth) const {
+  return at(point, depth, kStep);
+}
+
+std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optional<double> depth,
+                                                 double step) const {
+  const GridSample sample = sampler_.at(point);
+  const double slope = sample.gradient.norm();
+  if (!(slope > kMinGradient)) return std::nullopt;
+  WayIn way;
+  way.outward = sample.gradient / slope;
+  way.surface = point + (reach_ - sample.phi) * way.outward;
+  const double voxel = sampler_.grid().voxel;
+  tick(*wall_, way.memory, way.surface + kStart * voxel * way.outward, kRest);
+  // In a cleft the way in is not free: the tip is there without having come from anywhere.
+  if (way.memory.in_contact) way.memory.reset();
+
+  LocalStiffness result;
+  result.depth = depth.value_or(depth_);
+  result.tip = way.surface - result.depth * way.outward;
+  const Vec3 force = forceAt(way, result.tip);
+  result.force = force.norm();
+  if (!(result.force > 0)) return std::nullopt;
+  result.normal = force / result.force;
+  const double length = std::min(step * voxel, 0.5 * result.depth);
+  result.matrix = differenced(way, result.tip, length);
+  result.uncertainty =
+      (result.matrix - differenced(way, result.tip, 0.5 * length)).cwiseAbs().maxCoeff();
+  if (!result.matrix.allFinite()) return std::nullopt;
+  const Vec3 values =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(result.matrix, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  result.lambda_min = values[0];
+  result.lambda_max = values[2];
+  return result;
+}
+
+} // namespace patina

@@ -1,0 +1,60 @@
+// How stiff the surface is at one of its points, all directions told apart: what a sampled loop has
+// to bear there (MATH 2.1.7).
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "haptics/snapshot.h"
+
+namespace patina {
+
+struct LocalStiffness {
+  Vec3 tip = Vec3::Zero();    // [m], pressed in
+  Vec3 normal = Vec3::Zero(); // of the force there, unit, outward
+  double depth = 0;           // [m], beneath the surface that is felt, along the way in
+  double force = 0;           // [N], magnitude there
+  // -dF/dx [N/m] of the frictionless wall, its symmetric part.
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  double lambda_max = 0; // [N/m]
+  double lambda_min = 0; // [N/m]; negative: the tip slips off, as from a ridge
+  // Largest change of an entry of `matrix` [N/m] when the step is halved: what the number is good
+  // for. At a crease the stiffness itself varies within a voxel, and this says so.
+  double uncertainty = 0;
+};
+
+// Presses the tip into a scene's surface and differences the force of the scene's own stages, each
+// tick with the memory of a straight way in from outside, so that thin parts are held as they are
+// in the servo. Left out are what depends on the path or on time: friction, damping, magnet,
+// stabilisers and force limit; stability_map.h adds what they contribute.
+//
+// The step is 1/50 voxel to either side. Field values carry the rounding of a float, 2e-7 voxels,
+// so that K is good to 1e-5 of itself; at 1/1000 voxel it would be 3e-4. A crease, whose normal
+// turns within one cell, is met to 0.3 %; steps of 1/4 voxel lose a fifth of its stiffness, steps
+// of a voxel two thirds (edge of a box). Nearer to the surface than two steps it is half the depth.
+class StiffnessProbe {
+ public:
+  // Throws as compileStages().
+  StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field);
+
+  // `point` on or near the surface, no further than the band; pressed in against the field's
+  // direction there, by `depth` [m] or, without, by 1 N / K (by the force limit over K where that
+  // is less). nullopt where there is no direction or no force. Any thread.
+  std::optional<LocalStiffness> at(const Vec3& point, std::optional<double> depth = {}) const;
+
+  // As above, with the step in voxels.
+  std::optional<LocalStiffness> at(const Vec3& point, std::optional<double> depth,
+                                   double step) const;
+
+ private:
+  struct WayIn;
+  Vec3 forceAt(const WayIn& way, const Vec3& tip) const;
+  Eigen::Matrix3d differenced(const WayIn& way, const Vec3& tip, double step) const;
+
+  std::shared_ptr<const HapticSnapshot> wall_;
+  FieldSampler sampler_;
+  double reach_; // [m], from the surface out to where it is felt
+  double depth_; // [m], unless another is asked for
+};
+
+} // namespace patina

@@ -1,0 +1,158 @@
+// The closed forms of MATH 2.1.7, on analytic fields.
+#include "haptics/local_stiffness.h"
+
+#include <gtest/gtest.h>
+
+#include "haptics/contact_fixture.h"
+
+namespace patina {
+namespace {
+
+constexpr double kStiffness = 500;              // [N/m]
+constexpr double kRounding = 3e-5 * kStiffness; // see the step in local_stiffness.h
+
+const Vec3 kSlanted = Vec3(0.3, 0.5, 0.8).normalized();
+
+LocalStiffness pressed(const Scene& scene, const Field& field, const Vec3& point,
+                       std::optional<double> depth = {}) {
+  const auto result = StiffnessProbe(scene, field).at(point, depth);
+  EXPECT_TRUE(result.has_value());
+  return result.value_or(LocalStiffness{});
+}
+
+// phi of a cavity in a solid.
+Field bowlField(double radius, double voxel, int cells) {
+  return cubeField([=](const Vec3& p) { return radius - p.norm(); }, voxel, cells);
+}
+
+TEST(LocalStiffness, OfAPlaneIsKAlongItsNormalAndNothingAcross) {
+  const LocalStiffness at = pressed(sceneOf(kStiffness), planeField(), Vec3(1e-3, 2e-3, 1e-4));
+  EXPECT_NEAR(at.depth, 1 / kStiffness, 1e-12); // 1 N
+  EXPECT_NEAR(at.force, 1, 1e-6);
+  EXPECT_NEAR(at.lambda_max, kStiffness, kRounding);
+  EXPECT_NEAR(at.lambda_min, 0, kRounding);
+  EXPECT_LT(at.uncertainty, kRounding);
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  expected(2, 2) = kStiffness;
+  EXPECT_LT((at.matrix - expected).cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST(LocalStiffness, NearTheSurfaceTheStepDoesNotLeaveContact) {
+  const double stiff = 1e6;
+  const LocalStiffness at = pressed(sceneOf(stiff), planeField(), Vec3(1e-3, 2e-3, 0));
+  EXPECT_NEAR(at.lambda_max, stiff, 1e-3 * stiff); // 1 um deep: the field's float is all there is
+}
+
+TEST(LocalStiffness, ConvexBodiesPushTheTipAside) {
+  const double radius = 0.03;
+  for (const double depth : {0.5e-3, 2e-3, 4e-3}) {
+    const LocalStiffness at =
+        pressed(sceneOf(kStiffness), sphereField(radius), radius * kSlanted, depth);
+    EXPECT_NEAR(at.lambda_max, kStiffness, 1e-4 * kStiffness);
+    const double expected = -kStiffness * depth / (radius - depth);
+    // Nodal gradients are of order h^2: 0.25 % of it.
+    EXPECT_NEAR(at.lambda_min, expected, 0.01 * std::abs(expected));
+    EXPECT_NEAR(at.matrix.trace(), kStiffness + 2 * expected, 0.02 * std::abs(expected));
+  }
+}
+
+TEST(LocalStiffness, ConcaveBodiesHoldTheTip) {
+  const double radius = 0.02, depth = 2e-3;
+  const LocalStiffness at =
+      pressed(sceneOf(kStiffness), bowlField(radius, 0.5e-3, 100), radius * kSlanted, depth);
+  const double expected = kStiffness * depth / (radius + depth);
+  EXPECT_NEAR(at.lambda_max, kStiffness, 1e-4 * kStiffness);
+  EXPECT_NEAR(at.lambda_min, expected, 0.02 * expected);
+}
+
+TEST(LocalStiffness, OfAnOffsetSurfaceTakesTheDepthUnderIt) {
+  const double radius = 0.03, offset = 2e-3, depth = 1e-3;
+  Scene scene = sceneOf(kStiffness);
+  scene.haptics.offset = offset;
+  const LocalStiffness at = pressed(scene, sphereField(radius), radius * kSlanted, depth);
+  EXPECT_NEAR((at.tip - (radius + offset - depth) * kSlanted).norm(), 0, 1e-6);
+  EXPECT_NEAR(at.force, kStiffness * depth, 1e-3);
+  EXPECT_NEAR(at.lambda_max, kStiffness, 1e-4 * kStiffness);
+  const double expected = -kStiffness * depth / (radius + offset - depth);
+  EXPECT_NEAR(at.lambda_min, expected, 0.02 * std::abs(expected));
+}
+
+// The normal turns within one cell. Where nodes lie on the diagonal the blend has a closed form: it
+// turns by sqrt(2) / h.
+TEST(LocalStiffness, OnARidgeThroughNodesIsMinusRootTwoForceOverVoxel) {
+  const double h = 0.5e-3;
+  const Vec3 half = Vec3::Constant(0.0103);
+  const Field field = cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64);
+  for (const double depth : {1.0, 2.0, 4.0}) {
+    const LocalStiffness at =
+        pressed(sceneOf(kStiffness), field, Vec3(half.x(), half.y(), 1e-3), depth * h);
+    const double expected = -std::sqrt(2) * at.force / h;
+    EXPECT_NEAR(at.lambda_min, expected, 0.004 * std::abs(expected));
+    EXPECT_LT(at.uncertainty, 0.004 * std::abs(expected));
+  }
+}
+
+// -1.8 to -1.9 K d / h on the ridge with d below either face, wherever the nodes are.
+TEST(LocalStiffness, OnARidgeGrowsWithDepthOverVoxel) {
+  const double half = 0.0203;
+  for (const double h : {0.5e-3, 1e-3}) {
+    for (double shift = 0; shift < 1; shift += 0.125) {
+      const Vec3 centre(shift * h, 0, 0);
+      const auto phi = [=](const Vec3& p) { return boxDistance(p - centre, Vec3::Constant(half)); };
+      const StiffnessProbe probe(sceneOf(kStiffness),
+                                 cubeField(phi, h, static_cast<int>(std::lround(0.05 / h))));
+      double steepest = 0;
+      for (double aside = -0.5; aside <= 0.5; aside += 0.05) {
+        const Vec3 above(half + (aside - 0.2) * h, half - (aside + 0.2) * h, 1.3e-3);
+        const auto at = probe.at(centre + above, 3 * h);
+        ASSERT_TRUE(at);
+        const double below = half - (at->tip - centre).head<2>().maxCoeff();
+        steepest = std::min(steepest, at->lambda_min / (kStiffness * below / h));
+      }
+      EXPECT_GT(steepest, -2.0);
+      EXPECT_LT(steepest, -1.6);
+    }
+  }
+}
+
+TEST(LocalStiffness, ACoarseStepSmearsARidgeAndSaysSo) {
+  const double h = 0.5e-3;
+  const Vec3 half = Vec3::Constant(0.0103);
+  const Field field = cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64);
+  const StiffnessProbe probe(sceneOf(kStiffness), field);
+  const Vec3 edge(half.x(), half.y(), 1e-3);
+  const auto usual = probe.at(edge, 4 * h), coarse = probe.at(edge, 4 * h, 0.25);
+  ASSERT_TRUE(usual && coarse);
+  EXPECT_GT(coarse->uncertainty, 0.05 * std::abs(coarse->lambda_min));
+  EXPECT_GT(coarse->lambda_min, 0.85 * usual->lambda_min);
+}
+
+TEST(LocalStiffness, PastTheMiddleOfAThinPlateTheTipIsHeldAsInTheServo) {
+  Scene scene = sceneOf(kStiffness);
+  const LocalStiffness held = pressed(scene, plateField(), Vec3(1e-4, 2e-4, 0.25e-3));
+  EXPECT_NEAR(held.lambda_max, kStiffness, 1e-3 * kStiffness);
+  EXPECT_NEAR(held.force, 1, 1e-3); // 2 mm deep in 0.5 mm: from the side of entry
+  EXPECT_GT(held.normal.z(), 0.999);
+  scene.haptics.history = false;
+  EXPECT_FALSE(StiffnessProbe(scene, plateField()).at(Vec3(1e-4, 2e-4, 0.25e-3)));
+}
+
+TEST(LocalStiffness, NothingIsSaidWhereThereIsNoDirection) {
+  const StiffnessProbe probe(sceneOf(kStiffness), sphereField());
+  EXPECT_FALSE(probe.at(Vec3(0.1, 0.1, 0.1)));
+  EXPECT_FALSE(probe.at(Vec3(0.03, NAN, 0)));
+}
+
+TEST(LocalStiffness, TimeAndPathLeaveNoTrace) {
+  Scene scene = withFriction(sceneOf(kStiffness), 0.5, 0.4);
+  scene.haptics.damping = 2;
+  scene.haptics.force_limit = 0.5;
+  const Vec3 point = 0.03 * kSlanted;
+  const LocalStiffness at = pressed(scene, sphereField(), point, 2e-3);
+  EXPECT_EQ(at.matrix, pressed(sceneOf(kStiffness), sphereField(), point, 2e-3).matrix);
+  EXPECT_NEAR(at.force, 1, 1e-4);
+  EXPECT_NEAR(pressed(scene, sphereField(), point).force, 0.5, 1e-4);
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,226 @@
+// K*(x)/K against closed forms, and against a mass on the surface.
+#include "haptics/stability_map.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/shapes.h"
+#include "haptics/contact_fixture.h"
+#include "haptics/coupling_stage.h"
+#include "haptics/device.h"
+#include "haptics/stabilisers.h"
+
+namespace patina {
+namespace {
+
+const Vec3 kSlanted = Vec3(0.3, 0.5, 0.8).normalized();
+
+double ratioAt(const Scene& scene, const Field& field, const Vec3& point) {
+  const auto at = StiffnessProbe(scene, field).at(point);
+  EXPECT_TRUE(at.has_value());
+  return at ? stabilityRatio(*at, scene, loopLimits(scene)) : 0;
+}
+
+// Nothing stabilises it.
+Scene bare(double stiffness) {
+  Scene scene = sceneOf(stiffness);
+  scene.stabilisers = Stabilisers{};
+  return scene;
+}
+
+double limitWith(double virtual_damping) {
+  SampledLoop loop = sampledLoop(DeviceModel{});
+  loop.virtual_damping = virtual_damping;
+  return stiffnessLimit(loop);
+}
+
+Field bowl(double radius) {
+  return cubeField([=](const Vec3& p) { return radius - p.norm(); }, 0.5e-3, 100);
+}
+// Two planes that meet at right angles in a groove along y, open upwards; solid below.
+Field groove() {
+  return cubeField([](const Vec3& p) { return (p.z() - std::abs(p.x())) / std::sqrt(2); }, 0.5e-3,
+                   80);
+}
+
+TEST(StabilityRatio, OfAPlaneIsTheDevicesLimitOverK) {
+  for (const double stiffness : {250.0, 500.0, 2000.0})
+    EXPECT_NEAR(ratioAt(bare(stiffness), planeField(), Vec3(1e-3, 0, 0)), limitWith(0) / stiffness,
+                1e-3 * limitWith(0) / stiffness);
+}
+
+TEST(StabilityRatio, DelayLowersItAsTheLoopSays) {
+  Scene scene = bare(500);
+  scene.device_model = DeviceModel{};
+  scene.device_model->delay = 2;
+  EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), 200.4 / 500, 1e-3);
+}
+
+TEST(StabilityRatio, DampingHelpsAlongTheNormalAndNotAcross) {
+  Scene scene = bare(500);
+  scene.haptics.damping = 2;
+  EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), limitWith(2) / 500, 0.01);
+  // In a narrow bowl the tangential K d / (R + d) has the device's own damping only.
+  const double radius = 1e-3, depth = 2e-3;
+  const Field narrow = cubeField([=](const Vec3& p) { return radius - p.norm(); }, 0.1e-3, 80, 30);
+  const double across = limitWith(0) / (500 * depth / (radius + depth));
+  ASSERT_LT(across, limitWith(2) / 500);
+  EXPECT_NEAR(ratioAt(scene, narrow, radius * kSlanted), across, 0.02 * across);
+}
+
+TEST(StabilityRatio, FrictionInStickIsKInEveryDirection) {
+  const Scene slippery = bare(1500);
+  EXPECT_NEAR(ratioAt(withFriction(slippery, 0.5, 0.4), sphereField(), 0.03 * kSlanted),
+              limitWith(0) / 1500, 1e-3);
+  Scene damped = withFriction(slippery, 0.5, 0.4);
+  damped.haptics.damping = 1;
+  EXPECT_NEAR(ratioAt(damped, sphereField(), 0.03 * kSlanted), limitWith(1) / 1500, 1e-3);
+}
+
+TEST(StabilityRatio, AMagnetStrongerThanTheSurfaceDecides) {
+  Scene scene = bare(500);
+  scene.haptics.magnet = Magnet{1e-3, 1600, false};
+  EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), limitWith(0) / 1600, 1e-3);
+  scene.haptics.magnet->strength = 100;
+  EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), limitWith(0) / 500, 1e-3);
+}
+
+TEST(StabilityRatio, WithoutAnyDampingNothingIsStable) {
+  Scene scene = bare(500);
+  scene.device_model = DeviceModel{};
+  scene.device_model->damping = 0;
+  EXPECT_LT(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), 0.01);
+}
+
+// How a mass's rms velocity grows from the second second to the eighth, held at `rest` by a force
+// that balances the surface's there, after a nudge: below 1 it settles, above it buzzes.
+double growth(const Scene& scene, const Field& field, const Vec3& rest, const Vec3& nudge) {
+  const auto snapshot = compileStages(scene, field);
+  const DeviceModel device = scene.device_model.value_or(DeviceModel{});
+  const double period = 1 / device.rate;
+  const HeldForceStep step = heldForceStep(device.mass, device.damping, period);
+  ContactMemory memory;
+  const Vec3 press = -tick(*snapshot, memory, rest, period).force;
+  Vec3 x = rest, v = nudge;
+  double early = 0, late = 0;
+  const int second = static_cast<int>(std::lround(device.rate));
+  for (int i = 0; i < 8 * second; ++i) {
+    const Vec3 force = tick(*snapshot, memory, x, period).force + press;
+    x += step.c * v + step.d * force;
+    v = step.a * v + step.e * force;
+    if (i / second == 1) early += v.squaredNorm();
+    if (i / second == 7) late += v.squaredNorm();
+  }
+  return std::sqrt(late / early);
+}
+
+// The envelope is exp(-b_eff t / 2m) with b_eff = b (1 - factor): six seconds of it.
+void expectEnvelope(double factor, double damping, double grown) {
+  const double expected = std::exp(-damping * (1 - factor) / (2 * DeviceModel{}.mass) * 6);
+  EXPECT_NEAR(grown, expected, 0.02 * expected) << "at " << factor << " of the limit";
+}
+
+TEST(StabilityRatio, APlaneSettlesBelowItAndBuzzesAboveIt) {
+  const Vec3 point(1e-3, 2e-3, 0);
+  const double limit = 500 * ratioAt(bare(500), planeField(), point);
+  for (const double factor : {0.9, 1.1}) {
+    const Vec3 rest = point - Vec3(0, 0, 1 / (factor * limit));
+    expectEnvelope(factor, 0.5, growth(bare(factor * limit), planeField(), rest, Vec3(0, 0, 1e-3)));
+  }
+}
+
+TEST(StabilityRatio, ABowlSettlesBelowItAndBuzzesAboveIt) {
+  const double radius = 0.02;
+  const Vec3 point = radius * kSlanted;
+  const double limit = 500 * ratioAt(bare(500), bowl(radius), point);
+  for (const double factor : {0.9, 1.1}) {
+    const Vec3 rest = point + kSlanted / (factor * limit);
+    expectEnvelope(factor, 0.5, growth(bare(factor * limit), bowl(radius), rest, 1e-3 * kSlanted));
+  }
+}
+
+TEST(StabilityRatio, InStickTheTangentialLoopObeysItToo) {
+  const Vec3 point(1e-3, 2e-3, 0);
+  const double limit = 500 * ratioAt(withFriction(bare(500), 0.8, 0.8), planeField(), point);
+  for (const double factor : {0.9, 1.1}) {
+    const Vec3 rest = point - Vec3(0, 0, 1 / (factor * limit));
+    expectEnvelope(
+        factor, 0.5,
+        growth(withFriction(bare(factor * limit), 0.8, 0.8), planeField(), rest, Vec3(1e-3, 0, 0)));
+  }
+}
+
+// Under an offset the two sides of a groove push the tip back and forth across one cell: six times
+// K, on a model of one stiffness. Here the map shows what no single number does.
+TEST(StabilityRatio, AGrooveUnderAnOffsetBuzzesWhereItsSidesDoNot) {
+  Scene scene = bare(500);
+  scene.haptics.offset = 2e-3;
+  const auto at = StiffnessProbe(scene, groove()).at(Vec3::Zero());
+  ASSERT_TRUE(at);
+  ASSERT_GT(at->lambda_max, 5 * 500);
+  ASSERT_GT(at->lambda_min, -1);
+  EXPECT_GT(ratioAt(scene, groove(), Vec3(8e-3, 0, 8e-3)), 1.9);
+  scene.device_model = DeviceModel{};
+  EXPECT_LT(ratioAt(scene, groove(), Vec3::Zero()), 0.5);
+  for (const double factor : {0.9, 1.1}) {
+    const double damping = at->lambda_max / (2 * scene.device_model->rate) / factor;
+    scene.device_model->damping = damping;
+    const double ratio = ratioAt(scene, groove(), Vec3::Zero());
+    EXPECT_NEAR(ratio, 1 / factor, 0.01);
+    const double grown = growth(scene, groove(), at->tip, Vec3(1e-6, 0, 0));
+    if (factor < 1)
+      EXPECT_LT(grown, 0.1);
+    else
+      EXPECT_GT(grown, 10);
+  }
+}
+
+TEST(StabilityRatio, TheCouplingTakesItBelowTheLimitWhereverTheWallAloneIsNot) {
+  Scene scene = bare(1e5);
+  const Vec3 point = 0.03 * kSlanted;
+  EXPECT_LT(ratioAt(scene, sphereField(), point), 0.02);
+  scene.stabilisers = Stabilisers{true, false};
+  const LoopLimits limits = loopLimits(scene);
+  EXPECT_TRUE(limits.coupled);
+  const CouplingPlan plan = planCoupling(scene.haptics, DeviceModel{});
+  EXPECT_NEAR(ratioAt(scene, sphereField(), point),
+              limitWith(plan.damping) / inSeries(1e5, plan.stiffness), 0.02);
+  EXPECT_GT(ratioAt(scene, sphereField(), point), 1.5);
+  // By itself, once something is known of the device.
+  scene.stabilisers.reset();
+  EXPECT_FALSE(loopLimits(scene).coupled);
+  scene.device_model = DeviceModel{};
+  EXPECT_TRUE(loopLimits(scene).coupled);
+}
+
+TEST(StabilityMap, OfASphereIsTheSameEverywhere) {
+  const TriangleMesh mesh = icosphere(0.03, 12);
+  Progress progress;
+  const StabilityMap map = stabilityMap(bare(500), sphereField(), mesh, progress);
+  ASSERT_EQ(map.ratio.size(), mesh.positions.size());
+  const double expected = limitWith(0) / 500;
+  for (const float ratio : map.ratio) EXPECT_NEAR(ratio, expected, 1e-3 * expected);
+  EXPECT_NEAR(map.worst_ratio, expected, 1e-3 * expected);
+  EXPECT_EQ(map.buzzing, 0u);
+  EXPECT_NEAR(map.limits.plain, limitWith(0), 1e-6);
+  const StabilityMap stiff = stabilityMap(bare(2000), sphereField(), mesh, progress);
+  EXPECT_EQ(stiff.buzzing, mesh.positions.size());
+}
+
+TEST(StabilityMap, StopsWhenCancelled) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(stabilityMap(bare(500), sphereField(), icosphere(0.03, 2), progress), Cancelled);
+}
+
+TEST(StabilityMap, AVertexThatIsNoNumberIsUnknownAndNotTheWorst) {
+  TriangleMesh mesh = icosphere(0.03, 2);
+  mesh.positions[0] = Vec3(NAN, 0, 0);
+  Progress progress;
+  const StabilityMap map = stabilityMap(bare(500), sphereField(), mesh, progress);
+  EXPECT_TRUE(std::isnan(map.ratio[0]));
+  EXPECT_NE(map.worst, 0u);
+  EXPECT_GT(map.worst_ratio, 0);
+}
+
+} // namespace
+} // namespace patina
