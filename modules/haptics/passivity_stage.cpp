@@ -19,8 +19,7 @@ void PassivityStage::apply(Contact& contact, ContactMemory& memory) const noexce
   }
   memory.energy = std::min(memory.energy, most);
 
-  const bool near = contact.touching || contact.attracted;
-  if (!near || memory.energy > -kRounding || !(contact.dt > 0)) return;
+  if (memory.energy > -kRounding || !(contact.dt > 0)) return;
   const Vec3 velocity = (contact.tip - memory.last_tip) / contact.dt; // also behind a filter
   const double square = velocity.squaredNorm();
   if (!(square > 0)) return;

@@ -13,8 +13,8 @@ namespace patina {
 // What E may be at most is what the surface can rightly return: 1/2 k s^2 of the spring in contact,
 // plus `reserve` (the energy of a magnet's band). Everything beyond has been dissipated and is
 // forgotten, so that an hour of rubbing is no credit for a buzz. It starts there. A debt is never
-// forgotten, in particular not where contact is lost; out of contact it waits. Below `kRounding` a
-// debt is rounding.
+// forgotten: what is left of it where contact ends is taken from the free tip (waiting for the next
+// contact, K = 1e5 N/m rings at 0.8 m/s instead of 0.02). Below `kRounding` a debt is rounding.
 struct PassivitySpec {
   double most = 0;    // alpha [N s/m]
   double reserve = 0; // [J]

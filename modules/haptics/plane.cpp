@@ -51,7 +51,10 @@ std::shared_ptr<const HapticSnapshot> planeSnapshot(const HapticProperties& hapt
       add(std::make_unique<DampingStage>(*haptics.damping),
           "damping = " + formatNumber(*haptics.damping));
   }
-  if (plan.passivity) add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
+  if (plan.passivity) {
+    add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
+    limit.damping += plan.passivity->most;
+  }
   add(std::make_unique<LimitStage>(limit), "always");
   return snapshot;
 }

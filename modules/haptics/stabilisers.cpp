@@ -8,10 +8,13 @@
 namespace patina {
 namespace {
 
-constexpr double kMargin = 2;          // of K* over the stiffness
-constexpr double kDampingShare = 0.01; // B T/m: far from where B itself buzzes, up to 20 samples
-constexpr double kEncoderNoise = 0.03; // [N] that one step of the encoder may make
-constexpr double kLeastCoupling = 0.4; // of the rule of thumb
+constexpr double kMargin = 2;           // of K* over the stiffness
+constexpr double kDampingShare = 0.02;  // B T/m: far from where B itself buzzes
+constexpr double kSettlingRate = 12;    // B/m [1/s] at least: what is left of a touch fades so fast
+constexpr double kDampingMargin = 5;    // of the damping that buzzes over B
+constexpr double kPassivityNoise = 0.3; // [N] a step of the encoder, of the passivity controller
+constexpr double kEncoderNoise = 0.03;  // [N] that one step of the encoder may make
+constexpr double kLeastCoupling = 0.4;  // of the rule of thumb
 
 // "stiffness = 1e+05, limit 1001 N/m".
 std::string reasonFor(double stiffest, double limit, const std::optional<Stabilisers>& chosen) {
@@ -37,11 +40,12 @@ SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device
 
 CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& device) {
   SampledLoop loop = sampledLoop(device);
-  double damping = kDampingShare * loop.mass / loop.period;
+  const double too_much = dampingLimit(loop);
+  double damping = loop.mass * std::max(kDampingShare / loop.period, kSettlingRate);
+  damping = std::min(damping, too_much / kDampingMargin);
   if (device.encoder_step > 0)
     damping = std::min(damping, kEncoderNoise * loop.period / device.encoder_step);
-  if (haptics.damping.value_or(0) > damping)
-    damping = std::max(damping, std::min(*haptics.damping, dampingLimit(loop) / kMargin));
+  if (haptics.damping) damping = std::max(damping, std::min(*haptics.damping, too_much / kMargin));
   loop.virtual_damping = damping;
   return {std::max(stiffnessLimit(loop) / kMargin, kLeastCoupling * ruleOfThumb(loop)), damping};
 }
@@ -63,7 +67,9 @@ StabiliserPlan planStabilisers(const HapticProperties& haptics,
   if (wanted.passivity) {
     PassivitySpec spec;
     spec.delay = model.delay;
-    spec.most = 0.5 * dampingLimit(sampledLoop(model));
+    spec.most = dampingLimit(sampledLoop(model)) / kMargin;
+    if (model.encoder_step > 0)
+      spec.most = std::min(spec.most, kPassivityNoise / (model.rate * model.encoder_step));
     if (haptics.magnet)
       spec.reserve = 0.5 * haptics.magnet->strength * haptics.magnet->range * haptics.magnet->range;
     plan.passivity = spec;
