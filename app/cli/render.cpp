@@ -80,6 +80,9 @@ int runRender(const RenderOptions& options, Console& console) {
   Scene scene = openWith(options.input, options.scene, console);
   if (scene.objects.empty())
     throw FileError(options.input.string(), 0, "the scene has no object: nothing to draw");
+  const auto band = touchBand(scene.haptics);
+  if (options.layers.contains(Layer::band) && !band)
+    throw Error("--show: the layer band needs a scene with an offset or a magnet");
   requireDisplay();
   const bool only_mesh = options.layers == std::set<Layer>{Layer::mesh} ||
                          options.layers == std::set<Layer>{Layer::mesh, Layer::wireframe};
@@ -88,6 +91,7 @@ int runRender(const RenderOptions& options, Console& console) {
     view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
   } else {
     const auto compiled = compile(std::move(scene), console.progress());
+    view.setBand(band);
     view.setMesh(compiled->mesh);
     view.setField(compiled->built.field);
     if (const auto radius = compiled->scene.haptics.tip_radius) {
@@ -127,7 +131,7 @@ Command renderCommand() {
   command.description =
       "Layers: " + choices(allLayers()) + ". Views: " + choices(allViews()) +
       "; +x is seen from the +x side. The layers tip and nodes show what the servo makes of the "
-      "tool at --tip, come to from outside.\n"
+      "tool at --tip, come to from outside; the layer band is where an offset or a magnet acts.\n"
       "Needs a display; on a machine without one: xvfb-run -a patina render ...\n"
       "JSON: picture, width, height, layers, view.";
   command.examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",

@@ -17,6 +17,8 @@ QString caption(Layer layer) {
   case Layer::slice:
     return DisplayPanel::tr("Slice");
   case Layer::band:
+    return DisplayPanel::tr("Band");
+  case Layer::extent:
     return DisplayPanel::tr("Field extent");
   case Layer::tip:
     return DisplayPanel::tr("Tool and force");
@@ -47,10 +49,10 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   column->addLayout(grid);
   int index = 0;
   for (const Layer layer : {Layer::mesh, Layer::tip, Layer::slice, Layer::iso, Layer::wireframe,
-                            Layer::nodes, Layer::band}) {
+                            Layer::nodes, Layer::extent, Layer::band}) {
     auto* box = new QCheckBox(caption(layer), this);
     box->setObjectName(QString::fromUtf8(name(layer).data(), static_cast<int>(name(layer).size())));
-    box->setChecked(layer == Layer::mesh || layer == Layer::tip);
+    box->setChecked(layer == Layer::mesh || layer == Layer::tip || layer == Layer::band);
     connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
       arrange();
       emit layerToggled(layer, on);
@@ -100,9 +102,15 @@ void DisplayPanel::setField(const SurfaceField* field) {
 }
 
 void DisplayPanel::arrange() {
-  for (const auto& [layer, box] : boxes_) box->setVisible(has_field_ || !needsField(layer));
+  for (const auto& [layer, box] : boxes_)
+    box->setVisible((has_field_ || !needsField(layer)) && (has_band_ || layer != Layer::band));
   slice_card_->setVisible(has_field_ && shown(Layer::slice));
   iso_card_->setVisible(has_field_ && shown(Layer::iso));
+}
+
+void DisplayPanel::setBand(bool has_band) {
+  has_band_ = has_band;
+  arrange();
 }
 
 void DisplayPanel::setShown(Layer layer, bool on) {

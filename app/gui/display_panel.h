@@ -18,6 +18,7 @@ class DisplayPanel : public QGroupBox {
   explicit DisplayPanel(QWidget* parent = nullptr);
 
   void setField(const SurfaceField* field); // nullptr: the mesh alone can be shown
+  void setBand(bool has_band);              // whether the scene has an offset or a magnet
   void setShown(Layer layer, bool on);      // sends layerToggled if it changes
   bool shown(Layer layer) const;
   const SlicePlace& slice() const { return slice_; }
@@ -39,7 +40,7 @@ class DisplayPanel : public QGroupBox {
   QWidget* iso_card_;
   ValueRow* iso_ = nullptr;
   SlicePlace slice_;
-  bool has_field_ = false;
+  bool has_field_ = false, has_band_ = false;
 };
 
 } // namespace patina

@@ -20,7 +20,8 @@ namespace patina {
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), view_(new SceneWidget), load_bar_(new LoadBar), warnings_(new QLabel),
       object_(new ObjectPanel), haptics_(new HapticsPanel), display_(new DisplayPanel),
-      plot_(new ForcePlot), status_(new StatusLine(statusBar())), loader_(new SceneLoader(this)) {
+      force_plot_(new ForcePlot), energy_plot_(new EnergyPlot),
+      status_(new StatusLine(statusBar())), loader_(new SceneLoader(this)) {
   setWindowTitle(tr("Patina[*]"));
   setAcceptDrops(true);
   buildLayout();
@@ -89,9 +90,15 @@ void MainWindow::buildLayout() {
     made->setFeatures(QDockWidget::DockWidgetClosable | QDockWidget::DockWidgetMovable);
     addDockWidget(area, made);
     panels_ << made->toggleViewAction();
+    return made;
   };
   dock(tr("Scene"), "scene_dock", scroll, Qt::RightDockWidgetArea);
-  dock(tr("Force on the hand"), "force_dock", plot_, Qt::BottomDockWidgetArea);
+  QDockWidget* force =
+      dock(tr("Force on the hand"), "force_dock", force_plot_, Qt::BottomDockWidgetArea);
+  QDockWidget* energy = dock(tr("Energy taken by the surface"), "energy_dock", energy_plot_,
+                             Qt::BottomDockWidgetArea);
+  splitDockWidget(force, energy, Qt::Horizontal);
+  resizeDocks({force, energy}, {1, 1}, Qt::Horizontal);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
 }
 
@@ -200,6 +207,7 @@ void MainWindow::showCurrent() {
   object_->showScene(scene);
   haptics_->setValues(scene.scene.haptics);
   display_->setField(scene.built.field.get());
+  showBand();
   for (QWidget* card : {static_cast<QWidget*>(object_), static_cast<QWidget*>(haptics_),
                         static_cast<QWidget*>(display_)})
     card->show();
@@ -209,7 +217,8 @@ void MainWindow::showCurrent() {
   haptics_edited_ = false;
   closeFeel();
   last_sample_ = {};
-  plot_->clear();
+  force_plot_->clear();
+  energy_plot_->restart();
   const Vec3 start = view_->restingPlace();
   view_->setTarget(start);
   feel_.open(scene.snapshot,
@@ -233,7 +242,14 @@ void MainWindow::applyHaptics() {
   }
   feel_.publish(current_->snapshot);
   view_->view().setTipRadius(current_->scene.haptics.tip_radius.value_or(0));
+  showBand();
   status_->showScene(current_.get());
+}
+
+void MainWindow::showBand() {
+  const auto band = touchBand(current_->scene.haptics);
+  view_->view().setBand(band);
+  display_->setBand(band.has_value());
 }
 
 void MainWindow::collect() {
@@ -242,7 +258,8 @@ void MainWindow::collect() {
   log_.add(samples, feel_.dropped());
   if (samples.empty()) return;
   last_sample_ = samples.back();
-  plot_->add(samples);
+  force_plot_->addSamples(samples);
+  energy_plot_->addSamples(samples, feel_.dropped());
 }
 
 void MainWindow::closeFeel() {
@@ -255,7 +272,8 @@ void MainWindow::tick() {
   collect();
   if (feel_.running()) view_->view().setTool(last_sample_);
   view_->refresh();
-  plot_->refresh();
+  force_plot_->refresh();
+  energy_plot_->refresh();
   if (ticks_++ % 10 == 0) {
     status_->showTiming(feel_.timing(), feel_.running());
     status_->showFault(feel_.running() && last_sample_.fault);

@@ -8,8 +8,8 @@
 
 #include "app/gui/display_panel.h"
 #include "app/gui/feel_host.h"
-#include "app/gui/force_plot.h"
 #include "app/gui/haptics_panel.h"
+#include "app/gui/live_plots.h"
 #include "app/gui/load_bar.h"
 #include "app/gui/object_panel.h"
 #include "app/gui/recent_files.h"
@@ -43,6 +43,7 @@ class MainWindow : public QMainWindow {
   HapticsPanel& haptics() { return *haptics_; }
   SceneLoader& loader() { return *loader_; }
   FeelHost& feel() { return feel_; }
+  EnergyPlot& energyPlot() { return *energy_plot_; }
   StatusLine& status() { return *status_; }
   const ToolSample& lastSample() const { return last_sample_; }
   void setMode(SceneWidget::Mode mode);
@@ -67,6 +68,7 @@ class MainWindow : public QMainWindow {
   void restore(); // what was open before a load that came to nothing
   void showCurrent();
   void applyHaptics();
+  void showBand();
   void openDialog();
   bool saveDialog();                          // false: nothing was saved
   void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
@@ -84,7 +86,8 @@ class MainWindow : public QMainWindow {
   ObjectPanel* object_;
   HapticsPanel* haptics_;
   DisplayPanel* display_;
-  ForcePlot* plot_;
+  ForcePlot* force_plot_;
+  EnergyPlot* energy_plot_;
   StatusLine* status_;
   RecentFiles* recent_ = nullptr;
   SceneLoader* loader_;

@@ -201,7 +201,7 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
 
   play(window, {window.view().restingPlace()});
   wait(300);
-  show(window, {Layer::mesh, Layer::slice, Layer::iso, Layer::band});
+  show(window, {Layer::mesh, Layer::slice, Layer::iso, Layer::extent});
   window.display().setSlice({1, 0.5});
   window.display().setIso(1.5 * window.scene()->built.field->grid.voxel);
   window.view().view().setView(ViewPreset::iso);

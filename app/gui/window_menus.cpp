@@ -26,9 +26,8 @@ QString shortcutsText() {
       "<tr><td><b>Space</b></td><td>feel or navigate with the left button</td></tr>"
       "<tr><td><b>F</b></td><td>fit the scene into the view</td></tr>"
       "<tr><td><b>1 … 7</b></td><td>camera from +x, −x, +y, −y, +z, −z, at an angle</td></tr>"
-      "<tr><td><b>M T S I W N B</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
-      "field "
-      "extent</td></tr>"
+      "<tr><td><b>M T S I W N B E</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
+      "band, field extent</td></tr>"
       "<tr><td><b>R</b></td><td>record the forces, and save them</td></tr></table>");
 }
 
@@ -95,7 +94,7 @@ void MainWindow::buildMenus() {
   const std::pair<Layer, int> keys[] = {{Layer::mesh, Qt::Key_M},      {Layer::tip, Qt::Key_T},
                                         {Layer::slice, Qt::Key_S},     {Layer::iso, Qt::Key_I},
                                         {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
-                                        {Layer::band, Qt::Key_B}};
+                                        {Layer::band, Qt::Key_B},      {Layer::extent, Qt::Key_E}};
   for (const auto& [layer, key] : keys) {
     const auto words = name(layer);
     QAction* action = view_menu->addAction(

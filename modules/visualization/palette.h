@@ -21,6 +21,8 @@ inline constexpr Color kSurface{0.68, 0.80, 0.64};
 inline constexpr Color kSurfaceBack{0.50, 0.56, 0.50}; // the inner side, seen through a cut
 inline constexpr Color kEdges{0.36, 0.44, 0.37};
 inline constexpr Color kIso{0.30, 0.62, 0.78};
+inline constexpr Color kOffsetBand{0.92, 0.70, 0.10};
+inline constexpr Color kMagnetBand{0.80, 0.12, 0.62};
 
 inline constexpr Color kTool{0.95, 0.55, 0.12};
 inline constexpr Color kToolShaft{0.28, 0.30, 0.36};

@@ -56,7 +56,9 @@ void renderToPng(SceneView& view, const PictureSize& size, const std::filesystem
   view.prepare();
   window->Render();
   writeWindowPng(*window, path);
-  window->GetRenderers()->RemoveAllItems();
+  // The renderers outlive the window and would go on pointing to it.
+  while (vtkRenderer* renderer = window->GetRenderers()->GetFirstRenderer())
+    window->RemoveRenderer(renderer);
 }
 
 } // namespace patina

@@ -12,6 +12,7 @@
 #include <vtkTransform.h>
 
 #include "field/iso_surface.h"
+#include "visualization/band_layer.h"
 #include "visualization/camera.h"
 #include "visualization/node_layer.h"
 #include "visualization/palette.h"
@@ -27,8 +28,9 @@ struct SceneView::Impl {
   vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> iso_actor = surfaceActor(palette::kIso);
   vtkNew<vtkOutlineSource> outline;
-  vtkNew<vtkActor> band_actor;
+  vtkNew<vtkActor> extent_actor;
   SliceLayer slice{*scene, *overlay};
+  BandLayer band_layer{*scene, *overlay};
   ToolLayer tool{*scene, *overlay};
   NodeLayer nodes{*overlay};
 
@@ -36,11 +38,13 @@ struct SceneView::Impl {
   std::shared_ptr<const SurfaceField> field;
   double iso = 0;
   SlicePlace place;
+  std::optional<TouchBand> band;
   std::optional<ToolSample> sample;
-  std::set<Layer> layers{Layer::mesh, Layer::tip};
+  std::set<Layer> layers{Layer::mesh, Layer::band, Layer::tip};
 
   // What is out of date; made again by prepare() and only if it is shown.
-  bool iso_stale = false, slice_stale = false, nodes_stale = false, dirty = true;
+  bool iso_stale = false, slice_stale = false, band_stale = false, nodes_stale = false;
+  bool dirty = true;
   bool cut_keeps_positive = true, cut_on = false;
   vtkMTimeType camera_time = 0;
 
@@ -53,17 +57,21 @@ struct SceneView::Impl {
   // What people mean by the size of the scene: the mesh where there is one.
   Box3 box() const {
     Box3 all = mesh ? mesh_box : gridBox();
-    if (layers.count(Layer::band) && field) all.extend(gridBox());
+    if (layers.count(Layer::extent) && field) all.extend(gridBox());
     if (all.isEmpty()) all = Box3(Vec3::Constant(-0.05), Vec3::Constant(0.05));
     return all;
   }
   // What has to be in the picture: the mesh's own outline is tighter than its box.
   std::vector<Vec3> outermost(const Box3& box) const {
     std::vector<Vec3> points;
-    if (mesh && !(on(Layer::band) && field))
+    const Vec3 centre = box.center();
+    const double shell = bandShown() && isStored(*band, *field) ? band->edge : 0;
+    if (mesh && !(on(Layer::extent) && field))
       for (const Triangle& triangle : mesh->triangles) {
         const Vec3& point = mesh->positions[static_cast<std::size_t>(triangle[0])];
-        if (point.allFinite()) points.push_back(point);
+        if (!point.allFinite()) continue;
+        points.push_back(point);
+        if (shell > 0) points.push_back(point + shell * Vec3(point - centre).normalized());
       }
     if (points.empty())
       for (int i = 0; i < 8; ++i) points.push_back(box.corner(static_cast<Box3::CornerType>(i)));
@@ -78,6 +86,7 @@ struct SceneView::Impl {
     return 4.0 / 3.0;
   }
   bool on(Layer layer) const { return layers.count(layer) != 0; }
+  bool bandShown() const { return on(Layer::band) && field != nullptr && band.has_value(); }
 
   void applyVisibility();
   void cutAt();
@@ -88,7 +97,8 @@ struct SceneView::Impl {
 void SceneView::Impl::applyVisibility() {
   mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr);
   iso_actor->SetVisibility(on(Layer::iso) && field != nullptr);
-  band_actor->SetVisibility(on(Layer::band) && field != nullptr);
+  extent_actor->SetVisibility(on(Layer::extent) && field != nullptr);
+  band_layer.setVisible(bandShown());
   slice.setVisible(on(Layer::slice) && field != nullptr);
   tool.setVisible(on(Layer::tip) && sample.has_value());
   nodes.setVisible(on(Layer::nodes) && field != nullptr);
@@ -114,7 +124,7 @@ void SceneView::Impl::cutAt() {
   if (wanted == cut_on && keeps_positive == cut_keeps_positive) return;
   cut_on = wanted;
   cut_keeps_positive = keeps_positive;
-  for (auto& actor : {mesh_actor, iso_actor}) {
+  for (vtkActor* actor : {mesh_actor.Get(), iso_actor.Get(), &band_layer.shell()}) {
     actor->GetMapper()->RemoveAllClippingPlanes();
     if (wanted) actor->GetMapper()->AddClippingPlane(&plane);
   }
@@ -163,11 +173,11 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
 
   const vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(my.outline->GetOutputPort());
-  my.band_actor->SetMapper(mapper);
-  my.band_actor->GetProperty()->SetColor(palette::forVtk(palette::kQuiet));
-  my.band_actor->GetProperty()->SetLineWidth(1.5);
-  my.band_actor->GetProperty()->LightingOff();
-  my.scene->AddActor(my.band_actor);
+  my.extent_actor->SetMapper(mapper);
+  my.extent_actor->GetProperty()->SetColor(palette::forVtk(palette::kQuiet));
+  my.extent_actor->GetProperty()->SetLineWidth(1.5);
+  my.extent_actor->GetProperty()->LightingOff();
+  my.scene->AddActor(my.extent_actor);
 
   my.overlay->SetLayer(1);
   my.overlay->InteractiveOff();
@@ -207,7 +217,7 @@ void SceneView::setField(std::shared_ptr<const SurfaceField> field) {
   Impl& my = *impl_;
   my.field = std::move(field);
   my.sample.reset();
-  my.iso_stale = my.slice_stale = my.nodes_stale = true;
+  my.iso_stale = my.slice_stale = my.band_stale = my.nodes_stale = true;
   if (my.field) {
     const Box3 box = my.gridBox();
     my.outline->SetBounds(box.min()[0], box.max()[0], box.min()[1], box.max()[1], box.min()[2],
@@ -226,6 +236,14 @@ void SceneView::setIso(double iso) {
 void SceneView::setSlice(const SlicePlace& place) {
   impl_->place = place;
   impl_->slice_stale = impl_->dirty = true;
+}
+
+void SceneView::setBand(const std::optional<TouchBand>& band) {
+  Impl& my = *impl_;
+  if (band == my.band) return;
+  my.band = band;
+  my.band_stale = my.slice_stale = my.dirty = true;
+  my.applyVisibility();
 }
 
 void SceneView::setTipRadius(double radius) {
@@ -247,18 +265,21 @@ void SceneView::setTool(const ToolSample& sample) {
 }
 
 void SceneView::show(Layer layer, bool on) {
+  std::set<Layer> layers = impl_->layers;
   if (on)
-    impl_->layers.insert(layer);
+    layers.insert(layer);
   else
-    impl_->layers.erase(layer);
-  impl_->applyVisibility();
-  impl_->dirty = true;
+    layers.erase(layer);
+  showOnly(layers);
 }
 
 void SceneView::showOnly(const std::set<Layer>& layers) {
-  impl_->layers = layers;
-  impl_->applyVisibility();
-  impl_->dirty = true;
+  Impl& my = *impl_;
+  // The band tints the slice.
+  if (layers.count(Layer::band) != my.layers.count(Layer::band)) my.slice_stale = true;
+  my.layers = layers;
+  my.applyVisibility();
+  my.dirty = true;
 }
 
 bool SceneView::shown(Layer layer) const {
@@ -289,8 +310,12 @@ bool SceneView::prepare() {
     my.iso_stale = false;
   }
   if (my.slice_stale && my.field && my.on(Layer::slice)) {
-    my.slice.update(*my.field, my.place);
+    my.slice.update(*my.field, my.place, my.bandShown() ? my.band : std::nullopt);
     my.slice_stale = false;
+  }
+  if (my.band_stale && my.bandShown()) {
+    my.band_layer.update(*my.field, *my.band);
+    my.band_stale = false;
   }
   if (my.nodes_stale && my.field && my.sample && my.on(Layer::nodes)) {
     my.nodes.update(*my.field, my.sample->tip);
@@ -298,6 +323,7 @@ bool SceneView::prepare() {
   }
   my.cutAt();
   my.slice.setTextSize(textSize(my.scene->GetRenderWindow()));
+  my.band_layer.setTextSize(textSize(my.scene->GetRenderWindow()));
   vtkCamera* camera = my.scene->GetActiveCamera();
   my.tool.faceCamera(*camera);
   my.applyVisibility();

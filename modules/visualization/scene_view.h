@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <set>
 
 #include <vtkRenderWindow.h>
@@ -11,6 +12,7 @@
 #include "field/surface_field.h"
 #include "geometry/triangle_mesh.h"
 #include "scene/tool_sample.h"
+#include "visualization/touch_band.h"
 #include "visualization/view_options.h"
 
 namespace patina {
@@ -37,6 +39,8 @@ class SceneView {
   void setField(std::shared_ptr<const SurfaceField> field); // nullptr = none
   void setIso(double iso);                                  // [m]
   void setSlice(const SlicePlace& place);
+  // Of the layer band; nullopt = the surface is felt where it is.
+  void setBand(const std::optional<TouchBand>& band);
   void setTipRadius(double radius); // [m]; 0 = a point, drawn as a small sphere
   void setTool(const ToolSample& sample);
 

@@ -15,7 +15,11 @@
 namespace patina {
 namespace {
 
-constexpr int kTexelsPerCell = 4;
+// VTK resamples a texture whose sides are no powers of two, and leaves notches where it rounds: of
+// some four texels a cell, as many as give a power.
+int texelsOver(int cells) {
+  return 1 << std::clamp(std::lround(std::log2(4.0 * cells)), 2L, 13L);
+}
 
 // 1, 2 or 5 times a power of ten, so that at most `lines` of them fit in `length`.
 double niceStep(double length, int lines) {
@@ -35,29 +39,35 @@ double coverage(double distance, double half_width, double texel) {
 struct Ink {
   vtkLookupTable* map;
   double voxel_mm, step_mm;
-  double shown; // voxels: a little less than the band, where every cell has all of its nodes
+  double texel;    // voxels
+  double shown;    // voxels: a little less than the band, where every cell has all of its nodes
+  double edge = 0; // voxels, of the tinted band; 0 = none
+  palette::Color tint{};
 
   void paint(double phi_voxels, unsigned char* rgba) const {
     const double mm = phi_voxels * voxel_mm;
     const unsigned char* color = map->MapValue(mm);
-    const double texel = 1.0 / kTexelsPerCell;
     const double to_line = std::abs(mm - step_mm * std::round(mm / step_mm)) / voxel_mm;
     const double thin = 0.35 * coverage(to_line, 0.10, texel);
     const double thick = 0.90 * coverage(std::abs(phi_voxels), 0.28, texel);
     const double dark = std::max(thin, thick);
-    for (int channel = 0; channel < 3; ++channel)
-      rgba[channel] = static_cast<unsigned char>(
-          std::lround(color[channel] * (1 - dark) +
-                      255 * palette::kText[static_cast<std::size_t>(channel)] * dark));
-    rgba[3] = static_cast<unsigned char>(
-        std::lround(255 * coverage(std::abs(phi_voxels), shown, 1.0 / kTexelsPerCell)));
+    const double at_edge = edge > 0 ? coverage(std::abs(phi_voxels - edge), 0.24, texel) : 0;
+    const double within = edge > 0 && phi_voxels > 0 && phi_voxels < edge ? 0.5 : 0;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      double value = color[channel] * (1 - within) + 255 * tint[channel] * within;
+      value = value * (1 - dark) + 255 * palette::kText[channel] * dark;
+      value = value * (1 - at_edge) + 255 * 0.62 * tint[channel] * at_edge;
+      rgba[channel] = static_cast<unsigned char>(std::lround(value));
+    }
+    rgba[3] =
+        static_cast<unsigned char>(std::lround(255 * coverage(std::abs(phi_voxels), shown, texel)));
   }
 };
 
 vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Ink& ink) {
   auto image = vtkSmartPointer<vtkImageData>::New();
-  const int width = (plane.columns - 1) * kTexelsPerCell;
-  const int height = (plane.rows - 1) * kTexelsPerCell;
+  const int columns = plane.columns - 1, rows = plane.rows - 1; // cells
+  const int width = texelsOver(columns), height = texelsOver(rows);
   image->SetDimensions(width, height, 1);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 4);
   auto* rgba = static_cast<unsigned char*>(image->GetScalarPointer());
@@ -68,9 +78,9 @@ vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Ink& ink) {
   };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x, rgba += 4) {
-      const int column = x / kTexelsPerCell, row = y / kTexelsPerCell;
-      const double u = (x % kTexelsPerCell + 0.5) / kTexelsPerCell;
-      const double v = (y % kTexelsPerCell + 0.5) / kTexelsPerCell;
+      const double across = (x + 0.5) / width * columns, up = (y + 0.5) / height * rows;
+      const int column = static_cast<int>(across), row = static_cast<int>(up);
+      const double u = across - column, v = up - row;
       const double phi = (1 - v) * ((1 - u) * node(column, row) + u * node(column + 1, row)) +
                          v * ((1 - u) * node(column, row + 1) + u * node(column + 1, row + 1));
       if (std::isfinite(phi))
@@ -143,7 +153,8 @@ SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
   setVisible(false);
 }
 
-void SliceLayer::update(const SurfaceField& field, const SlicePlace& place) {
+void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
+                        const std::optional<TouchBand>& band) {
   const auto along = static_cast<std::size_t>(place.axis);
   const FieldGrid& grid = field.grid;
   Vec3 corner = Vec3::Zero();
@@ -161,9 +172,17 @@ void SliceLayer::update(const SurfaceField& field, const SlicePlace& place) {
   const double voxel_mm = 1000 * grid.voxel;
   const double limit_mm = field.band * voxel_mm;
   const auto map = distanceMap(limit_mm);
-  texture_->SetInputData(
-      painted(planeOf(field, place), {map, voxel_mm, niceStep(limit_mm, 4),
-                                      std::max(0.6 * field.band, field.band - 1.75)}));
+  const int cells = grid.nodes[(along + 1) % 3] - 1;
+  Ink ink{.map = map,
+          .voxel_mm = voxel_mm,
+          .step_mm = niceStep(limit_mm, 4),
+          .texel = static_cast<double>(cells) / texelsOver(cells),
+          .shown = std::max(0.6 * field.band, field.band - 1.75)};
+  if (band && isStored(*band, field)) {
+    ink.edge = band->edge / grid.voxel;
+    ink.tint = bandColor(*band);
+  }
+  texture_->SetInputData(painted(planeOf(field, place), ink));
   bar_->SetLookupTable(map);
   bar_->SetLabelFormat(limit_mm < 1 ? "%+.2f" : limit_mm < 50 ? "%+.1f" : "%+.0f");
 }

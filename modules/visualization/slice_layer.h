@@ -1,6 +1,7 @@
 // A plane of the field as a picture in space, with its scalar bar.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <vtkActor.h>
@@ -13,6 +14,7 @@
 
 #include "field/surface_field.h"
 #include "visualization/scene_view.h"
+#include "visualization/touch_band.h"
 
 namespace patina {
 
@@ -28,7 +30,9 @@ class SliceLayer {
   // scene: where the plane stands; overlay: where the scalar bar does.
   SliceLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
-  void update(const SurfaceField& field, const SlicePlace& place);
+  // A band is tinted from the surface to its edge, and the edge is a line.
+  void update(const SurfaceField& field, const SlicePlace& place,
+              const std::optional<TouchBand>& band = {});
   void setVisible(bool on);
   void setTextSize(int pixels);
   // The plane itself, to cut the surfaces with; its normal is the slice's axis.

@@ -8,11 +8,12 @@
 namespace patina {
 namespace {
 
-constexpr std::array<std::pair<Layer, std::string_view>, 7> kLayers{{
+constexpr std::array<std::pair<Layer, std::string_view>, 8> kLayers{{
     {Layer::mesh, "mesh"},
     {Layer::iso, "iso"},
     {Layer::slice, "slice"},
     {Layer::band, "band"},
+    {Layer::extent, "extent"},
     {Layer::tip, "tip"},
     {Layer::nodes, "nodes"},
     {Layer::wireframe, "wireframe"},

@@ -54,6 +54,12 @@ inline bool isTool(const Vec3& c) {
 inline bool isForce(const Vec3& c) {
   return c[0] > 120 && c[1] < 70 && c[2] < 100;
 }
+inline bool isGold(const Vec3& c) { // the offset's band, over anything
+  return c[0] > c[2] + 60 && c[1] > c[2] + 45;
+}
+inline bool isMagenta(const Vec3& c) { // the magnet's
+  return c[0] > c[1] + 25 && c[2] > c[1] + 12;
+}
 inline bool isWarm(const Vec3& c) {
   return c[0] > c[2] + 40 && c[0] > c[1] + 25;
 }

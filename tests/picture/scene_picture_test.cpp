@@ -77,13 +77,13 @@ TEST_F(ScenePicture, SeenFromAboveATorusFillsItsRingAndLeavesItsHole) {
 }
 
 TEST_F(ScenePicture, HiddenLayersDrawNothing) {
-  const Pixels pixels = drawn("nothing", {Layer::band});
+  const Pixels pixels = drawn("nothing", {Layer::extent});
   EXPECT_EQ(pixels.share(isSurface), 0);
 }
 
 TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
   view_.setSlice({1, 0.5});
-  const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::band, Layer::iso});
+  const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::extent, Layer::iso});
   EXPECT_GT(pixels.share(isWarm), 0.02);
   EXPECT_GT(pixels.share(isCool), 0.02);
   EXPECT_GT(pixels.share(isSurface), 0.05); // the half behind the plane
@@ -92,6 +92,41 @@ TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
   EXPECT_GT(pixels.share(isCool, 0.88, 1, 0.2, 0.8), 0.01);
   EXPECT_GT(pixels.share([](const Vec3& c) { return c.maxCoeff() < 110; }, 0.88, 1, 0.2, 0.8),
             0.003);
+}
+
+TEST_F(ScenePicture, TheBandIsAShellInItsOwnColourWithALegend) { // K12, K13
+  EXPECT_EQ(drawn("no_band", {Layer::mesh, Layer::band}).share(isGold), 0);
+  view_.setBand(TouchBand{TouchBand::Kind::offset, 0.003});
+  const Pixels offset = drawn("offset_band", {Layer::mesh, Layer::band});
+  EXPECT_GT(offset.share(isGold), 0.2);
+  EXPECT_EQ(offset.share(isMagenta), 0);
+  const auto dark = [](const Vec3& c) { return c.maxCoeff() < 175 && c[0] > c[2] + 60; };
+  EXPECT_GT(offset.share(dark, 0.01, 0.2, 0.9, 1), 0.004); // the words
+  view_.setBand(TouchBand{TouchBand::Kind::magnet, 0.003});
+  const Pixels magnet = drawn("magnet_band", {Layer::mesh, Layer::band});
+  EXPECT_GT(magnet.share(isMagenta), 0.03); // over the sage object it is grey
+  EXPECT_EQ(magnet.share(isGold), 0);
+}
+
+TEST_F(ScenePicture, TheSliceShowsTheBandAsTintAndLine) {
+  view_.setBand(TouchBand{TouchBand::Kind::magnet, 0.003});
+  view_.setSlice({1, 0.5});
+  const auto seen = [this](const char* name, const std::set<Layer>& layers) {
+    return drawn(name, layers, ViewPreset::minus_y).share(isMagenta);
+  };
+  EXPECT_EQ(seen("slice_without_band", {Layer::slice}), 0);
+  // The tinted ring's area: both discs of the cut torus, grown by 3 mm.
+  const double scale = 1 / 1.08 / (2 * (kMajor + kMinor + 0.003));
+  const double rings = 2 * M_PI * (0.018 * 0.018 - 0.015 * 0.015) * scale * scale;
+  EXPECT_GT(seen("slice_band", {Layer::slice, Layer::band}), 0.3 * rings);
+}
+
+TEST_F(ScenePicture, ABandThatTheFieldDoesNotHoldIsWordsOnly) {
+  view_.setBand(TouchBand{TouchBand::Kind::offset, 0.03});
+  const Pixels pixels = drawn("band_too_wide", {Layer::mesh, Layer::band});
+  EXPECT_EQ(pixels.share(isGold, 0.14, 1, 0, 0.9), 0);
+  const auto dark = [](const Vec3& c) { return c.maxCoeff() < 175 && c[0] > c[2] + 60; };
+  EXPECT_GT(pixels.share(dark, 0.01, 0.6, 0.9, 1), 0.004);
 }
 
 TEST_F(ScenePicture, ToolForceAndLabelAreDrawnOverTheSurface) {
