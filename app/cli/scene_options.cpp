@@ -20,7 +20,8 @@ template <typename Iterator> Scene applied(Scene scene, Iterator first, Iterator
   return scene;
 }
 
-// An option that stands for a key of the scene: the scene says what is allowed.
+} // namespace
+
 void addSetting(Command& command, SceneOptions& options, const std::string& name,
                 const std::string& key, const std::string& value, const std::string& help,
                 const std::string& fallback) {
@@ -31,8 +32,6 @@ void addSetting(Command& command, SceneOptions& options, const std::string& name
          options.settings.emplace_back(key, text);
        }});
 }
-
-} // namespace
 
 void addOpenOptions(Command& command, OpenOptions& open) {
   command.arguments.push_back({"--unit", "mm|cm|m|in|fit",

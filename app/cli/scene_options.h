@@ -19,6 +19,10 @@ struct SceneOptions {
   Settings settings;
 };
 
+// An option that stands for a key of the scene: the scene says what is allowed.
+void addSetting(Command& command, SceneOptions& options, const std::string& name,
+                const std::string& key, const std::string& value, const std::string& help,
+                const std::string& fallback);
 // --unit and --iso.
 void addOpenOptions(Command& command, OpenOptions& open);
 // --resolution --voxel --band; and --sampler.
