@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "haptics/device.h"
-#include "haptics/servo_loop.h"
+#include "haptics/latency.h"
 #ifdef PATINA_HAS_USB
 #include "usb/usb_bus.h"
 #endif
@@ -84,11 +84,11 @@ int runDevices(const DevicesOptions& options, Console& console) {
   Json json = Json::object();
   json.set("devices", list);
   if (options.diagnose) {
-    const ServoTiming timing = measureLatency(0.2);
-    json.set("policy", timing.policy);
-    json.set("realtime", timing.realtime);
-    rows.emplace_back("servo", timing.policy);
-    if (!timing.realtime)
+    const Latency latency = measureLatency(0.2);
+    json.set("policy", latency.policy);
+    json.set("realtime", latency.realtime);
+    rows.emplace_back("servo", latency.policy);
+    if (!latency.realtime)
       rows.emplace_back("advice", "for a steady 1 kHz allow real-time priority: add the line "
                                   "'@audio - rtprio 60' to /etc/security/limits.conf, join that "
                                   "group, log in again");

@@ -4,7 +4,7 @@
 #include "app/cli/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
-#include "haptics/servo_loop.h"
+#include "haptics/latency.h"
 
 namespace patina::cli {
 
@@ -15,6 +15,12 @@ struct LatencyOptions {
   std::optional<double> rate = 1000;
 };
 
+void addSpread(TextRows& rows, const std::string& name, const Percentiles& us) {
+  for (const auto& [percentile, value] :
+       {std::pair{"p50", us.p50}, {"p99", us.p99}, {"p99.9", us.p999}, {"max", us.max}})
+    rows.emplace_back(name + ", " + percentile, rounded(value) + " us");
+}
+
 int runLatencyTest(const LatencyOptions& options, Console& console) {
   if (!(*options.seconds > 0) || *options.seconds > 3600)
     throw Error("--seconds: between 0 and 3600, not " + formatNumber(*options.seconds));
@@ -23,28 +29,25 @@ int runLatencyTest(const LatencyOptions& options, Console& console) {
   double load = 0;
   if (getloadavg(&load, 1) != 1) load = 0;
   console.endOnInterrupt();
-  const ServoTiming timing = measureLatency(*options.seconds, *options.rate);
+  const Latency latency = measureLatency(*options.seconds, *options.rate);
 
-  Json late =
-      toJson(Percentiles{timing.late_p50, timing.late_p99, timing.late_p999, timing.late_max});
   Json json = Json::object();
-  json.set("policy", timing.policy);
-  json.set("realtime", timing.realtime);
-  json.set("wakeups", static_cast<std::int64_t>(timing.ticks));
-  json.set("rate_hz", timing.rate_hz);
-  json.set("late_us", late);
-  json.set("missed", static_cast<std::int64_t>(timing.missed));
+  json.set("policy", latency.policy);
+  json.set("realtime", latency.realtime);
+  json.set("wakeups", static_cast<std::int64_t>(latency.wakeups));
+  json.set("rate_hz", latency.rate_hz);
+  json.set("late_us", toJson(latency.late_us));
+  if (latency.wait_us) json.set("wait_us", toJson(*latency.wait_us));
+  json.set("missed", static_cast<std::int64_t>(latency.missed));
   json.set("load", load);
-  const auto us = [](double value) { return rounded(value) + " us"; };
-  console.report(json, aligned({{"policy", timing.policy},
-                                {"wake-ups", formatCount(timing.ticks) + " at " +
-                                                 formatNumber(*options.rate) + " Hz"},
-                                {"late, p50", us(timing.late_p50)},
-                                {"late, p99", us(timing.late_p99)},
-                                {"late, p99.9", us(timing.late_p999)},
-                                {"late, max", us(timing.late_max)},
-                                {"missed", formatCount(timing.missed)},
-                                {"load", rounded(load)}}));
+  TextRows rows{
+      {"policy", latency.policy},
+      {"wake-ups", formatCount(latency.wakeups) + " at " + formatNumber(*options.rate) + " Hz"}};
+  addSpread(rows, "late", latency.late_us);
+  if (latency.wait_us) addSpread(rows, "of it waiting for a processor", *latency.wait_us);
+  rows.emplace_back("missed", formatCount(latency.missed));
+  rows.emplace_back("load", rounded(load));
+  console.report(json, aligned(rows));
   return kDone;
 }
 
@@ -58,8 +61,11 @@ Command latencyTestCommand() {
   command.description =
       "Runs the servo's own clock without device or scene and reports how late its wake-ups were. "
       "Run it while the machine does what it will do during your experiment. policy says whether "
-      "the system granted real-time priority.\n"
-      "JSON: policy, realtime, wakeups, rate_hz, late_us (p50, p99, p999, max), missed (wake-ups "
+      "the system granted real-time priority. Of the lateness, the kernel tells what was waiting "
+      "for a processor that something else had; the rest is the timer's or, in a virtual machine, "
+      "the host's, and no priority helps against it.\n"
+      "JSON: policy, realtime, wakeups, rate_hz, late_us (p50, p99, p999, max), wait_us (the same, "
+      "of the wait for a processor; absent where the kernel does not count it), missed (wake-ups "
       "more than a period late), load (1-minute average at the start).";
   command.examples = {"patina latency-test --seconds 60"};
   command.number("--seconds", "T", "How long [s].", options->seconds);

@@ -1,6 +1,5 @@
 #include "app/cli/reports.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <unistd.h>
@@ -64,15 +63,6 @@ TextRows fieldRows(const SurfaceField& field, const FieldReport& report) {
     rows.emplace_back("unsure",
                       formatCount(report.ambiguous_signs) + " nodes may be inside or outside");
   return rows;
-}
-
-Percentiles percentiles(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double fraction) {
-    return values[static_cast<std::size_t>(
-        std::floor(fraction * static_cast<double>(values.size() - 1)))];
-  };
-  return {at(0.5), at(0.99), at(0.999), values.back()};
 }
 
 Json toJson(const Percentiles& p) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/json.h"
+#include "core/percentiles.h"
 #include "field/build_field.h"
 #include "geometry/mesh_report.h"
 #include "scene/scene.h"
@@ -19,11 +20,6 @@ Json vectorJson(const Vec3& v);
 Json fieldJson(const SurfaceField& field, const FieldReport& report);
 TextRows fieldRows(const SurfaceField& field, const FieldReport& report);
 
-struct Percentiles {
-  double p50 = 0, p99 = 0, p999 = 0, max = 0;
-};
-// Of a non-empty list, which is sorted on the way.
-Percentiles percentiles(std::vector<double> values);
 Json toJson(const Percentiles& p);
 
 // For people: three significant digits, never an exponent ("0.8", "28.1", "1,411").

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 
 namespace patina {
 namespace {
@@ -27,6 +28,13 @@ std::int64_t monotonicNs() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   return now.tv_sec * kSecond + now.tv_nsec;
+}
+
+std::int64_t periodNs(double rate_hz) {
+  if (!(rate_hz >= 100 && rate_hz <= 10000)) {
+    throw std::invalid_argument("servo rate must be between 100 and 10000 Hz");
+  }
+  return static_cast<std::int64_t>(static_cast<double>(kSecond) / rate_hz);
 }
 
 void sleepUntil(std::int64_t monotonic_ns) noexcept {

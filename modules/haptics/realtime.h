@@ -7,6 +7,8 @@
 namespace patina {
 
 std::int64_t monotonicNs() noexcept;
+// Throws std::invalid_argument outside 100 .. 10000 Hz.
+std::int64_t periodNs(double rate_hz);
 void sleepUntil(std::int64_t monotonic_ns) noexcept; // absolute; not woken early by signals
 
 struct RealtimeGrant {

@@ -15,35 +15,11 @@ constexpr std::size_t kTimingTicks = 8192;
 constexpr double kNsPerSecond = 1e9;
 constexpr int kRateTicks = 250;
 
-double checkedRate(double rate_hz) {
-  if (!(rate_hz >= 100 && rate_hz <= 10000)) {
-    throw std::invalid_argument("servo rate must be between 100 and 10000 Hz");
-  }
-  return rate_hz;
-}
-
-ServoTiming summary(const TimingWindow& window, const RealtimeGrant& grant) {
-  ServoTiming timing;
-  timing.policy = policyText(grant);
-  timing.realtime = grant.fifo_error == 0;
-  const TimingWindow::Percentiles late = window.late();
-  const TimingWindow::Percentiles step = window.step();
-  timing.late_p50 = late.p50 * 1e-3;
-  timing.late_p99 = late.p99 * 1e-3;
-  timing.late_p999 = late.p999 * 1e-3;
-  timing.late_max = late.max * 1e-3;
-  timing.step_p50_ns = step.p50;
-  timing.step_p99_ns = step.p99;
-  timing.ticks = window.count();
-  return timing;
-}
-
 } // namespace
 
 struct ServoLoop::Impl {
   Impl(std::unique_ptr<Device> device_in, double rate_hz)
-      : device(std::move(device_in)),
-        period_ns(static_cast<std::int64_t>(kNsPerSecond / checkedRate(rate_hz))),
+      : device(std::move(device_in)), period_ns(periodNs(rate_hz)),
         samples(std::max<std::size_t>(4096, static_cast<std::size_t>(rate_hz))),
         window(kTimingTicks) {
     if (!device) throw std::invalid_argument("servo loop: no device");
@@ -174,39 +150,21 @@ const Device& ServoLoop::device() const {
 }
 
 ServoTiming ServoLoop::timing() const {
-  ServoTiming timing = summary(impl_->window, impl_->grant.load(std::memory_order_acquire));
+  const RealtimeGrant grant = impl_->grant.load(std::memory_order_acquire);
+  const Percentiles late = impl_->window.late();
+  const Percentiles step = impl_->window.step();
+  ServoTiming timing;
+  timing.policy = policyText(grant);
+  timing.realtime = grant.fifo_error == 0;
+  timing.ticks = impl_->window.count();
   timing.missed = impl_->missed.load(std::memory_order_relaxed);
+  timing.late_p50 = late.p50 * 1e-3;
+  timing.late_p99 = late.p99 * 1e-3;
+  timing.late_p999 = late.p999 * 1e-3;
+  timing.late_max = late.max * 1e-3;
+  timing.step_p50_ns = step.p50;
+  timing.step_p99_ns = step.p99;
   timing.rate_hz = impl_->measured_rate.load(std::memory_order_relaxed);
-  return timing;
-}
-
-ServoTiming measureLatency(double seconds, double rate_hz) {
-  const auto period_ns = static_cast<std::int64_t>(kNsPerSecond / checkedRate(rate_hz));
-  if (!(seconds > 0 && seconds <= 3600)) {
-    throw std::invalid_argument("latency measurement takes more than 0 and at most 3600 s");
-  }
-  const auto wakeups = static_cast<std::size_t>(std::max(1.0, seconds * rate_hz));
-  TimingWindow window(wakeups);
-  RealtimeGrant grant;
-  std::int64_t missed = 0;
-  std::int64_t elapsed = 0;
-  std::thread thread([&] {
-    grant = requestRealtime();
-    const std::int64_t start = monotonicNs();
-    PeriodicClock clock(start, period_ns);
-    for (std::size_t i = 0; i < wakeups; ++i) {
-      const std::int64_t deadline = clock.nextDeadline();
-      sleepUntil(deadline);
-      const std::int64_t woke = monotonicNs();
-      missed += clock.woke(woke);
-      window.record(woke - deadline, 0);
-    }
-    elapsed = monotonicNs() - start;
-  });
-  thread.join();
-  ServoTiming timing = summary(window, grant);
-  timing.missed = static_cast<std::uint64_t>(missed);
-  timing.rate_hz = static_cast<double>(wakeups) * kNsPerSecond / static_cast<double>(elapsed);
   return timing;
 }
 

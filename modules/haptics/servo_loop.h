@@ -52,7 +52,4 @@ class ServoLoop {
   std::unique_ptr<Impl> impl_;
 };
 
-// The wake-up histogram of this machine, without device or scene.
-ServoTiming measureLatency(double seconds, double rate_hz = 1000);
-
 } // namespace patina

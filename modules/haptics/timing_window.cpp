@@ -1,7 +1,6 @@
 #include "haptics/timing_window.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace patina {
@@ -26,27 +25,17 @@ void TimingWindow::record(std::int64_t late_ns, std::int64_t step_ns) noexcept {
   count_.store(index + 1, std::memory_order_release);
 }
 
-TimingWindow::Percentiles
-TimingWindow::percentiles(std::atomic<std::uint32_t> Entry::*member) const {
-  const std::size_t filled = static_cast<std::size_t>(std::min<std::uint64_t>(count(), capacity_));
-  if (filled == 0) return {};
-  std::vector<std::uint32_t> values(filled);
-  for (std::size_t i = 0; i < filled; ++i) {
+Percentiles TimingWindow::percentiles(std::atomic<std::uint32_t> Entry::*member) const {
+  std::vector<double> values(static_cast<std::size_t>(std::min<std::uint64_t>(count(), capacity_)));
+  for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = (entries_[i].*member).load(std::memory_order_relaxed);
-  }
-  std::sort(values.begin(), values.end());
-  // Nearest rank: the smallest value that at least the fraction of all does not exceed.
-  const auto at = [&](double fraction) {
-    const double rank = std::ceil(fraction * static_cast<double>(filled));
-    return static_cast<double>(values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1]);
-  };
-  return {at(0.5), at(0.99), at(0.999), static_cast<double>(values.back())};
+  return patina::percentiles(std::move(values));
 }
 
-TimingWindow::Percentiles TimingWindow::late() const {
+Percentiles TimingWindow::late() const {
   return percentiles(&Entry::late);
 }
-TimingWindow::Percentiles TimingWindow::step() const {
+Percentiles TimingWindow::step() const {
   return percentiles(&Entry::step);
 }
 

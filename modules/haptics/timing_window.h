@@ -4,7 +4,8 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <vector>
+
+#include "core/percentiles.h"
 
 namespace patina {
 
@@ -15,10 +16,7 @@ class TimingWindow {
   // Servo thread. Saturates at 2^32 - 1 ns.
   void record(std::int64_t late_ns, std::int64_t step_ns) noexcept;
 
-  struct Percentiles {
-    double p50 = 0, p99 = 0, p999 = 0, max = 0; // [ns]
-  };
-  Percentiles late() const; // any thread; zeros before the first tick
+  Percentiles late() const; // [ns]; any thread; zeros before the first tick
   Percentiles step() const;
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
 

@@ -7,8 +7,8 @@
 
 #include "core/csv.h"
 #include "geometry/shapes.h"
-#include "gui/load_average.h"
 #include "gui/window_fixture.h"
+#include "support/busy_machine.h"
 
 namespace patina {
 namespace {
@@ -124,7 +124,7 @@ TEST_F(Program, TheFirstPictureOf70000TrianglesTakesAtMostTwoSeconds) {
     best = std::min(best, std::stod(outcome.out));
   }
   std::printf("first picture of 72,000 triangles: %.2f s\n", best);
-  EXPECT_LE(best, machineIsCrowded() ? 6.0 : 2.0);
+  EXPECT_LE(best, test::machineIsCrowded() ? 6.0 : 2.0);
 }
 
 } // namespace

@@ -254,6 +254,11 @@ TEST_F(Commands, LatencyTestReportsLatenessPolicyAndLoad) {
   expectKeys(report.at("late_us"), {"p50", "p99", "p999", "max"});
   EXPECT_EQ(report.at("wakeups").asInteger(), 300);
   EXPECT_LE(report.at("late_us").at("p50").asNumber(), report.at("late_us").at("max").asNumber());
+  const Json* wait = report.find("wait_us");
+  if (wait) expectKeys(*wait, {"p50", "p99", "p999", "max"});
+  const std::string text = run({"latency-test", "--seconds", "0.1"}).out;
+  EXPECT_EQ(text.find("waiting for a processor, p99.9") != std::string::npos, wait != nullptr)
+      << text;
 }
 
 TEST_F(Commands, DevicesListsTheBuiltInOnes) {

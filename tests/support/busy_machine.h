@@ -1,8 +1,10 @@
 // Whether a time that was measured is the program's own or the machine's, which had more to do.
 #pragma once
 
+#include <cstdlib>
 #include <ctime>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -44,6 +46,13 @@ auto cleanPasses(int wanted, int tries, Pass&& pass) -> std::vector<decltype(pas
   for (int i = 0; i < tries && static_cast<int>(clean.size()) < wanted; ++i)
     if (auto result = ifClean(pass)) clean.push_back(std::move(*result));
   return clean;
+}
+
+// More wants to run here than there are processors: for times across several threads and programs,
+// which no one thread's share of a core can judge. False where that is unknown.
+inline bool machineIsCrowded() {
+  double load = 0;
+  return getloadavg(&load, 1) == 1 && load > std::thread::hardware_concurrency();
 }
 
 } // namespace patina::test
