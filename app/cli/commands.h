@@ -10,6 +10,7 @@ Command sceneCommand();
 Command fieldCommand();
 Command sampleCommand();
 Command feelCommand();
+Command simulateCommand();
 Command renderCommand();
 Command exportCommand();
 Command studyCommand();
