@@ -56,13 +56,6 @@ TriangleMesh meshOfVolume(const std::filesystem::path& path, const OpenOptions& 
   return isoSurfaceOfVolume(path, *options.iso);
 }
 
-void requireOneObject(const Scene& scene) {
-  if (scene.objects.empty()) throw Error("the scene has no object: add a mesh to it");
-  if (scene.objects.size() > 1)
-    throw Error("the scene has " + std::to_string(scene.objects.size()) +
-                " objects; this version feels one object at a time");
-}
-
 } // namespace
 
 std::vector<std::string> meshWarnings(const MeshReport& report) {
@@ -151,47 +144,6 @@ Scene sceneOf(TriangleMesh mesh, const std::string& name) {
   scene.objects.push_back(
       {name, std::make_shared<const TriangleMesh>(std::move(mesh)), Pose::Identity()});
   return scene;
-}
-
-TriangleMesh worldMesh(const Scene& scene) {
-  TriangleMesh world;
-  for (const SceneObject& object : scene.objects) {
-    // An untouched pose leaves the coordinates bit for bit as they are.
-    const bool identity = object.world_from_object.matrix().isIdentity(0.0);
-    TriangleMesh mesh = identity
-                            ? *object.mesh
-                            : transformed(*object.mesh, Eigen::Affine3d(object.world_from_object));
-    world = world.triangles.empty() ? std::move(mesh) : joined(world, mesh);
-  }
-  return world;
-}
-
-std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress) {
-  validate(scene);
-  requireOneObject(scene);
-  progress.throwIfCancelled();
-  auto compiled = std::make_shared<CompiledScene>();
-  compiled->scene = std::move(scene);
-  compiled->mesh = std::make_shared<const TriangleMesh>(worldMesh(compiled->scene));
-  compiled->mesh_report = inspect(*compiled->mesh);
-  progress.throwIfCancelled();
-  compiled->built = buildField(*compiled->mesh, compiled->scene.field, progress);
-  progress.throwIfCancelled();
-  compiled->built.field = withSamples(std::move(compiled->built.field));
-  compiled->snapshot = compileStages(compiled->scene, compiled->built.field);
-  progress.throwIfCancelled();
-  return compiled;
-}
-
-std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
-                                               const HapticProperties& haptics) {
-  Scene scene = old.scene;
-  scene.haptics = haptics;
-  validate(scene);
-  auto compiled = std::make_shared<CompiledScene>(old);
-  compiled->scene = std::move(scene);
-  compiled->snapshot = compileStages(compiled->scene, compiled->built.field);
-  return compiled;
 }
 
 } // namespace patina

@@ -1,5 +1,5 @@
-// One open scene and what is compiled from it: the engines' only meeting place. Used by the command
-// line and by the window; knows neither.
+// Opening a scene; together with compile_scene.h the engines' only meeting place. Used by the
+// command line and by the window; knows neither.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.h"
-#include "field/build_field.h"
+#include "app/compile_scene.h"
 #include "geometry/mesh_report.h"
 #include "geometry/mesh_unit.h"
-#include "haptics/snapshot.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -47,22 +45,5 @@ OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& opti
 
 // A mesh in metres as a scene of one object.
 Scene sceneOf(TriangleMesh mesh, const std::string& name);
-
-// The scene's objects as one mesh in the world frame.
-TriangleMesh worldMesh(const Scene& scene);
-
-// Everything that a scene compiles to. Immutable.
-struct CompiledScene {
-  Scene scene;
-  std::shared_ptr<const TriangleMesh> mesh; // world frame; shared by versions that differ in feel
-  MeshReport mesh_report;
-  BuiltField built; // with the sample layer
-  std::shared_ptr<const HapticSnapshot> snapshot;
-};
-// Slow; polls progress, throws Cancelled. Safe on a background thread.
-std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress);
-// Only haptic values changed: keeps the field.
-std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
-                                               const HapticProperties& haptics);
 
 } // namespace patina

@@ -18,6 +18,9 @@ class Progress {
 
   Progress() = default;
   explicit Progress(Listener listener) : listener_(std::move(listener)) {}
+  // One step of a longer operation: cancelled when that is.
+  Progress(const Progress& whole, Listener listener)
+      : listener_(std::move(listener)), whole_(&whole) {}
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
@@ -27,13 +30,16 @@ class Progress {
     listener_(fraction, what);
   }
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancelled() const noexcept {
+    return cancelled_.load(std::memory_order_relaxed) || (whole_ && whole_->cancelled());
+  }
   void throwIfCancelled() const {
     if (cancelled()) throw Cancelled();
   }
 
  private:
   Listener listener_;
+  const Progress* whole_ = nullptr;
   std::mutex mutex_;
   std::atomic<bool> cancelled_{false};
 };

@@ -1,0 +1,64 @@
+// What a scene compiles to: one field of all its objects (K14) and the stages of the servo.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/progress.h"
+#include "field/build_field.h"
+#include "field/merge_fields.h"
+#include "geometry/mesh_report.h"
+#include "haptics/snapshot.h"
+#include "scene/scene.h"
+
+namespace patina {
+
+// An object's mesh in the world frame; an untouched pose leaves it bit for bit.
+TriangleMesh worldMesh(const SceneObject& object);
+// The scene's objects as one mesh in the world frame, one after another.
+TriangleMesh worldMesh(const Scene& scene);
+// Counts of several meshes that share nothing.
+MeshReport sumOf(const std::vector<MeshReport>& reports);
+
+// One object by itself: kept while neither its mesh nor its pose changes, so that an edit of
+// another object costs no rebuild. Immutable.
+struct CompiledObject {
+  SceneObject object;
+  std::shared_ptr<const TriangleMesh> mesh; // world frame
+  MeshReport mesh_report;
+  BuiltField built; // no samples
+  std::array<int, 3> first_block{};
+};
+
+// Everything that a scene compiles to. Immutable.
+struct CompiledScene {
+  Scene scene;
+  std::shared_ptr<const TriangleMesh> mesh; // world frame; shared by versions that differ in feel
+  MeshReport mesh_report;
+  BuiltField built; // with the sample layer
+  std::shared_ptr<const HapticSnapshot> snapshot;
+  BlockLattice lattice;
+  std::vector<std::shared_ptr<const CompiledObject>> objects; // in the scene's order
+};
+
+// Slow; polls progress, throws Cancelled. Safe on a background thread. One object keeps the grid
+// that fits it; several share a lattice about all of them.
+std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress);
+// For objects added, moved or removed, and for any other change: fields of objects with the same
+// mesh and pose are kept, so that only the others are built and the union is made anew. The lattice
+// and its voxel stay, too, until field values change or the scene has outgrown them (more than
+// twice or less than half the cells that `resolution` asks for); then all is built as by compile().
+std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
+                                               Progress& progress);
+// Only haptic values changed: keeps the field.
+std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
+                                               const HapticProperties& haptics);
+
+// Index of the object that a face of the scene's mesh, and so a node that names it, belongs to;
+// -1 for -1.
+std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face);
+// Held for later edits beyond what the field itself shares with it; 0 for one object.
+std::size_t mergeBytes(const CompiledScene& compiled);
+
+} // namespace patina

@@ -1,0 +1,174 @@
+// Several objects compile to one field; an edit of one leaves the others' as they are.
+#include "app/compile_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "field/field_sampler.h"
+#include "geometry/shapes.h"
+#include "geometry/triangle_tree.h"
+
+namespace patina {
+namespace {
+
+SceneObject ball(const std::string& name, const Vec3& at, double radius = 0.01) {
+  SceneObject object{name, std::make_shared<const TriangleMesh>(icosphere(radius, 8)),
+                     Pose::Identity()};
+  object.world_from_object.translation() = at;
+  return object;
+}
+
+Scene threeBalls() {
+  Scene scene;
+  scene.field.resolution = 80;
+  scene.objects = {ball("a", Vec3(-0.03, 0, 0)), ball("b", Vec3(0, 0, 0)),
+                   ball("c", Vec3(0.012, 0.001, 0))};
+  return scene;
+}
+
+double worstDistance(const CompiledScene& compiled) {
+  const TriangleTree tree(*compiled.mesh);
+  const SurfaceField& field = *compiled.built.field;
+  double worst = 0;
+  for (int k = 0; k < field.grid.nodes[2]; ++k)
+    for (int j = 0; j < field.grid.nodes[1]; ++j)
+      for (int i = 0; i < field.grid.nodes[0]; ++i) {
+        const auto phi = static_cast<double>(field.phiAt(i, j, k));
+        if (!(phi > 0) || phi >= static_cast<double>(kBeyondBand)) continue;
+        const double exact = tree.closestPoint(field.grid.toWorld(Vec3(i, j, k))).distance;
+        worst = std::max(worst, std::abs(phi - exact / field.grid.voxel));
+      }
+  return worst;
+}
+
+TEST(CompileScene, SeveralObjectsAreOneFieldOfTheirWorldMesh) {
+  Progress progress;
+  const auto compiled = compile(threeBalls(), progress);
+  EXPECT_EQ(compiled->mesh->triangles.size(), 3u * 20 * 64);
+  EXPECT_EQ(compiled->mesh_report.components, 3u);
+  EXPECT_TRUE(compiled->mesh_report.watertight);
+  EXPECT_LT(worstDistance(*compiled), 1e-4);
+  EXPECT_EQ(compiled->built.report.redistanced_nodes, 0u);
+  EXPECT_GT(mergeBytes(*compiled), 0u);
+  const Contact contact = [&] {
+    ContactMemory memory;
+    for (int i = 0; i < 20; ++i)
+      (void)tick(*compiled->snapshot, memory, Vec3(-0.03, 0, 0.0105 - 1e-4 * i), 0.001);
+    return tick(*compiled->snapshot, memory, Vec3(-0.03, 0, 0.009), 0.001);
+  }();
+  EXPECT_NEAR(contact.force.z(), 0.5, 0.05);
+}
+
+TEST(CompileScene, FacesNameTheirObject) {
+  Progress progress;
+  const auto compiled = compile(threeBalls(), progress);
+  const FieldSampler sampler(*compiled->built.field, Sampler::high);
+  for (std::int32_t i = 0; i < 3; ++i) {
+    const Vec3 at =
+        compiled->scene.objects[static_cast<std::size_t>(i)].world_from_object.translation();
+    EXPECT_EQ(objectOfFace(*compiled, sampler.faceNear(at + Vec3(0, 0, 0.01))), i);
+  }
+  EXPECT_EQ(objectOfFace(*compiled, -1), -1);
+}
+
+TEST(CompileScene, AnAngleCostsNoAccuracy) {
+  Progress progress;
+  Scene scene = threeBalls();
+  scene.objects[1].world_from_object.linear() =
+      Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  EXPECT_LT(worstDistance(*compile(scene, progress)), 1e-4);
+}
+
+TEST(CompileScene, EditsKeepTheFieldsOfTheOthers) {
+  Progress progress;
+  const auto old = compile(threeBalls(), progress);
+  Scene scene = old->scene;
+  scene.objects[2].world_from_object.translation() = Vec3(0.02, -0.004, 0.007);
+  const auto moved = recompile(*old, scene, progress);
+  EXPECT_EQ(moved->objects[0], old->objects[0]);
+  EXPECT_EQ(moved->objects[1], old->objects[1]);
+  EXPECT_NE(moved->objects[2], old->objects[2]);
+  EXPECT_EQ(moved->built.field->grid.voxel, old->built.field->grid.voxel);
+  EXPECT_LT(worstDistance(*moved), 1e-4);
+
+  scene.objects.push_back(ball("d", Vec3(-0.05, 0.02, 0.01))); // the box grows to the low side
+  const auto added = recompile(*moved, scene, progress);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(added->objects[i], moved->objects[i]);
+  EXPECT_EQ(added->built.field->grid.voxel, old->built.field->grid.voxel);
+  EXPECT_LT(worstDistance(*added), 1e-4);
+
+  scene.objects.erase(scene.objects.begin() + 1);
+  const auto removed = recompile(*added, scene, progress);
+  EXPECT_EQ(removed->objects[0], added->objects[0]);
+  EXPECT_EQ(removed->objects[1], added->objects[2]);
+  EXPECT_LT(worstDistance(*removed), 1e-4);
+
+  scene.redistance = true; // nothing overlaps any more: only the union is made anew
+  const auto exact = recompile(*removed, scene, progress);
+  EXPECT_EQ(exact->objects, removed->objects);
+}
+
+TEST(CompileScene, AnEditThereAndBackIsTheSameFieldBitForBit) {
+  Progress progress;
+  const auto old = compile(threeBalls(), progress);
+  Scene scene = old->scene;
+  scene.objects[0].world_from_object.translation().y() = 0.005;
+  const auto there = recompile(*old, scene, progress);
+  const auto back = recompile(*there, old->scene, progress);
+  ASSERT_EQ(back->built.field->top, old->built.field->top);
+  for (std::size_t s = 0; s < old->built.field->blockCount(); ++s)
+    ASSERT_EQ(back->built.field->distance[s]->phi, old->built.field->distance[s]->phi);
+}
+
+TEST(CompileScene, OneObjectIsAsItIsWithoutMerging) {
+  Progress progress;
+  Scene scene;
+  scene.field.resolution = 60;
+  scene.objects = {ball("a", Vec3(0.1, 0, 0))};
+  const auto one = compile(scene, progress);
+  const BuiltField alone = buildField(worldMesh(scene), scene.field, progress);
+  EXPECT_EQ(one->built.field->grid.origin, alone.field->grid.origin);
+  EXPECT_EQ(one->built.field->grid.nodes, alone.field->grid.nodes);
+  for (std::size_t s = 0; s < alone.field->blockCount(); ++s)
+    ASSERT_EQ(one->built.field->distance[s]->phi, alone.field->distance[s]->phi);
+  EXPECT_EQ(mergeBytes(*one), 0u);
+
+  // It stays when another comes and goes.
+  scene.objects.push_back(ball("b", Vec3(0.125, 0, 0)));
+  const auto two = recompile(*one, scene, progress);
+  EXPECT_EQ(two->objects[0], one->objects[0]);
+  EXPECT_LT(worstDistance(*two), 1e-4);
+  scene.objects.pop_back();
+  EXPECT_EQ(recompile(*two, scene, progress)->objects[0], one->objects[0]);
+}
+
+TEST(CompileScene, ASceneThatOutgrowsItsVoxelGetsAnother) {
+  Progress progress;
+  const auto old = compile(threeBalls(), progress);
+  Scene scene = old->scene;
+  scene.objects.push_back(ball("far", Vec3(0.3, 0, 0)));
+  const auto grown = recompile(*old, scene, progress);
+  EXPECT_GT(grown->built.field->grid.voxel, 2 * old->built.field->grid.voxel);
+  const auto anew = compile(scene, progress);
+  EXPECT_EQ(grown->built.field->grid.voxel, anew->built.field->grid.voxel);
+  ASSERT_EQ(grown->built.field->top, anew->built.field->top);
+  scene.field.resolution = 100;
+  EXPECT_LT(recompile(*grown, scene, progress)->built.field->grid.voxel,
+            grown->built.field->grid.voxel);
+}
+
+TEST(CompileScene, ABadEditThrowsAndNothingIsLost) {
+  Progress progress;
+  const auto old = compile(threeBalls(), progress);
+  Scene scene = old->scene;
+  scene.objects[1].name = "a";
+  EXPECT_THROW((void)recompile(*old, scene, progress), Error);
+  Progress cancelled;
+  cancelled.cancel();
+  EXPECT_THROW((void)recompile(*old, old->scene, cancelled), Cancelled);
+}
+
+} // namespace
+} // namespace patina
