@@ -115,9 +115,9 @@ void ContactStage::alongRay(const Vec3& q, const GridSample& sample, const Vec3&
     if (contact.deep) refine(q, contact, found);
     return;
   }
-  // F9: -f g / |g|^2 has the length -f / |g|; a direction from memory has no slope of its own.
-  const double slope = sample.gradient.norm();
-  found.depth = (iso_ - sample.phi) / (slope >= kMinGradient ? slope : 1.0);
+  // F9. A distance's own slope is 1; where the blended gradient is shorter, at a crease, dividing by
+  // it would throw the VCP far beyond the part.
+  found.depth = iso_ - sample.phi;
   found.mode = ContactMode::newton;
 }
 

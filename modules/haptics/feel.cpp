@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
+#include "haptics/tick_record.h"
 
 namespace patina {
 namespace {
@@ -27,7 +28,6 @@ std::vector<ToolSample> feel(const HapticSnapshot& snapshot, const std::vector<T
                              Progress& progress) {
   using Clock = std::chrono::steady_clock;
   checkTimes(path);
-  const FieldSampler faces(*snapshot.field, Sampler::kim);
   std::vector<ToolSample> samples;
   samples.reserve(path.size());
   ContactMemory memory;
@@ -46,15 +46,7 @@ std::vector<ToolSample> feel(const HapticSnapshot& snapshot, const std::vector<T
 
     ToolSample sample;
     sample.t = path[i].t;
-    sample.tip = path[i].tip;
-    sample.force = contact.force;
-    sample.vcp = contact.vcp;
-    sample.normal = contact.normal;
-    sample.depth = contact.depth;
-    if (contact.touching) sample.face = faces.faceNear(contact.vcp);
-    sample.contact = contact.touching;
-    sample.deep = contact.deep;
-    sample.fault = contact.fault;
+    record(contact, snapshot.field.get(), sample);
     sample.step_ns = static_cast<std::uint32_t>(std::min<long long>(ns, UINT32_MAX));
     samples.push_back(sample);
   }

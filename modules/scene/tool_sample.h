@@ -13,10 +13,14 @@ struct ToolSample {
   Vec3 tip = Vec3::Zero();    // [m], world
   Vec3 force = Vec3::Zero();  // [N] on the hand
   Vec3 vcp = Vec3::Zero();    // virtual contact point [m]; the tip if there is no contact
+  // The nearest point of the original surface, where contact is seen and an edit acts (K12); the
+  // tip if there is neither contact nor pull.
+  Vec3 surface = Vec3::Zero();
   Vec3 normal = Vec3::Zero(); // unit, outward; zero if there is no contact
   double depth = 0;           // |vcp - tip| along the normal [m]
-  std::int32_t face = -1;     // nearest face of the VCP
+  std::int32_t face = -1;     // nearest face of `surface`
   bool contact = false;
+  bool attracted = false;    // out of contact, pulled by a magnet
   bool deep = false;         // deeper than the band: coarse field or held VCP
   bool fault = false;        // a jump faded the force to zero (F13)
   std::uint32_t step_ns = 0; // time inside tick()

@@ -80,5 +80,48 @@ TEST(SnapshotExchange, AReaderNeverSeesAFreedOrOlderValue) {
   EXPECT_EQ(Value::alive, 0);
 }
 
+TEST(SnapshotExchange, AHeldValueOutlivesTheNextOnes) {
+  SnapshotExchange<Value> exchange;
+  exchange.publish(std::make_shared<const Value>(1));
+  const Value* held = exchange.latest();
+  exchange.hold(held);
+  for (int i = 2; i < 10; ++i) {
+    exchange.publish(std::make_shared<const Value>(i));
+    EXPECT_EQ(exchange.latest()->number, i);
+  }
+  EXPECT_EQ(held->number, 1);
+  exchange.hold(nullptr);
+  EXPECT_EQ(exchange.collect(), 1u);
+}
+
+// As a cross-fade reads: the old value is held while the next one is in use.
+TEST(SnapshotExchange, AReaderOfTwoValuesNeverSeesAFreedOne) {
+  {
+    SnapshotExchange<Value> exchange;
+    std::atomic<bool> done{false};
+    std::atomic<int> faults{0};
+    std::thread reader([&] {
+      const Value* old = nullptr;
+      while (!done) {
+        exchange.hold(old);
+        const Value* next = exchange.latest();
+        for (const Value* value : {old, next})
+          if (value && value->twice != 2 * value->number) ++faults;
+        old = next;
+      }
+    });
+    std::size_t most = 0;
+    for (int i = 1; i <= 20000; ++i) {
+      exchange.publish(std::make_shared<const Value>(i));
+      most = std::max(most, exchange.collect());
+    }
+    done = true;
+    reader.join();
+    EXPECT_EQ(faults, 0);
+    EXPECT_LE(most, 3u);
+  }
+  EXPECT_EQ(Value::alive, 0);
+}
+
 } // namespace
 } // namespace patina
