@@ -1,6 +1,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
+#include "app/cli/stability_report.h"
 #include "app/cli/tip_path.h"
 #include "core/csv.h"
 #include "core/error.h"
@@ -15,6 +16,7 @@ namespace {
 
 struct ExportOptions {
   std::filesystem::path input, output, path;
+  bool stability = false;
   SceneOptions scene;
 };
 
@@ -40,6 +42,8 @@ int runExport(const ExportOptions& options, Console& console) {
       compile(openWith(options.input, options.scene, console), console.progress());
   std::vector<ToolSample> samples;
   if (!path.empty()) samples = feel(*compiled->snapshot, path, console.progress());
+  std::optional<SurfaceStability> stability;
+  if (options.stability) stability = requiredStability(*compiled, console.progress());
   console.progress().throwIfCancelled();
 
   std::error_code error;
@@ -51,7 +55,12 @@ int runExport(const ExportOptions& options, Console& console) {
   writeMeshVtp(folder / "mesh.vtp", *compiled->mesh);
   // With a finite tip the surface that is felt lies its radius outside.
   const double iso = compiled->scene.haptics.tip_radius.value_or(0.0);
-  writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->built.field, iso));
+  if (stability)
+    writeMeshVtp(folder / "surface.vtp", *stability->surface,
+                 {{"stability [K*/K]", stability->map.ratio},
+                  {"least stiffness [N/m]", stability->map.least}});
+  else
+    writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->built.field, iso));
   writeField(folder / "field.vti", *compiled->built.field);
   writeCsv(folder / "vertices.csv", vertexTable(*compiled));
   if (!samples.empty()) {
@@ -78,6 +87,11 @@ int runExport(const ExportOptions& options, Console& console) {
   Json json = Json::object();
   json.set("folder", folder.string());
   json.set("files", files);
+  if (stability) {
+    json.set("stability", stabilityJson(*stability, compiled->scene));
+    const TextRows more = stabilityRows(*stability, compiled->scene);
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
   console.report(json, aligned(rows));
   return kDone;
 }
@@ -93,12 +107,15 @@ Command exportCommand() {
       "Into the folder: mesh.vtp, surface.vtp (the surface that the tip's centre feels), "
       "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens them "
       "together, and with --path also path.vtp and forces.csv (as patina feel).\n"
-      "JSON: folder, files.";
+      "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop would "
+      "buzz, and the least stiffness of any direction, below 0 where the tip slips off.\n"
+      "JSON: folder, files; stability (as patina render).";
   command.examples = {"patina export workspace -o paraview",
                       "patina export bunny.ply -o paraview --path tip.csv"};
   command.input("INPUT", "Workspace, mesh (.obj .ply .stl) or volume (.vti).", options->input);
   command.output("FOLDER", "Where to; made if it is missing.", options->output);
   command.file("--path", "TIP.csv", "A tip path to feel and write too.", options->path);
+  command.flag("--stability", "Where would it buzz: arrays on surface.vtp.", options->stability);
   addHapticOptions(command, options->scene);
   addFieldOptions(command, options->scene);
   addSamplerOption(command, options->scene);

@@ -1,6 +1,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
+#include "app/cli/stability_report.h"
 #include "app/stage_cost.h"
 #include "core/numbers.h"
 #include "geometry/mesh_report.h"
@@ -93,6 +94,16 @@ void describeStages(const CompiledScene& compiled, Json& json, TextRows& rows) {
   json.set("stages", stages);
 }
 
+// Without a device nothing is known that could be unstable.
+void describeStability(const CompiledScene& compiled, Json& json, TextRows& rows,
+                       Progress& progress) {
+  if (!compiled.scene.device_model) return;
+  const auto stability = surfaceStability(compiled, progress);
+  if (!stability) return;
+  json.set("stability", stabilityJson(*stability, compiled.scene));
+  rows.push_back(stabilityRows(*stability, compiled.scene).front());
+}
+
 std::size_t bytesOf(const TriangleMesh& mesh) {
   return mesh.positions.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(Triangle) +
          mesh.corner_uvs.size() * sizeof(mesh.corner_uvs[0]);
@@ -144,6 +155,7 @@ int runInfo(const InfoOptions& options, Console& console) {
     describeField(*compiled->built.field, compiled->built.report, json, rows);
     describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), json, rows);
     describeStages(*compiled, json, rows);
+    describeStability(*compiled, json, rows, console.progress());
   }
   console.report(json, aligned(rows));
   return kDone;
@@ -161,10 +173,12 @@ Command infoCommand() {
       "stages of the servo that are on, why, and what each costs in bytes and ns (measured here, "
       "on "
       "short strokes over the mesh). Of a field (.vti) written by patina: the file's own grid and "
-      "layers, and its surface as the mesh; stages stay empty.\n"
+      "layers, and its surface as the mesh; stages stay empty. Where the scene has a device "
+      "(device.* values), the smallest K*(x)/K of the surface and where.\n"
       "JSON: kind, triangles, vertices, bounds [m], watertight, components, defects (non_finite, "
       "degenerate, duplicate, boundary_edges, non_manifold_edges, misoriented_edges), layers "
-      "(name, bytes), stages (name, why, bytes, ns), field (as patina field).";
+      "(name, bytes), stages (name, why, bytes, ns), field (as patina field), stability (as patina "
+      "render; only with a device).";
   command.examples = {"patina info bunny.ply", "patina info workspace --json",
                       "patina info huge.stl --unit m --no-field"};
   command.input("FILE", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

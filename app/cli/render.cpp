@@ -3,6 +3,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
+#include "app/cli/stability_report.h"
 #include "app/session.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -10,6 +11,7 @@
 #include "haptics/feel.h"
 #include "visualization/display.h"
 #include "visualization/picture.h"
+#include "visualization/stability_layer.h"
 
 namespace patina::cli {
 
@@ -87,6 +89,8 @@ int runRender(const RenderOptions& options, Console& console) {
   const bool only_mesh = options.layers == std::set<Layer>{Layer::mesh} ||
                          options.layers == std::set<Layer>{Layer::mesh, Layer::wireframe};
   SceneView view;
+  Json json = Json::object();
+  TextRows rows = {{"picture", options.output.string()}};
   if (only_mesh) {
     view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
   } else {
@@ -97,6 +101,15 @@ int runRender(const RenderOptions& options, Console& console) {
     if (const auto radius = compiled->scene.haptics.tip_radius) {
       view.setTipRadius(*radius);
       view.setIso(*radius);
+    }
+    if (options.layers.contains(Layer::stability)) {
+      const SurfaceStability stability = requiredStability(*compiled, console.progress());
+      view.setStability(stability.surface.get(), stability.map.ratio);
+      json.set("stability", stabilityJson(stability, compiled->scene));
+      const TextRows more = stabilityRows(stability, compiled->scene);
+      rows.insert(rows.end(), more.begin(), more.end());
+      rows.emplace_back("colours", "K*/K from " + rounded(kLeastRatioShown) + " to " +
+                                       rounded(kMostRatioShown) + ", clipped beyond");
     }
     if (options.tip) view.setTool(toolAt(*compiled, *options.tip, console.progress()));
   }
@@ -111,13 +124,13 @@ int runRender(const RenderOptions& options, Console& console) {
     layers.push(std::string(name(layer)));
     layer_text += (layer_text.empty() ? "" : " ") + std::string(name(layer));
   }
-  Json json = Json::object();
   json.set("picture", options.output.string());
   json.set("width", options.size.width);
   json.set("height", options.size.height);
   json.set("layers", layers);
   json.set("view", std::string(name(options.view)));
-  console.report(json, aligned({{"picture", options.output.string()}, {"layers", layer_text}}));
+  rows.insert(rows.begin() + 1, {"layers", layer_text});
+  console.report(json, aligned(rows));
   return kDone;
 }
 
@@ -131,9 +144,13 @@ Command renderCommand() {
   command.description =
       "Layers: " + choices(allLayers()) + ". Views: " + choices(allViews()) +
       "; +x is seen from the +x side. The layers tip and nodes show what the servo makes of the "
-      "tool at --tip, come to from outside; the layer band is where an offset or a magnet acts.\n"
+      "tool at --tip, come to from outside; the layer band is where an offset or a magnet acts; "
+      "the layer stability colours the surface by K*(x)/K for the scene's device (device.* values; "
+      "without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below 1 the loop would buzz "
+      "when pressed with 1 N, colours end at 0.25 and 4.\n"
       "Needs a display; on a machine without one: xvfb-run -a patina render ...\n"
-      "JSON: picture, width, height, layers, view.";
+      "JSON: picture, width, height, layers, view; stability (ratio_min, at [m], ratio_median, "
+      "buzzing (fraction below 1), limit [N/m], limit_damped [N/m], coupled, device_given).";
   command.examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
                       "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm"};
   command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

@@ -24,6 +24,8 @@ QString caption(Layer layer) {
     return DisplayPanel::tr("Tool and force");
   case Layer::nodes:
     return DisplayPanel::tr("Nodes at the tip");
+  case Layer::stability:
+    return DisplayPanel::tr("Stability");
   case Layer::wireframe:
     return DisplayPanel::tr("Wireframe");
   }
@@ -114,11 +116,13 @@ void DisplayPanel::setBand(bool has_band) {
 }
 
 void DisplayPanel::setShown(Layer layer, bool on) {
-  boxes_.at(layer)->setChecked(on);
+  const auto box = boxes_.find(layer);
+  if (box != boxes_.end()) box->second->setChecked(on);
 }
 
 bool DisplayPanel::shown(Layer layer) const {
-  return boxes_.at(layer)->isChecked();
+  const auto box = boxes_.find(layer);
+  return box != boxes_.end() && box->second->isChecked();
 }
 
 void DisplayPanel::setSlice(const SlicePlace& place) {

@@ -1,8 +1,11 @@
 #include "visualization/export_files.h"
 
+#include <algorithm>
+
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
 #include <vtkIntArray.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -63,7 +66,8 @@ std::string escaped(const std::string& text) {
 
 } // namespace
 
-void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh) {
+void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh,
+                  const std::vector<VertexValues>& values) {
   const auto data = plainData(mesh);
   const vtkNew<vtkIntArray> face;
   face->SetName("face");
@@ -71,6 +75,13 @@ void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh) {
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
     face->SetValue(static_cast<vtkIdType>(f), static_cast<int>(f));
   data->GetCellData()->AddArray(face);
+  for (const VertexValues& one : values) {
+    const vtkNew<vtkFloatArray> array;
+    array->SetName(one.name.c_str());
+    array->SetNumberOfValues(static_cast<vtkIdType>(one.values.size()));
+    std::copy(one.values.begin(), one.values.end(), array->GetPointer(0));
+    data->GetPointData()->AddArray(array);
+  }
   writePolyData(path, data);
 }
 

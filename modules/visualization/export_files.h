@@ -11,9 +11,15 @@
 
 namespace patina {
 
-// Triangles in metres, with "face" (the index). Texture
+struct VertexValues {
+  std::string name;          // with its unit: "stability [K*/K]"
+  std::vector<float> values; // one a vertex
+};
+
+// Triangles in metres, with "face" (the index) and what else is known of the vertices. Texture
 // coordinates are per corner and stay in OBJ.
-void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh);
+void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh,
+                  const std::vector<VertexValues>& values = {});
 
 // The tip's path as one line, with arrays "t [s]", "force [N]", "vcp [m]", "depth [m]", "contact".
 void writeToolPathVtp(const std::filesystem::path& path, const std::vector<ToolSample>& samples);

@@ -16,8 +16,10 @@
 #include "visualization/camera.h"
 #include "visualization/node_layer.h"
 #include "visualization/palette.h"
+#include "visualization/scalar_bar.h"
 #include "visualization/scene_furniture.h"
 #include "visualization/slice_layer.h"
+#include "visualization/stability_layer.h"
 #include "visualization/surface_data.h"
 #include "visualization/surface_pick.h"
 #include "visualization/tool_layer.h"
@@ -31,6 +33,7 @@ struct SceneView::Impl {
   vtkNew<vtkActor> extent_actor;
   SliceLayer slice{*scene, *overlay};
   BandLayer band_layer{*scene, *overlay};
+  StabilityLayer stability{*scene, *overlay};
   ToolLayer tool{*scene, *overlay};
   NodeLayer nodes{*overlay};
 
@@ -44,7 +47,7 @@ struct SceneView::Impl {
 
   // What is out of date; made again by prepare() and only if it is shown.
   bool iso_stale = false, slice_stale = false, band_stale = false, nodes_stale = false;
-  bool dirty = true;
+  bool dirty = true, has_stability = false;
   bool cut_keeps_positive = true, cut_on = false;
   vtkMTimeType camera_time = 0;
 
@@ -95,17 +98,20 @@ struct SceneView::Impl {
 };
 
 void SceneView::Impl::applyVisibility() {
-  mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr);
+  const bool map = on(Layer::stability) && has_stability;
+  stability.setVisible(map);
+  placeScalarBar(stability.bar(), on(Layer::slice) && field != nullptr ? 1 : 0);
+  mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr && !map);
   iso_actor->SetVisibility(on(Layer::iso) && field != nullptr);
   extent_actor->SetVisibility(on(Layer::extent) && field != nullptr);
   band_layer.setVisible(bandShown());
   slice.setVisible(on(Layer::slice) && field != nullptr);
   tool.setVisible(on(Layer::tip) && sample.has_value());
   nodes.setVisible(on(Layer::nodes) && field != nullptr);
-  for (auto& actor : {mesh_actor, iso_actor})
+  for (vtkActor* actor : {mesh_actor.Get(), iso_actor.Get(), &stability.surface()})
     actor->GetProperty()->SetEdgeVisibility(on(Layer::wireframe));
   // Over the mesh the iso-surface is a shell that one sees through; alone it is the surface.
-  const bool shell = on(Layer::mesh) && mesh != nullptr;
+  const bool shell = map || (on(Layer::mesh) && mesh != nullptr);
   iso_actor->GetProperty()->SetOpacity(shell ? 0.38 : 1.0);
   iso_actor->GetProperty()->SetBackfaceCulling(shell);
 }
@@ -124,7 +130,8 @@ void SceneView::Impl::cutAt() {
   if (wanted == cut_on && keeps_positive == cut_keeps_positive) return;
   cut_on = wanted;
   cut_keeps_positive = keeps_positive;
-  for (vtkActor* actor : {mesh_actor.Get(), iso_actor.Get(), &band_layer.shell()}) {
+  for (vtkActor* actor :
+       {mesh_actor.Get(), iso_actor.Get(), &band_layer.shell(), &stability.surface()}) {
     actor->GetMapper()->RemoveAllClippingPlanes();
     if (wanted) actor->GetMapper()->AddClippingPlane(&plane);
   }
@@ -246,6 +253,14 @@ void SceneView::setBand(const std::optional<TouchBand>& band) {
   my.applyVisibility();
 }
 
+void SceneView::setStability(const TriangleMesh* surface, const std::vector<float>& ratio) {
+  Impl& my = *impl_;
+  my.has_stability = surface != nullptr;
+  if (surface) my.stability.update(*surface, ratio);
+  my.applyVisibility();
+  my.dirty = true;
+}
+
 void SceneView::setTipRadius(double radius) {
   impl_->tool.setTipRadius(radius);
   impl_->dirty = true;
@@ -324,6 +339,7 @@ bool SceneView::prepare() {
   my.cutAt();
   my.slice.setTextSize(textSize(my.scene->GetRenderWindow()));
   my.band_layer.setTextSize(textSize(my.scene->GetRenderWindow()));
+  my.stability.setTextSize(textSize(my.scene->GetRenderWindow()));
   vtkCamera* camera = my.scene->GetActiveCamera();
   my.tool.faceCamera(*camera);
   my.applyVisibility();

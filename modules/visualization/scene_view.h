@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -41,6 +42,9 @@ class SceneView {
   void setSlice(const SlicePlace& place);
   // Of the layer band; nullopt = the surface is felt where it is.
   void setBand(const std::optional<TouchBand>& band);
+  // Of the layer stability, which takes the mesh's place: a surface and one K*/K a vertex. nullptr
+  // = none, and the mesh is shown.
+  void setStability(const TriangleMesh* surface, const std::vector<float>& ratio);
   void setTipRadius(double radius); // [m]; 0 = a point, drawn as a small sphere
   void setTool(const ToolSample& sample);
 

@@ -7,10 +7,10 @@
 #include <vtkImageData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
-#include <vtkTextProperty.h>
 
 #include "visualization/distance_map.h"
 #include "visualization/palette.h"
+#include "visualization/scalar_bar.h"
 
 namespace patina {
 namespace {
@@ -121,7 +121,7 @@ FieldPlane planeOf(const SurfaceField& field, const SlicePlace& place) {
 
 SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : quad_(vtkSmartPointer<vtkPlaneSource>::New()), texture_(vtkSmartPointer<vtkTexture>::New()),
-      actor_(vtkSmartPointer<vtkActor>::New()), bar_(vtkSmartPointer<vtkScalarBarActor>::New()),
+      actor_(vtkSmartPointer<vtkActor>::New()), bar_(scalarBar("distance [mm]")),
       plane_(vtkSmartPointer<vtkPlane>::New()) {
   const vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(quad_->GetOutputPort());
@@ -132,23 +132,6 @@ SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
   texture_->MipmapOn();
   scene.AddActor(actor_);
 
-  bar_->SetTitle("distance [mm]\n");
-  bar_->SetNumberOfLabels(5);
-  bar_->SetLabelFormat("%+.1f");
-  bar_->UnconstrainedFontSizeOn();
-  for (vtkTextProperty* text : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
-    text->SetColor(palette::forVtk(palette::kText));
-    text->SetFontFamilyToArial();
-    text->ItalicOff();
-    text->BoldOff();
-    text->ShadowOff();
-  }
-  bar_->GetTitleTextProperty()->BoldOn();
-  bar_->SetBarRatio(0.22);
-  bar_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  bar_->SetPosition(0.885, 0.28);
-  bar_->SetWidth(0.10);
-  bar_->SetHeight(0.46);
   overlay.AddActor2D(bar_);
   setVisible(false);
 }
@@ -188,8 +171,7 @@ void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
 }
 
 void SliceLayer::setTextSize(int pixels) {
-  for (vtkTextProperty* text : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()})
-    text->SetFontSize(pixels);
+  patina::setTextSize(*bar_, pixels);
 }
 
 void SliceLayer::setVisible(bool on) {

@@ -8,7 +8,7 @@
 namespace patina {
 namespace {
 
-constexpr std::array<std::pair<Layer, std::string_view>, 8> kLayers{{
+constexpr std::array<std::pair<Layer, std::string_view>, 9> kLayers{{
     {Layer::mesh, "mesh"},
     {Layer::iso, "iso"},
     {Layer::slice, "slice"},
@@ -16,6 +16,7 @@ constexpr std::array<std::pair<Layer, std::string_view>, 8> kLayers{{
     {Layer::extent, "extent"},
     {Layer::tip, "tip"},
     {Layer::nodes, "nodes"},
+    {Layer::stability, "stability"},
     {Layer::wireframe, "wireframe"},
 }};
 

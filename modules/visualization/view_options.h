@@ -17,6 +17,7 @@ enum class Layer : std::uint8_t {
   extent,    // the box of the grid
   tip,       // the tool, its true tip, the contact point and the force
   nodes,     // the field's nodes near the tip (K26)
+  stability, // K*/K as colour on the surface, in the place of mesh; see stability_layer.h
   wireframe, // edges of the mesh and of the iso-surface
 };
 

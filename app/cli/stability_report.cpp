@@ -1,0 +1,67 @@
+#include "app/cli/stability_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina::cli {
+namespace {
+
+double median(std::vector<float> values) {
+  std::erase_if(values, [](float v) { return std::isnan(v); });
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double buzzingShare(const StabilityMap& map) {
+  return static_cast<double>(map.buzzing) / static_cast<double>(map.ratio.size());
+}
+
+std::string deviceText(const Scene& scene) {
+  const DeviceModel device = scene.device_model.value_or(DeviceModel{});
+  std::string text = rounded(device.mass) + " kg, " + rounded(device.damping) + " N s/m, " +
+                     rounded(device.rate) + " Hz";
+  if (device.delay) text += ", delay " + std::to_string(device.delay);
+  return scene.device_model ? text : text + " (assumed: the scene has no device.* values)";
+}
+
+} // namespace
+
+SurfaceStability requiredStability(const CompiledScene& compiled, Progress& progress) {
+  auto stability = surfaceStability(compiled, progress);
+  if (!stability)
+    throw Error("stability: nothing of this surface can be pressed; thin sheets need a tip.radius");
+  return std::move(*stability);
+}
+
+Json stabilityJson(const SurfaceStability& stability, const Scene& scene) {
+  const StabilityMap& map = stability.map;
+  Json json = Json::object();
+  json.set("ratio_min", map.worst_ratio);
+  json.set("at", vectorJson(stability.surface->positions[map.worst]));
+  json.set("ratio_median", median(map.ratio));
+  json.set("buzzing", buzzingShare(map));
+  json.set("limit", map.limits.plain);
+  json.set("limit_damped", map.limits.damped);
+  json.set("coupled", map.limits.coupled);
+  json.set("device_given", scene.device_model.has_value());
+  return json;
+}
+
+TextRows stabilityRows(const SurfaceStability& stability, const Scene& scene) {
+  const StabilityMap& map = stability.map;
+  const Vec3& at = stability.surface->positions[map.worst];
+  std::string where = "smallest K*/K " + rounded(map.worst_ratio) + " at " + formatLength(at.x()) +
+                      ", " + formatLength(at.y()) + ", " + formatLength(at.z()) +
+                      "; half the surface has " + rounded(median(map.ratio)) + " or more";
+  if (map.buzzing)
+    where += "; " + rounded(100 * buzzingShare(map)) + " % of it is below 1 and would buzz";
+  TextRows rows = {{"stability", where}, {"device", deviceText(scene)}};
+  if (map.limits.coupled) rows.emplace_back("coupling", "on: the map is of the coupled loop");
+  return rows;
+}
+
+} // namespace patina::cli

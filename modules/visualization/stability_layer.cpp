@@ -1,0 +1,106 @@
+#include "visualization/stability_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <vtkColorTransferFunction.h>
+#include <vtkFloatArray.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+
+#include "visualization/palette.h"
+#include "visualization/scalar_bar.h"
+#include "visualization/scene_furniture.h"
+#include "visualization/surface_data.h"
+
+namespace patina {
+namespace {
+
+// One normal a vertex, however sharp the edge: a vertex has one ratio too.
+vtkSmartPointer<vtkFloatArray> vertexNormals(const TriangleMesh& mesh) {
+  std::vector<Vec3> sum(mesh.positions.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Vec3 a = mesh.corner(f, 0);
+    const Vec3 area = (mesh.corner(f, 1) - a).cross(mesh.corner(f, 2) - a);
+    if (!area.allFinite()) continue;
+    for (const std::int32_t v : mesh.triangles[f]) sum[static_cast<std::size_t>(v)] += area;
+  }
+  auto normals = vtkSmartPointer<vtkFloatArray>::New();
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  normals->SetNumberOfTuples(static_cast<vtkIdType>(sum.size()));
+  for (std::size_t v = 0; v < sum.size(); ++v) {
+    const Vec3 unit = sum[v].norm() > 0 ? Vec3(sum[v].normalized()) : Vec3::UnitZ();
+    normals->SetTuple(static_cast<vtkIdType>(v), unit.data());
+  }
+  return normals;
+}
+
+} // namespace
+
+vtkSmartPointer<vtkLookupTable> stabilityColors() {
+  const vtkNew<vtkColorTransferFunction> ramp;
+  ramp->SetColorSpaceToDiverging();
+  ramp->AddRGBPoint(-1, palette::kInside[0], palette::kInside[1], palette::kInside[2]);
+  ramp->AddRGBPoint(1, palette::kOutside[0], palette::kOutside[1], palette::kOutside[2]);
+  auto table = vtkSmartPointer<vtkLookupTable>::New();
+  constexpr int kEntries = 255;
+  table->SetNumberOfTableValues(kEntries);
+  table->SetScaleToLog10();
+  table->SetRange(kLeastRatioShown, kMostRatioShown);
+  for (int i = 0; i < kEntries; ++i) {
+    double color[3];
+    ramp->GetColor(2.0 * i / (kEntries - 1) - 1, color);
+    table->SetTableValue(i, color[0], color[1], color[2], 1);
+  }
+  table->SetNanColor(palette::kQuiet[0], palette::kQuiet[1], palette::kQuiet[2], 1);
+  return table;
+}
+
+StabilityLayer::StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay)
+    : actor_(surfaceActor(palette::kSurface)), bar_(scalarBar("K*/K")) {
+  const auto colors = stabilityColors();
+  auto* mapper = vtkPolyDataMapper::SafeDownCast(actor_->GetMapper());
+  mapper->SetLookupTable(colors);
+  mapper->UseLookupTableScalarRangeOn();
+  mapper->ScalarVisibilityOn();
+  // Shine would shift colours that are to be read.
+  actor_->GetProperty()->SetSpecular(0);
+  actor_->GetProperty()->SetAmbient(0.3);
+  scene.AddActor(actor_);
+  bar_->SetLookupTable(colors);
+  bar_->SetLabelFormat("%.3g");
+  overlay.AddActor2D(bar_);
+  setVisible(false);
+}
+
+void StabilityLayer::update(const TriangleMesh& surface, const std::vector<float>& ratio) {
+  if (ratio.size() != surface.positions.size())
+    throw std::invalid_argument("stability layer: one ratio a vertex");
+  const auto data = plainData(surface);
+  data->GetPointData()->SetNormals(vertexNormals(surface));
+  const vtkNew<vtkFloatArray> values;
+  values->SetName("stability [K*/K]");
+  values->SetNumberOfValues(static_cast<vtkIdType>(ratio.size()));
+  for (std::size_t v = 0; v < ratio.size(); ++v)
+    values->SetValue(static_cast<vtkIdType>(v),
+                     std::isnan(ratio[v])
+                         ? ratio[v]
+                         : std::clamp(ratio[v], static_cast<float>(kLeastRatioShown),
+                                      static_cast<float>(kMostRatioShown)));
+  data->GetPointData()->SetScalars(values);
+  vtkPolyDataMapper::SafeDownCast(actor_->GetMapper())->SetInputData(data);
+}
+
+void StabilityLayer::setVisible(bool on) {
+  actor_->SetVisibility(on);
+  bar_->SetVisibility(on);
+}
+
+void StabilityLayer::setTextSize(int pixels) {
+  patina::setTextSize(*bar_, pixels);
+}
+
+} // namespace patina
