@@ -1,11 +1,12 @@
 #include "haptics/servo_loop.h"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 
+#include "haptics/cross_fade.h"
 #include "haptics/realtime.h"
+#include "haptics/tick_record.h"
 #include "haptics/timing_window.h"
 
 namespace patina {
@@ -32,8 +33,7 @@ struct ServoLoop::Impl {
     rate_mark = start;
     PeriodicClock clock(start, period_ns);
     std::int64_t last_wake = start;
-    const SurfaceField* felt = nullptr;
-    ContactMemory memory;
+    CrossFade law;
     Vec3 force = Vec3::Zero();
     while (!stopping.load(std::memory_order_relaxed)) {
       const std::int64_t deadline = clock.nextDeadline();
@@ -44,26 +44,16 @@ struct ServoLoop::Impl {
       last_wake = woke;
 
       const DeviceState state = device->exchange(force, dt);
-      const HapticSnapshot* snapshot = exchange.latest();
-      const SurfaceField* field = snapshot ? snapshot->field.get() : nullptr;
-      if (field != felt) {
-        // Contact points of another surface mean nothing here; a fault goes on, and so do counts.
-        memory.leaveContact();
-        memory.clearance = std::numeric_limits<double>::infinity();
-        felt = field;
+      if (!law.fading()) {
+        exchange.hold(law.felt()); // it may have to fade out
+        law.turnTo(exchange.latest());
       }
       ToolSample sample;
       sample.t = static_cast<double>(woke - start) / kNsPerSecond;
-      sample.tip = state.tip;
-      sample.vcp = state.tip;
       const std::int64_t before = monotonicNs();
-      if (snapshot) {
-        const Contact contact = tick(*snapshot, memory, state.tip, dt);
-        fill(sample, contact, *field);
-        force = contact.force;
-      } else {
-        force.setZero();
-      }
+      const Contact contact = law.tick(state.tip, dt);
+      record(contact, law.field(), sample);
+      force = contact.force;
       const std::int64_t step = monotonicNs() - before;
       sample.step_ns = static_cast<std::uint32_t>(std::min<std::int64_t>(step, UINT32_MAX));
       sample.late_ns =
@@ -74,18 +64,6 @@ struct ServoLoop::Impl {
     }
     // A stopped loop leaves no force behind.
     device->exchange(Vec3::Zero(), static_cast<double>(period_ns) / kNsPerSecond);
-  }
-
-  static void fill(ToolSample& sample, const Contact& contact, const SurfaceField& field) noexcept {
-    sample.force = contact.force;
-    sample.contact = contact.touching;
-    sample.deep = contact.deep;
-    sample.fault = contact.fault;
-    if (!contact.touching) return;
-    sample.vcp = contact.vcp;
-    sample.normal = contact.normal;
-    sample.depth = contact.depth;
-    sample.face = FieldSampler(field, Sampler::kim).faceNear(contact.vcp);
   }
 
   void measureRate(std::int64_t woke) noexcept {
@@ -106,7 +84,7 @@ struct ServoLoop::Impl {
   std::atomic<std::uint64_t> missed{0};
   std::atomic<double> measured_rate{0};
   std::atomic<RealtimeGrant> grant{RealtimeGrant{-1, -1}}; // before the first start
-  std::int64_t rate_mark = 0; // servo thread's own, as the next
+  std::int64_t rate_mark = 0;                              // servo thread's own, as the next
   int ticks_since_mark = 0;
 };
 
