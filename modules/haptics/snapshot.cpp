@@ -7,11 +7,11 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "haptics/contact_stage.h"
+#include "haptics/force_law.h"
 #include "haptics/friction_stage.h"
 #include "haptics/limit_stage.h"
 #include "haptics/magnet_stage.h"
 #include "haptics/offset_stage.h"
-#include "haptics/spring_stage.h"
 
 namespace patina {
 namespace {
@@ -62,8 +62,7 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
   auto snapshot = std::make_shared<HapticSnapshot>();
   const auto add = [&](std::unique_ptr<const ForceStage> stage, std::string why,
                        std::size_t bytes = 0) {
-    snapshot->why.push_back({std::string(stage->name()), std::move(why), bytes});
-    snapshot->stages.push_back(std::move(stage));
+    addStage(*snapshot, std::move(stage), std::move(why), bytes);
   };
   const double radius = haptics.tip_radius.value_or(0);
   const double iso = radius + haptics.offset.value_or(0);
@@ -77,26 +76,11 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
     add(std::make_unique<FrictionStage>(field, scene.sampler, iso, *haptics.friction),
         "friction.static = " + formatNumber(haptics.friction->static_coefficient));
   }
-  add(std::make_unique<SpringStage>(haptics.stiffness),
-      "stiffness = " + formatNumber(haptics.stiffness));
-  const bool pulls = haptics.magnet && haptics.magnet->range * haptics.magnet->strength > 0;
-  if (haptics.magnet) {
-    add(std::make_unique<MagnetStage>(field, scene.sampler, radius, *haptics.magnet),
-        "magnet.range = " + formatNumber(haptics.magnet->range));
-  }
-  if (haptics.damping_cutoff) {
-    add(std::make_unique<VelocityFilterStage>(*haptics.damping_cutoff),
-        "damping.cutoff = " + formatNumber(*haptics.damping_cutoff));
-  }
-  if (haptics.damping) {
-    add(std::make_unique<DampingStage>(*haptics.damping, pulls),
-        "damping = " + formatNumber(*haptics.damping));
-  }
-  const double stiffest =
-      std::max(haptics.stiffness, haptics.magnet ? haptics.magnet->strength : 0.0);
-  add(std::make_unique<LimitStage>(LimitSpec{haptics.force_limit, stiffest,
-                                             haptics.damping.value_or(0), maxSpeed(field->grid)}),
-      "always");
+  const MagnetMaker magnet = [&](const Magnet& spec) {
+    return std::make_unique<MagnetStage>(field, scene.sampler, radius, spec);
+  };
+  addForceLaw(*snapshot, haptics, planStabilisers(haptics, scene.device_model, scene.stabilisers),
+              magnet, maxSpeed(field->grid));
   snapshot->field = std::move(field);
   return snapshot;
 }

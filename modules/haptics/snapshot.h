@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "haptics/stabilisers.h"
 #include "haptics/stage.h"
 #include "scene/scene.h"
 
@@ -20,6 +21,7 @@ struct HapticSnapshot {
   std::shared_ptr<const SurfaceField> field; // with its sample layer; world frame
   std::vector<std::unique_ptr<const ForceStage>> stages;
   std::vector<StageInfo> why; // one entry a stage
+  StabiliserPlan stabilisers; // what of it is present is a stage; coupling->stiffness is k_c
 };
 
 // How far from the surface its properties are felt: tip radius plus offset or magnetic range [m].

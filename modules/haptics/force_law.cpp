@@ -1,0 +1,63 @@
+#include "haptics/force_law.h"
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "haptics/coupling_stage.h"
+#include "haptics/limit_stage.h"
+#include "haptics/spring_stage.h"
+
+namespace patina {
+
+void addStage(HapticSnapshot& snapshot, std::unique_ptr<const ForceStage> stage, std::string why,
+              std::size_t bytes) {
+  snapshot.why.push_back({std::string(stage->name()), std::move(why), bytes});
+  snapshot.stages.push_back(std::move(stage));
+}
+
+void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics, StabiliserPlan plan,
+                 const MagnetMaker& magnet, double max_speed) {
+  const auto add = [&](std::unique_ptr<const ForceStage> stage, std::string why) {
+    addStage(snapshot, std::move(stage), std::move(why));
+  };
+  const auto says = [](const char* key, double value) {
+    return key + (" = " + formatNumber(value));
+  };
+  const auto soft = [&](double stiffness) {
+    return plan.coupling ? inSeries(stiffness, plan.coupling->stiffness) : stiffness;
+  };
+  const bool pulls = haptics.magnet && haptics.magnet->range * haptics.magnet->strength > 0;
+  const auto addMagnet = [&] {
+    if (!haptics.magnet) return;
+    Magnet softened = *haptics.magnet;
+    softened.strength = soft(softened.strength);
+    add(magnet(softened), says("magnet.range", softened.range));
+  };
+
+  LimitSpec limit{haptics.force_limit, soft(stiffestLaw(haptics)), haptics.damping.value_or(0),
+                  max_speed};
+  if (plan.coupling) {
+    addMagnet();
+    limit.damping = plan.coupling->damping;
+    add(std::make_unique<CouplingStage>(haptics.stiffness, plan.coupling->stiffness, limit.damping,
+                                        pulls),
+        plan.why);
+  } else {
+    add(std::make_unique<SpringStage>(haptics.stiffness), says("stiffness", haptics.stiffness));
+    addMagnet();
+    if (haptics.damping_cutoff)
+      add(std::make_unique<VelocityFilterStage>(*haptics.damping_cutoff),
+          says("damping.cutoff", *haptics.damping_cutoff));
+    if (haptics.damping)
+      add(std::make_unique<DampingStage>(*haptics.damping, pulls),
+          says("damping", *haptics.damping));
+  }
+  if (plan.passivity) {
+    add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
+    limit.damping += plan.passivity->most;
+  }
+  add(std::make_unique<LimitStage>(limit), "always");
+  snapshot.stabilisers = std::move(plan);
+}
+
+} // namespace patina
