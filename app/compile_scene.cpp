@@ -275,6 +275,10 @@ std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face) {
   return -1;
 }
 
+UnionSurface feltTriangles(const CompiledScene& compiled, const Progress& progress) {
+  return unionSurface(partsOf(compiled.objects), compiled.lattice, *compiled.mesh, progress);
+}
+
 std::size_t mergeBytes(const CompiledScene& compiled) {
   if (compiled.objects.size() < 2) return 0;
   std::unordered_set<const void*> shared;

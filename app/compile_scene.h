@@ -8,6 +8,7 @@
 #include "core/progress.h"
 #include "field/build_field.h"
 #include "field/merge_fields.h"
+#include "field/union_surface.h"
 #include "geometry/mesh_report.h"
 #include "haptics/snapshot.h"
 #include "scene/scene.h"
@@ -58,6 +59,9 @@ std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
 // Index of the object that a face of the scene's mesh, and so a node that names it, belongs to;
 // -1 for -1.
 std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face);
+// The triangles that can be felt: without unusable ones, and of several objects what none hides, so
+// that a distance to them is one to the union. Faces are named as in compiled.mesh.
+UnionSurface feltTriangles(const CompiledScene& compiled, const Progress& progress);
 // Held for later edits beyond what the field itself shares with it; 0 for one object.
 std::size_t mergeBytes(const CompiledScene& compiled);
 

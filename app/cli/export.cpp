@@ -34,6 +34,16 @@ CsvTable vertexTable(const CompiledScene& compiled) {
   return table;
 }
 
+// Of each triangle; nothing to tell apart in a scene of one.
+std::vector<std::int32_t> objectsOf(const CompiledScene& compiled) {
+  std::vector<std::int32_t> object;
+  if (compiled.objects.size() < 2) return object;
+  for (std::size_t i = 0; i < compiled.objects.size(); ++i)
+    object.insert(object.end(), compiled.objects[i]->mesh->triangles.size(),
+                  static_cast<std::int32_t>(i));
+  return object;
+}
+
 int runExport(const ExportOptions& options, Console& console) {
   const std::filesystem::path& folder = options.output;
   std::vector<TimedTip> path;
@@ -52,7 +62,7 @@ int runExport(const ExportOptions& options, Console& console) {
     throw FileError(folder.string(), 0, "this folder cannot be made");
   std::vector<std::pair<std::string, std::string>> blocks = {
       {"mesh", "mesh.vtp"}, {"surface", "surface.vtp"}, {"field", "field.vti"}};
-  writeMeshVtp(folder / "mesh.vtp", *compiled->mesh);
+  writeMeshVtp(folder / "mesh.vtp", *compiled->mesh, {}, objectsOf(*compiled));
   // With a finite tip the surface that is felt lies its radius outside.
   const double iso = compiled->scene.haptics.tip_radius.value_or(0.0);
   if (stability)
@@ -104,7 +114,8 @@ Command exportCommand() {
   command.name = "export";
   command.summary = "write everything for ParaView";
   command.description =
-      "Into the folder: mesh.vtp, surface.vtp (the surface that the tip's centre feels), "
+      "Into the folder: mesh.vtp (of several objects with the index of each triangle's), "
+      "surface.vtp (the surface that the tip's centre feels), "
       "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens them "
       "together, and with --path also path.vtp and forces.csv (as patina feel).\n"
       "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop would "

@@ -18,9 +18,12 @@ int runField(const FieldOptions& options, Console& console) {
     throw Error("--output: a field is a .vti file, not '" + options.output.string() + "'");
   requireWritable(options.output);
   const Scene scene = openWith(options.input, options.scene, console);
-  if (scene.objects.size() != 1)
-    throw Error(options.input.string() + ": needs exactly one object to build a field");
-  const BuiltField built = buildField(worldMesh(scene), scene.field, console.progress());
+  if (scene.objects.empty())
+    throw Error(options.input.string() + ": needs an object to build a field");
+  // One object needs no more than its field.
+  const BuiltField built = scene.objects.size() == 1
+                               ? buildField(worldMesh(scene), scene.field, console.progress())
+                               : compile(scene, console.progress())->built;
   console.progress().throwIfCancelled();
   writeField(options.output, *built.field);
   console.report(fieldJson(*built.field, built.report),
@@ -34,12 +37,13 @@ Command fieldCommand() {
   auto options = std::make_shared<FieldOptions>();
   Command command;
   command.name = "field";
-  command.summary = "build the sampled implicit surface of a mesh";
+  command.summary = "build the sampled implicit surface of a mesh or scene";
   command.description =
       "Writes signed distance [m], negative inside, and the nearest face of every node in a band "
       "about the surface, as a volume that ParaView opens. JSON: seconds, cpu_seconds, voxel [m], "
       "resolution (cells), origin [m], band_voxels, blocks, bytes, dense_bytes, "
-      "dropped_triangles, ambiguous_signs.";
+      "dropped_triangles, ambiguous_signs, redistanced_nodes (depths re-measured where objects "
+      "overlap).";
   command.examples = {"patina field bunny.ply -o bunny.vti --resolution 200",
                       "patina field bunny.ply -o bunny.vti --voxel 0.5mm --band 6 --json"};
   command.input("MESH", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "app/cli/commands.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
@@ -62,7 +64,36 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& report, Json& json
   rows.emplace_back("defects", defectsText(report));
 }
 
-void describeLayers(const SurfaceField& field, std::size_t mesh_bytes, Json& json, TextRows& rows) {
+void describeObjects(const Scene& scene, Json& json, TextRows& rows) {
+  Json objects = Json::array();
+  for (const SceneObject& object : scene.objects) {
+    const std::size_t triangles = object.mesh->triangles.size();
+    Json entry = Json::object();
+    entry.set("name", object.name);
+    entry.set("triangles", triangles);
+    objects.push(entry);
+    if (scene.objects.size() > 1)
+      rows.emplace_back("object " + object.name, formatCount(triangles) + " triangles");
+  }
+  json.set("objects", objects);
+}
+
+// What several objects hold so that one may be moved without the others being built again.
+std::optional<Json> mergeLayer(const CompiledScene& compiled, TextRows& rows) {
+  const std::size_t bytes = mergeBytes(compiled);
+  if (bytes == 0) return std::nullopt;
+  const std::string why = std::to_string(compiled.objects.size()) + " objects" +
+                          (compiled.scene.redistance ? ", merge.redistance = on" : "");
+  Json entry = Json::object();
+  entry.set("name", "merge");
+  entry.set("why", why);
+  entry.set("bytes", bytes);
+  rows.emplace_back("layer merge", why + "; " + formatBytes(static_cast<double>(bytes)));
+  return entry;
+}
+
+void describeLayers(const SurfaceField& field, std::size_t mesh_bytes,
+                    const CompiledScene* compiled, Json& json, TextRows& rows) {
   Json layers = Json::array();
   std::vector<LayerBytes> all = field.layerBytes();
   if (mesh_bytes) all.insert(all.begin(), {"mesh", mesh_bytes});
@@ -73,6 +104,8 @@ void describeLayers(const SurfaceField& field, std::size_t mesh_bytes, Json& jso
     layers.push(entry);
     rows.emplace_back("layer " + layer.name, formatBytes(static_cast<double>(layer.bytes)));
   }
+  if (compiled)
+    if (auto merge = mergeLayer(*compiled, rows)) layers.push(*merge);
   json.set("layers", layers);
 }
 
@@ -129,6 +162,7 @@ int runInfo(const InfoOptions& options, Console& console) {
     for (const auto& [key, value] : values(scene)) rows.emplace_back(key, withUnit(key, value));
     json.set("values", valuesJson(scene));
   }
+  describeObjects(scene, json, rows);
   if (options.no_field || scene.objects.empty()) {
     const TriangleMesh mesh = worldMesh(scene);
     describeMesh(mesh, inspect(mesh), json, rows);
@@ -147,13 +181,13 @@ int runInfo(const InfoOptions& options, Console& console) {
     report.bytes = field.bytes();
     report.dense_bytes = field.grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
     describeField(field, report, json, rows);
-    describeLayers(field, 0, json, rows);
+    describeLayers(field, 0, nullptr, json, rows);
     json.set("stages", Json::array());
   } else {
     const auto compiled = compile(std::move(scene), console.progress());
     describeMesh(*compiled->mesh, compiled->mesh_report, json, rows);
     describeField(*compiled->built.field, compiled->built.report, json, rows);
-    describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), json, rows);
+    describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), compiled.get(), json, rows);
     describeStages(*compiled, json, rows);
     describeStability(*compiled, json, rows, console.progress());
   }
@@ -176,8 +210,10 @@ Command infoCommand() {
       "layers, and its surface as the mesh; stages stay empty. Where the scene has a device "
       "(device.* values), the smallest K*(x)/K of the surface and where.\n"
       "JSON: kind, triangles, vertices, bounds [m], watertight, components, defects (non_finite, "
-      "degenerate, duplicate, boundary_edges, non_manifold_edges, misoriented_edges), layers "
-      "(name, bytes), stages (name, why, bytes, ns), field (as patina field), stability (as patina "
+      "degenerate, duplicate, boundary_edges, non_manifold_edges, misoriented_edges), objects "
+      "(name, "
+      "triangles), layers (name, bytes; why, of the one that keeps several objects apart), stages "
+      "(name, why, bytes, ns), field (as patina field), stability (as patina "
       "render; only with a device).";
   command.examples = {"patina info bunny.ply", "patina info workspace --json",
                       "patina info huge.stl --unit m --no-field"};

@@ -55,15 +55,15 @@ template <typename Value> std::string choices(const std::vector<Value>& all) {
 
 // The tool as the servo leaves it when it comes to `tip` from outside.
 ToolSample toolAt(const CompiledScene& compiled, const Vec3& tip, Progress& progress) {
-  const CleanMesh clean = cleaned(*compiled.mesh);
-  const ClosestPoint nearest = TriangleTree(clean.mesh).closestPoint(tip);
-  const Box3 box = bounds(clean.mesh);
+  const TriangleMesh felt = feltTriangles(compiled, progress).mesh;
+  const ClosestPoint nearest = TriangleTree(felt).closestPoint(tip);
+  const Box3 box = bounds(felt);
   const bool inside = FieldSampler(*compiled.built.field, compiled.scene.sampler).at(tip).phi < 0;
   Vec3 outward = inside ? Vec3(nearest.point - tip) : Vec3(tip - nearest.point);
   if (outward.norm() > 0)
     outward.normalize();
   else
-    outward = faceNormal(clean.mesh, static_cast<std::size_t>(nearest.surface.face));
+    outward = faceNormal(felt, static_cast<std::size_t>(nearest.surface.face));
   const Vec3 start = nearest.point + 0.02 * box.sizes().maxCoeff() * outward;
   constexpr int kTicks = 200;
   std::vector<TimedTip> path;

@@ -39,6 +39,7 @@ Json fieldJson(const SurfaceField& field, const FieldReport& report) {
   json.set("dense_bytes", report.dense_bytes);
   json.set("dropped_triangles", report.dropped_triangles);
   json.set("ambiguous_signs", report.ambiguous_signs);
+  json.set("redistanced_nodes", report.redistanced_nodes);
   return json;
 }
 
@@ -62,6 +63,9 @@ TextRows fieldRows(const SurfaceField& field, const FieldReport& report) {
   if (report.ambiguous_signs)
     rows.emplace_back("unsure",
                       formatCount(report.ambiguous_signs) + " nodes may be inside or outside");
+  if (report.redistanced_nodes)
+    rows.emplace_back("depths", formatCount(report.redistanced_nodes) +
+                                    " nodes re-measured to the union's own surface");
   return rows;
 }
 

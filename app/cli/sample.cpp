@@ -27,11 +27,11 @@ const std::vector<std::string> kColumns = {
     "x [m]",  "y [m]",  "z [m]",   "phi [m]",         "nx",      "ny", "nz", "face", "cx [m]",
     "cy [m]", "cz [m]", "in_band", "stiffness [N/m]", "friction"};
 
-// Exact closest points on the triangles that a field is built from, under the indices of the mesh
-// as given.
+// Exact closest points on what can be felt, under the indices of the mesh as given.
 class SurfaceOracle {
  public:
-  explicit SurfaceOracle(const TriangleMesh& mesh) : tree_(kept(mesh, face_of_)) {}
+  explicit SurfaceOracle(UnionSurface surface)
+      : face_of_(std::move(surface.face)), tree_(surface.mesh) {}
 
   ClosestPoint closest(const Vec3& p) const {
     ClosestPoint found = tree_.closestPoint(p);
@@ -40,19 +40,7 @@ class SurfaceOracle {
   }
 
  private:
-  static TriangleMesh kept(const TriangleMesh& mesh, std::vector<std::int32_t>& face_of) {
-    TriangleMesh result;
-    result.positions = mesh.positions;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const Vec3 normal = faceNormal(mesh, t);
-      if (!normal.allFinite() || normal.isZero(0.0)) continue;
-      result.triangles.push_back(mesh.triangles[t]);
-      face_of.push_back(static_cast<std::int32_t>(t));
-    }
-    return result;
-  }
-
-  std::vector<std::int32_t> face_of_; // before tree_: its construction fills it
+  std::vector<std::int32_t> face_of_;
   TriangleTree tree_;
 };
 
@@ -81,7 +69,7 @@ SampledSurface open(const SampleOptions& options, Console& console) {
   const auto compiled =
       compile(openWith(options.input, options.scene, console), console.progress());
   surface.field = compiled->built.field;
-  surface.oracle.emplace(*compiled->mesh);
+  surface.oracle.emplace(feltTriangles(*compiled, console.progress()));
   surface.sampler = compiled->scene.sampler;
   surface.haptics = compiled->scene.haptics;
   return surface;
@@ -176,7 +164,9 @@ Command sampleCommand() {
       "cx,cy,cz "
       "[m], in_band (1 or 0), stiffness [N/m] and static friction.\n"
       "With a mesh or workspace the face and closest point are exact, and so are phi and the "
-      "direction beyond the band. With a field alone they are what the field knows: closest point "
+      "direction beyond the band; of several objects the closest point is one of their union's, "
+      "which "
+      "none of them hides. With a field alone they are what the field knows: closest point "
       "= point - phi n, and beyond the band phi is a bound outside, the coarse nodes' estimate "
       "inside; trust neither where in_band is 0.\n"
       "JSON: points, in_band, bad_points (NaN or infinite), sampler, voxel [m].";

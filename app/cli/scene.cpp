@@ -1,11 +1,11 @@
+#include <algorithm>
 #include <optional>
-#include <sstream>
 
 #include "app/cli/commands.h"
+#include "app/cli/pose_file.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
 #include "core/error.h"
-#include "core/file.h"
 #include "core/numbers.h"
 #include "workspace/workspace.h"
 
@@ -16,36 +16,9 @@ namespace {
 struct SceneCommandOptions {
   std::filesystem::path workspace;
   OpenOptions open;
-  std::vector<std::string> added, removed;
+  std::vector<std::string> added, moved, removed;
   Settings settings;
 };
-
-// 4 x 4, row-major, '#' starts a comment.
-Pose readPose(const std::filesystem::path& path) {
-  std::istringstream text(readFile(path));
-  std::vector<double> values;
-  std::size_t line_number = 0;
-  for (std::string line; std::getline(text, line);) {
-    ++line_number;
-    std::istringstream words(line.substr(0, line.find('#')));
-    for (std::string word; words >> word;) {
-      const std::optional<double> value = parseNumber(word);
-      if (!value) throw FileError(path.string(), line_number, "'" + word + "' is not a number");
-      values.push_back(*value);
-    }
-  }
-  if (values.size() != 16)
-    throw FileError(path.string(), 0,
-                    "a pose has 4 x 4 numbers, not " + std::to_string(values.size()));
-  Pose pose;
-  for (int i = 0; i < 16; ++i) pose.matrix()(i / 4, i % 4) = values[static_cast<std::size_t>(i)];
-  const Eigen::Matrix3d rotation = pose.linear();
-  const bool rigid =
-      pose.matrix().allFinite() && (rotation * rotation.transpose()).isIdentity(1e-6) &&
-      rotation.determinant() > 0 && pose.matrix().row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1));
-  if (!rigid) throw FileError(path.string(), 0, "not a rotation and a translation");
-  return pose;
-}
 
 // "MESH" or "MESH@POSE.txt"; a file whose own name has an '@' wins.
 SceneObject readObject(const std::string& text, const OpenOptions& open, Console& console) {
@@ -64,13 +37,52 @@ SceneObject readObject(const std::string& text, const OpenOptions& open, Console
   return object;
 }
 
-void removeObject(Scene& scene, const std::string& name) {
-  std::string known;
+std::string namesOf(const Scene& scene) {
+  std::string names;
   for (const SceneObject& object : scene.objects)
-    known += (known.empty() ? "" : ", ") + object.name;
+    names += (names.empty() ? "" : ", ") + object.name;
+  return names.empty() ? "none" : names;
+}
+
+void removeObject(Scene& scene, const std::string& name) {
+  const std::string known = namesOf(scene);
   if (!std::erase_if(scene.objects, [&](const SceneObject& object) { return object.name == name; }))
-    throw Error("--remove: no object '" + name + "' in the scene; there is " +
-                (known.empty() ? "none" : known));
+    throw Error("--remove: no object '" + name + "' in the scene; there is " + known);
+}
+
+// "NAME@POSE.txt"; a name has no '@'.
+void moveObject(Scene& scene, const std::string& text) {
+  const std::size_t at = text.find('@');
+  if (at == std::string::npos || at == 0 || at + 1 == text.size())
+    throw Error("--move: '" + text + "' is not NAME@POSE.txt");
+  const std::string name = text.substr(0, at);
+  for (SceneObject& object : scene.objects) {
+    if (object.name != name) continue;
+    object.world_from_object = readPose(text.substr(at + 1));
+    return;
+  }
+  throw Error("--move: no object '" + name + "' in the scene; there is " + namesOf(scene));
+}
+
+// The same file may be added twice: cup, cup-2, cup-3.
+void addObject(Scene& scene, SceneObject object) {
+  const std::string base = object.name;
+  const auto taken = [&] {
+    return std::any_of(scene.objects.begin(), scene.objects.end(),
+                       [&](const SceneObject& other) { return other.name == object.name; });
+  };
+  for (int number = 2; taken(); ++number) object.name = base + "-" + std::to_string(number);
+  scene.objects.push_back(std::move(object));
+}
+
+Json poseJson(const Pose& pose) {
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row) {
+    Json numbers = Json::array();
+    for (int column = 0; column < 4; ++column) numbers.push(pose.matrix()(row, column));
+    rows.push(std::move(numbers));
+  }
+  return rows;
 }
 
 int runScene(const SceneCommandOptions& options, Console& console) {
@@ -81,20 +93,16 @@ int runScene(const SceneCommandOptions& options, Console& console) {
     throw FileError(folder.string(), 0, "exists and is not a workspace; choose another folder");
   Scene scene = old ? loadWorkspace(folder) : Scene{};
   for (const std::string& name : options.removed) removeObject(scene, name);
-  for (const std::string& text : options.added) {
-    if (!scene.objects.empty())
-      throw Error("--add: the scene has '" + scene.objects.front().name +
-                  "' already and this version feels one object; --remove it first");
-    OpenOptions open = options.open;
-    open.tip_radius_chosen =
-        scene.haptics.tip_radius.value_or(0.0) > 0 || setsTipRadius(options.settings);
-    scene.objects.push_back(readObject(text, open, console));
-  }
+  for (const std::string& text : options.moved) moveObject(scene, text);
+  OpenOptions open = options.open;
+  open.tip_radius_chosen =
+      scene.haptics.tip_radius.value_or(0.0) > 0 || setsTipRadius(options.settings);
+  for (const std::string& text : options.added) addObject(scene, readObject(text, open, console));
   applySettings(scene, options.settings);
   validate(scene);
   console.progress().throwIfCancelled();
-  const bool changed =
-      !options.added.empty() || !options.removed.empty() || !options.settings.empty();
+  const bool changed = !options.added.empty() || !options.moved.empty() ||
+                       !options.removed.empty() || !options.settings.empty();
   if (changed || !old) saveWorkspace(scene, folder);
 
   Json objects = Json::array();
@@ -103,6 +111,7 @@ int runScene(const SceneCommandOptions& options, Console& console) {
     Json entry = Json::object();
     entry.set("name", object.name);
     entry.set("triangles", object.mesh->triangles.size());
+    entry.set("world_from_object", poseJson(object.world_from_object));
     objects.push(entry);
     rows.emplace_back("object", object.name + ", " + formatCount(object.mesh->triangles.size()) +
                                     " triangles");
@@ -125,20 +134,30 @@ Command sceneCommand() {
   command.name = "scene";
   command.summary = "make or change a workspace";
   command.description =
-      "A workspace is a folder that holds a mesh and how it feels. Without --add, --remove and "
-      "--set an existing one is only listed. Removals come first, then additions, then settings; "
-      "an error leaves the folder as it was. Keys: stiffness [N/m], damping [N s/m], "
+      "A workspace is a folder that holds meshes, where they are, and how they feel; several are "
+      "felt "
+      "as one surface, their union. Without --add, --move, --remove and --set an existing one is "
+      "only listed. Removals come first, then moves, then additions, then settings; an error "
+      "leaves "
+      "the folder as it was. A mesh added again gets a name of its own: cup, cup-2. Where objects "
+      "overlap deeply, merge.redistance=on measures depths to the union's own surface. Keys: "
+      "stiffness [N/m], damping [N s/m], "
       "friction.static, friction.dynamic, friction.depth, friction.slip, tip.radius [m], "
-      "force.limit [N], resolution, voxel [m], band [voxels], sampler, device. The value none "
+      "force.limit [N], resolution, voxel [m], band [voxels], sampler, merge.redistance, device. "
+      "The value none "
       "makes a feature absent.\n"
       "A pose is a text file of 4 x 4 numbers, row by row: world from object, in metres.\n"
-      "JSON: workspace, saved, objects (name, triangles), values.";
+      "JSON: workspace, saved, objects (name, triangles, world_from_object), values.";
   command.examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
+                      "patina scene -o cup --add spoon.ply@spoon.txt --move cup@aside.txt",
                       "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3"};
   command.output("WORKSPACE", "The folder.", options->workspace);
-  command.arguments.push_back(
-      {"--add", "MESH[@POSE.txt]", "Put a mesh into the scene: one object in this version.", "",
-       false, true, [options](const auto& text) { options->added.push_back(text); }});
+  command.arguments.push_back({"--add", "MESH[@POSE.txt]",
+                               "Put a mesh into the scene, where the pose says.", "", false, true,
+                               [options](const auto& text) { options->added.push_back(text); }});
+  command.arguments.push_back({"--move", "NAME@POSE.txt", "Put an object elsewhere.", "", false,
+                               true,
+                               [options](const auto& text) { options->moved.push_back(text); }});
   command.arguments.push_back({"--remove", "NAME", "Take an object out.", "", false, true,
                                [options](const auto& text) { options->removed.push_back(text); }});
   command.arguments.push_back({"--set", "KEY=VALUE", "Change a value.", "", false, true,

@@ -1,6 +1,7 @@
 #include "visualization/export_files.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -41,6 +42,14 @@ vtkSmartPointer<vtkDoubleArray> pointArray(vtkPolyData* data, const char* name, 
   return array;
 }
 
+void addCellArray(vtkPolyData* data, const char* name, const std::vector<std::int32_t>& values) {
+  const vtkNew<vtkIntArray> array;
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  data->GetCellData()->AddArray(array);
+}
+
 std::string escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -67,14 +76,13 @@ std::string escaped(const std::string& text) {
 } // namespace
 
 void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh,
-                  const std::vector<VertexValues>& values) {
+                  const std::vector<VertexValues>& values,
+                  const std::vector<std::int32_t>& object) {
   const auto data = plainData(mesh);
-  const vtkNew<vtkIntArray> face;
-  face->SetName("face");
-  face->SetNumberOfValues(static_cast<vtkIdType>(mesh.triangles.size()));
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
-    face->SetValue(static_cast<vtkIdType>(f), static_cast<int>(f));
-  data->GetCellData()->AddArray(face);
+  std::vector<std::int32_t> face(mesh.triangles.size());
+  std::iota(face.begin(), face.end(), 0);
+  addCellArray(data, "face", face);
+  if (!object.empty()) addCellArray(data, "object", object);
   for (const VertexValues& one : values) {
     const vtkNew<vtkFloatArray> array;
     array->SetName(one.name.c_str());

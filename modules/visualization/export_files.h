@@ -1,6 +1,7 @@
 // What ParaView reads, for `patina export`. Every file is written atomically; all throw FileError.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -16,10 +17,12 @@ struct VertexValues {
   std::vector<float> values; // one a vertex
 };
 
-// Triangles in metres, with "face" (the index) and what else is known of the vertices. Texture
-// coordinates are per corner and stay in OBJ.
+// Triangles in metres, with "face" (the index), "object" (the index of its object; left out if
+// empty) and what else is known of the vertices. Texture coordinates are per corner and stay in
+// OBJ.
 void writeMeshVtp(const std::filesystem::path& path, const TriangleMesh& mesh,
-                  const std::vector<VertexValues>& values = {});
+                  const std::vector<VertexValues>& values = {},
+                  const std::vector<std::int32_t>& object = {});
 
 // The tip's path as one line, with arrays "t [s]", "force [N]", "vcp [m]", "depth [m]", "contact".
 void writeToolPathVtp(const std::filesystem::path& path, const std::vector<ToolSample>& samples);
