@@ -147,10 +147,12 @@ Command renderCommand() {
       "tool at --tip, come to from outside; the layer band is where an offset or a magnet acts; "
       "the layer stability colours the surface by K*(x)/K for the scene's device (device.* values; "
       "without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below 1 the loop would buzz "
-      "when pressed with 1 N, colours end at 0.25 and 4.\n"
+      "when pressed with 1 N, grey where the force jumps; "
+      "colours end at 0.25 and 4.\n"
       "Needs a display; on a machine without one: xvfb-run -a patina render ...\n"
       "JSON: picture, width, height, layers, view; stability (ratio_min, at [m], ratio_median, "
-      "buzzing (fraction below 1), limit [N/m], limit_damped [N/m], coupled, device_given).";
+      "buzzing, slipping, jumping (fractions of the surface), limit [N/m], limit_damped [N/m], "
+      "coupled, device_given).";
   command.examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
                       "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm"};
   command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

@@ -16,8 +16,8 @@ double median(std::vector<float> values) {
   return *middle;
 }
 
-double buzzingShare(const StabilityMap& map) {
-  return static_cast<double>(map.buzzing) / static_cast<double>(map.ratio.size());
+double share(std::size_t count, const StabilityMap& map) {
+  return static_cast<double>(count) / static_cast<double>(map.ratio.size());
 }
 
 std::string deviceText(const Scene& scene) {
@@ -43,7 +43,9 @@ Json stabilityJson(const SurfaceStability& stability, const Scene& scene) {
   json.set("ratio_min", map.worst_ratio);
   json.set("at", vectorJson(stability.surface->positions[map.worst]));
   json.set("ratio_median", median(map.ratio));
-  json.set("buzzing", buzzingShare(map));
+  json.set("buzzing", share(map.buzzing, map));
+  json.set("slipping", share(map.slipping, map));
+  json.set("jumping", share(map.jumping, map));
   json.set("limit", map.limits.plain);
   json.set("limit_damped", map.limits.damped);
   json.set("coupled", map.limits.coupled);
@@ -54,12 +56,18 @@ Json stabilityJson(const SurfaceStability& stability, const Scene& scene) {
 TextRows stabilityRows(const SurfaceStability& stability, const Scene& scene) {
   const StabilityMap& map = stability.map;
   const Vec3& at = stability.surface->positions[map.worst];
+  const auto percent = [&](std::size_t count) { return rounded(100 * share(count, map)) + " %"; };
   std::string where = "smallest K*/K " + rounded(map.worst_ratio) + " at " + formatLength(at.x()) +
-                      ", " + formatLength(at.y()) + ", " + formatLength(at.z()) +
-                      "; half the surface has " + rounded(median(map.ratio)) + " or more";
-  if (map.buzzing)
-    where += "; " + rounded(100 * buzzingShare(map)) + " % of it is below 1 and would buzz";
-  TextRows rows = {{"stability", where}, {"device", deviceText(scene)}};
+                      ", " + formatLength(at.y()) + ", " + formatLength(at.z()) + "; median " +
+                      rounded(median(map.ratio));
+  if (map.buzzing) where += "; " + percent(map.buzzing) + " of the surface is below 1: it buzzes";
+  TextRows rows = {{"stability", where}};
+  if (map.slipping)
+    rows.emplace_back("slipping",
+                      percent(map.slipping) +
+                          ": a light grip does not hold the tip there; judged as a plane");
+  if (map.jumping) rows.emplace_back("jumping", percent(map.jumping) + ": the force jumps; grey");
+  rows.emplace_back("device", deviceText(scene));
   if (map.limits.coupled) rows.emplace_back("coupling", "on: the map is of the coupled loop");
   return rows;
 }

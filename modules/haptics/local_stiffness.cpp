@@ -48,7 +48,7 @@ Eigen::Matrix3d StiffnessProbe::differenced(const WayIn& way, const Vec3& tip, d
     const Vec3 move = step * Vec3::Unit(axis);
     slope.col(axis) = (forceAt(way, tip - move) - forceAt(way, tip + move)) / (2 * step);
   }
-  return 0.5 * (slope + slope.transpose());
+  return slope;
 }
 
 std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point,
@@ -81,9 +81,9 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
   result.uncertainty =
       (result.matrix - differenced(way, result.tip, 0.5 * length)).cwiseAbs().maxCoeff();
   if (!result.matrix.allFinite()) return std::nullopt;
-  const Vec3 values =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(result.matrix, Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Vec3 values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+                          0.5 * (result.matrix + result.matrix.transpose()), Eigen::EigenvaluesOnly)
+                          .eigenvalues();
   result.lambda_min = values[0];
   result.lambda_max = values[2];
   return result;

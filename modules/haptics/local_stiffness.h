@@ -14,10 +14,12 @@ struct LocalStiffness {
   Vec3 normal = Vec3::Zero(); // of the force there, unit, outward
   double depth = 0;           // [m], beneath the surface that is felt, along the way in
   double force = 0;           // [N], magnitude there
-  // -dF/dx [N/m] of the frictionless wall, its symmetric part.
+  // -dF/dx [N/m] of the frictionless wall. Not symmetric where the interpolated direction is not
+  // the gradient of the interpolated depth: beside creases and near a medial axis.
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  double lambda_max = 0; // [N/m]
-  double lambda_min = 0; // [N/m]; negative: the tip slips off, as from a ridge
+  // Extreme eigenvalues of its symmetric part [N/m]: no direction is stiffer or less stiff.
+  double lambda_max = 0;
+  double lambda_min = 0; // negative: the tip slips off, as from a ridge
   // Largest change of an entry of `matrix` [N/m] when the step is halved: what the number is good
   // for. At a crease the stiffness itself varies within a voxel, and this says so.
   double uncertainty = 0;

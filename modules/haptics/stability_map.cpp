@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 #include <Eigen/Eigenvalues>
@@ -15,18 +16,42 @@ namespace {
 // Of the wall's stiffness: a loop that bears less is as good as one without damping, and the
 // differences' own rounding would decide between them.
 constexpr double kNegligible = 1e-3;
+// Of the stiffness, when the step is halved; across a jump it doubles.
+constexpr double kJump = 0.25;
 constexpr std::size_t kBetweenPolls = 2000; // vertices, some 10 ms
 
-// Largest lambda of wall u = lambda bearable u: how many times the loop's limit is exceeded.
+// How many times the limit of the loop an eigenvalue is, given as a multiple of K*. A real one has
+// nothing more to say. A pair a +- ic needs damping to hold the whirl down as well as the sampling:
+// stable up to u of K* with (1 - u)^2 beta = u, beta = whirl (a / c)^2.
+double loadOf(const std::complex<double>& eigenvalue, double whirl) {
+  const double a = eigenvalue.real(), c = std::abs(eigenvalue.imag());
+  if (!(a > 0) || c == 0) return a;
+  const double beta = whirl * a * a / (c * c);
+  if (beta > 1e9) return a;
+  const double u = 2 * beta / (2 * beta + 1 + std::sqrt(4 * beta + 1));
+  return a / u;
+}
+
+// How many times over the wall asks for what the loop bears, in the worst direction.
 double wallLoad(const LocalStiffness& at, const LoopLimits& limits) {
   const double least = kNegligible * at.matrix.cwiseAbs().maxCoeff();
   const double across = 1 / std::sqrt(std::max(limits.plain, least));
   const double along = 1 / std::sqrt(std::max(limits.damped, least));
   const Eigen::Matrix3d normal = at.normal * at.normal.transpose();
   const Eigen::Matrix3d scale = across * (Eigen::Matrix3d::Identity() - normal) + along * normal;
-  const Eigen::Matrix3d load = scale * at.matrix * scale;
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(load, Eigen::EigenvaluesOnly)
-      .eigenvalues()[2];
+  const Eigen::EigenSolver<Eigen::Matrix3d> solver(scale * at.matrix * scale, false);
+  double load = 0;
+  for (const std::complex<double>& eigenvalue : solver.eigenvalues())
+    load = std::max(load, loadOf(eigenvalue, limits.whirl));
+  return load;
+}
+
+bool slips(const LocalStiffness& at, const LoopLimits& limits) {
+  return limits.softening * at.lambda_min < -kGrip;
+}
+
+bool jumps(const LocalStiffness& at) {
+  return at.uncertainty > kJump * at.matrix.cwiseAbs().maxCoeff();
 }
 
 } // namespace
@@ -45,15 +70,18 @@ LoopLimits loopLimits(const Scene& scene) {
   }
   limits.damped = stiffnessLimit(loop);
   limits.plain = stiffnessLimit(sampledLoop(device));
+  if (limits.plain > 0)
+    limits.whirl = device.damping * device.damping / (device.mass * limits.plain);
   return limits;
 }
 
 double stabilityRatio(const LocalStiffness& at, const Scene& scene, const LoopLimits& limits) {
   const HapticProperties& haptics = scene.haptics;
-  double load = limits.softening * wallLoad(at, limits);
   const double damped = std::max(limits.damped, kNegligible * haptics.stiffness);
+  const double plane = haptics.stiffness / damped;
+  double load = limits.softening * (slips(at, limits) ? plane : wallLoad(at, limits));
   if (haptics.friction && haptics.friction->static_coefficient > 0)
-    load = std::max(load, limits.softening * haptics.stiffness / damped);
+    load = std::max(load, limits.softening * plane);
   if (haptics.magnet && haptics.magnet->range > 0)
     load = std::max(load, haptics.magnet->strength / damped);
   return load > 0 ? 1 / load : std::numeric_limits<double>::infinity();
@@ -76,14 +104,18 @@ StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField
     }
     const auto at = probe.at(mesh.positions[v]);
     if (!at) continue;
+    map.least[v] = static_cast<float>(at->lambda_min);
+    if (jumps(*at)) {
+      ++map.jumping;
+      continue;
+    }
     const double ratio = stabilityRatio(*at, scene, map.limits);
     map.ratio[v] = static_cast<float>(ratio);
-    map.least[v] = static_cast<float>(at->lambda_min);
     if (ratio < 1) ++map.buzzing;
+    if (slips(*at, map.limits)) ++map.slipping;
     if (!(ratio >= map.worst_ratio)) {
       map.worst = v;
       map.worst_ratio = ratio;
-      map.uncertainty = at->uncertainty / at->lambda_max;
     }
   }
   return map;

@@ -145,7 +145,7 @@ void SceneView::Impl::aimTool() {
   const auto hit = firstSurfaceAlong(*field, ray.origin, ray.direction);
   if (!hit) return;
   sample.emplace();
-  sample->tip = sample->vcp = *hit;
+  sample->tip = sample->vcp = sample->surface = *hit;
   tool.update(*sample);
   nodes_stale = true;
 }
@@ -270,7 +270,7 @@ void SceneView::setTool(const ToolSample& sample) {
   Impl& my = *impl_;
   const bool first = !my.sample.has_value();
   if (!first && my.sample->tip == sample.tip && my.sample->vcp == sample.vcp &&
-      my.sample->force == sample.force && my.sample->contact == sample.contact)
+      my.sample->force == sample.force && my.sample->surface == sample.surface)
     return;
   my.sample = sample;
   my.tool.update(sample);
@@ -308,7 +308,10 @@ void SceneView::setView(ViewPreset view) {
 
 void SceneView::fit() {
   const Box3 box = impl_->box();
-  fitCamera(*impl_->scene->GetActiveCamera(), box.center(), impl_->outermost(box), impl_->aspect());
+  // The scalar bar of the map takes some of the width.
+  const bool map = impl_->on(Layer::stability) && impl_->has_stability;
+  const double aspect = (map ? 0.77 : 1.0) * impl_->aspect();
+  fitCamera(*impl_->scene->GetActiveCamera(), box.center(), impl_->outermost(box), aspect);
   impl_->dirty = true;
 }
 

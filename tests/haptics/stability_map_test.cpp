@@ -1,6 +1,8 @@
 // K*(x)/K against closed forms, and against a mass on the surface.
 #include "haptics/stability_map.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "geometry/shapes.h"
@@ -190,6 +192,69 @@ TEST(StabilityRatio, TheCouplingTakesItBelowTheLimitWhereverTheWallAloneIsNot) {
   EXPECT_FALSE(loopLimits(scene).coupled);
   scene.device_model = DeviceModel{};
   EXPECT_TRUE(loopLimits(scene).coupled);
+}
+
+// A force that goes round: two directions of stiffness a, coupled by c and -c.
+TEST(StabilityRatio, AWhirlNeedsDampingEvenWhereEachDirectionIsSoft) {
+  Scene scene = bare(500);
+  LocalStiffness at;
+  at.normal = Vec3::UnitZ();
+  for (const double c : {3.0, 10.0, 100.0}) {
+    at.matrix << 300, -c, 0, c, 300, 0, 0, 0, 100;
+    const double ratio = stabilityRatio(at, scene, loopLimits(scene));
+    EXPECT_LT(ratio, 0.95 * limitWith(0) / 300);
+    const HeldForceStep step = heldForceStep(0.1, 0.5, 1e-3);
+    for (const double scale : {0.9 * ratio, 1.1 * ratio}) {
+      Vec3 x(1e-3, 0, 0), v = Vec3::Zero();
+      double early = 0, late = 0;
+      for (int i = 0; i < 40000; ++i) {
+        const Vec3 force = -scale * at.matrix * x;
+        x += step.c * v + step.d * force;
+        v = step.a * v + step.e * force;
+        if (i >= 10000 && i < 20000) early += v.squaredNorm();
+        if (i >= 30000) late += v.squaredNorm();
+      }
+      if (scale < ratio)
+        EXPECT_LT(late, early) << "c = " << c;
+      else
+        EXPECT_GT(late, early) << "c = " << c;
+    }
+  }
+}
+
+// A ridge pushes the tip aside; that is no buzz, whatever its directions ask for.
+TEST(StabilityMap, WhereTheTipSlipsOffItIsAPlane) {
+  const double h = 0.5e-3;
+  const Vec3 half = Vec3::Constant(0.0103);
+  TriangleMesh mesh;
+  for (double aside = -0.5; aside < 0.5; aside += 0.02)
+    mesh.positions.push_back(Vec3(half.x() + aside * h, half.y() - aside * h, 1e-3));
+  mesh.positions.push_back(Vec3(half.x(), 1e-3, 1e-3));
+  Progress progress;
+  const StabilityMap map =
+      stabilityMap(bare(500), cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64),
+                   mesh, progress);
+  EXPECT_LT(*std::min_element(map.least.begin(), map.least.end()), -5 * kGrip);
+  EXPECT_GT(map.slipping, 5u);
+  EXPECT_LT(map.slipping, mesh.positions.size());
+  EXPECT_NEAR(map.worst_ratio, limitWith(0) / 500, 0.02);
+}
+
+// On the middle of a plate without history the force turns round.
+TEST(StabilityMap, AJumpOfTheForceIsCountedAndNotDivided) {
+  Scene scene = bare(1e3);
+  scene.haptics.history = false;
+  TriangleMesh mesh;
+  mesh.positions = {Vec3(1e-4, 2e-4, 1e-3)};
+  Progress progress;
+  std::size_t jumping = 0;
+  for (int i = -5; i <= 5; ++i) { // pressed by 1 mm into a plate of 2 mm
+    const StabilityMap map =
+        stabilityMap(scene, plateField(2e-3 + 4e-6 * i, 0.1e-3, 80), mesh, progress);
+    jumping += map.jumping;
+    EXPECT_EQ(map.jumping > 0, std::isnan(map.ratio[0]) && !std::isnan(map.least[0]));
+  }
+  EXPECT_GT(jumping, 0u);
 }
 
 TEST(StabilityMap, OfASphereIsTheSameEverywhere) {
