@@ -15,11 +15,6 @@ Scene trialFor(const std::string& key) {
   return trial;
 }
 
-template <typename Iterator> Scene applied(Scene scene, Iterator first, Iterator last) {
-  for (; first != last; ++first) setValue(scene, first->first, first->second);
-  return scene;
-}
-
 } // namespace
 
 void addSetting(Command& command, SceneOptions& options, const std::string& name,
@@ -77,6 +72,19 @@ void addHapticOptions(Command& command, SceneOptions& options) {
   addSetting(command, options, "--friction-slip", "friction.slip", "paper|displacement",
              "Direction of slip: towards the tip, or against the contact point's own motion.",
              "paper");
+  addSetting(command, options, "--damping-cutoff", "damping.cutoff", "HZ",
+             "Low-pass of the velocity that the damper sees.", "");
+  addSetting(command, options, "--offset", "offset", "LENGTH",
+             "Offset surface [m]: contact begins this far from the model.", "");
+  addSetting(command, options, "--magnet-range", "magnet.range", "LENGTH",
+             "Magnetic surface: the tip is pulled from this far [m].", "");
+  addSetting(command, options, "--magnet-strength", "magnet.strength", "K",
+             "Pull of the magnet for each metre of distance [N/m].", "");
+  addSetting(command, options, "--magnet-fades", "magnet.fades", "on|off",
+             "The pull falls to zero over the last quarter of its range.", "off");
+  addSetting(command, options, "--history", "history", "on|off",
+             "Whether the tip stays on the side where it entered a thin part; off as in the paper.",
+             "on");
   addSetting(command, options, "--tip-radius", "tip.radius", "LENGTH",
              "Radius of the tip [m]; its centre feels the surface that far out.", "");
   addSetting(command, options, "--force-limit", "force.limit", "N", "Largest force [N].",
@@ -84,17 +92,7 @@ void addHapticOptions(Command& command, SceneOptions& options) {
 }
 
 void applySettings(Scene& scene, const Settings& settings) {
-  try {
-    scene = applied(scene, settings.begin(), settings.end());
-  } catch (const Error& in_order) {
-    // Two values may be fine together though the first alone is not: a smaller resolution needs
-    // the smaller band first.
-    try {
-      scene = applied(scene, settings.rbegin(), settings.rend());
-    } catch (const Error&) {
-      throw in_order;
-    }
-  }
+  setValues(scene, settings);
 }
 
 bool setsTipRadius(const Settings& settings) {
