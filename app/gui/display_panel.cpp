@@ -43,7 +43,7 @@ DisplayPanel::DisplayPanel(QWidget* parent)
       axis_(new QComboBox(slice_card_)),
       position_(
           new ValueRow(tr("Slice position"), QStringLiteral("%"), {0, 100, 1, 1}, slice_card_)),
-      iso_card_(new QWidget(this)) {
+      stability_note_(new QLabel(this)), iso_card_(new QWidget(this)) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   auto* grid = new QGridLayout;
@@ -51,8 +51,14 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   column->addLayout(grid);
   int index = 0;
   for (const Layer layer : {Layer::mesh, Layer::tip, Layer::slice, Layer::iso, Layer::wireframe,
-                            Layer::nodes, Layer::extent, Layer::band}) {
+                            Layer::nodes, Layer::extent, Layer::stability, Layer::band}) {
     auto* box = new QCheckBox(caption(layer), this);
+    if (layer == Layer::stability)
+      box->setToolTip(
+          tr("Where the surface would buzz: K*(x)/K, what the loop bears over what this "
+             "place asks of it. Below 1, warm, a held tip swings up by itself."));
+    if (layer == Layer::band)
+      box->setToolTip(tr("Where the offset or the magnet acts: a shell, and a tint of the slice"));
     box->setObjectName(QString::fromUtf8(name(layer).data(), static_cast<int>(name(layer).size())));
     box->setChecked(layer == Layer::mesh || layer == Layer::tip || layer == Layer::band);
     connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
@@ -63,6 +69,12 @@ DisplayPanel::DisplayPanel(QWidget* parent)
     boxes_[layer] = box;
     ++index;
   }
+
+  stability_note_->setObjectName(QStringLiteral("stability_words"));
+  stability_note_->setProperty("quiet", true);
+  stability_note_->setWordWrap(true);
+  stability_note_->hide();
+  column->addWidget(stability_note_);
 
   auto* slice_layout = new QGridLayout(slice_card_);
   slice_layout->setContentsMargins(0, 4, 0, 0);
@@ -90,13 +102,14 @@ DisplayPanel::DisplayPanel(QWidget* parent)
 
 void DisplayPanel::setField(const SurfaceField* field) {
   has_field_ = field != nullptr;
+  const double kept = iso_ != nullptr ? iso_->value() : 0;
   delete iso_;
   iso_ = nullptr;
   if (has_field_) {
     const double reach = 1000 * field->grid.voxel * (field->band - 1);
     iso_ = new ValueRow(tr("Iso-surface at"), QStringLiteral("mm"),
                         {-reach, reach, reach / 20, reach < 1 ? 3 : 2}, iso_card_);
-    iso_->setValue(0);
+    iso_->setValue(kept);
     iso_card_->layout()->addWidget(iso_);
     connect(iso_, &ValueRow::edited, this, [this](double mm) { emit isoMoved(mm / 1000); });
   }
@@ -113,6 +126,11 @@ void DisplayPanel::arrange() {
 void DisplayPanel::setBand(bool has_band) {
   has_band_ = has_band;
   arrange();
+}
+
+void DisplayPanel::setStabilityNote(const QString& words) {
+  stability_note_->setText(words);
+  stability_note_->setVisible(!words.isEmpty());
 }
 
 void DisplayPanel::setShown(Layer layer, bool on) {

@@ -6,6 +6,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QGroupBox>
+#include <QLabel>
 
 #include "app/gui/value_row.h"
 #include "visualization/scene_view.h"
@@ -19,7 +20,9 @@ class DisplayPanel : public QGroupBox {
 
   void setField(const SurfaceField* field); // nullptr: the mesh alone can be shown
   void setBand(bool has_band);              // whether the scene has an offset or a magnet
-  void setShown(Layer layer, bool on);      // sends layerToggled if it changes
+  // How far the map of the layer stability is, or what it says; empty = nothing to say.
+  void setStabilityNote(const QString& words);
+  void setShown(Layer layer, bool on); // sends layerToggled if it changes
   bool shown(Layer layer) const;
   const SlicePlace& slice() const { return slice_; }
   void setSlice(const SlicePlace& place); // sends sliceMoved
@@ -37,6 +40,7 @@ class DisplayPanel : public QGroupBox {
   QWidget* slice_card_;
   QComboBox* axis_;
   ValueRow* position_;
+  QLabel* stability_note_;
   QWidget* iso_card_;
   ValueRow* iso_ = nullptr;
   SlicePlace slice_;

@@ -5,23 +5,19 @@
 
 namespace patina {
 
-namespace {
-constexpr double kRate = 1000; // [Hz]
-}
-
 void FeelHost::open(std::shared_ptr<const HapticSnapshot> snapshot,
-                    std::unique_ptr<MouseDevice> device) {
+                    std::unique_ptr<MouseDevice> device, double rate) {
   close();
   const auto now = std::chrono::steady_clock::now();
   if (began_once_) {
     const double since = std::chrono::duration<double>(now - began_).count();
-    offset_ = std::max(since, last_t_ + 1 / kRate);
+    offset_ = std::max(since, last_t_ + 1 / rate);
   } else {
     began_ = now;
     began_once_ = true;
   }
   mouse_ = device.get();
-  loop_ = std::make_unique<ServoLoop>(std::move(device), kRate);
+  loop_ = std::make_unique<ServoLoop>(std::move(device), rate);
   loop_->publish(std::move(snapshot));
   loop_->start();
 }

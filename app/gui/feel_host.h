@@ -12,7 +12,9 @@ namespace patina {
 class FeelHost {
  public:
   // Starts a new loop with this device, which setTarget() moves. The old loop, if any, stops first.
-  void open(std::shared_ptr<const HapticSnapshot> snapshot, std::unique_ptr<MouseDevice> device);
+  // rate in 100 .. 10000 Hz.
+  void open(std::shared_ptr<const HapticSnapshot> snapshot, std::unique_ptr<MouseDevice> device,
+            double rate = 1000);
   void publish(std::shared_ptr<const HapticSnapshot> snapshot); // values changed, contact goes on
   void close(); // what the loop has left is still there for drain()
   bool running() const { return loop_ != nullptr; }

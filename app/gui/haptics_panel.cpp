@@ -1,10 +1,10 @@
 #include "app/gui/haptics_panel.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <QCheckBox>
 #include <QToolButton>
-
-#include "app/gui/value_row.h"
 
 namespace patina {
 
@@ -23,6 +23,12 @@ void HapticsPanel::setValues(const HapticProperties& haptics) {
   rebuild();
 }
 
+void HapticsPanel::setReach(double reach) {
+  if (reach == reach_) return;
+  reach_ = reach;
+  rebuild();
+}
+
 void HapticsPanel::setProblem(const QString& line) {
   problem_->setText(line);
   problem_->setVisible(!line.isEmpty());
@@ -30,6 +36,10 @@ void HapticsPanel::setProblem(const QString& line) {
 
 void HapticsPanel::change() {
   emit edited(haptics_);
+}
+
+double HapticsPanel::mostMillimetres() const {
+  return std::max(0.1, std::floor(1e5 * reach_) / 100);
 }
 
 void HapticsPanel::rebuild() {
@@ -43,73 +53,111 @@ void HapticsPanel::rebuild() {
   auto* column = new QVBoxLayout(rows_);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(6);
-  addRows();
-  addMenu();
-  layout_->insertWidget(0, rows_);
-}
-
-void HapticsPanel::addRows() {
-  auto* stiffness =
-      new ValueRow(tr("Stiffness"), QStringLiteral("N/m"), {10, 3000, 10, 0, true}, rows_);
-  stiffness->setObjectName(QStringLiteral("stiffness"));
-  stiffness->setValue(haptics_.stiffness);
+  addModeRows();
+  ValueRow* stiffness = addRow("stiffness", tr("Stiffness"), QStringLiteral("N/m"),
+                               {10, 10000, 10, 0, true}, haptics_.stiffness);
   connect(stiffness, &ValueRow::edited, this, [this](double value) {
     haptics_.stiffness = value;
     change();
   });
-  rows_->layout()->addWidget(stiffness);
-
   if (haptics_.friction) addFrictionRows();
-  if (haptics_.damping) {
-    auto* damping = new ValueRow(tr("Damping"), QStringLiteral("N s/m"), {0, 20, 0.1, 2}, rows_);
-    damping->setObjectName(QStringLiteral("damping"));
-    damping->setValue(*haptics_.damping);
-    damping->setRemovable(tr("Remove damping from the scene"));
-    connect(damping, &ValueRow::edited, this, [this](double value) {
-      haptics_.damping = value;
-      change();
-    });
-    connect(damping, &ValueRow::removed, this, [this] {
-      haptics_.damping.reset();
-      rebuild();
-      change();
-    });
-    rows_->layout()->addWidget(damping);
-  }
-  if (haptics_.tip_radius) {
-    auto* radius = new ValueRow(tr("Tip radius"), QStringLiteral("mm"), {0.05, 10, 0.1, 2}, rows_);
-    radius->setObjectName(QStringLiteral("tip_radius"));
-    radius->setValue(1000 * *haptics_.tip_radius);
-    radius->setRemovable(tr("Feel with a point again"));
-    connect(radius, &ValueRow::edited, this, [this](double value) {
-      haptics_.tip_radius = value / 1000;
-      change();
-    });
-    connect(radius, &ValueRow::removed, this, [this] {
-      haptics_.tip_radius.reset();
-      rebuild();
-      change();
-    });
-    rows_->layout()->addWidget(radius);
-  }
-  auto* limit = new ValueRow(tr("Force limit"), QStringLiteral("N"), {0.1, 20, 0.1, 1}, rows_);
-  limit->setObjectName(QStringLiteral("force_limit"));
-  limit->setValue(haptics_.force_limit);
+  if (haptics_.damping) addDampingRows();
+  if (haptics_.tip_radius) addTipRow();
+  ValueRow* limit = addRow("force_limit", tr("Force limit"), QStringLiteral("N"), {0.1, 20, 0.1, 1},
+                           haptics_.force_limit);
   connect(limit, &ValueRow::edited, this, [this](double value) {
     haptics_.force_limit = value;
     change();
   });
-  rows_->layout()->addWidget(limit);
+  addHistoryRow();
+  addMenu();
+  layout_->insertWidget(0, rows_);
+}
+
+ValueRow* HapticsPanel::addRow(const char* name, const QString& caption, const QString& unit,
+                               const ValueRange& range, double value, const QString& tip) {
+  auto* row = new ValueRow(caption, unit, range, rows_);
+  row->setObjectName(QString::fromUtf8(name));
+  row->setValue(value);
+  row->setToolTip(tip);
+  rows_->layout()->addWidget(row);
+  return row;
+}
+
+template <typename Remove>
+void HapticsPanel::makeRemovable(ValueRow* row, const QString& tip, Remove remove) {
+  row->setRemovable(tip);
+  connect(row, &ValueRow::removed, this, [this, remove] {
+    remove(haptics_);
+    rebuild();
+    change();
+  });
+}
+
+void HapticsPanel::setMode(TouchMode mode) {
+  if (haptics_.offset) last_offset_ = haptics_.offset;
+  if (haptics_.magnet) last_magnet_ = haptics_.magnet;
+  haptics_.offset.reset();
+  haptics_.magnet.reset();
+  // Half of what the field allows, and no more than fingers like.
+  const double usual = std::min(1.5e-3, 0.5 * mostMillimetres() / 1000);
+  const double most = mostMillimetres() / 1000;
+  if (mode == TouchMode::offset) haptics_.offset = std::min(most, last_offset_.value_or(usual));
+  if (mode == TouchMode::magnetic) {
+    haptics_.magnet = last_magnet_.value_or(Magnet{usual, 300, true});
+    haptics_.magnet->range = std::min(most, haptics_.magnet->range);
+  }
+  rebuild();
+  change();
+}
+
+void HapticsPanel::addModeRows() {
+  auto* modes = new ModeSwitch(rows_);
+  modes->setMode(touchMode(haptics_));
+  connect(modes, &ModeSwitch::chosen, this, &HapticsPanel::setMode);
+  rows_->layout()->addWidget(modes);
+  const ValueRange lengths{0.05, mostMillimetres(), 0.05, 2};
+  const QString limited = tr("Up to what the field's band holds; a wider band: "
+                             "patina scene WORKSPACE --set band=N");
+  if (haptics_.offset) {
+    ValueRow* offset = addRow("offset", tr("Offset"), QStringLiteral("mm"), lengths,
+                              1000 * *haptics_.offset, limited);
+    connect(offset, &ValueRow::edited, this, [this](double value) {
+      haptics_.offset = value / 1000;
+      change();
+    });
+  }
+  if (!haptics_.magnet) return;
+  ValueRow* range = addRow("magnet_range", tr("Magnet range"), QStringLiteral("mm"), lengths,
+                           1000 * haptics_.magnet->range, limited);
+  connect(range, &ValueRow::edited, this, [this](double value) {
+    haptics_.magnet->range = value / 1000;
+    change();
+  });
+  ValueRow* strength = addRow("magnet_strength", tr("Magnet strength"), QStringLiteral("N/m"),
+                              {10, 3000, 10, 0, true}, haptics_.magnet->strength);
+  connect(strength, &ValueRow::edited, this, [this](double value) {
+    haptics_.magnet->strength = value;
+    change();
+  });
+  auto* fades = new QCheckBox(tr("Pull fades at the edge"), rows_);
+  fades->setObjectName(QStringLiteral("magnet_fades"));
+  fades->setToolTip(tr("Over the last quarter of the range the pull falls to zero; without this "
+                       "it steps there by strength × range"));
+  fades->setChecked(haptics_.magnet->fades);
+  connect(fades, &QCheckBox::toggled, this, [this](bool on) {
+    haptics_.magnet->fades = on;
+    change();
+  });
+  rows_->layout()->addWidget(fades);
 }
 
 void HapticsPanel::addFrictionRows() {
-  auto* holds = new ValueRow(tr("Friction, static"), {}, {0, 2, 0.05, 2}, rows_);
-  auto* slides = new ValueRow(tr("Friction, dynamic"), {}, {0, 2, 0.05, 2}, rows_);
-  holds->setObjectName(QStringLiteral("friction_static"));
-  slides->setObjectName(QStringLiteral("friction_dynamic"));
-  holds->setValue(haptics_.friction->static_coefficient);
-  slides->setValue(haptics_.friction->dynamic_coefficient);
-  holds->setRemovable(tr("Remove friction from the scene"));
+  const ValueRange range{0, 2, 0.05, 2};
+  ValueRow* holds = addRow("friction_static", tr("Friction, static"), {}, range,
+                           haptics_.friction->static_coefficient);
+  ValueRow* slides = addRow("friction_dynamic", tr("Friction, dynamic"), {}, range,
+                            haptics_.friction->dynamic_coefficient);
   // Static friction is never below dynamic: each slider takes the other along.
   connect(holds, &ValueRow::edited, this, [this, slides](double value) {
     haptics_.friction->static_coefficient = value;
@@ -127,13 +175,57 @@ void HapticsPanel::addFrictionRows() {
     }
     change();
   });
-  connect(holds, &ValueRow::removed, this, [this] {
-    haptics_.friction.reset();
-    rebuild();
+  makeRemovable(holds, tr("Remove friction from the scene"),
+                [](HapticProperties& h) { h.friction.reset(); });
+}
+
+void HapticsPanel::addDampingRows() {
+  ValueRow* damping =
+      addRow("damping", tr("Damping"), QStringLiteral("N s/m"), {0, 20, 0.1, 2}, *haptics_.damping);
+  connect(damping, &ValueRow::edited, this, [this](double value) {
+    haptics_.damping = value;
     change();
   });
-  rows_->layout()->addWidget(holds);
-  rows_->layout()->addWidget(slides);
+  makeRemovable(damping, tr("Remove damping from the scene"), [](HapticProperties& h) {
+    h.damping.reset();
+    h.damping_cutoff.reset();
+  });
+  if (!haptics_.damping_cutoff) return;
+  ValueRow* cutoff = addRow("damping_cutoff", tr("Damping cut-off"), QStringLiteral("Hz"),
+                            {5, 500, 5, 0, true}, *haptics_.damping_cutoff,
+                            tr("Of the velocity that damping sees: lower is smoother, and later"));
+  connect(cutoff, &ValueRow::edited, this, [this](double value) {
+    haptics_.damping_cutoff = value;
+    change();
+  });
+  makeRemovable(cutoff, tr("Damp the velocity as it is measured"),
+                [](HapticProperties& h) { h.damping_cutoff.reset(); });
+}
+
+void HapticsPanel::addTipRow() {
+  ValueRow* radius =
+      addRow("tip_radius", tr("Tip radius"), QStringLiteral("mm"),
+             {0.05, std::min(10.0, mostMillimetres()), 0.1, 2}, 1000 * *haptics_.tip_radius);
+  connect(radius, &ValueRow::edited, this, [this](double value) {
+    haptics_.tip_radius = value / 1000;
+    change();
+  });
+  makeRemovable(radius, tr("Feel with a point again"),
+                [](HapticProperties& h) { h.tip_radius.reset(); });
+}
+
+void HapticsPanel::addHistoryRow() {
+  auto* history = new QCheckBox(tr("Stays on the side it entered"), rows_);
+  history->setObjectName(QStringLiteral("contact_history"));
+  history->setToolTip(tr("Contact history: a tip that was pushed through a thin part is held on "
+                         "the side it came from. Without, the force turns round past the middle, "
+                         "as in the paper."));
+  history->setChecked(haptics_.history);
+  connect(history, &QCheckBox::toggled, this, [this](bool on) {
+    haptics_.history = on;
+    change();
+  });
+  rows_->layout()->addWidget(history);
 }
 
 void HapticsPanel::addMenu() {
@@ -153,6 +245,8 @@ void HapticsPanel::addMenu() {
   if (!haptics_.friction)
     offer(tr("Friction"), [](HapticProperties& h) { h.friction = Friction{0.5, 0.3, 0, {}}; });
   if (!haptics_.damping) offer(tr("Damping"), [](HapticProperties& h) { h.damping = 1.0; });
+  if (haptics_.damping && !haptics_.damping_cutoff)
+    offer(tr("Damping cut-off"), [](HapticProperties& h) { h.damping_cutoff = 100; });
   if (!haptics_.tip_radius)
     offer(tr("Tip radius"), [](HapticProperties& h) { h.tip_radius = 1e-3; });
   button->setMenu(menu);

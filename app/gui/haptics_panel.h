@@ -6,6 +6,8 @@
 #include <QMenu>
 #include <QVBoxLayout>
 
+#include "app/gui/mode_switch.h"
+#include "app/gui/value_row.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -17,6 +19,8 @@ class HapticsPanel : public QGroupBox {
 
   void setValues(const HapticProperties& haptics); // sends no signal
   const HapticProperties& values() const { return haptics_; }
+  // How far from the surface the open field can be felt [m].
+  void setReach(double reach);
   void setProblem(const QString& line); // why the last edit does not count; empty = none
 
  signals:
@@ -24,12 +28,24 @@ class HapticsPanel : public QGroupBox {
 
  private:
   void rebuild();
-  void addRows();
+  ValueRow* addRow(const char* name, const QString& caption, const QString& unit,
+                   const ValueRange& range, double value, const QString& tip = {});
+  void addModeRows();
   void addFrictionRows();
+  void addDampingRows();
+  void addTipRow();
+  void addHistoryRow();
   void addMenu();
+  void setMode(TouchMode mode);
+  template <typename Remove> void makeRemovable(ValueRow* row, const QString& tip, Remove remove);
+  double mostMillimetres() const;
   void change();
 
   HapticProperties haptics_;
+  // What a mode had when it was left, for when it is chosen again.
+  std::optional<double> last_offset_;
+  std::optional<Magnet> last_magnet_;
+  double reach_ = 5e-3;
   QVBoxLayout* layout_;
   QWidget* rows_ = nullptr;
   QLabel* problem_;

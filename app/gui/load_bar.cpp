@@ -21,15 +21,22 @@ LoadBar::LoadBar(QWidget* parent)
     cancel_->setEnabled(false);
     emit cancelled();
   });
+  patience_.setSingleShot(true);
+  patience_.setInterval(500);
+  connect(&patience_, &QTimer::timeout, this, &QWidget::show);
   hide();
 }
 
-void LoadBar::begin(const QString& name) {
+void LoadBar::begin(const QString& words, const QString& name, bool later) {
   name_ = name;
-  words_->setText(tr("Opening %1").arg(name));
+  words_->setText(words);
   bar_->setValue(0);
+  bar_->setRange(0, 1000);
   cancel_->setEnabled(true);
-  show();
+  if (later)
+    patience_.start();
+  else
+    show();
 }
 
 void LoadBar::report(double fraction, const QString& what) {
@@ -45,6 +52,7 @@ void LoadBar::showClosing() {
 }
 
 void LoadBar::end() {
+  patience_.stop();
   hide();
 }
 

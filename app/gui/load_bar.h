@@ -4,6 +4,7 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QTimer>
 #include <QWidget>
 
 namespace patina {
@@ -12,7 +13,8 @@ class LoadBar : public QWidget {
   Q_OBJECT
  public:
   explicit LoadBar(QWidget* parent = nullptr);
-  void begin(const QString& name);
+  // later = seen only if it is still on after half a second.
+  void begin(const QString& words, const QString& name, bool later = false);
   void report(double fraction, const QString& what);
   void showClosing();
   void end();
@@ -25,6 +27,7 @@ class LoadBar : public QWidget {
   QProgressBar* bar_;
   QPushButton* cancel_;
   QString name_;
+  QTimer patience_;
 };
 
 } // namespace patina

@@ -6,16 +6,19 @@
 #include <QMainWindow>
 #include <QTimer>
 
+#include "app/gui/device_panel.h"
 #include "app/gui/display_panel.h"
 #include "app/gui/feel_host.h"
 #include "app/gui/haptics_panel.h"
 #include "app/gui/live_plots.h"
 #include "app/gui/load_bar.h"
+#include "app/gui/object_list.h"
 #include "app/gui/object_panel.h"
 #include "app/gui/recent_files.h"
 #include "app/gui/recording.h"
 #include "app/gui/scene_loader.h"
 #include "app/gui/scene_widget.h"
+#include "app/gui/stability_job.h"
 #include "app/gui/status_line.h"
 
 namespace patina {
@@ -41,6 +44,8 @@ class MainWindow : public QMainWindow {
   SceneWidget& view() { return *view_; }
   DisplayPanel& display() { return *display_; }
   HapticsPanel& haptics() { return *haptics_; }
+  DevicePanel& device() { return *device_; }
+  ObjectList& objects() { return *objects_; }
   SceneLoader& loader() { return *loader_; }
   FeelHost& feel() { return feel_; }
   EnergyPlot& energyPlot() { return *energy_plot_; }
@@ -67,9 +72,16 @@ class MainWindow : public QMainWindow {
   void take(std::shared_ptr<const CompiledScene> scene, const QStringList& warnings);
   void restore(); // what was open before a load that came to nothing
   void showCurrent();
-  void applyHaptics();
-  void showBand();
-  void openDialog();
+  void connectPanels();
+  QList<QWidget*> cards() const; // of the side panel, in their order
+  void takeRebuilt(std::shared_ptr<const CompiledScene> scene, const QStringList& warnings);
+  void showSurface();  // mesh and field of current_
+  void showValues();   // whatever depends on values of touch and device
+  void applyValues();  // of touch and device
+  void applyObjects(); // starts a rebuild, now or when the one under way has ended
+  void openFeelAt(const Vec3& start);
+  void askStability();
+  void openDialog(bool adds);
   bool saveDialog();                          // false: nothing was saved
   void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
   void exportDialog();
@@ -83,17 +95,21 @@ class MainWindow : public QMainWindow {
   SceneWidget* view_;
   LoadBar* load_bar_;
   QLabel* warnings_;
+  ObjectList* objects_;
   ObjectPanel* object_;
   HapticsPanel* haptics_;
+  DevicePanel* device_;
   DisplayPanel* display_;
   ForcePlot* force_plot_;
   EnergyPlot* energy_plot_;
   StatusLine* status_;
   RecentFiles* recent_ = nullptr;
   SceneLoader* loader_;
+  StabilityJob* stability_;
   QAction* feel_action_ = nullptr;
   QAction* navigate_action_ = nullptr;
   QAction* save_action_ = nullptr;
+  QAction* add_action_ = nullptr;
   QAction* record_action_ = nullptr;
   QList<QAction*> panels_; // show and hide the docks
 
@@ -101,7 +117,8 @@ class MainWindow : public QMainWindow {
   QTimer timer_;
   std::shared_ptr<const CompiledScene> current_;
   bool previewing_ = false;
-  bool haptics_edited_ = false;
+  bool values_edited_ = false;  // and not yet felt
+  bool objects_edited_ = false; // and not yet on their way
   int ticks_ = 0;
   ToolSample last_sample_;
   Recording recording_, log_;

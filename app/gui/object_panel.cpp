@@ -34,7 +34,8 @@ QString layerMeaning(const std::string& name) {
 
 } // namespace
 
-ObjectPanel::ObjectPanel(QWidget* parent) : QGroupBox(tr("Object"), parent), grid_(nullptr) {
+ObjectPanel::ObjectPanel(QWidget* parent)
+    : QGroupBox(tr("Mesh and field"), parent), grid_(nullptr) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   clear();

@@ -1,11 +1,10 @@
 #include "app/gui/scene_loader.h"
 
 #include <algorithm>
-#include <cctype>
 #include <new>
+#include <utility>
 
 #include <QMetaObject>
-#include <QStringList>
 
 #include "field/models.h"
 #include "visualization/field_io.h"
@@ -13,122 +12,134 @@
 namespace patina {
 namespace {
 
-std::string extensionOf(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 // The range in which a mesh in millimetres is taken for what it is.
 bool oddSize(double metres) {
   return metres < 1e-3 || metres > 2;
 }
 
-} // namespace
-
-SceneLoader::SceneLoader(QObject* parent) : QObject(parent) {}
-
-SceneLoader::~SceneLoader() {
-  silence();
-  for (Job& job : jobs_) job.thread.join();
+// "cup", "cup-2", "cup-3": a name that the scene does not have.
+std::string freeName(const Scene& scene, const std::string& name) {
+  std::string free = name;
+  const auto taken = [&] {
+    return std::any_of(scene.objects.begin(), scene.objects.end(),
+                       [&](const SceneObject& object) { return object.name == free; });
+  };
+  for (int number = 2; taken(); ++number) free = name + "-" + std::to_string(number);
+  return free;
 }
 
-void SceneLoader::silence() {
-  for (Job& job : jobs_) job.progress->cancel();
-  ++load_;
-  busy_ = false;
+QStringList lines(const std::vector<std::string>& warnings) {
+  QStringList list;
+  for (const std::string& line : warnings) list << QString::fromStdString(line);
+  return list;
+}
+
+} // namespace
+
+SceneLoader::SceneLoader(QObject* parent) : QObject(parent) {
+  connect(&jobs_, &Background::progressed, this, &SceneLoader::progressed);
+  connect(&jobs_, &Background::rested, this, &SceneLoader::rested);
 }
 
 void SceneLoader::cancel() {
-  if (!busy_) return;
-  silence();
-  deliver(load_, true, [this] { emit cancelled(); });
-}
-
-void SceneLoader::reap() {
-  const std::size_t before = jobs_.size();
-  jobs_.remove_if([](Job& job) {
-    if (!job.done) return false;
-    job.thread.join();
-    return true;
-  });
-  if (before > 0 && jobs_.empty()) emit rested();
-}
-
-// Runs `work` in this object's thread, unless another load has begun by then.
-template <typename Work> void SceneLoader::deliver(std::uint64_t load, bool last, Work work) {
+  if (!jobs_.busy()) return;
+  jobs_.silence();
   QMetaObject::invokeMethod(
       this,
-      [this, load, last, work = std::move(work)] {
-        if (load != load_) return;
-        if (last) busy_ = false;
-        work();
+      [this] {
+        if (!jobs_.busy()) emit cancelled();
       },
       Qt::QueuedConnection);
 }
 
 void SceneLoader::start(const LoadRequest& request) {
-  silence();
   request_ = request;
-  busy_ = true;
-  const std::uint64_t load = load_;
-  // Workers report every few microseconds; the bar wants a hundred steps.
-  auto shown = std::make_shared<std::pair<double, std::string>>(-1, "");
-  Job& job = jobs_.emplace_back();
-  job.progress = std::make_unique<Progress>([=, this](double fraction, std::string_view what) {
-    if (what == shown->second && fraction < shown->first + 0.01 && fraction >= shown->first) return;
-    *shown = {fraction, std::string(what)};
-    const QString words = QString::fromUtf8(what.data(), static_cast<int>(what.size()));
-    deliver(load, false, [this, fraction, words] { emit progressed(fraction, words); });
-  });
-  job.thread = std::thread([this, &job, request, load] {
-    run(request, *job.progress, load);
-    job.done = true;
-    QMetaObject::invokeMethod(
-        this, [this] { reap(); }, Qt::QueuedConnection);
+  jobs_.start([this, request](Progress& progress, const Background::Deliver& deliver) {
+    run(request, progress, deliver);
   });
 }
 
-void SceneLoader::run(const LoadRequest& request, Progress& progress, std::uint64_t load) {
+template <typename Work, typename Failed>
+void SceneLoader::guarded(const Background::Deliver& deliver, Work work, Failed failed) {
   try {
-    OpenedScene opened;
-    QString name = QStringLiteral("dinosaur");
-    if (request.path.empty()) {
-      opened.scene = sceneOf(dinosaur(), "dinosaur");
-    } else {
-      name = QString::fromStdString(request.path.filename().string());
-      const bool volume = extensionOf(request.path) == ".vti";
-      if (volume && !request.options.iso && !isField(request.path)) {
-        const VolumeRange range = scalarRange(request.path);
-        return deliver(load, true, [this, range] { emit needsIso(range.low, range.high); });
-      }
-      opened = openScene(request.path, request.options);
-      if (!request.unit_chosen && !std::filesystem::is_directory(request.path) &&
-          !(volume && isField(request.path))) {
-        const Box3 box = bounds(worldMesh(opened.scene));
-        const double longest = box.isEmpty() ? 0 : box.sizes().maxCoeff();
-        if (oddSize(longest))
-          return deliver(load, true, [this, longest] { emit needsUnit(1000 * longest); });
-      }
-    }
-    progress.throwIfCancelled();
-    const auto mesh = std::make_shared<const TriangleMesh>(worldMesh(opened.scene));
-    deliver(load, false, [this, mesh, name] { emit meshReady(mesh, name); });
-    const auto compiled = compile(std::move(opened.scene), progress);
-    QStringList warnings;
-    for (const std::string& line : opened.warnings) warnings << QString::fromStdString(line);
-    deliver(load, true, [this, compiled, warnings] { emit ready(compiled, warnings); });
+    work();
   } catch (const Cancelled&) {
-    deliver(load, true, [this] { emit cancelled(); });
+    deliver(true, [this] { emit cancelled(); });
   } catch (const std::bad_alloc&) {
-    deliver(load, true, [this] {
-      emit failed(tr("There is not enough memory for this scene: choose a smaller resolution."));
+    deliver(true, [failed] {
+      failed(tr("There is not enough memory for this scene: choose a smaller resolution."));
     });
   } catch (const std::exception& error) {
     const QString message = QString::fromStdString(error.what());
-    deliver(load, true, [this, message] { emit failed(message); });
+    deliver(true, [failed, message] { failed(message); });
   }
+}
+
+void SceneLoader::rebuild(std::shared_ptr<const CompiledScene> from, Scene scene) {
+  jobs_.start([this, from = std::move(from),
+               scene = std::move(scene)](Progress& progress, const Background::Deliver& deliver) {
+    guarded(
+        deliver,
+        [&] {
+          const auto compiled = recompile(*from, scene, progress);
+          deliver(true, [this, compiled] { emit rebuilt(compiled, {}); });
+        },
+        [this](const QString& message) { emit rebuildFailed(message); });
+  });
+}
+
+bool SceneLoader::read(const LoadRequest& request, const Background::Deliver& deliver,
+                       OpenedScene& opened) {
+  if (request.path.empty()) {
+    opened.scene = sceneOf(dinosaur(), "dinosaur");
+    return true;
+  }
+  const bool volume = isVolumeFile(request.path);
+  if (volume && !request.options.iso && !isField(request.path)) {
+    const VolumeRange range = scalarRange(request.path);
+    deliver(true, [this, range] { emit needsIso(range.low, range.high); });
+    return false;
+  }
+  opened = openScene(request.path, request.options);
+  if (!request.unit_chosen && !std::filesystem::is_directory(request.path) &&
+      !(volume && isField(request.path))) {
+    const Box3 box = bounds(worldMesh(opened.scene));
+    const double longest = box.isEmpty() ? 0 : box.sizes().maxCoeff();
+    if (oddSize(longest)) {
+      deliver(true, [this, longest] { emit needsUnit(1000 * longest); });
+      return false;
+    }
+  }
+  return true;
+}
+
+void SceneLoader::run(const LoadRequest& request, Progress& progress,
+                      const Background::Deliver& deliver) {
+  guarded(
+      deliver,
+      [&] {
+        OpenedScene opened;
+        if (!read(request, deliver, opened)) return;
+        progress.throwIfCancelled();
+        const QStringList warnings = lines(opened.warnings);
+        if (request.onto) {
+          Scene scene = request.onto->scene;
+          for (SceneObject& object : opened.scene.objects) {
+            object.name = freeName(scene, object.name);
+            scene.objects.push_back(std::move(object));
+          }
+          const auto compiled = recompile(*request.onto, std::move(scene), progress);
+          return deliver(true, [this, compiled, warnings] { emit rebuilt(compiled, warnings); });
+        }
+        const QString name = request.path.empty()
+                                 ? QStringLiteral("dinosaur")
+                                 : QString::fromStdString(request.path.filename().string());
+        const auto mesh = std::make_shared<const TriangleMesh>(worldMesh(opened.scene));
+        deliver(false, [this, mesh, name] { emit meshReady(mesh, name); });
+        const auto compiled = compile(std::move(opened.scene), progress);
+        deliver(true, [this, compiled, warnings] { emit ready(compiled, warnings); });
+      },
+      [this](const QString& message) { emit failed(message); });
 }
 
 } // namespace patina

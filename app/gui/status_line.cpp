@@ -1,6 +1,7 @@
 #include "app/gui/status_line.h"
 
 #include "core/numbers.h"
+#include "haptics/stabilisers.h"
 
 namespace patina {
 
@@ -24,6 +25,8 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   late_ = label("late");
   missed_ = label("missed");
   policy_ = label("policy");
+  stabilisers_ = label("stabilisers");
+  stabilisers_->setStyleSheet(QStringLiteral("color: #14568c; font-weight: bold;"));
   stages_ = label("stages");
   bytes_ = label("bytes");
   late_->setToolTip(
@@ -52,6 +55,8 @@ void StatusLine::showTiming(const ServoTiming& timing, bool running) {
 }
 
 void StatusLine::showScene(const CompiledScene* scene) {
+  stabilisers_->clear();
+  stabilisers_->hide();
   stages_->setVisible(scene != nullptr);
   bytes_->setVisible(scene != nullptr);
   if (scene == nullptr) return;
@@ -63,11 +68,29 @@ void StatusLine::showScene(const CompiledScene* scene) {
                .arg(names.back(), QString::fromStdString(stage.why).toHtmlEscaped(),
                     QString::fromStdString(formatBytes(static_cast<double>(stage.bytes))));
   }
+  showStabilisers(*scene);
   stages_->setText(tr("stages: %1").arg(names.join(QStringLiteral(" → "))));
   stages_->setToolTip(QStringLiteral("<table>%1</table>").arg(why.join(QString())));
   bytes_->setText(tr("field %1")
                       .arg(QString::fromStdString(
                           formatBytes(static_cast<double>(scene->built.field->bytes())))));
+}
+
+void StatusLine::showStabilisers(const CompiledScene& scene) {
+  const auto plan =
+      planStabilisers(scene.scene.haptics, scene.scene.device_model, scene.scene.stabilisers);
+  QStringList on, why;
+  for (const StageInfo& stage : scene.snapshot->why) {
+    if (stage.name != "coupling" && stage.name != "passivity") continue;
+    QString words = QString::fromStdString(stage.name);
+    if (stage.name == "coupling" && plan.coupling)
+      words += QStringLiteral(" %1 N/m").arg(plan.coupling->stiffness, 0, 'f', 0);
+    on << words;
+    why << QStringLiteral("%1: %2").arg(words, QString::fromStdString(stage.why));
+  }
+  stabilisers_->setText(on.join(QStringLiteral(", ")));
+  stabilisers_->setToolTip(why.join(QStringLiteral("\n")));
+  stabilisers_->setVisible(!on.isEmpty());
 }
 
 } // namespace patina

@@ -16,15 +16,19 @@ class StatusLine : public QObject {
   void showScene(const CompiledScene* scene); // nullptr: no scene, no stage
   void showTiming(const ServoTiming& timing, bool running);
   void showFault(bool on); // the force jumped and was faded to zero (F13)
+  QString stabilisersText() const { return stabilisers_->text(); } // empty: none is on
   QString stagesText() const { return stages_->text(); }
 
  private:
+  void showStabilisers(const CompiledScene& scene);
+
   QLabel* fault_;
   QLabel* rate_;
   QLabel* late_;
   QLabel* missed_;
   QLabel* policy_;
   QLabel* stages_;
+  QLabel* stabilisers_;
   QLabel* bytes_;
 };
 

@@ -26,8 +26,8 @@ QString shortcutsText() {
       "<tr><td><b>Space</b></td><td>feel or navigate with the left button</td></tr>"
       "<tr><td><b>F</b></td><td>fit the scene into the view</td></tr>"
       "<tr><td><b>1 … 7</b></td><td>camera from +x, −x, +y, −y, +z, −z, at an angle</td></tr>"
-      "<tr><td><b>M T S I W N B E</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
-      "band, field extent</td></tr>"
+      "<tr><td><b>M T S I W N B E K</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
+      "band, field extent, stability</td></tr>"
       "<tr><td><b>R</b></td><td>record the forces, and save them</td></tr></table>");
 }
 
@@ -41,8 +41,11 @@ QString signed_(ViewPreset preset) {
 
 void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
-  QAction* open_action =
-      file->addAction(tr("&Open…"), this, &MainWindow::openDialog, QKeySequence::Open);
+  QAction* open_action = file->addAction(
+      tr("&Open…"), this, [this] { openDialog(false); }, QKeySequence::Open);
+  add_action_ = file->addAction(
+      tr("&Add object…"), this, [this] { openDialog(true); }, Qt::CTRL | Qt::SHIFT | Qt::Key_O);
+  add_action_->setToolTip(tr("A mesh or volume that is felt together with what is open"));
   recent_ = new RecentFiles(file->addMenu(tr("Open &recent")));
   connect(recent_, &RecentFiles::chosen, this, [this](const QString& path) {
     LoadRequest request;
@@ -91,10 +94,10 @@ void MainWindow::buildMenus() {
     presets << camera_menu->addAction(
         signed_(preset), this, [this, preset] { view_->view().setView(preset); }, digit++);
   view_menu->addSeparator();
-  const std::pair<Layer, int> keys[] = {{Layer::mesh, Qt::Key_M},      {Layer::tip, Qt::Key_T},
-                                        {Layer::slice, Qt::Key_S},     {Layer::iso, Qt::Key_I},
-                                        {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
-                                        {Layer::band, Qt::Key_B},      {Layer::extent, Qt::Key_E}};
+  const std::pair<Layer, int> keys[] = {
+      {Layer::mesh, Qt::Key_M}, {Layer::tip, Qt::Key_T},       {Layer::slice, Qt::Key_S},
+      {Layer::iso, Qt::Key_I},  {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
+      {Layer::band, Qt::Key_B}, {Layer::extent, Qt::Key_E},    {Layer::stability, Qt::Key_K}};
   for (const auto& [layer, key] : keys) {
     const auto words = name(layer);
     QAction* action = view_menu->addAction(
@@ -148,19 +151,24 @@ void MainWindow::buildMenus() {
   bar->addAction(record_action_);
 }
 
-void MainWindow::openDialog() {
-  auto* dialog = new QFileDialog(this, tr("Open a mesh, volume or workspace"));
+void MainWindow::openDialog(bool adds) {
+  auto* dialog = new QFileDialog(this, adds ? tr("Add a mesh, volume or workspace to the scene")
+                                            : tr("Open a mesh, volume or workspace"));
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(QFileDialog::ExistingFile);
   dialog->setNameFilters({tr("Meshes, volumes and workspaces (*.obj *.ply *.stl *.vti *.OBJ *.PLY "
                              "*.STL *.VTI workspace.json)"),
                           tr("All files (*)")});
-  connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& path) {
+  connect(dialog, &QFileDialog::fileSelected, this, [this, adds](const QString& path) {
     LoadRequest request;
     request.path = path.toStdString();
+    if (adds) request.onto = current_;
     // Of a workspace, which is a folder, people see the file in it.
     if (request.path.filename() == "workspace.json") request.path = request.path.parent_path();
-    openAsked(request);
+    if (adds)
+      open(request);
+    else
+      openAsked(request);
   });
   dialog->open();
 }

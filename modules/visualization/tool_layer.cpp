@@ -95,11 +95,12 @@ void placeBall(vtkActor& actor, const Vec3& centre, double radius) {
 ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : ball_(unitBall(palette::kTool, 1)), neck_(unitCone(palette::kTool)),
       shaft_(unitRod(palette::kToolShaft)), ghost_(unitBall(palette::kGhost, 0.45)),
-      spring_(unitRod(palette::kGhost)), contact_(unitBall(palette::kContactPoint, 1)),
-      arrow_shaft_(unitRod(palette::kForce)), arrow_head_(unitCone(palette::kForce)),
+      spring_(unitRod(palette::kGhost)), stem_(unitRod(palette::kContactPoint)),
+      contact_(unitBall(palette::kContactPoint, 1)), arrow_shaft_(unitRod(palette::kForce)),
+      arrow_head_(unitCone(palette::kForce)),
       label_(vtkSmartPointer<vtkBillboardTextActor3D>::New()) {
   for (const auto& actor : {ball_, neck_, shaft_}) scene.AddActor(actor);
-  for (const auto& actor : {spring_, ghost_, contact_, arrow_shaft_, arrow_head_})
+  for (const auto& actor : {spring_, stem_, ghost_, contact_, arrow_shaft_, arrow_head_})
     overlay.AddActor(actor);
   vtkTextProperty* text = label_->GetTextProperty();
   text->SetFontFamilyToArial();
@@ -150,7 +151,10 @@ void ToolLayer::place() {
   stretch(*shaft_, neck_end, neck_end + lean_ * (0.32 * length_), shaft_radius);
 
   placeBall(*ghost_, sample_.tip, radius);
-  placeBall(*contact_, sample_.vcp, 0.003 * length_);
+  // With an offset or a tip's radius contact is seen where the original surface is (K12).
+  const bool near = sample_.contact || sample_.attracted;
+  placeBall(*contact_, sample_.surface, 0.004 * length_);
+  stretch(*stem_, held, sample_.surface, 0.0013 * length_);
   stretch(*spring_, sample_.tip, held, 0.0016 * length_);
 
   const double newtons = sample_.force.norm();
@@ -168,8 +172,8 @@ void ToolLayer::place() {
     label_->SetInput(words);
   }
   for (const auto& actor : {ball_, neck_, shaft_}) actor->SetVisibility(visible_);
-  for (const auto& actor : {ghost_, spring_, contact_})
-    actor->SetVisibility(visible_ && sample_.contact);
+  for (const auto& actor : {ghost_, spring_}) actor->SetVisibility(visible_ && sample_.contact);
+  for (const auto& actor : {contact_, stem_}) actor->SetVisibility(visible_ && near);
   for (const auto& actor : {arrow_shaft_, arrow_head_}) actor->SetVisibility(visible_ && pushed);
   label_->SetVisibility(visible_ && pushed);
 }

@@ -28,7 +28,7 @@ class ToolLayer {
   void place();
 
   vtkSmartPointer<vtkActor> ball_, neck_, shaft_; // the proxy
-  vtkSmartPointer<vtkActor> ghost_, spring_, contact_, arrow_shaft_, arrow_head_;
+  vtkSmartPointer<vtkActor> ghost_, spring_, stem_, contact_, arrow_shaft_, arrow_head_;
   vtkSmartPointer<vtkBillboardTextActor3D> label_;
   ToolSample sample_;
   Vec3 lean_ = Vec3(0.4, 0.7, 0.6).normalized();

@@ -3,7 +3,6 @@
 #include <QMenu>
 #include <QToolButton>
 
-#include "app/gui/haptic_ramp.h"
 #include "app/gui/value_row.h"
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
@@ -32,7 +31,7 @@ class Panels : public WindowTest {
     waitUntil(
         [&] {
           return window_->scene() != nullptr &&
-                 same(window_->scene()->scene.haptics, window_->haptics().values());
+                 window_->scene()->scene.haptics == window_->haptics().values();
         },
         20000);
     wait(60);

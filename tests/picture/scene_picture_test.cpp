@@ -55,7 +55,7 @@ class ScenePicture : public ::testing::Test {
   ToolSample pressed() const {
     ToolSample sample;
     sample.contact = true;
-    sample.vcp = Vec3(0, -kMajor, kMinor);
+    sample.vcp = sample.surface = Vec3(0, -kMajor, kMinor);
     sample.tip = Vec3(0, -kMajor, kMinor - 0.003);
     sample.normal = Vec3::UnitZ();
     sample.force = Vec3(0, 0, 1.5);

@@ -1,0 +1,108 @@
+// Several objects in the window: added, moved and removed while the tip feels on.
+#include <QAction>
+#include <QDoubleSpinBox>
+#include <QListWidget>
+#include <QToolButton>
+
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+
+namespace patina {
+namespace {
+
+class Objects : public WindowTest {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.02, 16), "ball.obj")));
+  }
+  bool rebuiltAfter(const std::function<void()>& edit) {
+    bool ready = false;
+    const auto connection =
+        QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+    edit();
+    const bool done = waitUntil([&] { return ready; });
+    QObject::disconnect(connection);
+    wait(60);
+    return done;
+  }
+  bool add(const char* name) {
+    return rebuiltAfter([&] {
+      LoadRequest request = requestFor(saved(icosphere(0.02, 16), name));
+      request.onto = shared();
+      window_->open(request);
+    });
+  }
+  std::shared_ptr<const CompiledScene> shared() {
+    return {std::shared_ptr<const CompiledScene>{}, window_->scene()};
+  }
+  QListWidget* list() { return window_->findChild<QListWidget*>(QStringLiteral("objects")); }
+  QDoubleSpinBox* number(const char* name) {
+    return window_->findChild<QDoubleSpinBox*>(QString::fromUtf8(name));
+  }
+  const std::vector<SceneObject>& objects() { return window_->scene()->scene.objects; }
+};
+
+TEST_F(Objects, AreAddedWithNamesOfTheirOwn) {
+  ASSERT_TRUE(add("cup.obj"));
+  ASSERT_TRUE(add("ball.obj"));
+  ASSERT_EQ(objects().size(), 3U);
+  EXPECT_EQ(list()->item(1)->text(), QStringLiteral("cup"));
+  EXPECT_EQ(list()->item(2)->text(), QStringLiteral("ball-2"));
+  EXPECT_TRUE(window_->isWindowModified());
+  EXPECT_TRUE(window_->feel().running());
+}
+
+TEST_F(Objects, MoveAndAreFeltWhereTheyHaveGone) {
+  ASSERT_TRUE(add("cup.obj"));
+  list()->setCurrentRow(1);
+  ASSERT_TRUE(rebuiltAfter([&] { number("place_x")->setValue(60); }));
+  EXPECT_NEAR(objects()[1].world_from_object.translation()[0], 0.06, 1e-12);
+  EXPECT_EQ(list()->currentRow(), 1);
+  window_->feel().setTarget(Vec3(0.06, 0, 0.03));
+  wait(200);
+  window_->feel().setTarget(Vec3(0.06, 0, 0.018));
+  wait(400);
+  EXPECT_TRUE(window_->lastSample().contact);
+  EXPECT_GT(window_->lastSample().force[2], 0.5);
+}
+
+TEST_F(Objects, EditsThatComeWhileOneIsUnderWayAreNotLost) {
+  ASSERT_TRUE(add("cup.obj"));
+  list()->setCurrentRow(1);
+  number("place_x")->setValue(50);
+  number("place_y")->setValue(10);
+  number("turn_z")->setValue(90);
+  ASSERT_TRUE(waitUntil([&] {
+    const Pose& pose = objects()[1].world_from_object;
+    return (pose.translation() - Vec3(0.05, 0.01, 0)).norm() < 1e-12 &&
+           std::abs(pose.linear()(1, 0) - 1) < 1e-12;
+  }));
+}
+
+TEST_F(Objects, AreRemovedButForTheLast) {
+  auto* remove = window_->findChild<QToolButton*>(QStringLiteral("remove_object"));
+  EXPECT_FALSE(remove->isEnabled());
+  ASSERT_TRUE(add("cup.obj"));
+  EXPECT_TRUE(remove->isEnabled());
+  list()->setCurrentRow(0);
+  ASSERT_TRUE(rebuiltAfter([&] { remove->click(); }));
+  ASSERT_EQ(objects().size(), 1U);
+  EXPECT_EQ(objects()[0].name, "cup");
+  EXPECT_FALSE(remove->isEnabled());
+}
+
+TEST_F(Objects, AFileThatCannotBeAddedLeavesTheSceneAsItWas) {
+  bool failed = false;
+  QObject::connect(window_.get(), &MainWindow::loadFailed, [&] { failed = true; });
+  LoadRequest request = requestFor(folder_ / "none.obj");
+  request.onto = shared();
+  window_->open(request);
+  ASSERT_TRUE(waitUntil([&] { return failed; }));
+  EXPECT_EQ(objects().size(), 1U);
+  EXPECT_TRUE(window_->feel().running());
+}
+
+} // namespace
+} // namespace patina

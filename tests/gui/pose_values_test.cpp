@@ -1,0 +1,49 @@
+// Numbers that a person types, against rotations composed by Eigen.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "app/gui/pose_values.h"
+
+namespace patina {
+namespace {
+
+TEST(PoseValues, TurnAboutXThenYThenZAndMoveInMillimetres) {
+  const PoseValues values{Vec3(1, -2, 3), Vec3(20, -35, 110)};
+  const auto about = [&](int axis) {
+    return Eigen::AngleAxisd(values.angles_deg[axis] * M_PI / 180, Vec3::Unit(axis));
+  };
+  const Eigen::Matrix3d expected = (about(2) * about(1) * about(0)).toRotationMatrix();
+  const Pose pose = poseOf(values);
+  EXPECT_LT((pose.linear() - expected).norm(), 1e-14);
+  EXPECT_LT((pose.translation() - Vec3(1e-3, -2e-3, 3e-3)).norm(), 1e-18);
+}
+
+TEST(PoseValues, ReadBackToTheSamePose) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int i = 0; i < 300; ++i) {
+    const PoseValues values{100 * Vec3(any(random), any(random), any(random)),
+                            Vec3(180 * any(random), 90 * any(random), 180 * any(random))};
+    const Pose pose = poseOf(values);
+    const PoseValues back = valuesOf(pose);
+    ASSERT_LT((poseOf(back).matrix() - pose.matrix()).norm(), 1e-12);
+    ASSERT_LT((back.angles_deg - values.angles_deg).norm(), 1e-7);
+  }
+  for (const double y : {-90.0, 90.0}) { // x and z turn the same way there
+    const Pose pose = poseOf({Vec3::Zero(), Vec3(30, y, 50)});
+    const PoseValues back = valuesOf(pose);
+    EXPECT_EQ(back.angles_deg[2], 0);
+    EXPECT_LT((poseOf(back).matrix() - pose.matrix()).norm(), 1e-12);
+  }
+}
+
+TEST(PoseValues, QuarterTurnsAndNothingAtAllAreExact) {
+  EXPECT_TRUE(poseOf({}).matrix().isIdentity(0));
+  const Eigen::Matrix3d quarter = poseOf({Vec3::Zero(), Vec3(0, 0, 90)}).linear();
+  EXPECT_EQ(quarter(0, 0), 0);
+  EXPECT_EQ(quarter(1, 0), 1);
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,190 @@
+// Modes, device and stabilisers: what the panels say is what the servo gets.
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QToolButton>
+
+#include "app/gui/value_row.h"
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+
+namespace patina {
+namespace {
+
+constexpr double kRadius = 0.03;
+
+class TouchPanels : public WindowTest {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(kRadius, 30), "sphere.obj")));
+  }
+  template <typename Widget> Widget* find(const char* name) {
+    return window_->findChild<Widget*>(QString::fromUtf8(name));
+  }
+  void click(const char* name) {
+    find<QToolButton>(name)->click();
+    wait(150);
+  }
+  const Scene& scene() { return window_->scene()->scene; }
+  void pressMiddle(int notches) {
+    send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
+    turnWheel(notches);
+    wait(400);
+  }
+  double goldShare() {
+    return share([](int r, int g, int b) { return r > b + 60 && g > b + 45; });
+  }
+};
+
+TEST_F(TouchPanels, OffsetAndMagnetExcludeEachOther) {
+  EXPECT_EQ(find<ValueRow>("offset"), nullptr);
+  EXPECT_EQ(find<ValueRow>("magnet_range"), nullptr);
+  click("mode_offset");
+  EXPECT_TRUE(scene().haptics.offset.has_value());
+  EXPECT_NE(find<ValueRow>("offset"), nullptr);
+  click("mode_magnetic");
+  EXPECT_FALSE(scene().haptics.offset.has_value());
+  ASSERT_TRUE(scene().haptics.magnet.has_value());
+  EXPECT_EQ(find<ValueRow>("offset"), nullptr);
+  emit find<ValueRow>("magnet_strength")->edited(450);
+  find<QCheckBox>("magnet_fades")->setChecked(false);
+  wait(150);
+  EXPECT_EQ(scene().haptics.magnet->strength, 450);
+  EXPECT_FALSE(scene().haptics.magnet->fades);
+  click("mode_contact");
+  EXPECT_FALSE(scene().haptics.magnet.has_value());
+  click("mode_magnetic"); // comes back as it was left
+  EXPECT_EQ(scene().haptics.magnet->strength, 450);
+}
+
+TEST_F(TouchPanels, AnOffsetIsFeltOutsideAndContactIsSeenOnTheSurface) { // K12
+  click("mode_offset");
+  emit find<ValueRow>("offset")->edited(1.0);
+  wait(150);
+  pressMiddle(0);
+  const ToolSample sample = window_->lastSample();
+  ASSERT_TRUE(sample.contact);
+  EXPECT_NEAR(sample.tip.norm(), kRadius, 2e-4);
+  EXPECT_NEAR(sample.vcp.norm(), kRadius + 1e-3, 1e-4);
+  EXPECT_NEAR(sample.surface.norm(), kRadius, 1e-4);
+  EXPECT_NEAR(sample.force.norm(), 500 * 1e-3, 0.05);
+}
+
+TEST_F(TouchPanels, TheBandIsThereOnlyWithAnOffsetOrAMagnet) {
+  window_->display().setShown(Layer::tip, false);
+  EXPECT_FALSE(find<QCheckBox>("band")->isVisibleTo(&window_->display()));
+  EXPECT_EQ(goldShare(), 0);
+  click("mode_offset");
+  EXPECT_TRUE(find<QCheckBox>("band")->isVisibleTo(&window_->display()));
+  EXPECT_GT(goldShare(), 0.05);
+  window_->display().setShown(Layer::band, false);
+  EXPECT_EQ(goldShare(), 0);
+}
+
+TEST_F(TouchPanels, AMagnetPullsFromOutside) { // K13
+  pressMiddle(0);
+  turnWheel(-1);
+  wait(300);
+  ASSERT_EQ(window_->lastSample().force.norm(), 0);
+  click("mode_magnetic");
+  wait(400);
+  const ToolSample sample = window_->lastSample();
+  EXPECT_FALSE(sample.contact);
+  EXPECT_TRUE(sample.attracted);
+  EXPECT_LT(sample.force.dot(sample.tip), 0);
+}
+
+TEST_F(TouchPanels, ContactHistoryAndCutOffReachTheScene) {
+  find<QCheckBox>("contact_history")->setChecked(false);
+  HapticProperties haptics = window_->haptics().values();
+  haptics.damping = 2;
+  haptics.damping_cutoff = 80;
+  window_->haptics().setValues(haptics);
+  emit find<ValueRow>("damping_cutoff")->edited(120);
+  wait(150);
+  EXPECT_FALSE(scene().haptics.history);
+  EXPECT_EQ(scene().haptics.damping_cutoff, 120);
+  emit find<ValueRow>("damping")->removed();
+  wait(150);
+  EXPECT_FALSE(scene().haptics.damping_cutoff.has_value());
+}
+
+TEST_F(TouchPanels, AnEditThatTheFieldDoesNotHoldSaysSoAndIsNotFelt) {
+  const auto felt = window_->scene();
+  HapticProperties haptics = window_->haptics().values();
+  haptics.offset = 0.2;
+  window_->haptics().setValues(haptics);
+  emit window_->haptics().edited(haptics);
+  wait(150);
+  EXPECT_EQ(window_->scene(), felt);
+  bool said = false;
+  for (const QLabel* label : window_->haptics().findChildren<QLabel*>())
+    said = said || (label->isVisible() && label->text().contains(QStringLiteral("band")));
+  EXPECT_TRUE(said);
+}
+
+TEST_F(TouchPanels, DeviceNumbersAreThereForASimulatedDeviceAndMakeTheLoopSafe) {
+  EXPECT_EQ(find<QToolButton>("device_numbers"), nullptr);
+  find<QComboBox>("device")->setCurrentIndex(1);
+  wait(150);
+  EXPECT_EQ(scene().device, "simulated");
+  EXPECT_TRUE(window_->feel().running());
+  EXPECT_EQ(find<QDoubleSpinBox>("device_mass"), nullptr);
+  click("device_numbers");
+  ASSERT_NE(find<QDoubleSpinBox>("device_mass"), nullptr);
+  find<QDoubleSpinBox>("device_mass")->setValue(60);
+  find<QDoubleSpinBox>("device_encoder")->setValue(30);
+  emit window_->haptics().findChild<ValueRow*>(QStringLiteral("stiffness"))->edited(8000);
+  wait(300);
+  ASSERT_TRUE(scene().device_model.has_value());
+  EXPECT_NEAR(scene().device_model->mass, 0.06, 1e-12);
+  EXPECT_NEAR(scene().device_model->encoder_step, 30e-6, 1e-15);
+  // 8000 N/m on a device of 0.5 N s/m at 1 kHz is past 2b/T: automatic switches the coupling on.
+  EXPECT_TRUE(window_->status().stabilisersText().startsWith(QStringLiteral("coupling ")));
+  EXPECT_TRUE(window_->status().stabilisersText().endsWith(QStringLiteral(" N/m")));
+  EXPECT_FALSE(find<QLabel>("stabilisers")->toolTip().isEmpty());
+  find<QComboBox>("stabiliser")->setCurrentIndex(1); // none
+  wait(150);
+  EXPECT_TRUE(window_->status().stabilisersText().isEmpty());
+  find<QComboBox>("stabiliser")->setCurrentIndex(3); // passivity
+  wait(150);
+  EXPECT_EQ(window_->status().stabilisersText(), QStringLiteral("passivity"));
+  click("device_numbers");
+  EXPECT_FALSE(scene().device_model.has_value());
+}
+
+TEST_F(TouchPanels, EnergyGoesInAsTheTipDoes) {
+  pressMiddle(0);
+  window_->findChild<QToolButton*>(QStringLiteral("energy_reset"))->click();
+  turnWheel(3);
+  wait(500);
+  const ToolSample sample = window_->lastSample();
+  ASSERT_TRUE(sample.contact);
+  const double depth = kRadius - sample.tip.norm();
+  const double spring = 0.5 * 500 * depth * depth;
+  EXPECT_NEAR(window_->energyPlot().meter().ledger.absorbed, spring, 0.1 * spring);
+}
+
+TEST_F(TouchPanels, TheStabilityMapComesWhenItIsAskedFor) {
+  window_->display().setShown(Layer::tip, false);
+  emit window_->haptics().findChild<ValueRow*>(QStringLiteral("stiffness"))->edited(8000);
+  wait(150);
+  const double sage = surfaceShare();
+  ASSERT_GT(sage, 0.1);
+  window_->display().setShown(Layer::stability, true);
+  auto* words = find<QLabel>("stability_words");
+  EXPECT_TRUE(words->isVisible());
+  ASSERT_TRUE(waitUntil([&] { return words->text().contains(QStringLiteral("K*/K")); }));
+  EXPECT_LT(surfaceShare(), 0.5 * sage); // the map stands where the mesh was
+  EXPECT_TRUE(words->text().contains(QStringLiteral("100 %"))) << words->text().toStdString();
+  window_->display().setShown(Layer::stability, false);
+  wait(60);
+  EXPECT_FALSE(words->isVisible());
+  EXPECT_GT(surfaceShare(), 0.9 * sage);
+}
+
+} // namespace
+} // namespace patina
