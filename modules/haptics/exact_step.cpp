@@ -12,7 +12,8 @@
 namespace patina {
 namespace {
 
-constexpr int kMostCrossings = 64; // of a step; a spring that swings faster is not a hand's
+constexpr int kMostCrossings = 64;  // of a step; a spring that swings faster is not a hand's
+constexpr double kRounding = 1e-12; // a force that equals the friction is held by it
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 Motion moved(const HeldStep& s, const Motion& m, double force) noexcept {
@@ -77,7 +78,7 @@ Motion ExactStep::operator()(const Motion& from, double force) const noexcept {
   double left = dt_;
   for (int i = 0; i < kMostCrossings && left > 0; ++i) {
     const double drive = m.v != 0 ? m.v : force - body_.spring * m.x;
-    if (m.v == 0 && std::abs(drive) <= body_.friction) return m;
+    if (m.v == 0 && std::abs(drive) <= body_.friction * (1 + kRounding)) return m;
     const double net = force - std::copysign(body_.friction, drive);
     const double rest = nextRest(body_, m, net);
     if (rest >= left) return moved(i == 0 ? whole_ : heldStep(body_, left), m, net);

@@ -176,7 +176,8 @@ struct MeanSquare {
 
 Vec3 scaledTo(const Vec3& force, double limit) {
   const double magnitude = force.stableNorm();
-  return magnitude > limit ? Vec3(limit / magnitude * force) : force;
+  // Rounding of the scaled vector must not lift it over the limit.
+  return magnitude > limit ? Vec3(limit * (1 - 1e-15) / magnitude * force) : force;
 }
 
 } // namespace

@@ -1,0 +1,169 @@
+// Where the simulated loop stops settling, against eigenvalues and closed form (F3, MATH 2.1).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stability/loop_support.h"
+
+namespace patina {
+namespace {
+
+SimulationSpec specOf(double mass, double damping, int delay = 0, double rate = 1000) {
+  SimulationSpec spec;
+  spec.device.mass = mass;
+  spec.device.damping = damping;
+  spec.device.delay = delay;
+  spec.device.rate = rate;
+  return spec;
+}
+
+double limitOf(const SimulationSpec& spec, const Wall& wall) {
+  return stiffnessLimit(sceneLoop(propertiesOf(wall), spec.device, spec.hand));
+}
+
+void expectMeasured(const SimulationSpec& spec, const Wall& wall, double tolerance) {
+  const double exact = limitOf(spec, wall);
+  const double measured = measuredLimit(wall, spec, 0.5 * exact, 1.5 * exact);
+  EXPECT_NEAR(measured / exact, 1, tolerance)
+      << "m " << spec.device.mass << " b " << spec.device.damping << " n " << spec.device.delay
+      << " B " << wall.damping << " rate " << spec.device.rate;
+}
+
+// Table 2.1.2.
+TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithoutDelay) {
+  const struct {
+    double mass, damping, limit;
+  } table[] = {{.05, .5, 1001.7}, {.1, .1, 200.03}, {.1, .5, 1000.83},
+               {.1, 5, 10084},    {.1, 50, 109050}, {.2, 1, 2001.7}};
+  for (const auto& [mass, damping, limit] : table) {
+    const SimulationSpec spec = specOf(mass, damping);
+    EXPECT_NEAR(limitOf(spec, {}) / limit, 1, 1e-4);
+    expectMeasured(spec, {}, 0.003);
+  }
+}
+
+// Table 2.1.3, and the delays between its rows.
+TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithDelayAndVirtualDamping) {
+  const struct {
+    int delay;
+    double limit[5];
+  } table[] = {{0, {1000.8, 1991.7, 2972.7, 4905, 10474}},
+               {1, {333.8, 663.9, 990, 1632, 3468}},
+               {2, {200.4, 398.1, 592.9, 974, 2049}},
+               {5, {91.3, 180.5, 267.5, 435, 881}}};
+  const double damping[5] = {0, .5, 1, 2, 5};
+  for (const auto& [delay, limit] : table)
+    for (int i = 0; i < 5; ++i) {
+      const Wall wall{.damping = damping[i]};
+      const SimulationSpec spec = specOf(.1, .5, delay);
+      EXPECT_NEAR(limitOf(spec, wall) / limit[i], 1, 1e-3) << delay << " " << damping[i];
+      expectMeasured(spec, wall, 0.003);
+    }
+  for (const int delay : {3, 4}) expectMeasured(specOf(.1, .5, delay), {.damping = 2}, 0.003);
+}
+
+// F3: what a person would do in the head.
+TEST(SimulatedWall, EndsWithinAFewPerCentOfTheRuleOfThumb) {
+  for (const int delay : {0, 1, 2})
+    for (const double damping : {0., .5, 1., 2.}) {
+      const Wall wall{.damping = damping};
+      const SimulationSpec spec = specOf(.1, .5, delay);
+      const double rule = ruleOfThumb(sceneLoop(propertiesOf(wall), spec.device));
+      EXPECT_NEAR(limitOf(spec, wall) / rule, 1, 0.03);
+    }
+}
+
+TEST(SimulatedWall, EndsWhereTheEigenvaluesSayAtOtherRatesAndWithAHand) {
+  for (const double rate : {250., 4000., 10000.})
+    expectMeasured(specOf(.1, .5, 1, rate), {}, 0.003);
+  SimulationSpec held = specOf(.05, .1);
+  held.hand = {.15, .8, 120};
+  expectMeasured(held, {}, 0.003);
+  expectMeasured(held, {.damping = 1}, 0.003);
+}
+
+// 2.1.4: a filter is a delay of the damping.
+TEST(SimulatedWall, EndsEarlierTheLowerTheCutoffOfTheVelocity) {
+  double before = limitOf(specOf(.1, .5), {.damping = 2});
+  for (const double cutoff : {2000., 500., 200., 100.}) {
+    const Wall wall{.damping = 2, .cutoff = cutoff};
+    const double limit = limitOf(specOf(.1, .5), wall);
+    EXPECT_LT(limit, before) << cutoff;
+    expectMeasured(specOf(.1, .5), wall, 0.003);
+    before = limit;
+  }
+}
+
+// 2.1.3: virtual damping alone buzzes from about 2m/T on.
+TEST(SimulatedWall, DampingItselfBuzzesAboveItsOwnLimit) {
+  for (const double mass : {.05, .1, .2}) {
+    const double limit = dampingLimit(sampledLoop(specOf(mass, .5).device));
+    EXPECT_NEAR(limit, 2 * mass / 1e-3 + .7, .1);
+    for (const double share : {0.97, 1.03}) {
+      // Without the wall's F.n >= 0, so that it is the damper alone.
+      double last = 0;
+      const ForceLaw damper = [&](const Vec3& tip, double dt) {
+        const double velocity = (tip.z() - last) / dt;
+        last = tip.z();
+        return Felt{Vec3(0, 0, -share * limit * velocity), false, false, 0};
+      };
+      SimulationSpec spec = specOf(mass, .5);
+      spec.speed = 1e-6;
+      Progress progress;
+      const SimulationReport run = simulate(damper, spec, progress);
+      EXPECT_EQ(run.rms_velocity < run.rms_early || run.rms_early == 0, share < 1)
+          << mass << " " << share;
+    }
+  }
+}
+
+// The verdict of `patina simulate`, a per cent to either side.
+TEST(SimulatedWall, VerdictTurnsAtTheLimit) {
+  SimulationSpec spec = specOf(.1, .5);
+  spec.press = 1;
+  EXPECT_TRUE(runOn({.stiffness = 0.99 * 1000.83}, spec).stable);
+  EXPECT_FALSE(runOn({.stiffness = 1.01 * 1000.83}, spec).stable);
+}
+
+// T-ST1: the device's own sub-steps change nothing, because each is exact.
+TEST(SimulatedWall, SubStepsOfTheDeviceChangeNothing) {
+  SimulationSpec spec = specOf(.1, .5);
+  spec.press = 1;
+  spec.speed = .2;
+  const SimulationReport one = runOn({.stiffness = 900}, spec);
+  const double limit = measuredLimit({}, spec, 900, 1100);
+  for (const int substeps : {10, 100}) {
+    spec.substeps = substeps;
+    const SimulationReport many = runOn({.stiffness = 900}, spec);
+    EXPECT_NEAR(many.rms_velocity, one.rms_velocity, 1e-9);
+    EXPECT_NEAR(many.max_depth, one.max_depth, 1e-9);
+    EXPECT_NEAR(many.energy.absorbed, one.energy.absorbed, 1e-9);
+    EXPECT_DOUBLE_EQ(measuredLimit({}, spec, 900, 1100), limit);
+  }
+}
+
+// 2.3: a force held from sample to sample does exactly F.dx; nothing else moves the tip here.
+TEST(SimulatedWall, LedgerIsTheLossOfKineticEnergy) {
+  SimulationSpec spec = specOf(.1, 0);
+  spec.speed = .2;
+  spec.depth = -1e-3;
+  const SimulationReport run = runOn({.stiffness = 700}, spec);
+  const double kinetic = 0.5 * .1 * (.2 * .2 - run.last_velocity.squaredNorm());
+  EXPECT_NEAR(run.energy.absorbed, kinetic, 1e-12);
+  EXPECT_LT(run.energy.absorbed, 0) << "a sampled spring gives energy";
+  EXPECT_DOUBLE_EQ(run.energy.credited, run.energy.absorbed) << "there is no damping to credit";
+}
+
+// 2.3: in the safe region the surface alone gives energy, and the device's damping takes it.
+TEST(SimulatedWall, CreditedLedgerStaysPositiveWhereTheLoopIsStable) {
+  SimulationSpec spec = specOf(.1, .5);
+  spec.speed = .2;
+  spec.press = 1;
+  const SimulationReport safe = runOn({.stiffness = 900}, spec);
+  EXPECT_LT(safe.energy.lowest_absorbed, -5e-3);
+  EXPECT_GT(safe.energy.lowest_credited, -1e-12);
+  EXPECT_LT(runOn({.stiffness = 3000}, spec).energy.lowest_credited, -1e-4);
+}
+
+} // namespace
+} // namespace patina
