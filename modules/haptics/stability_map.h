@@ -58,7 +58,7 @@ struct StabilityMap {
 };
 
 // Every vertex of `mesh`, which lies on the field's surface, pressed as StiffnessProbe says. Some
-// 5 us a vertex on one core; polls progress, throws Cancelled, and as compileStages().
+// 5 to 15 us a vertex on one core; polls progress, throws Cancelled, and as compileStages().
 StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField> field,
                           const TriangleMesh& mesh, Progress& progress);
 

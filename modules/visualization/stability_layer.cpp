@@ -55,7 +55,7 @@ vtkSmartPointer<vtkLookupTable> stabilityColors() {
     ramp->GetColor(2.0 * i / (kEntries - 1) - 1, color);
     table->SetTableValue(i, color[0], color[1], color[2], 1);
   }
-  table->SetNanColor(palette::kQuiet[0], palette::kQuiet[1], palette::kQuiet[2], 1);
+  table->SetNanColor(palette::kToolShaft[0], palette::kToolShaft[1], palette::kToolShaft[2], 1);
   return table;
 }
 

@@ -1,0 +1,58 @@
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "geometry/shapes.h"
+#include "picture/picture_support.h"
+#include "visualization/picture.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+Pixels drawn(SceneView& view, const std::string& name, const std::set<Layer>& layers) {
+  view.showOnly(layers);
+  view.setView(ViewPreset::minus_y); // +x to the right
+  const char* keep = std::getenv("PATINA_KEEP_PICTURES");
+  const fs::path folder = keep != nullptr ? fs::path(keep) : fs::temp_directory_path();
+  const fs::path path = folder / (name + "-" + std::to_string(getpid()) + ".png");
+  renderToPng(view, {960, 720}, path);
+  Pixels pixels(path);
+  if (keep == nullptr) fs::remove(path);
+  return pixels;
+}
+
+// Buzzes on the left, stable on the right, unknown in between.
+TEST(StabilityPicture, ColoursTheSurfaceByItsVerticesAndShowsTheScale) {
+  PATINA_NEEDS_DISPLAY();
+  SceneView view;
+  const auto mesh = std::make_shared<const TriangleMesh>(icosphere(0.03, 20));
+  std::vector<float> ratio;
+  for (const Vec3& p : mesh->positions)
+    ratio.push_back(std::abs(p.x()) < 4e-3 ? NAN : p.x() < 0 ? 0.3F : 3.5F);
+  view.setMesh(mesh);
+  const auto unknown = [](const Vec3& c) {
+    return c.maxCoeff() < 130 && c.maxCoeff() - c.minCoeff() < 30;
+  };
+  EXPECT_EQ(drawn(view, "stability-none", {Layer::mesh, Layer::stability}).share(isWarm), 0);
+
+  view.setStability(mesh.get(), ratio);
+  const Pixels pixels = drawn(view, "stability", {Layer::mesh, Layer::stability});
+  EXPECT_GT(pixels.share(isWarm, 0.14, 0.48), 0.2);
+  EXPECT_EQ(pixels.share(isWarm, 0.52, 0.85), 0);
+  EXPECT_GT(pixels.share(isCool, 0.52, 0.85), 0.2);
+  EXPECT_GT(pixels.share(unknown, 0.48, 0.52, 0.3, 0.7), 0.8);
+  EXPECT_EQ(pixels.share(isSurface), 0); // in the mesh's place
+  // The scale, and room for it.
+  EXPECT_GT(pixels.share(isWarm, 0.88, 1, 0.2, 0.8), 0.01);
+  EXPECT_GT(pixels.share(isCool, 0.88, 1, 0.2, 0.8), 0.01);
+  EXPECT_LT(pixels.share(isCool, 0.855, 0.88), 0.001);
+
+  view.setStability(nullptr, {});
+  EXPECT_GT(drawn(view, "stability-gone", {Layer::mesh, Layer::stability}).share(isSurface), 0.1);
+}
+
+} // namespace
+} // namespace patina
