@@ -2,6 +2,7 @@
 
 #include "app/studies/contact_study.h"
 #include "app/studies/field_study.h"
+#include "app/studies/surfaces_study.h"
 
 namespace patina {
 
@@ -9,6 +10,7 @@ const std::vector<Study>& studies() {
   static const std::vector<Study> all = {
       {"field", "samplers and storage of the field on sphere, torus and box", fieldStudy},
       {"contact", "the contact step against a closed form on the fixed test", contactStudy},
+      {"surfaces", "offset, magnetic and merged surfaces; work round closed loops", surfacesStudy},
   };
   return all;
 }

@@ -1,0 +1,91 @@
+#include "app/studies/surfaces_study.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace patina {
+namespace {
+
+const std::vector<WorkPrecisionTable>& quickTables() {
+  static const std::vector<WorkPrecisionTable> tables = [] {
+    Progress progress;
+    return surfacesStudy(StudyOptions{.quick = true}, progress);
+  }();
+  return tables;
+}
+
+double more(const WorkPrecisionRow& row, const std::string& column) {
+  for (const auto& [name, value] : row.more)
+    if (name == column) return value;
+  return std::nan("");
+}
+
+TEST(SurfacesStudy, EveryRowIsMeasured) {
+  ASSERT_EQ(quickTables().size(), 6u);
+  for (const WorkPrecisionTable& table : quickTables()) {
+    EXPECT_GE(table.rows.size(), 2u) << table.title;
+    for (const WorkPrecisionRow& row : table.rows) {
+      EXPECT_GT(row.ns, 0) << table.title;
+      EXPECT_GT(row.bytes, 0) << table.title;
+      EXPECT_TRUE(std::isfinite(row.error) && row.error <= row.error_max) << table.title;
+    }
+  }
+}
+
+TEST(SurfacesStudy, ForceAndLoopEnergyAreOfOrderTwo) {
+  int judged = 0;
+  for (const WorkPrecisionTable& table : quickTables()) {
+    if (!table.order_expected) continue;
+    ++judged;
+    // Work falls faster than its asymptote while the voxel is not small against the loop.
+    const bool energy = table.error_unit == "J";
+    EXPECT_GT(*table.order_fitted, *table.order_expected - 0.2) << table.title;
+    EXPECT_LT(*table.order_fitted, *table.order_expected + (energy ? 1.2 : 0.2)) << table.title;
+  }
+  EXPECT_EQ(judged, 4);
+}
+
+TEST(SurfacesStudy, RedistancingMakesTheDepthOfAnOverlapRight) {
+  const WorkPrecisionTable& overlap = quickTables()[4];
+  ASSERT_EQ(overlap.rows.size(), 2u);
+  const double voxel = 0.06 / (80 - 16);
+  EXPECT_GT(overlap.rows[0].error_max, 5e-3); // by min alone
+  EXPECT_LT(overlap.rows[1].error_max, voxel);
+  for (const WorkPrecisionRow& row : overlap.rows)
+    EXPECT_LT(more(row, "1 mm below free skin, max [m]"), 0.1 * voxel);
+}
+
+TEST(SurfacesStudy, ATickCostsTheSameForManyObjects) {
+  const WorkPrecisionTable& crowd = quickTables()[5];
+  EXPECT_LT(crowd.rows[1].ns, 1.5 * crowd.rows[0].ns);
+}
+
+// Against a brute-force search over both spheres' free parts.
+TEST(LensDepth, AgreesWithBruteForce) {
+  const double R = 0.02, a = 0.01;
+  std::vector<Vec3> surface;
+  for (int i = 0; i < 400; ++i) {
+    for (int j = 0; j < 800; ++j) {
+      const double theta = std::acos(1 - 2 * (i + 0.5) / 400), phi = 2 * M_PI * j / 800;
+      const Vec3 n(std::cos(theta), std::sin(theta) * std::cos(phi),
+                   std::sin(theta) * std::sin(phi));
+      for (const double c : {-a, a}) {
+        const Vec3 q = Vec3(c, 0, 0) + R * n;
+        if ((q + Vec3(c, 0, 0)).norm() >= R) surface.push_back(q);
+      }
+    }
+  }
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> coordinate(-0.006, 0.006);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 p(coordinate(random), coordinate(random), coordinate(random));
+    double nearest = 1;
+    for (const Vec3& q : surface) nearest = std::min(nearest, (q - p).norm());
+    EXPECT_NEAR(lensDepth(p, R, a), nearest, 1e-4);
+  }
+}
+
+} // namespace
+} // namespace patina
