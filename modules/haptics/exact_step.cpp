@@ -46,7 +46,7 @@ double nextRest(const Oscillator& body, const Motion& m, double force) noexcept 
   const double w0 = (force - body.damping * m.v - body.spring * m.x) / body.mass + s * m.v;
   const double q = std::sqrt(std::abs(square));
   if (square < 0) {
-    double angle = std::atan2(-m.v * q, w0);
+    double angle = std::atan(-m.v * q / w0);
     if (angle <= 0) angle += std::numbers::pi;
     return angle / q;
   }

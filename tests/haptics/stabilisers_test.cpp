@@ -1,0 +1,233 @@
+// Coupling, passivity controller and their choice, tick by tick (MATH 2.3).
+#include "haptics/stabilisers.h"
+
+#include <gtest/gtest.h>
+
+#include "haptics/contact_fixture.h"
+#include "haptics/coupling_stage.h"
+#include "haptics/plane.h"
+
+namespace patina {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+
+Contact press(const HapticSnapshot& snapshot, ContactMemory& memory, double z) {
+  return tick(snapshot, memory, Vec3(0, 0, z), kPeriod);
+}
+
+bool has(const HapticSnapshot& snapshot, const std::string& stage) {
+  for (const StageInfo& info : snapshot.why)
+    if (info.name == stage) return true;
+  return false;
+}
+
+std::shared_ptr<const HapticSnapshot> coupled(double stiffness, double coupling, double damping) {
+  HapticProperties haptics;
+  haptics.stiffness = stiffness;
+  haptics.force_limit = 1e6;
+  StabiliserPlan plan;
+  plan.coupling = CouplingPlan{coupling, damping};
+  return planeSnapshot(haptics, plan);
+}
+
+TEST(Coupling, SeriesOfTwoSpringsHasNoLimitOfStiffness) {
+  EXPECT_DOUBLE_EQ(inSeries(300, 600), 200);
+  EXPECT_DOUBLE_EQ(inSeries(std::numeric_limits<double>::infinity(), 600), 600);
+  EXPECT_NEAR(inSeries(1e300, 600), 600, 1e-9);
+  EXPECT_EQ(inSeries(0, 600), 0);
+}
+
+TEST(Coupling, IsASpringAndADamperOnTheVectorToTheContactPoint) {
+  const auto snapshot = coupled(1e4, 1000, 2);
+  const double k = inSeries(1e4, 1000);
+  ContactMemory memory;
+  press(*snapshot, memory, 1e-3);
+  // The first tick of a contact has no rate yet.
+  EXPECT_NEAR(press(*snapshot, memory, -1e-3).force.z(), k * 1e-3, 1e-12);
+  EXPECT_NEAR(press(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3 + 2 * .2, 1e-12);
+  EXPECT_NEAR(press(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3, 1e-12);
+  // On a fast retreat it lets go, and does not pull.
+  EXPECT_EQ(press(*snapshot, memory, -0.2e-3).force.z(), 0);
+  press(*snapshot, memory, 1e-3);
+  EXPECT_NEAR(press(*snapshot, memory, -1e-3).force.z(), k * 1e-3, 1e-12);
+}
+
+TEST(Coupling, TakesThePlaceOfSpringFilterAndDamping) {
+  Scene scene = sceneOf(1e5);
+  scene.haptics.damping = 3;
+  scene.haptics.damping_cutoff = 200;
+  EXPECT_FALSE(has(*compileStages(scene, planeField()), "coupling"));
+  scene.device_model = DeviceModel{};
+  const auto snapshot = compileStages(scene, planeField());
+  for (const char* absent : {"spring", "velocity filter", "damping", "passivity"})
+    EXPECT_FALSE(has(*snapshot, absent)) << absent;
+  EXPECT_TRUE(has(*snapshot, "coupling"));
+  EXPECT_DOUBLE_EQ(snapshot->stabilisers.coupling.value().damping, 3) << "the scene's own is more";
+  ContactMemory memory;
+  press(*snapshot, memory, -1e-3);
+  EXPECT_NEAR(press(*snapshot, memory, -1e-3).force.z(),
+              1e-3 * inSeries(1e5, snapshot->stabilisers.coupling->stiffness), 1e-5);
+}
+
+TEST(Coupling, SoftensAndDampsAMagnet) {
+  Scene scene = sceneOf(500);
+  scene.haptics.magnet = Magnet{2e-3, 1e5};
+  scene.device_model = DeviceModel{};
+  const auto snapshot = compileStages(scene, planeField());
+  ASSERT_TRUE(snapshot->stabilisers.coupling);
+  const auto [coupling, damping] = *snapshot->stabilisers.coupling;
+  ContactMemory memory;
+  press(*snapshot, memory, 1e-3);
+  const double still = press(*snapshot, memory, 1e-3).force.z();
+  EXPECT_NEAR(still, -1e-3 * inSeries(1e5, coupling), 1e-3);
+  const double moved = press(*snapshot, memory, 0.9e-3).force.z();
+  EXPECT_NEAR(moved, -0.9e-3 * inSeries(1e5, coupling) + damping * .1, 1e-3);
+}
+
+TEST(Stabilisers, AreLeftOutWithoutADeviceAndWithAMarginOfTwo) {
+  HapticProperties haptics;
+  haptics.stiffness = 1e5;
+  EXPECT_FALSE(planStabilisers(haptics, std::nullopt, std::nullopt).coupling);
+  EXPECT_FALSE(planStabilisers(haptics, std::nullopt, std::nullopt).predicted_limit);
+  const DeviceModel device; // K* = 1000.83
+  for (const auto& [stiffness, needed] : {std::pair{499., false}, {501., true}}) {
+    haptics.stiffness = stiffness;
+    const StabiliserPlan plan = planStabilisers(haptics, device, std::nullopt);
+    EXPECT_EQ(plan.coupling.has_value(), needed) << stiffness;
+    EXPECT_EQ(plan.why.empty(), !needed);
+    EXPECT_NEAR(plan.predicted_limit.value(), 1000.83, .1);
+  }
+  haptics.damping = 1; // K* = 2973
+  EXPECT_FALSE(planStabilisers(haptics, device, std::nullopt).coupling);
+  haptics.magnet = Magnet{1e-3, 2000};
+  EXPECT_TRUE(planStabilisers(haptics, device, std::nullopt).coupling);
+}
+
+TEST(Stabilisers, FollowTheChoice) {
+  HapticProperties haptics;
+  haptics.stiffness = 1e5;
+  const auto none = planStabilisers(haptics, DeviceModel{}, Stabilisers{});
+  EXPECT_FALSE(none.coupling || none.passivity);
+  const auto both = planStabilisers(haptics, std::nullopt, Stabilisers{true, true});
+  EXPECT_TRUE(both.coupling && both.passivity);
+  const auto only = planStabilisers(haptics, DeviceModel{}, Stabilisers{false, true});
+  EXPECT_TRUE(!only.coupling && only.passivity);
+}
+
+// One step of the encoder must not be felt through the damper: B step/T.
+TEST(Stabilisers, CouplingIsSofterWithACoarseEncoder) {
+  DeviceModel fine, coarse;
+  coarse.encoder_step = 1e-4;
+  const CouplingPlan a = planCoupling({}, fine), b = planCoupling({}, coarse);
+  EXPECT_DOUBLE_EQ(a.damping, 2);
+  EXPECT_DOUBLE_EQ(b.damping, .3);
+  EXPECT_LT(b.stiffness, a.stiffness);
+  for (const int delay : {0, 1, 2, 5, 20})
+    for (const double damping : {0., .5, 50., 500.}) {
+      DeviceModel device{.1, damping, 0, 0, 1000, delay};
+      const auto [stiffness, virtual_damping] = planCoupling({}, device);
+      SampledLoop loop = sampledLoop(device);
+      loop.virtual_damping = virtual_damping;
+      EXPECT_GE(stiffness, 0.4 * ruleOfThumb(loop) * (1 - 1e-12)) << delay << " " << damping;
+      EXPECT_LE(stiffness, 0.75 * stiffnessLimit(loop)) << delay << " " << damping;
+    }
+}
+
+struct PassivityRun {
+  PassivityStage stage;
+  ContactMemory memory;
+  Vec3 tickAt(double x, const Vec3& force, double stiffness = 0) {
+    Contact contact;
+    contact.tip = Vec3(x, 0, 0);
+    contact.vcp = Vec3::Zero();
+    contact.touching = stiffness > 0;
+    contact.stiffness = stiffness;
+    contact.dt = kPeriod;
+    contact.force = force;
+    stage.apply(contact, memory);
+    memory.last_tip = contact.tip;
+    memory.has_last_tip = true;
+    memory.applied = contact.force;
+    return contact.force;
+  }
+};
+
+TEST(Passivity, PaysBackWithinATickWhatWasGiven) {
+  PassivityRun run{PassivityStage({.most = 100}), {}};
+  const Vec3 pushes(1, 0, 0);
+  EXPECT_EQ(run.tickAt(0, pushes), pushes);
+  // 1 N along 0.1 mm gave 0.1 mJ; at 0.1 m/s, alpha = 1e-4 / (1e-3 * 0.01) = 10 N s/m.
+  EXPECT_NEAR(run.memory.energy, 0, 0);
+  const Vec3 damped = run.tickAt(1e-4, Vec3::Zero());
+  EXPECT_NEAR(run.memory.energy, -1e-4, 1e-18);
+  EXPECT_NEAR(damped.x(), -10 * .1, 1e-12);
+  // Moving on at the same speed, the debt is paid.
+  run.tickAt(2e-4, Vec3::Zero());
+  EXPECT_NEAR(run.memory.energy, 0, 1e-18);
+}
+
+TEST(Passivity, NeverDampsMoreThanItsLimit) {
+  PassivityRun run{PassivityStage({.most = 5}), {}};
+  run.tickAt(0, Vec3(1, 0, 0));
+  EXPECT_NEAR(run.tickAt(1e-4, Vec3::Zero()).x(), -5 * .1, 1e-12);
+}
+
+TEST(Passivity, ForgetsWhatWasDissipatedButNoDebt) {
+  PassivityRun run{PassivityStage({.most = 100}), {}};
+  // An hour of rubbing: 1 N against the motion.
+  double x = 0;
+  for (int i = 0; i < 1000; ++i) run.tickAt(x += 1e-4, Vec3(-1, 0, 0));
+  EXPECT_LE(run.memory.energy, 0) << "no credit";
+  EXPECT_GT(run.memory.energy, -1e-12);
+  // A spring holds what it can give back and no more.
+  for (int i = 0; i < 100; ++i) run.tickAt(1e-3, Vec3(-1, 0, 0), 1000);
+  EXPECT_LE(run.memory.energy, 0.5 * 1000 * 1e-6 + 1e-15);
+  run.memory.energy = -1e-3;
+  run.tickAt(1e-3, Vec3::Zero());
+  run.tickAt(1e-3, Vec3::Zero());
+  EXPECT_DOUBLE_EQ(run.memory.energy, -1e-3) << "contact ended, the debt did not";
+}
+
+TEST(Passivity, CountsTheForceThatWasOnItsWay) {
+  PassivityRun run{PassivityStage({.most = 0, .delay = 2}), {}};
+  const double pushes[] = {1, 2, 3, 4, 0, 0, 0, 0};
+  for (int i = 0; i < 8; ++i) run.tickAt(1e-4 * i, Vec3(pushes[i], 0, 0));
+  // Forces 1, 2, 3, 4 each act for one step, two ticks late.
+  EXPECT_NEAR(run.memory.energy, -10e-4, 1e-15);
+}
+
+TEST(Passivity, DoesNotTripOnRoundingAtRest) {
+  HapticProperties haptics;
+  haptics.stiffness = 300;
+  const auto with =
+      planeSnapshot(haptics, planStabilisers(haptics, DeviceModel{}, Stabilisers{false, true}));
+  const auto without = planeSnapshot(haptics, {});
+  ContactMemory a, b;
+  for (int i = 0; i < 100000; ++i) {
+    const double z = -1e-3 - (i % 2) * 1e-18;
+    ASSERT_EQ(press(*with, a, z).force, press(*without, b, z).force);
+  }
+}
+
+// The exact plane of `patina simulate` against the sampled one.
+TEST(Plane, IsTheSampledPlaneToTheSearchsTolerance) {
+  Scene scene = sceneOf(800);
+  scene.haptics.damping = 1;
+  const auto sampled = compileStages(scene, planeField());
+  const auto exact = planeSnapshot(scene.haptics, {});
+  ContactMemory a, b;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 tip(2e-4 * std::sin(.05 * i), 1e-4, 1.5e-3 * std::sin(.03 * i));
+    const Contact c = tick(*sampled, a, tip, kPeriod), d = tick(*exact, b, tip, kPeriod);
+    EXPECT_EQ(c.touching, d.touching);
+    EXPECT_NEAR((c.force - d.force).norm(), 0, 1e-6);
+    EXPECT_NEAR((c.vcp - d.vcp).norm(), 0, 1e-9); // 2e-6 voxels
+  }
+  EXPECT_NEAR(press(*exact, b, -50).depth, 50, 0);
+  scene.haptics.friction = Friction{.5, .3};
+  EXPECT_THROW(planeSnapshot(scene.haptics, {}), std::invalid_argument);
+}
+
+} // namespace
+} // namespace patina

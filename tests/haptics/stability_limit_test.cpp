@@ -1,0 +1,85 @@
+#include "haptics/stability_limit.h"
+
+#include <gtest/gtest.h>
+
+namespace patina {
+namespace {
+
+// 2.1.2, over the whole range of b T/m.
+TEST(StabilityLimit, IsTheClosedFormWithoutDelayAndVirtualDamping) {
+  for (const double mass : {.01, .1, 1.})
+    for (const double share : {1e-6, 1e-4, 1e-3, .01, .1, .5, 1., 2., 5.}) {
+      SampledLoop loop;
+      loop.mass = mass;
+      loop.damping = share * mass / loop.period;
+      EXPECT_NEAR(stiffnessLimit(loop) / undelayedLimit(mass, loop.damping, loop.period), 1, 1e-6)
+          << mass << " " << share;
+    }
+}
+
+TEST(StabilityLimit, ApproachesTheRuleOfThumbForLittleDamping) {
+  for (const int delay : {0, 1, 5, 20}) {
+    SampledLoop loop;
+    loop.damping = 1e-3;
+    loop.virtual_damping = 2e-3;
+    loop.delay = delay;
+    EXPECT_NEAR(stiffnessLimit(loop) / ruleOfThumb(loop), 1, 1e-3) << delay;
+  }
+}
+
+TEST(StabilityLimit, IsZeroWithoutAnyDampingAndWithTooMuch) {
+  SampledLoop loop;
+  loop.damping = 0;
+  EXPECT_EQ(stiffnessLimit(loop), 0);
+  loop.virtual_damping = 1;
+  EXPECT_NEAR(stiffnessLimit(loop), 2000, 50);
+  loop.virtual_damping = 1.01 * dampingLimit(loop);
+  EXPECT_EQ(stiffnessLimit(loop), 0);
+}
+
+TEST(StabilityLimit, SpectralRadiusPassesOneThere) {
+  for (const int delay : {0, 2, 7})
+    for (const double damping : {0., 1.}) {
+      SampledLoop loop;
+      loop.delay = delay;
+      loop.virtual_damping = damping;
+      loop.hand_stiffness = 30;
+      const double limit = stiffnessLimit(loop);
+      EXPECT_LT(spectralRadius(loop, 0.999 * limit), 1);
+      EXPECT_GT(spectralRadius(loop, 1.001 * limit), 1);
+    }
+}
+
+// With two states the damper's loop has a closed form: v' = a v - e B v becomes unstable at -1.
+TEST(StabilityLimit, OfVirtualDampingIsNearTwoMassesATickAndFallsWithDelay) {
+  SampledLoop loop;
+  double before = 1e9;
+  for (const int delay : {0, 1, 2, 5, 20}) {
+    loop.delay = delay;
+    const double limit = dampingLimit(loop);
+    if (delay == 0) {
+      EXPECT_NEAR(limit, 200.7, 0.05);
+    }
+    EXPECT_LT(limit, 0.6 * before);
+    before = limit;
+  }
+}
+
+TEST(StabilityLimit, AHandHelps) {
+  const DeviceModel device;
+  const double alone = stiffnessLimit(sampledLoop(device));
+  EXPECT_NEAR(stiffnessLimit(sampledLoop(device, {.2, 2, 0})), 5 * alone, 0.02 * 5 * alone);
+}
+
+TEST(StabilityLimit, RefusesWhatIsNoLoop) {
+  SampledLoop loop;
+  loop.mass = 0;
+  EXPECT_THROW(stiffnessLimit(loop), std::invalid_argument);
+  EXPECT_THROW(dampingLimit(loop), std::invalid_argument);
+  loop = {};
+  loop.delay = -1;
+  EXPECT_THROW(spectralRadius(loop, 1), std::invalid_argument);
+}
+
+} // namespace
+} // namespace patina
