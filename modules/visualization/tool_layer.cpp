@@ -154,7 +154,9 @@ void ToolLayer::place() {
   // With an offset or a tip's radius contact is seen where the original surface is (K12).
   const bool near = sample_.contact || sample_.attracted;
   placeBall(*contact_, sample_.surface, 0.004 * length_);
-  stretch(*stem_, held, sample_.surface, 0.0013 * length_);
+  // Without a length there is nothing to stretch: the rod would be its own metre.
+  const bool apart = (sample_.surface - held).norm() > 1e-4 * length_;
+  if (apart) stretch(*stem_, held, sample_.surface, 0.0013 * length_);
   stretch(*spring_, sample_.tip, held, 0.0016 * length_);
 
   const double newtons = sample_.force.norm();
@@ -173,7 +175,8 @@ void ToolLayer::place() {
   }
   for (const auto& actor : {ball_, neck_, shaft_}) actor->SetVisibility(visible_);
   for (const auto& actor : {ghost_, spring_}) actor->SetVisibility(visible_ && sample_.contact);
-  for (const auto& actor : {contact_, stem_}) actor->SetVisibility(visible_ && near);
+  contact_->SetVisibility(visible_ && near);
+  stem_->SetVisibility(visible_ && near && apart);
   for (const auto& actor : {arrow_shaft_, arrow_head_}) actor->SetVisibility(visible_ && pushed);
   label_->SetVisibility(visible_ && pushed);
 }
