@@ -222,6 +222,17 @@ TEST(StabilityRatio, AWhirlNeedsDampingEvenWhereEachDirectionIsSoft) {
   }
 }
 
+TEST(StabilityRatio, AStiffDirectionCountsOnlyWhereTheTipStays) {
+  const Scene scene = bare(500);
+  LocalStiffness at;
+  at.normal = Vec3::UnitZ();
+  at.matrix = Vec3(1500, -0.9 * kGrip, 500).asDiagonal();
+  at.lambda_min = -0.9 * kGrip;
+  EXPECT_NEAR(stabilityRatio(at, scene, loopLimits(scene)), limitWith(0) / 1500, 1e-6);
+  at.lambda_min = -1.1 * kGrip;
+  EXPECT_NEAR(stabilityRatio(at, scene, loopLimits(scene)), limitWith(0) / 500, 1e-6);
+}
+
 // A ridge pushes the tip aside; that is no buzz, whatever its directions ask for.
 TEST(StabilityMap, WhereTheTipSlipsOffItIsAPlane) {
   const double h = 0.5e-3;
