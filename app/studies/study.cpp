@@ -2,6 +2,7 @@
 
 #include "app/studies/contact_study.h"
 #include "app/studies/field_study.h"
+#include "app/studies/stability_study.h"
 #include "app/studies/surfaces_study.h"
 
 namespace patina {
@@ -11,6 +12,8 @@ const std::vector<Study>& studies() {
       {"field", "samplers and storage of the field on sphere, torus and box", fieldStudy},
       {"contact", "the contact step against a closed form on the fixed test", contactStudy},
       {"surfaces", "offset, magnetic and merged surfaces; work round closed loops", surfacesStudy},
+      {"stability", "the closed loop against eigenvalues and closed forms; what quietens it",
+       stabilityStudy},
   };
   return all;
 }

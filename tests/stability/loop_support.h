@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "haptics/measured_limit.h"
 #include "haptics/plane.h"
 #include "haptics/simulation.h"
 
@@ -33,24 +34,8 @@ inline SimulationReport runOn(const Wall& wall, const SimulationSpec& spec,
   return simulate(*snapshot, spec, progress, row);
 }
 
-// Whether a small oscillation about a pressed equilibrium decays, from the trajectory alone: the
-// tip never leaves the wall, so nothing but the loop itself decides.
-inline bool decays(Wall wall, double stiffness, SimulationSpec spec) {
-  wall.stiffness = stiffness;
-  spec.depth = 1e-3;
-  spec.press = stiffness * spec.depth;
-  spec.speed = 1e-6 * std::sqrt(stiffness / spec.device.mass);
-  const SimulationReport run = runOn(wall, spec);
-  return run.rms_velocity < run.rms_early;
-}
-
-// The stiffness at which it stops decaying, between the two given.
 inline double measuredLimit(const Wall& wall, const SimulationSpec& spec, double low, double high) {
-  while (high - low > 1e-4 * high) {
-    const double middle = 0.5 * (low + high);
-    (decays(wall, middle, spec) ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return measuredStiffnessLimit(propertiesOf(wall), spec, low, high);
 }
 
 } // namespace patina
