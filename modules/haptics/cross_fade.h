@@ -15,9 +15,9 @@ inline constexpr double kEditStep = 0.04; // [N]
 // a second tick while it lasts.
 class CrossFade {
  public:
-  // What is felt, or, while fading, what was. Null: nothing, no force.
+  // What is felt, or, while fading, what was. Null: nothing, no force; that, too, fades.
   const HapticSnapshot* felt() const noexcept { return felt_; }
-  bool fading() const noexcept { return next_ != nullptr; }
+  bool fading() const noexcept { return fading_; }
   // Not while fading. `next` and felt() must live until the fade has ended. Contact goes on where
   // the field is the same; in another field it begins afresh.
   void turnTo(const HapticSnapshot* next) noexcept;
@@ -25,15 +25,17 @@ class CrossFade {
   Contact tick(const Vec3& tip, double dt) noexcept;
   // The field that the record of the last tick speaks of; null where nothing is felt.
   const SurfaceField* field() const noexcept {
-    return next_ ? next_->field.get() : felt_ ? felt_->field.get() : nullptr;
+    const HapticSnapshot* law = fading_ ? next_ : felt_;
+    return law ? law->field.get() : nullptr;
   }
 
  private:
   const HapticSnapshot* felt_ = nullptr;
-  const HapticSnapshot* next_ = nullptr;
+  const HapticSnapshot* next_ = nullptr; // while fading
   ContactMemory memory_;
   ContactMemory next_memory_;
   double weight_ = 0; // of the new law
+  bool fading_ = false;
 };
 
 } // namespace patina

@@ -64,6 +64,7 @@ TEST(CrossFade, NoEditStepsTheForceOfAStillTip) {
     // Pulled aside before it rests, so that friction holds a force as well.
     Vec3 tip = edit.tip;
     for (int i = 0; i < 20; ++i) law.tick(tip += Vec3(2e-5, 0, -1e-5), 1e-3);
+    for (int i = 0; law.fading() && i < 500; ++i) law.tick(tip, 1e-3);
     Vec3 last = law.tick(tip, 1e-3).force;
     law.tick(tip, 1e-3);
     law.turnTo(edit.to.get());
@@ -102,6 +103,8 @@ TEST(CrossFade, WithoutAnEditItIsTheTickItself) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), sphereField());
   CrossFade law;
   law.turnTo(snapshot.get());
+  law.tick(Vec3(0, 0, 0.0305), 1e-3); // out of contact: at once
+  EXPECT_FALSE(law.fading());
   ContactMemory memory;
   std::mt19937 random(2);
   Vec3 tip(0, 0, 0.0305);

@@ -66,6 +66,29 @@ TEST(ServoLoop, RendersNothingBeforeTheFirstSnapshotAndAnEditFromTheNextTickOn) 
   EXPECT_FALSE(device.bad_dt.load());
 }
 
+// T-RAMP in the loop itself: nothing, 1 N, 2 N, and back, by 0.05 N a tick at most.
+TEST(ServoLoop, EditsWhileTouchingNeverStepTheForce) {
+  auto owned = std::make_unique<StillDevice>();
+  StillDevice& device = *owned;
+  ServoLoop loop(std::move(owned));
+  loop.start();
+  for (const double stiffness : {1000.0, 2000.0, 200.0}) {
+    loop.publish(sphereSnapshot(stiffness)); // each with a field of its own
+    waitForExchanges(device, 60);
+  }
+  loop.stop();
+  ToolSample sample;
+  double last = 0, most = 0;
+  while (loop.samples().pop(sample)) {
+    ASSERT_LE(std::abs(sample.force.x() - last), 0.05);
+    ASSERT_FALSE(sample.fault);
+    last = sample.force.x();
+    most = std::max(most, last);
+  }
+  EXPECT_NEAR(most, 2, 0.1);
+  EXPECT_NEAR(last, 0.2, 0.02);
+}
+
 TEST(ServoLoop, ReportsEveryTickThroughTheRing) {
   ServoLoop loop(makeReplayDevice({Vec3(0.049, 0, 0)}));
   loop.publish(sphereSnapshot(500));
