@@ -71,8 +71,8 @@ std::optional<std::string> text(const std::optional<double>& value) {
 using Text = std::optional<std::string>;
 
 bool yesOrNo(const std::string& key, const std::string& text) {
-  if (text == "on" || text == "true") return true;
-  if (text == "off" || text == "false") return false;
+  if (text == "on" || text == "true" || text == "1" || text == "yes") return true;
+  if (text == "off" || text == "false" || text == "0" || text == "no") return false;
   throw Error(key + " = '" + text + "': it must be on or off");
 }
 
