@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "app/cli/commands.h"
@@ -17,6 +18,7 @@ namespace patina::cli {
 
 namespace {
 
+constexpr double kAtRest = 1e-9;    // [m/s] rms
 constexpr double kDefaultPress = 1; // [N], where nothing else sets the tip in motion
 
 // "0.3": a share of the period to both sides; "0.5-2ms" or "0.0005-0.002": from and to.
@@ -138,6 +140,12 @@ class RunTable {
                   {}};
 };
 
+std::string inScience(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
 Json orNull(const std::optional<double>& value) {
   return value ? Json(*value) : Json();
 }
@@ -177,9 +185,11 @@ TextRows reportRows(const Felt& felt, const SimulationSpec& spec, const Simulati
                     double seconds_taken) {
   const SampledLoop loop = sceneLoop(felt.scene.haptics, spec.device, spec.hand);
   const double stiffness = felt.scene.haptics.stiffness;
-  std::string verdict = run.stable ? "settles" : "does not settle";
-  verdict += ": rms velocity " + formatNumber(run.rms_velocity) + " m/s in the last second, " +
-             formatNumber(run.rms_early) + " in the second one";
+  std::string verdict = run.rms_velocity < kAtRest ? "at rest"
+                        : run.stable               ? "calming down"
+                                                   : "does not settle";
+  verdict += ": rms velocity " + inScience(run.rms_velocity) + " m/s in the last second, " +
+             inScience(run.rms_early) + " in the second one";
   std::string stages;
   for (const StageInfo& stage : felt.snapshot->why)
     stages += (stages.empty() ? "" : ", ") + stage.name;
@@ -200,8 +210,8 @@ TextRows reportRows(const Felt& felt, const SimulationSpec& spec, const Simulati
   if (run.restitution) rows.emplace_back("restitution", rounded(*run.restitution));
   rows.emplace_back("largest depth", formatLength(run.max_depth));
   rows.emplace_back("largest force", rounded(run.max_force) + " N");
-  rows.emplace_back("energy absorbed", formatNumber(run.energy.absorbed) + " J by the surface, " +
-                                           formatNumber(run.energy.credited) +
+  rows.emplace_back("energy absorbed", inScience(run.energy.absorbed) + " J by the surface, " +
+                                           inScience(run.energy.credited) +
                                            " J with the device's damping");
   if (run.fault_ticks)
     rows.emplace_back("faults", formatCount(run.fault_ticks) + " ticks faded by a force jump");

@@ -1,5 +1,7 @@
 #include "haptics/plane.h"
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "haptics/force_law.h"
@@ -29,7 +31,10 @@ std::shared_ptr<const HapticSnapshot> planeSnapshot(const HapticProperties& hapt
     throw std::invalid_argument("plane: friction, offset, magnet and tip radius need a field");
   auto snapshot = std::make_shared<HapticSnapshot>();
   addStage(*snapshot, std::make_unique<PlaneStage>(), "always");
-  addForceLaw(*snapshot, haptics, plan, {}, kHandSpeed);
+  // Without a limit nothing is a fault: what is looked for is how the loop itself ends.
+  const bool limited = std::isfinite(haptics.force_limit);
+  addForceLaw(*snapshot, haptics, plan, {},
+              limited ? kHandSpeed : std::numeric_limits<double>::infinity());
   return snapshot;
 }
 

@@ -17,7 +17,7 @@ class PlaneStage final : public ForceStage {
 
 // Spring, damping, stabilisers and limit as compileStages() makes them, on the plane. Has no field.
 // Throws std::invalid_argument for friction, offset, magnet or tip radius, which need one. An
-// infinite force limit is allowed.
+// infinite force limit is allowed; then no jump of the force is a fault either.
 std::shared_ptr<const HapticSnapshot> planeSnapshot(const HapticProperties& haptics,
                                                     const StabiliserPlan& plan);
 
