@@ -70,6 +70,8 @@ in_window "$bin/patina" render "$@" -o "$out/picture.png"
 say "Done. Pictures and tables are in $out"
 cat <<TEXT
   window.png  feel.png  slice.png  nodes.png   the window before and during the touch
+  offset.png  magnet.png                       the tip held off by an offset; a magnet's band
+  stability.png  objects.png                   where a device would buzz; two objects as one
   picture.png                                  the object alone
   feel.csv                                     one row a servo tick of the session
   forces.csv  feel.json                        the same path felt again in simulated time, with the

@@ -26,19 +26,20 @@ void ForcePlot::addSamples(const std::vector<ToolSample>& samples) {
 
 EnergyPlot::EnergyPlot(QWidget* parent)
     : StripPlot(QStringLiteral("mJ"),
-                {{tr("taken"), toQColor(palette::kSeries[0]), 2.0},
+                {{QStringLiteral("E"), toQColor(palette::kSeries[0]), 2.0},
                  {tr("lowest"), toQColor(palette::kSeries[1])}},
                 1.0, parent) {
   setToolTip(tr("Energy that the surface has taken from the hand. A spring gives back what it "
                 "took; friction and damping keep it. Well below zero the surface feeds the hand: "
                 "that is what a buzz lives on."));
-  auto* each = new QCheckBox(tr("From each touch"), this);
+  auto* each = new QCheckBox(tr("Each touch"), this);
   each->setObjectName(QStringLiteral("energy_each_touch"));
   each->setToolTip(tr("Begin at zero whenever a force begins"));
   connect(each, &QCheckBox::toggled, this, [this](bool on) { meter_.from_each_touch = on; });
   auto* zero = new QToolButton(this);
   zero->setObjectName(QStringLiteral("energy_reset"));
-  zero->setText(tr("Set to zero"));
+  zero->setText(tr("Zero"));
+  zero->setToolTip(tr("Count from now"));
   connect(zero, &QToolButton::clicked, this, [this] { meter_.ledger = {}; });
   auto* corner = new QHBoxLayout;
   corner->addStretch(1);

@@ -41,6 +41,7 @@ class MainWindow : public QMainWindow {
   void setAsks(bool asks) { asks_ = asks; }
 
   const CompiledScene* scene() const { return current_.get(); }
+  std::shared_ptr<const CompiledScene> current() const { return current_; }
   SceneWidget& view() { return *view_; }
   DisplayPanel& display() { return *display_; }
   HapticsPanel& haptics() { return *haptics_; }
@@ -48,6 +49,7 @@ class MainWindow : public QMainWindow {
   ObjectList& objects() { return *objects_; }
   SceneLoader& loader() { return *loader_; }
   FeelHost& feel() { return feel_; }
+  StabilityJob& stability() { return *stability_; }
   EnergyPlot& energyPlot() { return *energy_plot_; }
   StatusLine& status() { return *status_; }
   const ToolSample& lastSample() const { return last_sample_; }

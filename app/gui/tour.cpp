@@ -169,6 +169,70 @@ void checkFelt(const std::vector<ToolSample>& samples) {
     throw Error("the tip touched nothing in " + formatCount(samples.size()) + " ticks");
 }
 
+void edit(MainWindow& window, const std::function<void(HapticProperties&)>& change) {
+  HapticProperties haptics = window.haptics().values();
+  change(haptics);
+  window.haptics().setValues(haptics);
+  emit window.haptics().edited(haptics);
+  wait(250);
+}
+
+// The tip on the offset surface, and the magnetic band cut by the slice.
+void showBands(MainWindow& window, const std::filesystem::path& folder) {
+  const double edge = 3 * window.scene()->built.field->grid.voxel;
+  edit(window, [&](HapticProperties& haptics) {
+    haptics.magnet.reset();
+    haptics.offset = edge;
+  });
+  const Vec2 place = placeToTouch(window);
+  press(window, place, -0.35 * edge, 1200);
+  lookCloser(window, 2);
+  grab(window, folder / "offset.png");
+  play(window, {window.view().restingPlace()});
+  wait(400);
+  edit(window, [&](HapticProperties& haptics) {
+    haptics.offset.reset();
+    haptics.magnet = Magnet{edge, 300, true};
+  });
+  show(window, {Layer::mesh, Layer::slice, Layer::band});
+  window.view().view().setView(ViewPreset::iso);
+  grab(window, folder / "magnet.png");
+  edit(window, [](HapticProperties& haptics) { haptics.magnet.reset(); });
+}
+
+// A surface near the limit of a device, so that its form decides where it would buzz.
+void showStability(MainWindow& window, const std::filesystem::path& folder) {
+  DeviceChoice choice = window.device().values();
+  if (!choice.model) choice.model = DeviceModel{0.1, 0.5, 0.05, 30e-6, 1000, 0};
+  window.device().setValues(choice);
+  emit window.device().edited();
+  edit(window, [](HapticProperties& haptics) { haptics.stiffness = 1500; });
+  show(window, {Layer::mesh, Layer::tip, Layer::stability});
+  if (!waitUntil([&] { return !window.stability().busy(); }, 120000))
+    throw Error("the stability map was not ready after two minutes");
+  grab(window, folder / "stability.png");
+  show(window, {Layer::mesh, Layer::band, Layer::tip});
+}
+
+// The same file once more, beside what is open.
+void showObjects(MainWindow& window, const LoadRequest& request,
+                 const std::filesystem::path& folder) {
+  const double wide = 0.8 * window.view().view().extent().sizes()[0];
+  LoadRequest more = request;
+  more.onto = window.current();
+  openAndWait(window, more);
+  window.objects().moveLast(Vec3(wide, 0, 0));
+  bool moved = false;
+  const auto done = QObject::connect(&window, &MainWindow::sceneReady, [&] { moved = true; });
+  const bool in_time = waitUntil([&] { return moved; }, 10 * 60 * 1000);
+  QObject::disconnect(done);
+  if (!in_time) throw Error("the second object was not there after ten minutes");
+  window.view().view().setView(ViewPreset::iso);
+  play(window, {window.view().restingPlace()});
+  wait(400);
+  grab(window, folder / "objects.png");
+}
+
 } // namespace
 
 void runTour(MainWindow& window, const LoadRequest& request, const std::filesystem::path& folder) {
@@ -187,11 +251,10 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
 
   lookCloser(window, 3.2);
   // The person gives the surface friction and strokes on: one row more, one stage more.
-  HapticProperties haptics = window.haptics().values();
-  if (!haptics.friction) haptics.friction = Friction{0.5, 0.3, 0, {}};
-  window.haptics().setValues(haptics);
-  emit window.haptics().edited(haptics);
-  wait(200);
+  const HapticProperties opened = window.haptics().values();
+  edit(window, [](HapticProperties& haptics) {
+    if (!haptics.friction) haptics.friction = Friction{0.5, 0.3, 0, {}};
+  });
   slide(window, Vec2::Zero(), Vec2(0.14, -0.06), depth, 2400);
   grab(window, folder / "feel.png");
 
@@ -206,10 +269,14 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   window.display().setIso(1.5 * window.scene()->built.field->grid.voxel);
   window.view().view().setView(ViewPreset::iso);
   grab(window, folder / "slice.png");
-  show(window, {Layer::mesh, Layer::tip});
+  show(window, {Layer::mesh, Layer::band, Layer::tip});
 
   const std::vector<ToolSample> samples = window.takeRecording();
   checkFelt(samples);
+  edit(window, [&](HapticProperties& haptics) { haptics = opened; });
+  showBands(window, folder);
+  showStability(window, folder);
+  showObjects(window, request, folder);
   writeToolSamplesCsv(folder / "feel.csv", samples);
 }
 

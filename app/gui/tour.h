@@ -8,7 +8,8 @@
 
 namespace patina {
 
-// Writes window.png, feel.png, slice.png, nodes.png and feel.csv into `folder`. The window must be
+// Writes window.png, feel.png, nodes.png, slice.png, offset.png, magnet.png, stability.png,
+// objects.png and feel.csv into `folder`. The window must be
 // shown. Throws Error, in one line, if the file does not open, nothing is drawn, or the tip felt
 // nothing.
 void runTour(MainWindow& window, const LoadRequest& request, const std::filesystem::path& folder);

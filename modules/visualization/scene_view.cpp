@@ -25,6 +25,10 @@
 #include "visualization/tool_layer.h"
 
 namespace patina {
+namespace {
+constexpr double kBarWidth = 0.12; // of the picture
+}
+
 struct SceneView::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
   vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
@@ -89,6 +93,7 @@ struct SceneView::Impl {
     return 4.0 / 3.0;
   }
   bool on(Layer layer) const { return layers.count(layer) != 0; }
+  bool mapShown() const { return on(Layer::stability) && has_stability; }
   bool bandShown() const { return on(Layer::band) && field != nullptr && band.has_value(); }
 
   void applyVisibility();
@@ -98,7 +103,7 @@ struct SceneView::Impl {
 };
 
 void SceneView::Impl::applyVisibility() {
-  const bool map = on(Layer::stability) && has_stability;
+  const bool map = mapShown();
   stability.setVisible(map);
   placeScalarBar(stability.bar(), on(Layer::slice) && field != nullptr ? 1 : 0);
   mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr && !map);
@@ -307,12 +312,15 @@ void SceneView::setView(ViewPreset view) {
 }
 
 void SceneView::fit() {
-  const Box3 box = impl_->box();
-  // The scalar bar of the map takes some of the width.
-  const bool map = impl_->on(Layer::stability) && impl_->has_stability;
-  const double aspect = (map ? 0.77 : 1.0) * impl_->aspect();
-  fitCamera(*impl_->scene->GetActiveCamera(), box.center(), impl_->outermost(box), aspect);
-  impl_->dirty = true;
+  Impl& my = *impl_;
+  const Box3 box = my.box();
+  vtkCamera& camera = *my.scene->GetActiveCamera();
+  // Scalar bars stand at the right edge: what is fitted goes to their left.
+  const int bars = (my.on(Layer::slice) && my.field ? 1 : 0) + (my.mapShown() ? 1 : 0);
+  const double taken = kBarWidth * bars;
+  fitCamera(camera, box.center(), my.outermost(box), my.aspect() * (1 - taken));
+  pan(camera, -0.5 * taken * my.aspect(), 0);
+  my.dirty = true;
 }
 
 Box3 SceneView::extent() const {

@@ -92,6 +92,12 @@ void placeBall(vtkActor& actor, const Vec3& centre, double radius) {
 
 } // namespace
 
+Vec3 seenContact(const ToolSample& sample) {
+  if (!sample.contact) return sample.surface;
+  const double reach = sample.depth - (sample.surface - sample.tip).dot(sample.normal);
+  return sample.vcp - reach * sample.normal;
+}
+
 ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : ball_(unitBall(palette::kTool, 1)), neck_(unitCone(palette::kTool)),
       shaft_(unitRod(palette::kToolShaft)), ghost_(unitBall(palette::kGhost, 0.45)),
@@ -151,12 +157,12 @@ void ToolLayer::place() {
   stretch(*shaft_, neck_end, neck_end + lean_ * (0.32 * length_), shaft_radius);
 
   placeBall(*ghost_, sample_.tip, radius);
-  // With an offset or a tip's radius contact is seen where the original surface is (K12).
   const bool near = sample_.contact || sample_.attracted;
-  placeBall(*contact_, sample_.surface, 0.004 * length_);
+  const Vec3 seen = seenContact(sample_);
+  placeBall(*contact_, seen, 0.004 * length_);
   // Without a length there is nothing to stretch: the rod would be its own metre.
-  const bool apart = (sample_.surface - held).norm() > 1e-4 * length_;
-  if (apart) stretch(*stem_, held, sample_.surface, 0.0013 * length_);
+  const bool apart = (seen - held).norm() > 1e-4 * length_;
+  if (apart) stretch(*stem_, held, seen, 0.0013 * length_);
   stretch(*spring_, sample_.tip, held, 0.0016 * length_);
 
   const double newtons = sample_.force.norm();

@@ -11,6 +11,10 @@
 
 namespace patina {
 
+// Where contact is seen: on the original surface below the VCP (K12). An offset and a tip's radius
+// are between the two; friction, which holds the VCP back from the tip, holds this point as well.
+Vec3 seenContact(const ToolSample& sample);
+
 class ToolLayer {
  public:
   // scene: hidden by surfaces in front of it; overlay: never hidden.

@@ -30,12 +30,9 @@ class Objects : public WindowTest {
   bool add(const char* name) {
     return rebuiltAfter([&] {
       LoadRequest request = requestFor(saved(icosphere(0.02, 16), name));
-      request.onto = shared();
+      request.onto = window_->current();
       window_->open(request);
     });
-  }
-  std::shared_ptr<const CompiledScene> shared() {
-    return {std::shared_ptr<const CompiledScene>{}, window_->scene()};
   }
   QListWidget* list() { return window_->findChild<QListWidget*>(QStringLiteral("objects")); }
   QDoubleSpinBox* number(const char* name) {
@@ -97,7 +94,7 @@ TEST_F(Objects, AFileThatCannotBeAddedLeavesTheSceneAsItWas) {
   bool failed = false;
   QObject::connect(window_.get(), &MainWindow::loadFailed, [&] { failed = true; });
   LoadRequest request = requestFor(folder_ / "none.obj");
-  request.onto = shared();
+  request.onto = window_->current();
   window_->open(request);
   ASSERT_TRUE(waitUntil([&] { return failed; }));
   EXPECT_EQ(objects().size(), 1U);

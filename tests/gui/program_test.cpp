@@ -70,7 +70,8 @@ TEST_F(Program, TheTourLeavesPicturesAndALog) {
   writeMesh(folder_ / "sphere.obj", icosphere(30, 20));
   const Outcome outcome = run("--tour" + quoted(folder_ / "tour") + quoted(folder_ / "sphere.obj"));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* name : {"window.png", "feel.png", "slice.png", "nodes.png"})
+  for (const char* name : {"window.png", "feel.png", "slice.png", "nodes.png", "offset.png",
+                           "magnet.png", "stability.png", "objects.png"})
     EXPECT_GT(fs::file_size(folder_ / "tour" / name), 10000U) << name;
   const CsvTable table =
       readCsv(folder_ / "tour" / "feel.csv",
