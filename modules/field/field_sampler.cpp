@@ -206,15 +206,17 @@ GridSample FieldSampler::deepSample(const Vec3& q) const noexcept {
   return sample;
 }
 
-std::optional<Vec3> FieldSampler::nearestFoot(const Vec3& q) const noexcept {
-  constexpr float kOneDirection = 0.9F; // shorter: several feet were as near, none was kept
+std::optional<FieldSampler::DeepFeet> FieldSampler::deepFeet(const Vec3& q) const noexcept {
+  constexpr float kOneDirection = 0.9F;  // shorter: several feet were as near, none was kept
+  constexpr double kAsNear = kBlockSide; // [voxel], the coarse nodes' spacing
+  constexpr double kOpposed = -0.2;      // cosine
   if (field_->coarse.empty() || q.hasNaN()) return std::nullopt;
   std::array<int, 3> at{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     at[axis] =
         clampedIndex(q[static_cast<Eigen::Index>(axis)] / kBlockSide, field_->blocks[axis] - 1);
-  std::optional<Vec3> nearest;
-  double nearest_squared = std::numeric_limits<double>::infinity();
+  std::array<Vec3, 8> way; // from q to the feet
+  std::size_t count = 0, nearest = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const int x = at[0] + (corner & 1), y = at[1] + (corner >> 1 & 1), z = at[2] + (corner >> 2);
     const CoarseNode& node = field_->coarse[static_cast<std::size_t>(
@@ -222,14 +224,20 @@ std::optional<Vec3> FieldSampler::nearestFoot(const Vec3& q) const noexcept {
     if (!(node.phi < 0) ||
         node.gx * node.gx + node.gy * node.gy + node.gz * node.gz < kOneDirection * kOneDirection)
       continue;
-    const Vec3 foot = kBlockSide * Vec3(x, y, z) -
-                      static_cast<double>(node.phi) * Vec3(node.gx, node.gy, node.gz);
-    const double squared = (q - foot).squaredNorm();
-    if (squared >= nearest_squared) continue;
-    nearest = foot;
-    nearest_squared = squared;
+    way[count] = kBlockSide * Vec3(x, y, z) -
+                 static_cast<double>(node.phi) * Vec3(node.gx, node.gy, node.gz) - q;
+    if (way[count].squaredNorm() < way[nearest].squaredNorm()) nearest = count;
+    ++count;
   }
-  return nearest;
+  if (count == 0) return std::nullopt;
+  DeepFeet feet{q + way[nearest]};
+  const double least = way[nearest].norm();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double length = way[i].norm();
+    feet.opposed = feet.opposed || (length < least + kAsNear &&
+                                    way[i].dot(way[nearest]) < kOpposed * length * least);
+  }
+  return feet;
 }
 
 GridSample FieldSampler::handOver(const Vec3& q, const GridSample& sample) const noexcept {

@@ -50,10 +50,14 @@ class FieldSampler {
     sample.phi *= grid_.voxel;
     return sample;
   }
-  // Deep inside, where the blended direction may vanish: of the surface points nearest to the eight
-  // coarse nodes about q the one nearest to q; exact to second order in q's distance from its node.
-  // In grid coordinates. Nothing where no coarse node about is inside and knows its own.
-  std::optional<Vec3> nearestFoot(const Vec3& q) const noexcept;
+  // Deep inside: what the eight coarse nodes about q know of the surface. Not for every tick.
+  struct DeepFeet {
+    Vec3 nearest = Vec3::Zero(); // of their nearest surface points the one nearest to q
+    bool opposed = false; // another, on about the opposite side, is as near within a coarse cell
+  };
+  // In grid coordinates; exact to second order in q's distance from a node. Nothing where no coarse
+  // node about is inside and has one nearest point.
+  std::optional<DeepFeet> deepFeet(const Vec3& q) const noexcept;
   // Nearest face of the nearest stored node of p's cell; -1 if none.
   std::int32_t faceNear(const Vec3& p) const noexcept;
 

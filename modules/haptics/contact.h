@@ -12,6 +12,7 @@ namespace patina {
 enum class ContactMode : std::uint8_t {
   ray,    // K06: first intersection of the ray along the direction with the surface
   held,   // tracked on the near side of a part that the tip has passed through or half through
+  ahead,  // a ray along the last direction, about the middle of a deep part (F9)
   newton, // the ray found no surface (F9): one Newton step
 };
 

@@ -11,6 +11,10 @@ namespace patina {
 namespace {
 
 constexpr double kMinGradient = 0.1; // K05
+constexpr double kCreep = 0.25;      // voxels a tick
+// Cosine between a coarse direction and the normal where it leads, from which the normal is
+// believed less and not at all: in a concave crease it is that of one of the two faces, by chance.
+constexpr double kAlike = 0.95, kUnlike = 0.85;
 constexpr int kRefinements = 2;
 constexpr double kDeepFrom = 2.75;     // voxels before the band's end, where the sampler turns deep
 constexpr double kHandoverTime = 5e-3; // [s]
@@ -53,13 +57,30 @@ void ContactStage::apply(Contact& contact, ContactMemory& memory) const noexcept
   const GridSample sample = sampler_.atGrid(q);
   contact.samples = 1;
   const double f = sample.phi - iso_;
-  const Vec3 direction = f < 0 ? directionAt(sample, memory) : Vec3::Zero();
+  Vec3 direction = f < 0 ? directionAt(sample, memory) : Vec3::Zero();
 
   Found found;
-  if (history_ && hold(q, sample, direction, memory, found)) {
+  bool at_once = false, ahead = false;
+  if (sample.region == FieldRegion::deep && f < 0) [[unlikely]] {
+    // About the middle the blend of opposite directions is one of none of them (F9). A VCP that is
+    // there stays ahead; else the nearest one that a coarse node knows.
+    const std::optional<FieldSampler::DeepFeet> feet = sampler_.deepFeet(q);
+    if (feet && feet->opposed) {
+      ahead = history_ && memory.in_contact;
+      if (ahead)
+        direction = memory.last_normal;
+      else
+        at_once = towardsFoot(q, feet->nearest, found);
+    }
+  }
+  if (at_once) {
+    contact.deep = true;
+    finish(found, contact, memory);
+  } else if (history_ && hold(q, sample, direction, memory, found)) {
     finish(found, contact, memory);
   } else if (f < 0) {
     alongRay(q, sample, direction, contact, found);
+    if (ahead && found.mode == ContactMode::ray) found.mode = ContactMode::ahead;
     finish(found, contact, memory);
   } else {
     memory.leaveContact();
@@ -79,7 +100,9 @@ bool ContactStage::hold(const Vec3& q, const GridSample& sample, const Vec3& dir
                                   : (q - last).dot(memory.last_normal) < 0;
     // Inside, letting go would turn the force around; there it has no limit.
     const double limit = f < 0 ? std::numeric_limits<double>::infinity() : hold_limit_;
-    return wrong_side && follow(q, {last, memory.last_normal}, limit, found);
+    // Nor may the VCP run round a solid whose middle the tip has passed.
+    const double reach = f < 0 ? kCreep + 4 * (q - toGrid(memory.last_tip)).norm() : limit;
+    return wrong_side && follow(q, {last, memory.last_normal}, limit, reach, found);
   }
   // Slow motion ends here: a 1-Lipschitz field has no surface between two points whose clearances
   // together exceed their distance, and a tip that enters moves against the direction.
@@ -89,17 +112,28 @@ bool ContactStage::hold(const Vec3& q, const GridSample& sample, const Vec3& dir
   if (!suspicious || !(memory.clearance >= 0 && memory.clearance < step)) return false;
   const std::optional<SurfaceContact> entry = firstCrossing(sampler_, from, q, iso_);
   if (!entry || (f < 0 && entry->normal.dot(direction) > 0)) return false;
-  return follow(q, *entry, hold_limit_, found);
+  return follow(q, *entry, hold_limit_, hold_limit_, found);
 }
 
 // Leaves `found` alone unless it succeeds.
-bool ContactStage::follow(const Vec3& q, const SurfaceContact& from, double limit,
+bool ContactStage::follow(const Vec3& q, const SurfaceContact& from, double limit, double reach,
                           Found& found) const noexcept {
-  const std::optional<SurfaceContact> foot = trackFoot(sampler_, q, from, iso_);
+  const std::optional<SurfaceContact> foot = trackFoot(sampler_, q, from, iso_, reach);
   if (!foot) return false;
   const double depth = (foot->point - q).dot(foot->normal);
   if (!(depth > 0 && depth < limit)) return false;
   found = {foot->normal, depth, ContactMode::held};
+  return true;
+}
+
+// Leaves `found` alone unless it succeeds.
+bool ContactStage::towardsFoot(const Vec3& q, const Vec3& near, Found& found) const noexcept {
+  const std::optional<Vec3> foot = descendToNearest(sampler_, q, near, iso_);
+  if (!foot) return false;
+  const Vec3 out = *foot - q;
+  const double depth = out.norm();
+  if (!(depth > 0)) return false;
+  found = {out / depth, depth, ContactMode::ahead};
   return true;
 }
 
@@ -115,8 +149,8 @@ void ContactStage::alongRay(const Vec3& q, const GridSample& sample, const Vec3&
     if (contact.deep) refine(q, contact, found);
     return;
   }
-  // F9. A distance's own slope is 1; where the blended gradient is shorter, at a crease, dividing by
-  // it would throw the VCP far beyond the part.
+  // F9. A distance's own slope is 1; where the blended gradient is shorter, at a crease, dividing
+  // by it would throw the VCP far beyond the part.
   found.depth = iso_ - sample.phi;
   found.mode = ContactMode::newton;
 }
@@ -133,8 +167,11 @@ void ContactStage::refine(const Vec3& q, Contact& contact, Found& found) const n
     const GridSample surface = sampler_.atGrid(q + found.depth * found.normal);
     ++contact.samples;
     if (!(surface.gradient.dot(found.normal) > kMinGradient)) return;
-    const Vec3 normal =
-        (found.normal + weight * (surface.gradient.normalized() - found.normal)).normalized();
+    const Vec3 there = surface.gradient.normalized();
+    const double agrees =
+        std::clamp((surface.gradient.dot(found.normal) - kUnlike) / (kAlike - kUnlike), 0.0, 1.0);
+    if (!(agrees > 0)) return;
+    const Vec3 normal = (found.normal + weight * agrees * (there - found.normal)).normalized();
     const RayRoot root = rayRoot(sampler_, q, normal, found.depth, iso_);
     contact.samples += root.samples;
     if (!root.found) return;

@@ -19,6 +19,8 @@ namespace patina {
 //  - the tip is inside and the field's own direction is within 60 degrees of the held one, or
 //  - the tip is outside and held deeper than a quarter of the grid's longest side (inside there is
 //    no such limit: letting go there would turn the force around), or the surface is lost.
+// About the middle of a deep part, where points on opposite sides are about as near, the VCP is the
+// point of the surface nearest to the tip (F9), and from then on straight ahead of the tip.
 // Where the way of finding the VCP changes in contact, the difference fades over some 5 ms, but by
 // no more than five grid sides a second.
 class ContactStage final : public ForceStage {
@@ -40,9 +42,11 @@ class ContactStage final : public ForceStage {
   };
   bool hold(const Vec3& q, const GridSample& sample, const Vec3& direction,
             const ContactMemory& memory, Found& found) const noexcept;
-  bool follow(const Vec3& q, const SurfaceContact& from, double limit, Found& found) const noexcept;
+  bool follow(const Vec3& q, const SurfaceContact& from, double limit, double reach,
+              Found& found) const noexcept;
   void alongRay(const Vec3& q, const GridSample& sample, const Vec3& direction, Contact& contact,
                 Found& found) const noexcept;
+  bool towardsFoot(const Vec3& q, const Vec3& near, Found& found) const noexcept;
   void refine(const Vec3& q, Contact& contact, Found& found) const noexcept;
   Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - sampler_.grid().origin); }
   void finish(const Found& found, Contact& contact, ContactMemory& memory) const noexcept;

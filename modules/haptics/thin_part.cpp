@@ -54,17 +54,39 @@ std::optional<SurfaceContact> firstCrossing(const FieldSampler& sampler, const V
 }
 
 std::optional<SurfaceContact> trackFoot(const FieldSampler& sampler, const Vec3& q,
-                                        SurfaceContact start, double iso) noexcept {
+                                        SurfaceContact start, double iso, double reach) noexcept {
   std::optional<SurfaceContact> foot = ontoSurface(sampler, start.point, iso);
-  for (int i = 0; foot && i < kMaxWalk; ++i) {
+  for (int i = 0; foot && reach > 0 && i < kMaxWalk; ++i) {
     const Vec3 to_tip = q - foot->point;
     Vec3 slide = to_tip - to_tip.dot(foot->normal) * foot->normal;
     const double length = slide.norm();
     if (length < 1e-6) break;
-    if (length > 1) slide /= length;
+    const double most = std::min(1.0, reach);
+    if (length > most) slide *= most / length;
+    reach -= std::min(length, most);
     foot = ontoSurface(sampler, foot->point + slide, iso);
   }
   return foot;
+}
+
+std::optional<Vec3> descendToNearest(const FieldSampler& sampler, const Vec3& q, const Vec3& start,
+                                     double iso) noexcept {
+  constexpr int kMaxDescent = 12;
+  std::optional<SurfaceContact> foot = ontoSurface(sampler, start, iso);
+  if (!foot) return std::nullopt;
+  double step = 1;
+  for (int i = 0; i < kMaxDescent && step >= kMinStep; ++i) {
+    const Vec3 to_tip = q - foot->point;
+    const Vec3 slide = to_tip - to_tip.dot(foot->normal) * foot->normal;
+    const double length = slide.norm();
+    if (length < 1e-6) break;
+    const auto next = ontoSurface(sampler, foot->point + std::min(1.0, step / length) * slide, iso);
+    if (next && (q - next->point).squaredNorm() < to_tip.squaredNorm())
+      foot = next;
+    else
+      step *= 0.5;
+  }
+  return foot->point;
 }
 
 } // namespace patina

@@ -19,9 +19,15 @@ std::optional<SurfaceContact> firstCrossing(const FieldSampler& sampler, const V
                                             const Vec3& to, double iso) noexcept;
 
 // Walks `start` over the surface until the tip q lies on its normal: the VCP of an ideal proxy
-// (up to 8 steps of at most a voxel; what is left is walked next time). nullopt if the surface is
-// lost: no direction, or not in the band.
+// (up to 8 steps of at most a voxel, `reach` voxels together; what is left is walked next time).
+// nullopt if the surface is lost: no direction, or not in the band.
 std::optional<SurfaceContact> trackFoot(const FieldSampler& sampler, const Vec3& q,
-                                        SurfaceContact start, double iso) noexcept;
+                                        SurfaceContact start, double iso, double reach) noexcept;
+
+// Walks `start` over the surface to where it is nearest to the tip q, downhill only, in up to 12
+// steps of at most a voxel, so that it comes to rest in a crease. nullopt if the surface is not
+// there.
+std::optional<Vec3> descendToNearest(const FieldSampler& sampler, const Vec3& q, const Vec3& start,
+                                     double iso) noexcept;
 
 } // namespace patina

@@ -168,16 +168,20 @@ TEST(Redistance, CancelledThrows) {
 }
 
 // The blended gradient vanishes at the centre; the corners' own feet do not.
-TEST(NearestFoot, FindsTheCreaseFromTheCentreOfTwoSpheres) {
+TEST(DeepFeet, FindTheCreaseFromTheCentreOfTwoSpheres) {
   const MergedShapes m = mergedShapes(pair(), 0.07 / 134, true);
   const FieldSampler sampler(*m.field, Sampler::high);
   for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1e-4, 0, 0), Vec3(0, 1e-4, 0), Vec3(-7e-5, 0, 7e-5)}) {
-    const auto foot = sampler.nearestFoot(m.field->grid.toGrid(p));
-    ASSERT_TRUE(foot);
-    EXPECT_NEAR((m.field->grid.toWorld(*foot) - p).norm(), kCrease, m.lattice.voxel);
+    const auto feet = sampler.deepFeet(m.field->grid.toGrid(p));
+    ASSERT_TRUE(feet);
+    EXPECT_TRUE(feet->opposed);
+    EXPECT_NEAR((m.field->grid.toWorld(feet->nearest) - p).norm(), kCrease, m.lattice.voxel);
   }
-  EXPECT_FALSE(sampler.nearestFoot(Vec3(-100, 0, 0)));
-  EXPECT_FALSE(sampler.nearestFoot(Vec3::Constant(std::nan(""))));
+  const auto aside = sampler.deepFeet(m.field->grid.toGrid(Vec3(0, 0.007, 0)));
+  ASSERT_TRUE(aside);
+  EXPECT_FALSE(aside->opposed);
+  EXPECT_FALSE(sampler.deepFeet(Vec3(-100, 0, 0)));
+  EXPECT_FALSE(sampler.deepFeet(Vec3::Constant(std::nan(""))));
 }
 
 } // namespace
