@@ -142,10 +142,12 @@ Command sceneCommand() {
       "the folder as it was. A mesh added again gets a name of its own: cup, cup-2. Where objects "
       "overlap deeply, merge.redistance=on measures depths to the union's own surface. Keys: "
       "stiffness [N/m], damping [N s/m], "
-      "friction.static, friction.dynamic, friction.depth, friction.slip, tip.radius [m], "
-      "force.limit [N], resolution, voxel [m], band [voxels], sampler, merge.redistance, device. "
-      "The value none "
-      "makes a feature absent.\n"
+      "damping.cutoff [Hz], friction.static, friction.dynamic, friction.depth, friction.slip, "
+      "offset [m], magnet.range [m], magnet.strength [N/m], magnet.fades (on or off), history (on "
+      "or off), tip.radius [m], force.limit [N], resolution, voxel [m], band [voxels], sampler, "
+      "merge.redistance (on or off), stabiliser (auto, none, coupling, passivity), device.mass "
+      "[kg], device.damping [N s/m], device.coulomb [N], device.encoder [m], device.rate [Hz], "
+      "device.delay [samples], device. The value none makes a feature absent.\n"
       "A pose is a text file of 4 x 4 numbers, row by row: world from object, in metres.\n"
       "JSON: workspace, saved, objects (name, triangles, world_from_object), values.";
   command.examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
