@@ -5,18 +5,17 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "haptics/contact.h"
 #include "haptics/exact_step.h"
 
 namespace patina {
 namespace {
 
-constexpr int kMostDelay = 20; // samples
-
 class HandDevice final : public MouseDevice {
  public:
   HandDevice(const Vec3& start, const HandSpec& spec)
       : spec_(spec), hand_(makeMouseDevice(start)), position_(start) {
-    if (spec.device.delay < 0 || spec.device.delay > kMostDelay || !(spec.device.mass > 0))
+    if (spec.device.delay < 0 || spec.device.delay > kMaxDelay || !(spec.device.mass > 0))
       throw std::invalid_argument("hand device: mass or delay out of range");
     on_their_way_.fill(Vec3::Zero());
   }
@@ -64,7 +63,7 @@ class HandDevice final : public MouseDevice {
   std::unique_ptr<MouseDevice> hand_; // where the hand is: it glides as the mouse does
   Vec3 position_;
   Vec3 velocity_ = Vec3::Zero();
-  std::array<Vec3, kMostDelay + 1> on_their_way_; // forces that have not arrived, a ring
+  std::array<Vec3, kMaxDelay + 1> on_their_way_; // forces that have not arrived, a ring
   std::size_t newest_ = 0;
 };
 

@@ -99,6 +99,7 @@ struct SceneView::Impl {
   void applyVisibility();
   void cutAt();
   void aimTool();
+  void fitArrow(vtkCamera& camera, const Box3& box, std::vector<Vec3>& points, double aspect);
   void syncCorner();
 };
 
@@ -141,6 +142,24 @@ void SceneView::Impl::cutAt() {
     if (wanted) actor->GetMapper()->AddClippingPlane(&plane);
   }
   dirty = true;
+}
+
+// The arrow keeps its size in the picture, so that it reaches farther the farther the camera goes:
+// each round is nearer to where both fit, since the arrow is shorter than the picture.
+void SceneView::Impl::fitArrow(vtkCamera& camera, const Box3& box, std::vector<Vec3>& points,
+                               double aspect) {
+  const double distance = camera.GetDistance();
+  Vec3 centre = box.center();
+  points.emplace_back();
+  for (int round = 0; round < 8; ++round) {
+    tool.faceCamera(camera);
+    const auto end = tool.arrowEnd();
+    if (!end) return;
+    points.back() = *end;
+    if (round > 0) centre = Box3(box).extend(*end).center();
+    fitCamera(camera, centre, points, aspect);
+    if (round == 0 && camera.GetDistance() <= distance) return; // it was in the picture
+  }
 }
 
 // Before a hand moved it, the tip rests on the surface in the middle of the picture.
@@ -318,7 +337,10 @@ void SceneView::fit() {
   // Scalar bars stand at the right edge: what is fitted goes to their left.
   const int bars = (my.on(Layer::slice) && my.field ? 1 : 0) + (my.mapShown() ? 1 : 0);
   const double taken = kBarWidth * bars;
-  fitCamera(camera, box.center(), my.outermost(box), my.aspect() * (1 - taken));
+  const double aspect = my.aspect() * (1 - taken);
+  std::vector<Vec3> points = my.outermost(box);
+  fitCamera(camera, box.center(), points, aspect);
+  my.fitArrow(camera, box, points, aspect);
   pan(camera, -0.5 * taken * my.aspect(), 0);
   my.dirty = true;
 }

@@ -146,9 +146,20 @@ void ToolLayer::setVisible(bool on) {
   place();
 }
 
+std::optional<Vec3> ToolLayer::arrowEnd() const {
+  const double newtons = sample_.force.norm();
+  if (!visible_ || !(newtons > kSmallestForce)) return std::nullopt;
+  const Vec3 held = sample_.contact ? sample_.vcp : sample_.tip;
+  return held + sample_.force / newtons * (ballRadius() + kArrowPerNewton * newtons * length_);
+}
+
+double ToolLayer::ballRadius() const {
+  return tip_radius_ > 0 ? tip_radius_ : kPointRadius * length_;
+}
+
 void ToolLayer::place() {
   const Vec3 held = sample_.contact ? sample_.vcp : sample_.tip;
-  const double radius = tip_radius_ > 0 ? tip_radius_ : kPointRadius * length_;
+  const double radius = ballRadius();
   const double shaft_radius = 0.006 * length_;
   placeBall(*ball_, held, radius);
   // The neck's base sits on the shaft and its point in the ball.

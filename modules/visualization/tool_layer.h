@@ -2,6 +2,8 @@
 // contact point, the force) drawn over everything.
 #pragma once
 
+#include <optional>
+
 #include <vtkActor.h>
 #include <vtkBillboardTextActor3D.h>
 #include <vtkRenderer.h>
@@ -27,9 +29,12 @@ class ToolLayer {
   // arrow keep their size in the picture, whatever the zoom.
   void faceCamera(vtkCamera& camera);
   void setVisible(bool on);
+  // Of the force, for the camera last faced; nullopt where none is drawn.
+  std::optional<Vec3> arrowEnd() const;
 
  private:
   void place();
+  double ballRadius() const; // [m]
 
   vtkSmartPointer<vtkActor> ball_, neck_, shaft_; // the proxy
   vtkSmartPointer<vtkActor> ghost_, spring_, stem_, contact_, arrow_shaft_, arrow_head_;

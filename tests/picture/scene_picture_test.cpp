@@ -86,7 +86,7 @@ TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
   const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::extent, Layer::iso});
   EXPECT_GT(pixels.share(isWarm), 0.02);
   EXPECT_GT(pixels.share(isCool), 0.02);
-  EXPECT_GT(pixels.share(isSurface), 0.05); // the half behind the plane
+  EXPECT_GT(pixels.share(isSurface), 0.04); // the half behind the plane
   // The scalar bar stands at the right edge: both ends of the map, and dark text.
   EXPECT_GT(pixels.share(isWarm, 0.88, 1, 0.2, 0.8), 0.01);
   EXPECT_GT(pixels.share(isCool, 0.88, 1, 0.2, 0.8), 0.01);
@@ -136,6 +136,17 @@ TEST_F(ScenePicture, ToolForceAndLabelAreDrawnOverTheSurface) {
   EXPECT_GT(pixels.share(isTool), 0.0002);
   EXPECT_GT(pixels.share(isForce), 0.002);
   EXPECT_GT(pixels.share(isSurface), 0.2);
+}
+
+TEST_F(ScenePicture, AForceArrowThatReachesBeyondTheObjectIsInThePicture) {
+  ToolSample sample = pressed();
+  sample.force = Vec3(0, 0, 3.2);
+  view_.setTool(sample);
+  const Pixels pixels = drawn("long_arrow", {Layer::mesh, Layer::tip}, ViewPreset::plus_z);
+  const Pixels side = drawn("long_arrow_side", {Layer::mesh, Layer::tip}, ViewPreset::minus_y);
+  EXPECT_GT(side.share(isForce), 0.003);
+  EXPECT_EQ(side.share(isForce, 0, 1, 0.99, 1), 0);
+  EXPECT_GT(pixels.share(isSurface), 0.2); // seen from its end it takes no room
 }
 
 TEST_F(ScenePicture, WithoutContactThereIsNoForceArrow) {

@@ -40,10 +40,10 @@ TEST(StabilityPicture, ColoursTheSurfaceByItsVerticesAndShowsTheScale) {
 
   view.setStability(mesh.get(), ratio);
   const Pixels pixels = drawn(view, "stability", {Layer::mesh, Layer::stability});
-  EXPECT_GT(pixels.share(isWarm, 0.14, 0.48), 0.2);
-  EXPECT_EQ(pixels.share(isWarm, 0.52, 0.85), 0);
-  EXPECT_GT(pixels.share(isCool, 0.52, 0.85), 0.2);
-  EXPECT_GT(pixels.share(unknown, 0.48, 0.52, 0.3, 0.7), 0.8);
+  EXPECT_GT(pixels.share(isWarm, 0.14, 0.42), 0.2);
+  EXPECT_EQ(pixels.share(isWarm, 0.46, 0.85), 0);
+  EXPECT_GT(pixels.share(isCool, 0.46, 0.85), 0.2);
+  EXPECT_GT(pixels.share(unknown, 0.42, 0.46, 0.3, 0.7), 0.8);
   EXPECT_EQ(pixels.share(isSurface), 0); // in the mesh's place
   // The scale, and room for it.
   EXPECT_GT(pixels.share(isWarm, 0.88, 1, 0.2, 0.8), 0.01);
