@@ -1,57 +1,152 @@
 // Drawing must not starve the servo.
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <future>
+#include <optional>
 
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
 #include "haptics/latency.h"
+#include "haptics/realtime.h"
+#include "haptics/run_queue_wait.h"
+#include "support/busy_machine.h"
 #include "visualization/camera.h"
 
 namespace patina {
 namespace {
 
-constexpr double kP99 = 100, kP999 = 500; // [us]
-constexpr double kSeconds = 9; // the servo's last 8192 ticks are judged: all under drawing
+constexpr double kPeriod = 1000; // [us]
+constexpr double kSeconds = 9;
+constexpr double kRadius = 0.03;
 
-// A loop as the servo's with nothing to do, on each processor: what this machine itself is late by.
-std::vector<Latency> measureProcessors() {
-  cpu_set_t allowed;
-  sched_getaffinity(0, sizeof allowed, &allowed);
-  std::vector<std::future<Latency>> loops;
-  for (int processor = 0; processor < CPU_SETSIZE; ++processor)
-    if (CPU_ISSET(processor, &allowed))
-      loops.push_back(std::async(std::launch::async, [processor] {
-        cpu_set_t one;
-        CPU_ZERO(&one);
-        CPU_SET(processor, &one);
-        sched_setaffinity(0, sizeof one, &one); // the measuring thread inherits it
-        return measureLatency(kSeconds);
-      }));
-  std::vector<Latency> measured;
-  for (auto& loop : loops) measured.push_back(loop.get());
-  return measured;
-}
+// Rests in the surface and notes, tick by tick, what its servo thread waited for a processor.
+class WatchedDevice final : public Device {
+ public:
+  struct Tick {
+    double wait = 0, exchange = 0; // [us]
+  };
+
+  DeviceState exchange(const Vec3& force, double dt) noexcept override {
+    const std::int64_t begin = monotonicNs();
+    if (!wait_) wait_.emplace(); // the first tick: in the servo's thread
+    const std::optional<std::int64_t> total = wait_->total();
+    known_ = known_ && total;
+    const DeviceState state = rest_->exchange(force, dt);
+    if (count_ < ticks_.size())
+      ticks_[count_++] = {1e-3 * static_cast<double>(total.value_or(0) - before_),
+                          1e-3 * static_cast<double>(monotonicNs() - begin)};
+    before_ = total.value_or(0);
+    return state;
+  }
+  DeviceInfo info() const override { return rest_->info(); }
+
+  // When the loop has stopped. Absent where the system keeps no account of the wait.
+  std::optional<std::vector<Tick>> ticks() const {
+    if (!known_) return std::nullopt;
+    return std::vector<Tick>(ticks_.begin(), ticks_.begin() + static_cast<std::ptrdiff_t>(count_));
+  }
+
+ private:
+  std::unique_ptr<Device> rest_ = makeReplayDevice({Vec3(0.99 * kRadius, 0, 0)});
+  std::optional<RunQueueWait> wait_;
+  std::int64_t before_ = 0;
+  bool known_ = true;
+  std::vector<Tick> ticks_ = std::vector<Tick>(100000);
+  std::size_t count_ = 0;
+};
 
 std::string shown(const char* name, const Percentiles& us) {
   char text[160];
-  std::snprintf(text, sizeof text, "%-28s p50 %.1f, p99 %.1f, p99.9 %.1f, max %.0f us\n", name,
+  std::snprintf(text, sizeof text, "%-42s p50 %.1f, p99 %.1f, p99.9 %.1f, max %.0f us\n", name,
                 us.p50, us.p99, us.p999, us.max);
+  return text;
+}
+
+// Of the servo's wake-ups [us], one entry a tick.
+struct Pass {
+  bool realtime = false;
+  std::vector<double> late;
+  // Absent, all of them, where the system keeps no account of the wait:
+  std::vector<double> taken; // waiting for a processor, and the tick before with its device
+  std::vector<double> timer; // lateness that neither explains: the timer's or the host's
+  Latency bare;              // a loop with nothing to do, meanwhile
+  double stolen = 0;         // share of the processors' time that a virtual machine's host took
+  std::string text;
+};
+
+Pass passOf(const std::vector<ToolSample>& samples, const WatchedDevice& device,
+            const ServoTiming& servo, Latency bare) {
+  Pass pass;
+  pass.realtime = servo.realtime && bare.realtime;
+  const auto ticks = device.ticks();
+  for (std::size_t i = 1; i < samples.size(); ++i) { // the first starts the loop
+    pass.late.push_back(1e-3 * samples[i].late_ns);
+    if (!ticks || i >= ticks->size()) continue;
+    const double busy = (*ticks)[i - 1].exchange + 1e-3 * samples[i - 1].step_ns;
+    const double wait = (*ticks)[i].wait;
+    pass.taken.push_back(wait + busy);
+    pass.timer.push_back(std::max(0.0, pass.late.back() - wait - std::max(0.0, busy - kPeriod)));
+  }
+  pass.text = servo.policy + ", missed " + std::to_string(servo.missed) + "\n" +
+              shown("servo late", percentiles(pass.late));
+  if (ticks)
+    pass.text += shown("  waiting for a processor and own time", percentiles(pass.taken)) +
+                 shown("  the timer's or the host's", percentiles(pass.timer));
+  pass.text += shown("bare loop late", bare.late_us);
+  if (bare.wait_us)
+    pass.text += shown("  waiting for a processor", *bare.wait_us) +
+                 shown("  the timer's or the host's", *bare.timer_us);
+  pass.bare = std::move(bare);
+  return pass;
+}
+
+struct Limit {
+  double share, us; // so few of the wake-ups may be later
+};
+constexpr Limit kLimits[] = {{0.01, 100}, {0.001, 500}};
+
+std::size_t countAbove(const std::vector<double>& values, double limit) {
+  return static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [=](double v) { return v > limit; }));
+}
+
+// What breaks the limit by no fault of the servo, empty if the limit holds; failures otherwise.
+std::string judge(const Pass& pass, const Limit& limit) {
+  const double allowed = limit.share * static_cast<double>(pass.late.size());
+  const std::size_t late = countAbove(pass.late, limit.us);
+  const std::size_t taken = countAbove(pass.taken, limit.us);
+  std::size_t ours = 0; // late, and not by the timer alone
+  for (std::size_t i = 0; i < pass.late.size(); ++i)
+    ours += pass.late[i] > limit.us && (pass.timer.empty() || pass.timer[i] <= limit.us);
+  const auto above = [&](std::size_t count) { return static_cast<double>(count) > allowed; };
+  if (!above(late) && !above(taken)) return {};
+
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "beyond %g us: %zu late, %zu of them not by the timer alone, %zu waited; %.1f may "
+                "be; the host took %.2f %% of the processors' time\n",
+                limit.us, late, ours, taken, allowed, 100 * pass.stolen);
+  // A wake-up finds its processor taken by the host with just that probability.
+  if (pass.stolen <= limit.share && (above(ours) || above(taken))) ADD_FAILURE() << text;
   return text;
 }
 
 class ServoUnderDrawing : public WindowTest {
  protected:
-  struct Pass {
-    ServoTiming servo;
-    std::vector<Latency> bare; // meanwhile, one a processor
-  };
-
+  // A second servo, watched, on what the window feels, while the window draws.
   Pass draw() {
-    auto measuring = std::async(std::launch::async, measureProcessors);
+    auto owned = std::make_unique<WatchedDevice>();
+    const WatchedDevice& device = *owned;
+    ServoLoop loop(std::move(owned));
+    loop.publish(window_->scene()->snapshot);
+    loop.start();
+    const test::StolenTime stolen;
+    auto measuring = std::async(std::launch::async, [] { return measureLatency(kSeconds); });
+    std::vector<ToolSample> samples;
+    const auto drain = [&] {
+      for (ToolSample sample; loop.samples().pop(sample);) samples.push_back(sample);
+    };
     double longest = 0, sum = 0;
     int frames = 0;
     while (measuring.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
@@ -62,55 +157,38 @@ class ServoUnderDrawing : public WindowTest {
         ++frames;
       }
       QApplication::processEvents(QEventLoop::AllEvents, 1);
+      drain();
     }
+    loop.stop();
+    drain();
     std::printf("%d frames, mean %.0f ms, longest %.0f ms\n", frames, 1000 * sum / frames,
                 1000 * longest);
-    return {window_->feel().timing(), measuring.get()};
-  }
-
-  static std::string textOf(const Pass& pass) {
-    const ServoTiming& servo = pass.servo;
-    std::string text =
-        servo.policy + ", missed " + std::to_string(servo.missed) + "\n" +
-        shown("servo late", {servo.late_p50, servo.late_p99, servo.late_p999, servo.late_max});
-    for (const Latency& bare : pass.bare) {
-      text += shown("bare loop late", bare.late_us);
-      if (!bare.wait_us) continue;
-      text += shown("  waiting for a processor", *bare.wait_us);
-      text += shown("  the timer's or the host's", *bare.timer_us);
-    }
-    return text;
+    EXPECT_EQ(samples.size(), loop.timing().ticks) << "none may be lost: ticks are matched";
+    EXPECT_GT(samples.size(), 8192U);
+    EXPECT_TRUE(!samples.empty() && samples.back().contact);
+    Pass pass = passOf(samples, device, loop.timing(), measuring.get());
+    pass.stolen = stolen.share();
+    pass.text += "the host took " + std::to_string(100 * pass.stolen) + " %\n";
+    return pass;
   }
 };
 
-// What the program and the scheduler are answerable for is the wait for a processor: it is judged
-// however busy the machine is, since real-time priority goes first. Lateness also holds what the
-// timer, or a virtual machine's host, is late by; a limit that this alone breaks cannot be kept.
+// What the servo waited for a processor is judged however busy the machine is, since real-time
+// priority goes first. Lateness also holds what the timer is late by, and a virtual machine's host
+// that takes the processor away makes both: only what these two break is shown and not judged.
 TEST_F(ServoUnderDrawing, WakesInTimeWhileTheWindowDraws500000Triangles) {
-  ASSERT_TRUE(open(saved(icosphere(0.03, 158), "sphere.ply"))); // 499,280 triangles
+  ASSERT_TRUE(open(saved(icosphere(kRadius, 158), "sphere.ply"))); // 499,280 triangles
   const Pass pass = draw();
   EXPECT_GT(surfaceShare(), 0.1);
-  const std::string text = textOf(pass);
-  std::printf("%s", text.c_str());
-  if (!pass.servo.realtime)
-    GTEST_SKIP() << "no real-time priority here: lateness is shown and not judged\n" << text;
-
-  double timer_p99 = 0, timer_p999 = 0;
-  for (const Latency& bare : pass.bare) {
-    if (!bare.wait_us) continue;
-    EXPECT_LE(bare.wait_us->p99, kP99) << text;
-    EXPECT_LE(bare.wait_us->p999, kP999) << text;
-    timer_p99 = std::max(timer_p99, bare.timer_us->p99);
-    timer_p999 = std::max(timer_p999, bare.timer_us->p999);
-  }
-  const bool late_p99 = pass.servo.late_p99 > kP99;
-  const bool late_p999 = pass.servo.late_p999 > kP999;
-  EXPECT_FALSE(late_p99 && timer_p99 <= kP99) << text;
-  EXPECT_FALSE(late_p999 && timer_p999 <= kP999) << text;
-  if (late_p99 || late_p999)
-    GTEST_SKIP() << "the timer alone breaks the limit on this machine now: the wait for a "
-                    "processor is judged, lateness is shown\n"
-                 << text;
+  std::printf("%s", pass.text.c_str());
+  if (!pass.realtime)
+    GTEST_SKIP() << "no real-time priority here: lateness is shown and not judged\n" << pass.text;
+  std::string excuses;
+  for (const Limit& limit : kLimits) excuses += judge(pass, limit);
+  std::printf("%s", excuses.c_str());
+  if (!excuses.empty())
+    GTEST_SKIP() << "the timer or the host breaks the limit on this machine now\n"
+                 << excuses << pass.text;
 }
 
 } // namespace

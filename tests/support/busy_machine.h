@@ -3,7 +3,9 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -54,5 +56,29 @@ inline bool machineIsCrowded() {
   double load = 0;
   return getloadavg(&load, 1) == 1 && load > std::thread::hardware_concurrency();
 }
+
+// Share of all processors' time since construction that a virtual machine's host gave to others, by
+// the kernel's account. 0 where there is no host or no account.
+class StolenTime {
+ public:
+  double share() const {
+    const Account now;
+    return now.all > begin_.all ? (now.stolen - begin_.stolen) / (now.all - begin_.all) : 0;
+  }
+
+ private:
+  // user nice system idle iowait irq softirq steal; what follows is part of these.
+  struct Account {
+    Account() {
+      std::ifstream file("/proc/stat");
+      std::string name;
+      file >> name;
+      for (int i = 0; i < 8 && file >> stolen; ++i) all += stolen;
+      if (!file) all = stolen = 0;
+    }
+    double all = 0, stolen = 0;
+  };
+  Account begin_;
+};
 
 } // namespace patina::test
