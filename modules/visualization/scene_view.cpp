@@ -132,6 +132,10 @@ void SceneView::Impl::cutAt() {
   if (wanted) {
     Vec3 inward = keeps_positive ? normal : Vec3(-normal);
     plane.SetNormal(inward.data());
+    // A hair behind the slice: the rims of what is cut would shine through its lines.
+    Vec3 origin(plane.GetOrigin());
+    origin[place.axis] = slice.position() + (keeps_positive ? 1 : -1) * 0.35 * field->grid.voxel;
+    plane.SetOrigin(origin.data());
   }
   if (wanted == cut_on && keeps_positive == cut_keeps_positive) return;
   cut_on = wanted;

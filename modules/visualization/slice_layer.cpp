@@ -149,6 +149,7 @@ void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
   quad_->SetPoint1(grid.toWorld(across).data());
   quad_->SetPoint2(grid.toWorld(up).data());
   plane_->SetOrigin(grid.toWorld(corner).data());
+  position_ = grid.toWorld(corner)[place.axis];
   Vec3 normal = Vec3::Unit(place.axis);
   plane_->SetNormal(normal.data());
 

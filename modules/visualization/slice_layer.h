@@ -37,6 +37,7 @@ class SliceLayer {
   void setTextSize(int pixels);
   // The plane itself, to cut the surfaces with; its normal is the slice's axis.
   vtkPlane& plane() { return *plane_; }
+  double position() const { return position_; } // along the axis [m]
 
  private:
   vtkSmartPointer<vtkPlaneSource> quad_;
@@ -44,6 +45,7 @@ class SliceLayer {
   vtkSmartPointer<vtkActor> actor_;
   vtkSmartPointer<vtkScalarBarActor> bar_;
   vtkSmartPointer<vtkPlane> plane_;
+  double position_ = 0;
 };
 
 } // namespace patina

@@ -123,6 +123,8 @@ TEST_F(BadInput, WordsOfTheCommandLineAreChecked) {
   expectOneLineError(run({"render", box, "-o", folder / "p.png", "--view", "+w"}), {"--view"});
   expectOneLineError(run({"render", box, "-o", folder / "p.png", "--size", "9x9"}), {"--size"});
   expectOneLineError(run({"render", box, "-o", folder / "p.png", "--show", "tip"}), {"--tip"});
+  expectOneLineError(run({"render", box, "-o", folder / "p.png", "--show", "mesh,band"}),
+                     {"band", "offset", "magnet"});
 }
 
 TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
