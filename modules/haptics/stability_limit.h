@@ -33,7 +33,8 @@ SampledLoop sampledLoop(const DeviceModel& device, const HandModel& hand = {});
 double spectralRadius(const SampledLoop& loop, double stiffness);
 
 // K*: the loop is stable for 0 < K < K*. 0 if it is stable for none (no damping at all, or too much
-// of the virtual kind). Relative error 1e-9.
+// of the virtual kind). Relative error 1e-9, or
+// 1e-12 m/(b T) where that is more.
 double stiffnessLimit(const SampledLoop& loop);
 
 // B* with K = 0: from there on virtual damping itself buzzes; about 2m/T without delay.

@@ -47,6 +47,27 @@ TEST(Quantiser, FrictionLocksAWallThatAnImpactWouldSetBuzzing) {
   EXPECT_GT(pressedMidway(1200, 0.02, 0.05, 0.2).rms_velocity, 1e-2);
 }
 
+TEST(Quantiser, ReadsTheNearestStepOnEveryAxis) {
+  SimulationSpec spec;
+  spec.device.encoder_step = kStep;
+  spec.speed = 0.01;
+  spec.surface = Vec3(0.3, -0.2, 0.1);
+  std::vector<Vec3> read;
+  std::vector<Vec3> true_positions;
+  Progress progress;
+  simulate(
+      [&](const Vec3& tip, double) {
+        read.push_back(tip);
+        return Felt{Vec3(0.01, 0.02, 0), false, false, 0};
+      },
+      spec, progress, [&](const SimulationRow& row) { true_positions.push_back(row.position); });
+  for (std::size_t i = 0; i < read.size(); i += 7) {
+    const Vec3 steps = (read[i] - spec.surface) / kStep;
+    EXPECT_LT((steps - steps.array().round().matrix()).norm(), 1e-6);
+    EXPECT_LE((read[i] - true_positions[i]).cwiseAbs().maxCoeff(), 0.5 * kStep * (1 + 1e-6));
+  }
+}
+
 // 2.2: the noise of a backward difference of rounded positions, B step/T per count, is silent at
 // rest.
 TEST(Quantiser, DampingIsSilentAtRest) {
