@@ -1,5 +1,5 @@
 // Several objects in the window: added, moved and removed while the tip feels on.
-#include <QAction>
+#include <QCheckBox>
 #include <QDoubleSpinBox>
 #include <QListWidget>
 #include <QToolButton>
@@ -88,6 +88,15 @@ TEST_F(Objects, AreRemovedButForTheLast) {
   ASSERT_EQ(objects().size(), 1U);
   EXPECT_EQ(objects()[0].name, "cup");
   EXPECT_FALSE(remove->isEnabled());
+}
+
+TEST_F(Objects, DepthToTheUnionIsOfferedWhereThereAreSeveral) { // F9
+  auto* union_depth = window_->findChild<QCheckBox*>(QStringLiteral("redistance"));
+  EXPECT_FALSE(union_depth->isVisibleTo(&window_->objects()));
+  ASSERT_TRUE(add("cup.obj"));
+  EXPECT_TRUE(union_depth->isVisibleTo(&window_->objects()));
+  ASSERT_TRUE(rebuiltAfter([&] { union_depth->setChecked(true); }));
+  EXPECT_TRUE(window_->scene()->scene.redistance);
 }
 
 TEST_F(Objects, AFileThatCannotBeAddedLeavesTheSceneAsItWas) {
