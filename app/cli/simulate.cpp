@@ -235,7 +235,12 @@ int runSimulate(const SimulateOptions& options, Console& console) {
   const double taken =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!options.output.empty()) writeCsv(options.output, table.table());
-  if (run.contact_ticks == 0) console.warn("simulate: the tip never touches the surface");
+  if (run.contact_ticks == 0)
+    console.warn("simulate: the tip never touches the surface");
+  else if (!run.touches_late && !options.plane && spec.press > 0)
+    console.warn(
+        "simulate: the tip slid or was thrown off the model; --hand-stiffness 200 holds it "
+        "about its start");
   console.report(reportJson(felt, spec, run, taken), aligned(reportRows(felt, spec, run, taken)));
   return kDone;
 }
@@ -328,11 +333,10 @@ Command simulateCommand() {
       "stabilisers), rule_of_thumb [N/m], stiffness, stiffness_displayed, coupling_stiffness, "
       "coupling_damping, restitution (null where there is none), stages, ticks, contact_ticks, "
       "fault_ticks, press [N], wall_seconds.";
-  command.examples = {"patina simulate --plane --stiffness 1e5 --delay 1 --press 1",
-                      "patina simulate --plane --stiffness 3000 --stabiliser none --start-gap 1mm "
-                      "--start-speed 0.2 "
-                      "-o run.csv",
-                      "patina simulate workspace --mass 0.2 --device-damping 1 --json"};
+  command.examples = {
+      "patina simulate --plane --stiffness 1e5 --delay 1 --press 1",
+      "patina simulate --plane --stiffness 3000 --stabiliser none --start-speed 0.2 -o run.csv",
+      "patina simulate workspace --mass 0.2 --device-damping 1 --json"};
   command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input)
       .required = false;
   command.flag("--plane", "The exact plane z = 0 in place of a model.", options->plane);

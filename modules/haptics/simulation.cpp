@@ -193,7 +193,6 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   SimulationReport report;
   MeanSquare early, late;
   double late_force = 0, late_depth = 0, t = 0, dt = 1 / spec.device.rate;
-  bool late_contact = false;
   Vec3 last_tip = body.measured(), last_force = Vec3::Zero();
   const double ticks = spec.seconds * spec.device.rate;
   const double margin = 1e-6 / spec.device.rate; // that a sum of periods is off its product
@@ -230,7 +229,7 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
       late.add(square);
       late_force -= force.dot(spec.inward);
       late_depth += body.depth();
-      late_contact |= felt.touching;
+      report.touches_late |= felt.touching;
     }
     if (row) row({t, body.position(), body.velocity(), force, report.energy.absorbed});
 
@@ -242,7 +241,7 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   report.rms_early = early.root();
   report.stable =
       report.rms_velocity < kStillVelocity || report.rms_velocity < kSettling * report.rms_early;
-  if (late_contact && late_depth > 0) report.stiffness_displayed = late_force / late_depth;
+  if (report.touches_late && late_depth > 0) report.stiffness_displayed = late_force / late_depth;
   report.restitution = bounce.ratio();
   report.last_position = body.position();
   report.last_velocity = body.velocity();

@@ -70,11 +70,12 @@ struct SimulationReport {
   // From the trajectory alone: the last second's rms velocity is below 0.9 times the second
   // second's, or below 1e-9 m/s.
   bool stable = false;
-  double rms_velocity = 0; // [m/s], last second
-  double rms_early = 0;    // [m/s], from 1 s to 2 s
-  double max_depth = 0;    // [m], as the servo saw it
-  double max_force = 0;    // [N], applied
-  EnergyLedger energy;     // [J]
+  double rms_velocity = 0;   // [m/s], last second
+  double rms_early = 0;      // [m/s], from 1 s to 2 s
+  double max_depth = 0;      // [m], as the servo saw it
+  bool touches_late = false; // in the last second
+  double max_force = 0;      // [N], applied
+  EnergyLedger energy;       // [J]
   // Mean force against mean depth below `surface`, along `inward`, over the last second [N/m];
   // absent where nothing was touched or the depth is zero.
   std::optional<double> stiffness_displayed;

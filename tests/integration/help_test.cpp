@@ -45,9 +45,9 @@ std::vector<std::string> options(const std::string& command) {
 }
 
 TEST(Help, ListsTheCommandsOfThisVersion) {
-  const std::vector<std::string> expected = {"info",         "scene",  "field", "sample", "feel",
-                                             "render",       "export", "study", "model",  "devices",
-                                             "latency-test", "gui",    "man"};
+  const std::vector<std::string> expected = {
+      "info",   "scene", "field", "sample",  "feel",         "simulate", "render",
+      "export", "study", "model", "devices", "latency-test", "gui",      "man"};
   EXPECT_EQ(commands(), expected);
 }
 
