@@ -87,9 +87,11 @@ void build(CompiledObject& object, const BlockLattice& lattice, double band, Pro
   }
 }
 
-// The objects of compiled.scene, on compiled.lattice: kept from `old` where they can be.
-Objects compiledObjects(const CompiledScene* old, const Scene& scene, BlockLattice& lattice,
-                        Progress& progress) {
+// The objects of compiled.scene, on compiled.lattice: kept from `old` where they can be. Sets
+// lattice and band.
+Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, Progress& progress) {
+  const Scene& scene = compiled.scene;
+  BlockLattice& lattice = compiled.lattice;
   Objects objects(scene.objects.size());
   std::vector<std::shared_ptr<CompiledObject>> fresh(objects.size());
   Box3 box;
@@ -101,13 +103,18 @@ Objects compiledObjects(const CompiledScene* old, const Scene& scene, BlockLatti
     box.extend(fieldBounds(*objects[i]->mesh));
     progress.throwIfCancelled();
   }
-  const bool keep =
-      old && same(old->scene.field, scene.field) && suits(old->lattice.voxel, scene.field, box);
+  const double reach = reachOf(scene.haptics);
+  const bool keep = old && same(old->scene.field, scene.field) &&
+                    suits(old->lattice.voxel, scene.field, box) &&
+                    reach / old->lattice.voxel + kBandBeyondReach <= old->band;
+  const FieldSpec spec = widened(scene.field, box, reach, kBandBeyondReach);
   if (keep) {
     lattice = old->lattice;
+    compiled.band = old->band;
   } else {
-    const FieldGrid grid = gridAround(box, scene.field);
+    const FieldGrid grid = gridAround(box, spec);
     lattice = {grid.origin, grid.voxel};
+    compiled.band = spec.band;
     for (std::size_t i = 0; i < objects.size(); ++i)
       if (!fresh[i]) objects[i] = fresh[i] = std::make_shared<CompiledObject>(*objects[i]);
   }
@@ -115,7 +122,7 @@ Objects compiledObjects(const CompiledScene* old, const Scene& scene, BlockLatti
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (fresh[i]) todo.push_back(i);
   if (scene.objects.size() == 1 && !todo.empty() && !keep) {
-    fresh[0]->built = buildField(*fresh[0]->mesh, scene.field, progress);
+    fresh[0]->built = buildField(*fresh[0]->mesh, spec, progress);
     fresh[0]->first_block = {0, 0, 0};
     return objects;
   }
@@ -123,7 +130,7 @@ Objects compiledObjects(const CompiledScene* old, const Scene& scene, BlockLatti
   tbb::parallel_for(std::size_t{0}, todo.size(), [&](std::size_t i) {
     Progress part(progress, shared.listener(i));
     // Isolated: a thread that waits for one object's loops must not begin another object.
-    tbb::this_task_arena::isolate([&] { build(*fresh[todo[i]], lattice, scene.field.band, part); });
+    tbb::this_task_arena::isolate([&] { build(*fresh[todo[i]], lattice, compiled.band, part); });
   });
   // Names may change while the field is kept.
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -177,7 +184,7 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
   const Stopwatch watch;
   auto compiled = std::make_shared<CompiledScene>();
   compiled->scene = std::move(scene);
-  compiled->objects = compiledObjects(old, compiled->scene, compiled->lattice, progress);
+  compiled->objects = compiledObjects(old, *compiled, progress);
   progress.throwIfCancelled();
   if (compiled->objects.size() == 1) {
     const CompiledObject& only = *compiled->objects[0];

@@ -40,6 +40,7 @@ struct CompiledScene {
   BuiltField built; // with the sample layer
   std::shared_ptr<const HapticSnapshot> snapshot;
   BlockLattice lattice;
+  double band = 0; // voxels: scene.field.band, or more where an offset or a magnet reaches farther
   std::vector<std::shared_ptr<const CompiledObject>> objects; // in the scene's order
 };
 

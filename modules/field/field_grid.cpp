@@ -27,6 +27,19 @@ double voxelFor(double longest, const FieldSpec& spec) {
 
 } // namespace
 
+FieldSpec widened(const FieldSpec& spec, const Box3& box, double reach, double margin) {
+  FieldSpec wide = spec;
+  if (!(reach > 0) || box.isEmpty()) return wide;
+  // With a resolution N, voxel = L / (N - 2 band): band >= reach / voxel + margin is linear in
+  // band.
+  const double longest = box.sizes().maxCoeff();
+  const double band =
+      spec.voxel ? reach / *spec.voxel + margin
+                 : (reach * spec.resolution / longest + margin) / (1 + 2 * reach / longest);
+  if (band > spec.band) wide.band = std::ceil(band - 1e-9);
+  return wide;
+}
+
 FieldGrid gridAround(const Box3& box, const FieldSpec& spec) {
   if (box.isEmpty() || !box.min().allFinite() || !box.max().allFinite())
     throw Error("field: the shape has no finite bounds");

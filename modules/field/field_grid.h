@@ -30,6 +30,11 @@ struct FieldSpec {
   double band = 8;             // voxels on each side of the surface in which nodes are stored
 };
 
+// `spec` with its band widened, where need be, so that `reach` [m] and `margin` voxels more lie in
+// it: what is felt that far from the surface. The resolution stays, so that a wider band makes a
+// larger voxel.
+FieldSpec widened(const FieldSpec& spec, const Box3& box, double reach, double margin);
+
 // Box grown by the band on each side. With a resolution N: h = longest / (N - 2 band).
 // Throws Error if N <= 2 band + 2, if the voxel is not positive, or if the grid would exceed 4096 a
 // side.

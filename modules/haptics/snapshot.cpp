@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kMinVelocityPeriod = 1e-6; // [s]; less measures nothing
 constexpr double kMaxVelocity = 1e6;        // [m/s]; beyond it the tip was set, not moved
-constexpr double kMinBandBeyondReach = 3;   // voxels
 
 void checkField(const SurfaceField* field, const HapticProperties& haptics) {
   if (!field) throw std::invalid_argument("compileStages: no field");
@@ -26,7 +25,7 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics) {
     throw std::invalid_argument("compileStages: the field has no sample layer");
   }
   const double reach = reachOf(haptics) / field->grid.voxel;
-  if (reach + kMinBandBeyondReach > field->band) {
+  if (reach + kBandBeyondReach > field->band) {
     std::string what;
     if (haptics.tip_radius) what = "tip.radius = " + formatLength(*haptics.tip_radius);
     const auto with = [&](const char* key, double length) {
@@ -35,7 +34,7 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics) {
     if (haptics.offset) with("offset", *haptics.offset);
     if (haptics.magnet) with("magnet.range", haptics.magnet->range);
     throw Error(what + " does not fit into the band of " + formatNumber(field->band) +
-                " voxels; set band to " + formatNumber(std::ceil(reach + kMinBandBeyondReach)) +
+                " voxels; set band to " + formatNumber(std::ceil(reach + kBandBeyondReach)) +
                 " or more");
   }
 }

@@ -25,7 +25,8 @@ struct HapticSnapshot {
 };
 
 // How far from the surface its properties are felt: tip radius plus offset or magnetic range [m].
-// The field's band must be 3 voxels more; compileStages throws Error otherwise.
+// The field's band must be kBandBeyondReach voxels more; compileStages throws Error otherwise.
+inline constexpr double kBandBeyondReach = 3;
 double reachOf(const HapticProperties& haptics);
 
 // Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never

@@ -159,6 +159,26 @@ TEST(CompileScene, ASceneThatOutgrowsItsVoxelGetsAnother) {
             grown->built.field->grid.voxel);
 }
 
+TEST(CompileScene, TheBandWidensForAnOffsetAndStaysWideAfterIt) {
+  Progress progress;
+  Scene scene = threeBalls();
+  scene.haptics.offset = 9e-3; // far beyond 8 voxels
+  const auto wide = compile(scene, progress);
+  EXPECT_GE(wide->band * wide->built.field->grid.voxel,
+            9e-3 + kBandBeyondReach * wide->built.field->grid.voxel - 1e-12);
+  EXPECT_EQ(wide->built.field->band, wide->band);
+  EXPECT_EQ(wide->scene.field.band, 8); // what was authored stays
+  ContactMemory memory;
+  EXPECT_TRUE(tick(*wide->snapshot, memory, Vec3(-0.03, 0, 0.0185), 1e-3).touching);
+
+  const auto old = compile(threeBalls(), progress);
+  EXPECT_EQ(old->band, 8);
+  const auto again = recompile(*old, scene, progress);
+  EXPECT_EQ(again->band, wide->band);
+  scene.haptics.offset.reset();
+  EXPECT_EQ(recompile(*again, scene, progress)->objects[0], again->objects[0]);
+}
+
 TEST(CompileScene, ABadEditThrowsAndNothingIsLost) {
   Progress progress;
   const auto old = compile(threeBalls(), progress);

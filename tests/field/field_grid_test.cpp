@@ -33,6 +33,32 @@ TEST(FieldGrid, CoversTheBoxGrownByTheBand) {
   }
 }
 
+TEST(FieldGrid, AWidenedBandHoldsTheReachAndNoMoreThanItMust) {
+  const Box3 box(Vec3(0, 0, 0), Vec3(0.1, 0.05, 0.02));
+  for (const double reach : {0.0, 1e-3, 5e-3, 0.02, 0.2}) {
+    for (const bool by_voxel : {false, true}) {
+      FieldSpec asked = spec(150);
+      if (by_voxel) asked.voxel = 1e-3;
+      const FieldSpec wide = widened(asked, box, reach, 3);
+      const auto holds = [&](double band) {
+        FieldSpec trial = asked;
+        trial.band = band;
+        if (!by_voxel && trial.resolution <= 2 * band + 2) return false;
+        return reach / gridAround(box, trial).voxel + 3 <= band + 1e-6;
+      };
+      // 0.2 m about a shape of 0.1 m: no band of 150 cells holds that, and gridAround says so.
+      const bool possible = reach < 0.2 || by_voxel;
+      EXPECT_TRUE(!possible || reach == 0 || holds(wide.band)) << reach;
+      EXPECT_EQ(wide.resolution, 150);
+      if (wide.band > asked.band) {
+        EXPECT_FALSE(holds(wide.band - 1)) << reach;
+      } else {
+        EXPECT_EQ(wide.band, asked.band);
+      }
+    }
+  }
+}
+
 TEST(FieldGrid, ScalesWithTheShape) {
   const Box3 small(Vec3(-0.05, -0.03, 0.01), Vec3(0.05, 0.02, 0.07));
   const FieldGrid a = gridAround(small, spec(150));

@@ -141,7 +141,7 @@ TEST(MergeExtremes, AlongAPathFromOutsideTooAndWithoutAJump) {
 }
 
 // Straight through the ends the first side is kept, as in any solid (K03): no turn, no jump.
-TEST(MergeExtremes, ThroughBothCentresTheForceStaysFiniteAndWithoutAFault) {
+TEST(MergeExtremes, ThroughBothCentresTheForceStaysFiniteAndBounded) {
   for (const bool redistance : {false, true}) {
     const auto snapshot = united(deepPair(), redistance);
     ContactMemory memory;
