@@ -7,7 +7,6 @@
 #include <random>
 
 #include "app/compile_scene.h"
-#include "app/studies/contact_test_path.h"
 #include "app/studies/query_timing.h"
 #include "geometry/shapes.h"
 
@@ -17,6 +16,7 @@ namespace {
 constexpr double kRadius = 0.03; // [m]
 constexpr double kStiffness = 1000;
 constexpr double kPeriod = 1e-3;
+constexpr double kReach = 4.2e-3; // [m]: the deepest point of the loops
 
 WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
   return {"surfaces", title, unit, {}, std::nullopt, std::nullopt};
@@ -25,6 +25,23 @@ WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
 Vec3 randomDirection(std::mt19937& random) {
   std::normal_distribution<double> normal;
   return Vec3(normal(random), normal(random), normal(random)).normalized();
+}
+
+// The band holds all that is asked of it, on both sides.
+std::shared_ptr<const SurfaceField> sphereField(int resolution) {
+  const Box3 box(Vec3::Constant(-kRadius), Vec3::Constant(kRadius));
+  FieldSpec spec;
+  spec.resolution = resolution;
+  spec = widened(spec, box, kReach, kBandBeyondReach);
+  return withSamples(std::make_shared<const SurfaceField>(sampleFunction(
+      [](const Vec3& p) { return p.norm() - kRadius; }, gridAround(box, spec), spec.band)));
+}
+
+// A path from pole to pole, as a hand goes; each tip is that of a spiral's point i of `count`.
+Vec3 spiral(int i, int count, int turns) {
+  const double z = 1 - 2 * (i + 0.5) / count, around = 2 * std::numbers::pi * turns * z;
+  const double r = std::sqrt(1 - z * z);
+  return {r * std::cos(around), r * std::sin(around), z};
 }
 
 Contact touch(const HapticSnapshot& snapshot, const Vec3& tip) {
@@ -61,7 +78,7 @@ WorkPrecisionTable force(const Mode& mode, const std::vector<int>& resolutions, 
   std::vector<double> voxels, errors;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();
-    const auto field = analyticSphere(kRadius, resolution);
+    const auto field = sphereField(resolution);
     for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
       Scene scene;
       scene.sampler = sampler;
@@ -69,16 +86,15 @@ WorkPrecisionTable force(const Mode& mode, const std::vector<int>& resolutions, 
       scene.haptics.force_limit = 100;
       mode.set(scene.haptics);
       const auto snapshot = compileStages(scene, field);
-      std::mt19937 random(5);
-      std::uniform_real_distribution<double> height(mode.low, mode.high);
       WorkPrecisionRow row;
       row.knobs = {
           {"mode", mode.name}, {"resolution", resolution}, {"sampler", std::string(name(sampler))}};
       std::vector<Vec3> points;
       double magnitude = 0;
       for (int i = 0; i < tips; ++i) {
-        const Vec3 n = randomDirection(random);
-        const double above = height(random);
+        const Vec3 n = spiral(i, tips, 2);
+        const double up = 0.5 + 0.5 * std::sin(0.013 * i);
+        const double above = mode.low + up * (mode.high - mode.low);
         points.push_back((kRadius + above) * n);
         const Vec3 felt = touch(*snapshot, points.back()).force;
         const double error = (felt - mode.force(above) * n).norm();
@@ -126,7 +142,7 @@ WorkPrecisionTable energy(const std::vector<int>& resolutions, int loops, Progre
   std::vector<double> voxels, errors;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();
-    const auto field = analyticSphere(kRadius, resolution);
+    const auto field = sphereField(resolution);
     for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
       Scene scene;
       scene.sampler = sampler;
@@ -241,13 +257,11 @@ WorkPrecisionTable crowd(const std::vector<int>& sides, Progress& progress) {
     WorkPrecisionRow row;
     row.knobs = {{"objects", side * side}};
     // One ball after another, round each along a spiral, as a hand goes.
-    const int balls = side * side, tips = 400;
+    const int balls = side * side, tips = 3000;
     std::vector<Vec3> points;
     for (int of = 0; of < balls; ++of) {
       for (int i = 0; i < tips; ++i) {
-        const double z = 1 - 2 * (i + 0.5) / tips, around = 2 * std::numbers::pi * 12 * z;
-        const double r = std::sqrt(1 - z * z);
-        const Vec3 n(r * std::cos(around), r * std::sin(around), z);
+        const Vec3 n = spiral(i, tips, 6);
         points.push_back(Vec3(kApart * (of % side), kApart * (of / side), 0) +
                          (kBall - 0.5e-3) * n);
         const double error =
