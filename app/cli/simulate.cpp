@@ -18,7 +18,6 @@ namespace patina::cli {
 
 namespace {
 
-constexpr double kAtRest = 1e-9;    // [m/s] rms
 constexpr double kDefaultPress = 1; // [N], where nothing else sets the tip in motion
 
 // "0.3": a share of the period to both sides; "0.5-2ms" or "0.0005-0.002": from and to.
@@ -155,6 +154,7 @@ Json reportJson(const Felt& felt, const SimulationSpec& spec, const SimulationRe
   const SampledLoop loop = sceneLoop(felt.scene.haptics, spec.device, spec.hand);
   Json json = Json::object();
   json.set("stable", run.stable);
+  json.set("verdict", name(run.verdict));
   json.set("rms_velocity", run.rms_velocity);
   json.set("max_depth", run.max_depth);
   json.set("max_force", run.max_force);
@@ -185,11 +185,9 @@ TextRows reportRows(const Felt& felt, const SimulationSpec& spec, const Simulati
                     double seconds_taken) {
   const SampledLoop loop = sceneLoop(felt.scene.haptics, spec.device, spec.hand);
   const double stiffness = felt.scene.haptics.stiffness;
-  std::string verdict = run.rms_velocity < kAtRest ? "at rest"
-                        : run.stable               ? "calming down"
-                                                   : "does not settle";
-  verdict += ": rms velocity " + inScience(run.rms_velocity) + " m/s in the last second, " +
-             inScience(run.rms_early) + " in the second one";
+  const std::string verdict = std::string(name(run.verdict)) + ": rms velocity " +
+                              inScience(run.rms_velocity) + " m/s in the last second, " +
+                              inScience(run.rms_early) + " in the second one";
   std::string stages;
   for (const StageInfo& stage : felt.snapshot->why)
     stages += (stages.empty() ? "" : ", ") + stage.name;
@@ -221,7 +219,9 @@ TextRows reportRows(const Felt& felt, const SimulationSpec& spec, const Simulati
 }
 
 int runSimulate(const SimulateOptions& options, Console& console) {
-  if (options.plane == !options.input.empty())
+  if (options.plane && !options.input.empty())
+    throw Error("simulate: give " + options.input.string() + " or --plane, not both");
+  if (!options.plane && options.input.empty())
     throw Error("simulate: give a workspace, a mesh or --plane");
   if (!options.output.empty()) requireWritable(options.output);
   const Felt felt = feltBy(options, console);
@@ -239,8 +239,8 @@ int runSimulate(const SimulateOptions& options, Console& console) {
     console.warn("simulate: the tip never touches the surface");
   else if (!run.touches_late && !options.plane && spec.press > 0)
     console.warn(
-        "simulate: the tip slid or was thrown off the model; --hand-stiffness 200 holds it "
-        "about its start");
+        std::string("simulate: the tip slid or was thrown off the model") +
+        (spec.hand.stiffness > 0 ? "" : "; --hand-stiffness 200 holds it about its start"));
   console.report(reportJson(felt, spec, run, taken), aligned(reportRows(felt, spec, run, taken)));
   return kDone;
 }
@@ -326,7 +326,10 @@ Command simulateCommand() {
       "matters worse. On the plane the force has no limit unless --force-limit or --saturation "
       "sets "
       "one.\n"
-      "JSON: stable, rms_velocity [m/s], max_depth [m], max_force [N], energy_absorbed [J] (by the "
+      "JSON: stable (the last second's rms velocity is below 0.9 times the second second's, or "
+      "below 1e-9 m/s), "
+      "verdict (at rest, calming down, does not settle, left the surface), rms_velocity [m/s], "
+      "max_depth [m], max_force [N], energy_absorbed [J] (by the "
       "surface; exact), energy_credited (with what the device's damping takes), "
       "energy_absorbed_min "
       "and energy_credited_min (the least of each), predicted_limit [N/m] (K* of the loop without "
@@ -361,7 +364,13 @@ Command simulateCommand() {
                                  options->naive = text == "naive";
                                  if (options->naive) return;
                                  Scene trial;
-                                 setValue(trial, "stabiliser", text);
+                                 try {
+                                   setValue(trial, "stabiliser", text);
+                                 } catch (const Error&) {
+                                   throw Error("'" + text +
+                                               "': it must be auto, none, coupling, passivity, "
+                                               "coupling,passivity or naive");
+                                 }
                                  options->scene.settings.emplace_back("stabiliser", text);
                                }});
   addDeviceOptions(command, *options);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/error.h"
 #include "core/numbers.h"
@@ -18,6 +19,14 @@ double median(std::vector<float> values) {
 
 double share(std::size_t count, const StabilityMap& map) {
   return static_cast<double>(count) / static_cast<double>(map.ratio.size());
+}
+
+// Small ratios are what the map is for: 0.00042, not 0.000.
+std::string ratioText(double ratio) {
+  if (ratio >= 0.9995) return rounded(ratio);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", ratio);
+  return text;
 }
 
 std::string deviceText(const Scene& scene) {
@@ -57,9 +66,9 @@ TextRows stabilityRows(const SurfaceStability& stability, const Scene& scene) {
   const StabilityMap& map = stability.map;
   const Vec3& at = stability.surface->positions[map.worst];
   const auto percent = [&](std::size_t count) { return rounded(100 * share(count, map)) + " %"; };
-  std::string where = "smallest K*/K " + rounded(map.worst_ratio) + " at " + formatLength(at.x()) +
-                      ", " + formatLength(at.y()) + ", " + formatLength(at.z()) + "; median " +
-                      rounded(median(map.ratio));
+  std::string where = "smallest K*/K " + ratioText(map.worst_ratio) + " at " +
+                      formatLength(at.x()) + ", " + formatLength(at.y()) + ", " +
+                      formatLength(at.z()) + "; median " + ratioText(median(map.ratio));
   if (map.buzzing) where += "; " + percent(map.buzzing) + " of the surface is below 1: it buzzes";
   TextRows rows = {{"stability", where}};
   if (map.slipping)

@@ -201,12 +201,14 @@ WorkPrecisionTable remedies(bool quick, Progress& progress) {
         const HapticProperties haptics = wall(stiffness, remedy.damping);
         const StabiliserPlan plan = planStabilisers(haptics, spec.device, remedy.stabilisers);
         const TimedRun run = timed(haptics, plan, spec);
+        const Verdict verdict = run.report.verdict;
+        const bool settles = verdict == Verdict::kAtRest || verdict == Verdict::kCalmingDown;
         WorkPrecisionRow row;
         row.knobs = {{"stabiliser", remedy.name}, {"K [N/m]", stiffness}, {"delay", delay}};
         row.error = run.report.rms_velocity;
         row.error_max = run.report.rms_early;
         row.ns = run.ns;
-        row.more = {{"settles", run.report.stable ? 1.0 : 0.0},
+        row.more = {{"settles", settles ? 1.0 : 0.0},
                     {"displayed [N/m]", run.report.stiffness_displayed.value_or(0)},
                     {"coupling [N/m]", plan.coupling ? plan.coupling->stiffness : 0},
                     {"energy absorbed [J]", run.report.energy.absorbed},

@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kStillVelocity = 1e-9; // [m/s] rms
 constexpr double kSettling = 0.9;       // of the second second's rms velocity
+// Of the middle second's: a bounce that goes on for ever varies less, and nears its rms from above.
+constexpr double kStillSettling = 0.95;
+constexpr double kLargestRestitution = 10;
 constexpr double kLeastSeconds = 3;
 constexpr std::uint64_t kReportEvery = 8192; // ticks
 
@@ -66,6 +69,13 @@ class Body {
   Vec3 measured() const {
     if (encoder_ == 0) return position();
     return surface_ + axes_ * (encoder_ * (fromSurface() / encoder_).array().round().matrix());
+  }
+  // Kinetic and of the hand's spring, less what the press has done.
+  double energy() const {
+    double sum = -press_ * axis_[0].x;
+    for (const Motion& axis : axis_)
+      sum += 0.5 * (oscillator_.mass * axis.v * axis.v + oscillator_.spring * axis.x * axis.x);
+    return sum;
   }
   void teleport(const Vec3& by) { start_ += axes_.transpose() * by; }
 
@@ -174,6 +184,15 @@ struct MeanSquare {
   double root() const { return count ? std::sqrt(sum / static_cast<double>(count)) : 0; }
 };
 
+// Seconds of a run come and go where a tip is thrown far, so that their rms alone may fall by
+// chance; it then has far more energy than the start and the press account for.
+Verdict judge(const SimulationReport& run, double accounted) {
+  if (!run.touches_late && run.contact_ticks > 0) return Verdict::kLeftSurface;
+  if (run.rms_velocity < kStillVelocity) return Verdict::kAtRest;
+  const bool calmer = run.stable && run.rms_velocity < kStillSettling * run.rms_middle;
+  return calmer && run.energy_gained <= accounted ? Verdict::kCalmingDown : Verdict::kUnsettled;
+}
+
 Vec3 scaledTo(const Vec3& force, double limit) {
   const double magnitude = force.stableNorm();
   // Rounding of the scaled vector must not lift it over the limit.
@@ -181,6 +200,20 @@ Vec3 scaledTo(const Vec3& force, double limit) {
 }
 
 } // namespace
+
+const char* name(Verdict verdict) {
+  switch (verdict) {
+  case Verdict::kLeftSurface:
+    return "left the surface";
+  case Verdict::kAtRest:
+    return "at rest";
+  case Verdict::kCalmingDown:
+    return "calming down";
+  case Verdict::kUnsettled:
+    break;
+  }
+  return "does not settle";
+}
 
 SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progress& progress,
                           const RowSink& row) {
@@ -191,7 +224,9 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   Bounce bounce(spec.device.delay);
   std::optional<Teleport> teleport = spec.teleport;
   SimulationReport report;
-  MeanSquare early, late;
+  MeanSquare early, middle, late;
+  const double half = 0.5 * spec.seconds, energy_before = body.energy();
+  double stored = 0; // [J], in the surface at the start
   double late_force = 0, late_depth = 0, t = 0, dt = 1 / spec.device.rate;
   Vec3 last_tip = body.measured(), last_force = Vec3::Zero();
   const double ticks = spec.seconds * spec.device.rate;
@@ -208,6 +243,7 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
     const Vec3 tip = body.measured();
     const Felt felt = law(tip, dt);
     Vec3 wanted = felt.force;
+    if (k == 0) stored = 0.5 * std::abs(wanted.dot(spec.inward) * spec.depth);
     if (spec.naive_limit) {
       const Vec3 change = wanted - last_force;
       wanted = last_force + scaledTo(change, *spec.naive_limit * (tip - last_tip).norm());
@@ -225,6 +261,8 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
     bounce.observe(felt.touching, body.inwardVelocity());
     const double square = body.velocity().squaredNorm();
     if (t >= 1 - margin && t < 2 - margin) early.add(square);
+    if (t >= half - 0.5 - margin && t < half + 0.5 - margin) middle.add(square);
+    report.energy_gained = std::max(report.energy_gained, body.energy() - energy_before);
     if (t >= spec.seconds - 1 - margin) {
       late.add(square);
       late_force -= force.dot(spec.inward);
@@ -242,7 +280,13 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   report.stable =
       report.rms_velocity < kStillVelocity || report.rms_velocity < kSettling * report.rms_early;
   if (report.touches_late && late_depth > 0) report.stiffness_displayed = late_force / late_depth;
-  report.restitution = bounce.ratio();
+  report.rms_middle = middle.root();
+  report.verdict =
+      judge(report, stored + 0.5 * (spec.device.mass + spec.hand.mass) * spec.speed * spec.speed +
+                        std::abs(spec.press) * (report.max_depth + std::abs(spec.depth)));
+  const std::optional<double> ratio = bounce.ratio();
+  const bool lost = report.verdict == Verdict::kLeftSurface && spec.press > 0;
+  if (ratio && *ratio >= 0 && *ratio <= kLargestRestitution && !lost) report.restitution = ratio;
   report.last_position = body.position();
   report.last_velocity = body.velocity();
   progress.report(1, "simulating");

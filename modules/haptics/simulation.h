@@ -66,12 +66,27 @@ struct SimulationRow {
 };
 using RowSink = std::function<void(const SimulationRow&)>;
 
+// What became of the tip, in this order of precedence.
+enum class Verdict {
+  kLeftSurface, // not touching in the last second, though it had touched or began inside
+  kAtRest,      // rms of the last second below 1e-9 m/s
+  kCalmingDown, // stable, calmer still over the second half of the run, and fed by nothing
+  kUnsettled
+};
+// "left the surface", "at rest", "calming down", "does not settle".
+const char* name(Verdict verdict);
+
 struct SimulationReport {
   // From the trajectory alone: the last second's rms velocity is below 0.9 times the second
   // second's, or below 1e-9 m/s.
   bool stable = false;
-  double rms_velocity = 0;   // [m/s], last second
-  double rms_early = 0;      // [m/s], from 1 s to 2 s
+  double rms_velocity = 0; // [m/s], last second
+  double rms_early = 0;    // [m/s], from 1 s to 2 s
+  double rms_middle = 0;   // [m/s], the second about half time
+  Verdict verdict = Verdict::kUnsettled;
+  // Most that the energy of device, hand and press stood above its start [J]. A passive surface
+  // gives no more than it stored at the start (a teleport's work counts as given).
+  double energy_gained = 0;
   double max_depth = 0;      // [m], as the servo saw it
   bool touches_late = false; // in the last second
   double max_force = 0;      // [N], applied
@@ -80,7 +95,8 @@ struct SimulationReport {
   // absent where nothing was touched or the depth is zero.
   std::optional<double> stiffness_displayed;
   // Speed out over speed in along `inward` of the first contact that began with a speed; out is
-  // taken when the last force of that contact has worked. Absent if none ended.
+  // taken when the last force of that contact has worked. Absent if none ended, if a tip that is
+  // pressed never came back, and where the ratio is no bounce's (not from 0 to 10).
   std::optional<double> restitution;
   std::uint64_t ticks = 0;
   std::uint64_t contact_ticks = 0;
