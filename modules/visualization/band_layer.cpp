@@ -30,7 +30,7 @@ BandLayer::BandLayer(vtkRenderer& scene, vtkRenderer& overlay)
   legend_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   legend_->SetPosition(0.014, 0.975);
   overlay.AddActor2D(legend_);
-  setVisible(false);
+  setVisible(false, false);
 }
 
 void BandLayer::update(const SurfaceField& field, const TouchBand& band) {
@@ -43,9 +43,9 @@ void BandLayer::update(const SurfaceField& field, const TouchBand& band) {
   legend_->GetTextProperty()->SetColor(0.62 * color[0], 0.62 * color[1], 0.62 * color[2]);
 }
 
-void BandLayer::setVisible(bool on) {
-  shell_->SetVisibility(on);
-  legend_->SetVisibility(on);
+void BandLayer::setVisible(bool shell, bool legend) {
+  shell_->SetVisibility(shell);
+  legend_->SetVisibility(legend);
 }
 
 void BandLayer::setTextSize(int pixels) {

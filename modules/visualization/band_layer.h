@@ -18,7 +18,8 @@ class BandLayer {
 
   // A band that the field does not hold has a legend that says so, and no shell.
   void update(const SurfaceField& field, const TouchBand& band);
-  void setVisible(bool on);
+  // The legend alone goes with the tint of a slice.
+  void setVisible(bool shell, bool legend);
   void setTextSize(int pixels);
   vtkActor& shell() { return *shell_; } // to be cut by the slice
 

@@ -72,7 +72,7 @@ struct SceneView::Impl {
   std::vector<Vec3> outermost(const Box3& box) const {
     std::vector<Vec3> points;
     const Vec3 centre = box.center();
-    const double shell = bandShown() && isStored(*band, *field) ? band->edge : 0;
+    const double shell = shellShown() && isStored(*band, *field) ? band->edge : 0;
     if (mesh && !(on(Layer::extent) && field))
       for (const Triangle& triangle : mesh->triangles) {
         const Vec3& point = mesh->positions[static_cast<std::size_t>(triangle[0])];
@@ -95,6 +95,8 @@ struct SceneView::Impl {
   bool on(Layer layer) const { return layers.count(layer) != 0; }
   bool mapShown() const { return on(Layer::stability) && has_stability; }
   bool bandShown() const { return on(Layer::band) && field != nullptr && band.has_value(); }
+  // Colours that are read against a scale have nothing drawn over them.
+  bool shellShown() const { return bandShown() && !mapShown(); }
 
   void applyVisibility();
   void cutAt();
@@ -110,7 +112,7 @@ void SceneView::Impl::applyVisibility() {
   mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr && !map);
   iso_actor->SetVisibility(on(Layer::iso) && field != nullptr);
   extent_actor->SetVisibility(on(Layer::extent) && field != nullptr);
-  band_layer.setVisible(bandShown());
+  band_layer.setVisible(shellShown(), bandShown() && (!map || on(Layer::slice)));
   slice.setVisible(on(Layer::slice) && field != nullptr);
   tool.setVisible(on(Layer::tip) && sample.has_value());
   nodes.setVisible(on(Layer::nodes) && field != nullptr);

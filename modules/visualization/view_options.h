@@ -13,7 +13,7 @@ enum class Layer : std::uint8_t {
   mesh,      // the surface as it was read
   iso,       // the iso-surface of the field
   slice,     // a plane through the field, coloured by distance, with its scalar bar
-  band,      // where an offset or a magnet acts: a shell, and a tint of the slice
+  band,      // where offset or magnet act: a shell (not over stability), a tint of the slice
   extent,    // the box of the grid
   tip,       // the tool, its true tip, the contact point and the force
   nodes,     // the field's nodes near the tip (K26)

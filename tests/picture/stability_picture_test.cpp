@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "field/surface_field.h"
 #include "geometry/shapes.h"
 #include "picture/picture_support.h"
 #include "visualization/picture.h"
@@ -52,6 +53,31 @@ TEST(StabilityPicture, ColoursTheSurfaceByItsVerticesAndShowsTheScale) {
 
   view.setStability(nullptr, {});
   EXPECT_GT(drawn(view, "stability-gone", {Layer::mesh, Layer::stability}).share(isSurface), 0.1);
+}
+
+// A shell over the colours would shift them away from the scale.
+TEST(StabilityPicture, IsTheSameUnderABandWhoseSliceAloneIsTinted) {
+  PATINA_NEEDS_DISPLAY();
+  SceneView view;
+  const auto mesh = std::make_shared<const TriangleMesh>(icosphere(0.03, 20));
+  view.setMesh(mesh);
+  FieldSpec spec;
+  spec.resolution = 60;
+  spec.band = 8;
+  const FieldGrid grid = gridAround(Box3(Vec3::Constant(-0.03), Vec3::Constant(0.03)), spec);
+  view.setField(std::make_shared<SurfaceField>(
+      sampleFunction([](const Vec3& p) { return p.norm() - 0.03; }, grid, spec.band)));
+  view.setStability(mesh.get(), std::vector<float>(mesh->positions.size(), 3.5F));
+  const Pixels plain = drawn(view, "stability-plain", {Layer::stability});
+  view.setBand(TouchBand{TouchBand::Kind::offset, 2e-3});
+  const Pixels banded = drawn(view, "stability-band", {Layer::stability, Layer::band});
+  for (int y = 0; y < plain.height(); ++y)
+    for (int x = 0; x < plain.width(); ++x) ASSERT_EQ(banded.at(x, y), plain.at(x, y));
+
+  const std::set<Layer> cut{Layer::stability, Layer::band, Layer::slice};
+  EXPECT_GT(drawn(view, "stability-slice", cut).share(isGold, 0.2, 0.8, 0.1, 0.9), 0.002);
+  view.setStability(nullptr, {});
+  EXPECT_GT(drawn(view, "stability-off", {Layer::mesh, Layer::band}).share(isGold), 0.1);
 }
 
 } // namespace
