@@ -111,7 +111,6 @@ class MainWindow : public QMainWindow {
   QAction* feel_action_ = nullptr;
   QAction* navigate_action_ = nullptr;
   QAction* save_action_ = nullptr;
-  QAction* add_action_ = nullptr;
   QAction* record_action_ = nullptr;
   QList<QAction*> panels_; // show and hide the docks
 

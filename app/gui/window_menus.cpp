@@ -43,9 +43,9 @@ void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
   QAction* open_action = file->addAction(
       tr("&Open…"), this, [this] { openDialog(false); }, QKeySequence::Open);
-  add_action_ = file->addAction(
+  QAction* add_action = file->addAction(
       tr("&Add object…"), this, [this] { openDialog(true); }, Qt::CTRL | Qt::SHIFT | Qt::Key_O);
-  add_action_->setToolTip(tr("A mesh or volume that is felt together with what is open"));
+  add_action->setToolTip(tr("A mesh or volume that is felt together with what is open"));
   recent_ = new RecentFiles(file->addMenu(tr("Open &recent")));
   connect(recent_, &RecentFiles::chosen, this, [this](const QString& path) {
     LoadRequest request;

@@ -220,7 +220,7 @@ void MainWindow::restore() {
     view_->view().setMesh(nullptr);
     for (QWidget* card : cards()) card->hide();
     status_->showScene(nullptr);
-    for (QAction* action : {save_action_, add_action_, record_action_}) action->setEnabled(false);
+    for (QAction* action : {save_action_, record_action_}) action->setEnabled(false);
   } else if (previewing_) {
     showCurrent();
   }
@@ -252,7 +252,7 @@ void MainWindow::showCurrent() {
   if (previewing_) view_->view().setView(ViewPreset::iso);
   previewing_ = false;
   for (QWidget* card : cards()) card->show();
-  for (QAction* action : {save_action_, add_action_, record_action_}) action->setEnabled(true);
+  for (QAction* action : {save_action_, record_action_}) action->setEnabled(true);
   values_edited_ = objects_edited_ = false;
   openFeelAt(view_->restingPlace());
 }

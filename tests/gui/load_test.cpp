@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include <QAbstractButton>
+#include <QAction>
 #include <QDialog>
 #include <QMessageBox>
 #include <vtkFloatArray.h>
@@ -60,6 +61,28 @@ TEST_F(Loading, AFailedLoadLeavesTheSceneAsItWas) {
   ASSERT_NE(box, nullptr);
   EXPECT_FALSE(box->informativeText().isEmpty());
   box->accept();
+}
+
+TEST_F(Loading, ASceneWithoutObjectsAsksForAMesh) {
+  Scene empty;
+  saveWorkspace(empty, folder_ / "empty");
+  QString message;
+  QObject::connect(window_.get(), &MainWindow::loadFailed, [&](const QString& m) { message = m; });
+  window_->open(requestFor(folder_ / "empty"));
+  ASSERT_TRUE(waitUntil([&] { return !message.isEmpty(); }));
+  auto* box = window_->findChild<QMessageBox*>(QStringLiteral("problem"));
+  ASSERT_NE(box, nullptr);
+  EXPECT_TRUE(box->informativeText().contains(QStringLiteral("File → Add object")))
+      << message.toStdString() << '\n'
+      << box->informativeText().toStdString();
+  box->accept();
+  // What is advised can be done.
+  for (const QAction* action : window_->findChildren<QAction*>())
+    if (action->shortcut() == QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O)) {
+      EXPECT_TRUE(action->isEnabled());
+      return;
+    }
+  FAIL() << "no action adds an object";
 }
 
 TEST_F(Loading, CancelLeavesTheSceneAsItWas) {
