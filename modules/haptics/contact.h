@@ -57,6 +57,7 @@ struct ContactMemory {
   // Of the passivity stage; `applied` is kept by tick().
   Vec3 applied = Vec3::Zero(); // [N], what the last tick gave to the device
   double energy = 0;           // [J], what the surface may still give back
+  double brake = 0;            // [N], of its last tick
   Eigen::Matrix<double, 3, kMaxDelay + 1> in_flight =
       Eigen::Matrix<double, 3, kMaxDelay + 1>::Zero(); // [N], forces on their way, a ring
   int newest_in_flight = 0;
@@ -84,6 +85,7 @@ struct Contact {
   bool held = false; // see ContactMode
   bool fault = false;
   bool attracted = false;        // out of contact, pulled by a magnet
+  double attraction = 0;         // 1 where the magnet pulls, less where its band fades out
   bool approximate = false;      // see ContactMode::newton
   int samples = 0;               // field evaluations of the contact stage (T-K06d)
   Vec3 normal = Vec3::Zero();    // unit, outward; zero if there is no direction (K05)
@@ -95,7 +97,7 @@ struct Contact {
   Vec3 surface = Vec3::Zero();
   double stiffness = 0;      // K at the contact [N/m]
   double stick_radius = 0;   // [m], how far p may be from c while it sticks; 0 = it does not
-  double slip_step = 0;      // [m], how far the VCP let go this tick as slip began
+  double slip_step = 0;      // [m], how far the VCP let go this tick by a rule of its own
   double known_step = 0;     // [N], a step of the force that the model itself makes this tick
   Vec3 force = Vec3::Zero(); // on the hand [N]
 };

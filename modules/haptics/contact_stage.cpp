@@ -189,9 +189,12 @@ void ContactStage::finish(const Found& found, Contact& contact,
   contact.depth = found.depth * voxel_;
   contact.candidate = contact.tip + contact.depth * found.normal;
 
+  const Vec3 step = contact.tip - memory.last_tip;
+  if (!history_ && memory.in_contact && found.normal.dot(memory.last_normal) < 0)
+    contact.slip_step = (contact.candidate - memory.last_candidate)
+                            .norm(); // the paper's form turns round by its own rule
   if (memory.in_contact && memory.mode != found.mode) {
     // Where the old way would have put it: along with the tip over the surface.
-    const Vec3 step = contact.tip - memory.last_tip;
     const Vec3 over = step - step.dot(memory.last_normal) * memory.last_normal;
     memory.handover = memory.last_candidate + over - contact.candidate;
     memory.has_handover = true;

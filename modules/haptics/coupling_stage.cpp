@@ -9,7 +9,8 @@ double inSeries(double stiffness, double coupling) noexcept {
 
 void CouplingStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const Vec3& n = contact.normal;
-  if (contact.attracted) contact.force -= damping_ * contact.velocity.dot(n) * n;
+  if (contact.attracted)
+    contact.force -= contact.attraction * damping_ * contact.velocity.dot(n) * n;
   if (!contact.touching) return;
   const Vec3 stretch = contact.vcp - contact.tip;
   Vec3 rate = Vec3::Zero();

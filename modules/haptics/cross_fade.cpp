@@ -20,6 +20,7 @@ void CrossFade::turnTo(const HapticSnapshot* next) noexcept {
   weight_ = 0;
   next_memory_ = memory_;
   if (!felt_ || !next || next->field != felt_->field) next_memory_.leaveContact();
+  if (!felt_) next_memory_.has_last_tip = false; // nobody has followed the tip
   // What the old law measured is not the new one's: neither its force nor its clearance.
   next_memory_.has_last_raw = false;
   next_memory_.clearance = std::numeric_limits<double>::infinity();
@@ -32,6 +33,8 @@ Contact CrossFade::tick(const Vec3& tip, double dt) noexcept {
   const double apart = (contact.force - old).norm();
   weight_ = apart * (1 - weight_) <= kEditStep ? 1 : weight_ + kEditStep / apart;
   contact.force = old + weight_ * (contact.force - old);
+  // What the device holds, for the ledgers of both.
+  memory_.applied = next_memory_.applied = contact.force;
   if (weight_ < 1) return contact;
   felt_ = next_;
   memory_ = next_memory_;

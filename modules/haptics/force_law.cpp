@@ -52,10 +52,7 @@ void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics, Stab
       add(std::make_unique<DampingStage>(*haptics.damping, pulls),
           says("damping", *haptics.damping));
   }
-  if (plan.passivity) {
-    add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
-    limit.damping += plan.passivity->most;
-  }
+  if (plan.passivity) add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
   add(std::make_unique<LimitStage>(limit), "always");
   snapshot.stabilisers = std::move(plan);
 }

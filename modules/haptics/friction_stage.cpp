@@ -54,7 +54,7 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
     const bool on_surface = !contact.held && !contact.approximate && !memory.has_handover;
     p = c + (on_surface ? ontoSurface(contact, offset, slip) : offset);
   }
-  if (!memory.slipping) contact.slip_step = (p - memory.stuck).norm();
+  if (!memory.slipping) contact.slip_step += (p - memory.stuck).norm();
   memory.slipping = true;
   memory.stuck = p;
   contact.vcp = p;

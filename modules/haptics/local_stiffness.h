@@ -47,6 +47,7 @@ class StiffnessProbe {
   // As above, with the step in voxels.
   std::optional<LocalStiffness> at(const Vec3& point, std::optional<double> depth,
                                    double step) const;
+  double depth() const { return depth_; } // [m], taken where none is given
 
  private:
   struct WayIn;

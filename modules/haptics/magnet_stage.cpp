@@ -27,8 +27,11 @@ void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
     const double slope = at.gradient.norm();
     if (at.region == FieldRegion::band && slope > 0) {
       double pull = above;
-      if (magnet_.fades && above > kFadesFrom * range_)
-        pull = kFadesFrom / (1 - kFadesFrom) * (range_ - above);
+      contact.attraction = 1;
+      if (magnet_.fades && above > kFadesFrom * range_) {
+        contact.attraction = (range_ - above) / ((1 - kFadesFrom) * range_);
+        pull = kFadesFrom * range_ * contact.attraction;
+      }
       const Vec3 toward = at.gradient / -std::max(slope, kWholeGradient);
       contact.force += magnet_.strength * pull * grid.voxel * toward;
       contact.normal = at.gradient / slope;

@@ -23,9 +23,6 @@ void OffsetStage::apply(Contact& contact, ContactMemory&) const noexcept {
   const Vec3 normal = at.gradient / slope;
   if (!(normal.dot(contact.normal) > 0)) return; // the other side of a thin part
   contact.surface -= grid.voxel * at.phi * normal;
-  contact.normal = normal;
-  contact.candidate = contact.tip + contact.depth * normal;
-  contact.vcp = contact.candidate;
 }
 
 } // namespace patina

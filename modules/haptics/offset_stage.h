@@ -8,12 +8,12 @@
 
 namespace patina {
 
-// Follows a ContactStage whose iso-value is tip radius + offset. The magnitude stays that of the
-// VCP on the offset surface; direction and properties become those of the closest point on the
-// original surface (Contact::surface, brought onto phi = 0 by one Newton step: it lies
-// there within O(h^2)). The offset of an edge or of a thin part is round and thick, but its
-// direction is the model's. Where the original has no direction (a medial axis), the contact's
-// stays.
+// Follows a ContactStage whose iso-value is tip radius + offset, which gives magnitude and
+// direction: of a distance, the gradient at the tip is the direction from the closest point of the
+// original to the tip, also round an edge, where the normal that the field has at that point itself
+// is a blend of both faces' and would do work round a loop (T-ENER). This stage finds the closest
+// point, for what is seen and for properties: Contact::surface, brought onto phi = 0 by one Newton
+// step, lies there within O(h^2).
 class OffsetStage final : public ForceStage {
  public:
   OffsetStage(std::shared_ptr<const SurfaceField> field, Sampler sampler);

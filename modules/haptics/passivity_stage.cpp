@@ -1,6 +1,7 @@
 #include "haptics/passivity_stage.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace patina {
 
@@ -19,12 +20,17 @@ void PassivityStage::apply(Contact& contact, ContactMemory& memory) const noexce
   }
   memory.energy = std::min(memory.energy, most);
 
+  // Both the brake's coming and its going are steps of its own, and no jump.
+  contact.known_step += memory.brake;
+  memory.brake = 0;
   if (memory.energy > -kRounding || !(contact.dt > 0)) return;
   const Vec3 velocity = (contact.tip - memory.last_tip) / contact.dt; // also behind a filter
   const double square = velocity.squaredNorm();
   if (!(square > 0)) return;
   const double alpha = std::min(-memory.energy / (contact.dt * square), spec_.most);
   contact.force -= alpha * velocity;
+  memory.brake = alpha * std::sqrt(square);
+  contact.known_step += memory.brake;
 }
 
 } // namespace patina

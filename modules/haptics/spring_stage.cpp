@@ -23,7 +23,8 @@ void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (!contact.touching && !contact.attracted) return;
   const Vec3& n = contact.normal;
   const double v_n = contact.velocity.dot(n);
-  contact.force -= damping_ * v_n * n;
+  const double share = contact.touching ? 1 : contact.attraction;
+  contact.force -= share * damping_ * v_n * n;
   const double f_n = contact.force.dot(n);
   if (f_n < 0 && !magnetic_) contact.force -= f_n * n;
 

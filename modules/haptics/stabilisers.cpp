@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/numbers.h"
+#include "haptics/coupling_stage.h"
 
 namespace patina {
 namespace {
@@ -45,7 +46,8 @@ CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& de
   damping = std::min(damping, too_much / kDampingMargin);
   if (device.encoder_step > 0)
     damping = std::min(damping, kEncoderNoise * loop.period / device.encoder_step);
-  if (haptics.damping) damping = std::max(damping, std::min(*haptics.damping, too_much / kMargin));
+  if (haptics.damping)
+    damping = std::max(damping, std::min(*haptics.damping, too_much / kDampingMargin));
   loop.virtual_damping = damping;
   return {std::max(stiffnessLimit(loop) / kMargin, kLeastCoupling * ruleOfThumb(loop)), damping};
 }
@@ -70,8 +72,12 @@ StabiliserPlan planStabilisers(const HapticProperties& haptics,
     spec.most = dampingLimit(sampledLoop(model)) / kMargin;
     if (model.encoder_step > 0)
       spec.most = std::min(spec.most, kPassivityNoise / (model.rate * model.encoder_step));
-    if (haptics.magnet)
-      spec.reserve = 0.5 * haptics.magnet->strength * haptics.magnet->range * haptics.magnet->range;
+    if (haptics.magnet) {
+      const double strength = plan.coupling
+                                  ? inSeries(haptics.magnet->strength, plan.coupling->stiffness)
+                                  : haptics.magnet->strength;
+      spec.reserve = 0.5 * strength * haptics.magnet->range * haptics.magnet->range;
+    }
     plan.passivity = spec;
   }
   return plan;

@@ -24,15 +24,16 @@ struct StabiliserPlan {
   std::string why; // "stiffness 1e+05 N/m, limit 1001 N/m"; empty without any
 };
 
-// The stiffest law of the scene in one direction: spring, magnet or sticking friction.
+// The stiffest law of the scene in one direction: spring (and with it sticking friction) or magnet.
 double stiffestLaw(const HapticProperties& haptics);
 
 // The loop of `device` with the scene's own damping.
 SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device,
                       const HandModel& hand = {});
 
-// The coupling for a device, whatever the surface: B = 0.01 m/T, less where the encoder would make
-// it felt as noise (0.03 N a step), more where the scene itself has more; k_c half of K* with that
+// The coupling for a device, whatever the surface: B = 0.02 m/T, less where the encoder would make
+// it felt as noise (0.03 N a step), more where the scene itself has more, at most a fifth of the
+// damping that buzzes by itself; k_c half of K* with that
 // B. So b_eff >= (b + B)/2, and what is left of a touch halves within some 0.2 s.
 CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& device);
 

@@ -66,6 +66,7 @@ LoopLimits loopLimits(const Scene& scene) {
     loop.virtual_damping = plan->damping;
     loop.cutoff.reset();
     limits.softening = inSeries(haptics.stiffness, plan->stiffness) / haptics.stiffness;
+    limits.coupling = plan->stiffness;
     limits.coupled = true;
   }
   limits.damped = stiffnessLimit(loop);
@@ -83,7 +84,9 @@ double stabilityRatio(const LocalStiffness& at, const Scene& scene, const LoopLi
   if (haptics.friction && haptics.friction->static_coefficient > 0)
     load = std::max(load, limits.softening * plane);
   if (haptics.magnet && haptics.magnet->range > 0)
-    load = std::max(load, haptics.magnet->strength / damped);
+    load = std::max(load, (limits.coupled ? inSeries(haptics.magnet->strength, limits.coupling)
+                                          : haptics.magnet->strength) /
+                              damped);
   return load > 0 ? 1 / load : std::numeric_limits<double>::infinity();
 }
 
@@ -93,6 +96,8 @@ StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   StabilityMap map;
   map.limits = loopLimits(scene);
+  // A softer surface is pressed deeper by the same force, and what bends counts by depth.
+  const double depth = probe.depth() / map.limits.softening;
   map.ratio.assign(mesh.positions.size(), unknown);
   map.least.assign(mesh.positions.size(), unknown);
   map.worst_ratio = std::numeric_limits<double>::quiet_NaN();
@@ -102,7 +107,7 @@ StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField
       progress.report(static_cast<double>(v) / static_cast<double>(mesh.positions.size()),
                       "stability");
     }
-    const auto at = probe.at(mesh.positions[v]);
+    const auto at = probe.at(mesh.positions[v], depth);
     if (!at) continue;
     map.least[v] = static_cast<float>(at->lambda_min);
     if (jumps(*at)) {

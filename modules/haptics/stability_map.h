@@ -19,6 +19,7 @@ struct LoopLimits {
   double whirl = 0;     // b^2 / (m K*): what the device's damping holds against a whirl
   double softening = 1; // by the coupling: k / K of two springs in a row
   bool coupled = false;
+  double coupling = 0; // k_c [N/m], where coupled
 };
 LoopLimits loopLimits(const Scene& scene);
 
