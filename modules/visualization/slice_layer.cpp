@@ -176,8 +176,10 @@ void SliceLayer::setTextSize(int pixels) {
 }
 
 void SliceLayer::setVisible(bool on) {
-  actor_->SetVisibility(on);
-  bar_->SetVisibility(on);
+  // Before the first update() a window system may want a frame: VTK fails on a texture of nothing.
+  const bool made = texture_->GetNumberOfInputConnections(0) > 0;
+  actor_->SetVisibility(on && made);
+  bar_->SetVisibility(on && made);
 }
 
 } // namespace patina

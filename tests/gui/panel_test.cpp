@@ -85,6 +85,13 @@ TEST_F(Panels, TheSliceIsDrawnWhenItIsAskedFor) {
   EXPECT_EQ(warmShare(), 0);
 }
 
+TEST_F(Panels, AFrameMayComeBetweenTheWishForASliceAndTheSlice) {
+  window_->display().setShown(Layer::slice, true);
+  view().renderWindow()->Render(); // as for a resize
+  window_->display().setShown(Layer::tip, false);
+  EXPECT_GT(warmShare(), 0.01);
+}
+
 TEST_F(Panels, WireframeDarkensTheSurface) {
   const auto dark = [this] {
     return share([](int r, int g, int b) { return g > b && g >= r && r + g + b < 330; });
