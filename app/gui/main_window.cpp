@@ -9,6 +9,7 @@
 #include <QVBoxLayout>
 
 #include "app/gui/load_dialogs.h"
+#include "app/gui/value_focus.h"
 #include "app/gui/window_style.h"
 #include "core/error.h"
 #include "workspace/workspace.h"
@@ -66,6 +67,7 @@ void MainWindow::buildLayout() {
   stack->setSpacing(4);
   for (QWidget* card : cards()) stack->addWidget(card);
   stack->addStretch(1);
+  new ValueFocus(*side, *view_);
   auto* scroll = new QScrollArea;
   scroll->setWidget(side);
   scroll->setWidgetResizable(true);
