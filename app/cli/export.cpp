@@ -48,8 +48,7 @@ int runExport(const ExportOptions& options, Console& console) {
   const std::filesystem::path& folder = options.output;
   std::vector<TimedTip> path;
   if (!options.path.empty()) path = readTipPath(options.path);
-  const auto compiled =
-      compile(openWith(options.input, options.scene, console), console.progress());
+  const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
   std::vector<ToolSample> samples;
   if (!path.empty()) samples = feel(*compiled->snapshot, path, console.progress());
   std::optional<SurfaceStability> stability;

@@ -18,12 +18,11 @@ struct FeelOptions {
 };
 
 int runFeel(const FeelOptions& options, Console& console) {
-  requireWritable(options.output);
+  requireWritable(options.output, {options.input, options.path});
   const std::vector<TimedTip> path = readTipPath(options.path);
   const auto bad_tips = static_cast<std::size_t>(std::count_if(
       path.begin(), path.end(), [](const TimedTip& tip) { return !tip.tip.allFinite(); }));
-  const auto compiled =
-      compile(openWith(options.input, options.scene, console), console.progress());
+  const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
   const std::vector<ToolSample> samples = feel(*compiled->snapshot, path, console.progress());
   console.progress().throwIfCancelled();
   writeToolSamplesCsv(options.output, samples);

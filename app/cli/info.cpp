@@ -184,7 +184,7 @@ int runInfo(const InfoOptions& options, Console& console) {
     describeLayers(field, 0, nullptr, json, rows);
     json.set("stages", Json::array());
   } else {
-    const auto compiled = compile(std::move(scene), console.progress());
+    const auto compiled = compileFor(std::move(scene), console);
     describeMesh(*compiled->mesh, compiled->mesh_report, json, rows);
     describeField(*compiled->built.field, compiled->built.report, json, rows);
     describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), compiled.get(), json, rows);

@@ -75,7 +75,7 @@ ToolSample toolAt(const CompiledScene& compiled, const Vec3& tip, Progress& prog
 int runRender(const RenderOptions& options, Console& console) {
   if (options.output.extension() != ".png")
     throw Error("--output: a picture is a .png file, not '" + options.output.string() + "'");
-  requireWritable(options.output);
+  requireWritable(options.output, {options.input});
   if (!options.tip &&
       (options.layers.contains(Layer::tip) || options.layers.contains(Layer::nodes)))
     throw Error("--show: the layers tip and nodes need --tip X,Y,Z");
@@ -94,7 +94,7 @@ int runRender(const RenderOptions& options, Console& console) {
   if (only_mesh) {
     view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
   } else {
-    const auto compiled = compile(std::move(scene), console.progress());
+    const auto compiled = compileFor(std::move(scene), console);
     view.setBand(band);
     view.setMesh(compiled->mesh);
     view.setField(compiled->built.field);

@@ -109,7 +109,8 @@ Json valuesJson(const Scene& scene) {
   return json;
 }
 
-void requireWritable(const std::filesystem::path& path) {
+void requireWritable(const std::filesystem::path& path,
+                     const std::vector<std::filesystem::path>& inputs) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder))
     throw FileError(path.string(), 0, "cannot be written: there is no folder " + folder.string());
@@ -117,6 +118,11 @@ void requireWritable(const std::filesystem::path& path) {
     throw FileError(path.string(), 0, "cannot be written: it is a folder");
   if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
     throw FileError(path.string(), 0, "cannot be written: not a file");
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code unknown; // one that does not exist is not the other
+    if (std::filesystem::equivalent(path, input, unknown))
+      throw FileError(path.string(), 0, "cannot be written: it is an input of this command");
+  }
   if (access(folder.c_str(), W_OK) != 0)
     throw FileError(path.string(), 0, "cannot be written: no permission in " + folder.string());
 }

@@ -32,6 +32,8 @@ std::string withUnit(const std::string& key, const std::string& value);
 Json valuesJson(const Scene& scene);
 
 // Throws FileError now rather than after a minute's work if `path` cannot become a file.
-void requireWritable(const std::filesystem::path& path);
+// `inputs` are not to be replaced by it.
+void requireWritable(const std::filesystem::path& path,
+                     const std::vector<std::filesystem::path>& inputs = {});
 
 } // namespace patina::cli

@@ -66,8 +66,7 @@ SampledSurface open(const SampleOptions& options, Console& console) {
     surface.sampler = scene.sampler;
     return surface;
   }
-  const auto compiled =
-      compile(openWith(options.input, options.scene, console), console.progress());
+  const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
   surface.field = compiled->built.field;
   surface.oracle.emplace(feltTriangles(*compiled, console.progress()));
   surface.sampler = compiled->scene.sampler;
@@ -118,7 +117,7 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
 }
 
 int runSample(const SampleOptions& options, Console& console) {
-  requireWritable(options.output);
+  requireWritable(options.output, {options.input, options.points});
   const CsvTable points = readCsv(options.points, kPointColumns);
   const SampledSurface surface = open(options, console);
   const FieldSampler sampler(*surface.field, surface.sampler);

@@ -1,5 +1,6 @@
 #include "app/cli/scene_options.h"
 
+#include "app/compile_warnings.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
@@ -112,6 +113,12 @@ Scene openWith(const std::filesystem::path& path, const SceneOptions& options, C
   for (const std::string& warning : opened.warnings) console.warn(warning);
   applySettings(opened.scene, options.settings);
   return std::move(opened.scene);
+}
+
+std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console) {
+  auto compiled = compile(std::move(scene), console.progress());
+  for (const std::string& line : compileWarnings(*compiled)) console.warn(line);
+  return compiled;
 }
 
 } // namespace patina::cli

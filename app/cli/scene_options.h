@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/compile_scene.h"
 #include "app/session.h"
 
 namespace patina::cli {
@@ -39,5 +41,7 @@ bool setsTipRadius(const Settings& settings);
 
 // Opens, warns, and applies the settings. Throws FileError or Error; see openScene().
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console);
+// compile(), with what should be known of the result as warnings.
+std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console);
 
 } // namespace patina::cli

@@ -129,7 +129,8 @@ void SceneLoader::run(const LoadRequest& request, Progress& progress,
             scene.objects.push_back(std::move(object));
           }
           const auto compiled = recompile(*request.onto, std::move(scene), progress);
-          return deliver(true, [this, compiled, warnings] { emit rebuilt(compiled, warnings); });
+          const QStringList all = warnings + lines(compileWarnings(*compiled));
+          return deliver(true, [this, compiled, all] { emit rebuilt(compiled, all); });
         }
         const QString name = request.path.empty()
                                  ? QStringLiteral("dinosaur")
@@ -137,7 +138,8 @@ void SceneLoader::run(const LoadRequest& request, Progress& progress,
         const auto mesh = std::make_shared<const TriangleMesh>(worldMesh(opened.scene));
         deliver(false, [this, mesh, name] { emit meshReady(mesh, name); });
         const auto compiled = compile(std::move(opened.scene), progress);
-        deliver(true, [this, compiled, warnings] { emit ready(compiled, warnings); });
+        const QStringList all = warnings + lines(compileWarnings(*compiled));
+        deliver(true, [this, compiled, all] { emit ready(compiled, all); });
       },
       [this](const QString& message) { emit failed(message); });
 }
