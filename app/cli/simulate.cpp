@@ -100,7 +100,7 @@ Felt feltBy(const SimulateOptions& options, Console& console) {
   if (options.plane) {
     felt.snapshot = planeSnapshot(scene.haptics, felt.plan);
   } else {
-    felt.compiled = compile(scene, console.progress());
+    felt.compiled = compileFor(scene, console);
     felt.snapshot = felt.compiled->snapshot;
     felt.start = simulationStart(*felt.compiled);
   }
@@ -223,7 +223,7 @@ int runSimulate(const SimulateOptions& options, Console& console) {
     throw Error("simulate: give " + options.input.string() + " or --plane, not both");
   if (!options.plane && options.input.empty())
     throw Error("simulate: give a workspace, a mesh or --plane");
-  if (!options.output.empty()) requireWritable(options.output);
+  if (!options.output.empty()) requireWritable(options.output, {options.input});
   const Felt felt = feltBy(options, console);
   const SimulationSpec spec = specFor(options, felt);
 

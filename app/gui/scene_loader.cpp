@@ -1,5 +1,7 @@
 #include "app/gui/scene_loader.h"
 
+#include "app/compile_warnings.h"
+
 #include <algorithm>
 #include <new>
 #include <utility>
