@@ -1,0 +1,97 @@
+// Wheel and keys over the side panel's values.
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QKeyEvent>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QSlider>
+#include <QtTest/qtestspontaneevent.h>
+
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+
+namespace patina {
+namespace {
+
+class ValueFields : public WindowTest {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+    window_->display().setShown(Layer::slice, true);
+    window_->resize(1100, 500); // or there is nothing to scroll
+    window_->activateWindow();
+    wait(100);
+    view().setFocus();
+    scroll_ = window_->findChild<QScrollArea*>();
+  }
+  QDoubleSpinBox* stiffness() {
+    auto* row = window_->haptics().findChild<QWidget*>(QStringLiteral("stiffness"));
+    return row->findChild<QDoubleSpinBox*>();
+  }
+  static void wheel(QWidget& over, int notches) {
+    const QPoint at = over.rect().center();
+    QWheelEvent event(at, over.mapToGlobal(at), {}, {0, 120 * notches}, Qt::NoButton,
+                      Qt::NoModifier, Qt::NoScrollPhase, false);
+    // As from the window system: a program's own event neither gives focus nor goes on to parents.
+    QSpontaneKeyEvent::setSpontaneous(&event);
+    application().notify(&over, &event);
+  }
+  static void key(QWidget& to, int code, const QString& text = {}) {
+    QKeyEvent press(QEvent::KeyPress, code, Qt::NoModifier, text);
+    QApplication::sendEvent(&to, &press);
+  }
+  void type(const QString& digits) {
+    stiffness()->setFocus();
+    stiffness()->selectAll();
+    for (const QChar& digit : digits) key(*stiffness(), digit.unicode(), QString(digit));
+  }
+  QScrollArea* scroll_ = nullptr;
+};
+
+TEST_F(ValueFields, TheWheelScrollsThePanelAndChangesNoValue) {
+  const auto tried = [this](QWidget* widget, const auto& value) {
+    ASSERT_NE(widget, nullptr);
+    EXPECT_EQ(widget->focusPolicy(), Qt::StrongFocus);
+    scroll_->verticalScrollBar()->setValue(0);
+    const auto before = value();
+    wheel(*widget, -1);
+    EXPECT_EQ(value(), before) << widget->metaObject()->className();
+    EXPECT_GT(scroll_->verticalScrollBar()->value(), 0) << widget->metaObject()->className();
+  };
+  ASSERT_GT(scroll_->verticalScrollBar()->maximum(), 0) << window_->height();
+  auto* slider = window_->haptics().findChild<QSlider*>();
+  auto* choice = window_->display().findChild<QComboBox*>();
+  tried(stiffness(), [this] { return stiffness()->value(); });
+  tried(slider, [=] { return slider->value(); });
+  tried(choice, [=] { return choice->currentIndex(); });
+}
+
+TEST_F(ValueFields, TheWheelTurnsTheValueThatIsBeingEdited) {
+  stiffness()->setFocus();
+  const double before = stiffness()->value();
+  wheel(*stiffness(), 1);
+  EXPECT_GT(stiffness()->value(), before);
+}
+
+TEST_F(ValueFields, EnterTakesTheNumberAndGivesTheKeysToTheView) {
+  type(QStringLiteral("432"));
+  key(*stiffness(), Qt::Key_Return);
+  EXPECT_EQ(QApplication::focusWidget(), &view());
+  EXPECT_EQ(window_->haptics().values().stiffness, 432);
+  key(*stiffness(), Qt::Key_Enter); // leaves alone what was not edited
+  EXPECT_EQ(window_->haptics().values().stiffness, 432);
+}
+
+TEST_F(ValueFields, EscapeDropsWhatWasTypedAndGivesTheKeysToTheView) {
+  const double before = window_->haptics().values().stiffness;
+  type(QStringLiteral("432"));
+  key(*stiffness(), Qt::Key_Escape);
+  EXPECT_EQ(QApplication::focusWidget(), &view());
+  EXPECT_EQ(window_->haptics().values().stiffness, before);
+  EXPECT_EQ(stiffness()->value(), before);
+}
+
+} // namespace
+} // namespace patina
