@@ -96,7 +96,7 @@ void askIso(QWidget* parent, const QString& name, double low, double high,
 QString adviceFor(const QString& message) {
   if (message.contains(QStringLiteral("no object")))
     return QDialog::tr("Start with a mesh, File → Add object…, and save the workspace; or run "
-                       "patina scene FOLDER --add MESH.");
+                       "patina scene -o FOLDER --add MESH.");
   if (message.contains(QStringLiteral("no such file")))
     return QDialog::tr("Check the name, or open it with File → Open.");
   if (message.contains(QStringLiteral("extension")) || message.contains(QStringLiteral("format")))
