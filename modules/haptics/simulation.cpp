@@ -16,6 +16,7 @@ constexpr double kStillVelocity = 1e-9; // [m/s] rms
 constexpr double kSettling = 0.9;       // of the second second's rms velocity
 // Of the middle second's: a bounce that goes on for ever varies less, and nears its rms from above.
 constexpr double kStillSettling = 0.95;
+constexpr double kCalm = 1e-3; // of the second second's: below it lies only rounding
 constexpr double kLargestRestitution = 10;
 constexpr double kLeastSeconds = 3;
 constexpr std::uint64_t kReportEvery = 8192; // ticks
@@ -189,7 +190,8 @@ struct MeanSquare {
 Verdict judge(const SimulationReport& run, double accounted) {
   if (!run.touches_late && run.contact_ticks > 0) return Verdict::kLeftSurface;
   if (run.rms_velocity < kStillVelocity) return Verdict::kAtRest;
-  const bool calmer = run.stable && run.rms_velocity < kStillSettling * run.rms_middle;
+  const bool calmer = run.stable && (run.rms_velocity < kStillSettling * run.rms_middle ||
+                                     run.rms_velocity < kCalm * run.rms_early);
   return calmer && run.energy_gained <= accounted ? Verdict::kCalmingDown : Verdict::kUnsettled;
 }
 

@@ -70,7 +70,7 @@ using RowSink = std::function<void(const SimulationRow&)>;
 enum class Verdict {
   kLeftSurface, // not touching in the last second, though it had touched or began inside
   kAtRest,      // rms of the last second below 1e-9 m/s
-  kCalmingDown, // stable, calmer still over the second half of the run, and fed by nothing
+  kCalmingDown, // stable, calmer still over the second half (or all but still), fed by nothing
   kUnsettled
 };
 // "left the surface", "at rest", "calming down", "does not settle".

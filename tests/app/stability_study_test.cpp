@@ -62,5 +62,15 @@ TEST(StabilityStudy, OnlyTheCouplingRestsAtEveryStiffness) {
   }
 }
 
+TEST(StabilityStudy, AThrownTipIsNotCountedAsSettled) {
+  for (const WorkPrecisionRow& row : quickTables().at(3).rows) {
+    const std::string& name = row.knobs.at(0).second.asString();
+    const bool calms = name.starts_with("coupling");
+    if (calms || name == "plain" || name == "naive limiter") {
+      EXPECT_EQ(more(row, "settles"), calms ? 1 : 0) << name;
+    }
+  }
+}
+
 } // namespace
 } // namespace patina
