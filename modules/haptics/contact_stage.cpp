@@ -21,6 +21,10 @@ constexpr double kHandoverTime = 5e-3; // [s]
 // Grid sides a second at most: across a deep solid the difference is of the solid's size, and to
 // lose it in 5 ms would be a jump fault. A quarter of that threshold.
 constexpr double kHandoverSpeed = 5;
+// A VCP that moves so far in a tick while its normal turns by 25 to 155 degrees has gone to another
+// face; what turns farther is the hold's.
+constexpr double kLeapTurn = 0.9;
+constexpr double kLeapVoxels = 0.25;
 
 const SurfaceField& sampled(const std::shared_ptr<const SurfaceField>& field) {
   if (!field) throw std::invalid_argument("contact: no field");
@@ -193,7 +197,12 @@ void ContactStage::finish(const Found& found, Contact& contact,
   if (!history_ && memory.in_contact && found.normal.dot(memory.last_normal) < 0)
     contact.slip_step = (contact.candidate - memory.last_candidate)
                             .norm(); // the paper's form turns round by its own rule
-  if (memory.in_contact && memory.mode != found.mode) {
+  // Deeper than the band the ray may go from one face of an edge to the other within a tick.
+  const double turned = found.normal.dot(memory.last_normal);
+  const bool leapt =
+      history_ && contact.deep && found.mode == ContactMode::ray && std::abs(turned) < kLeapTurn &&
+      (contact.candidate - memory.last_candidate).norm() > kLeapVoxels * voxel_ + 10 * step.norm();
+  if (memory.in_contact && (memory.mode != found.mode || leapt)) {
     // Where the old way would have put it: along with the tip over the surface.
     const Vec3 over = step - step.dot(memory.last_normal) * memory.last_normal;
     memory.handover = memory.last_candidate + over - contact.candidate;
@@ -201,11 +210,11 @@ void ContactStage::finish(const Found& found, Contact& contact,
   }
   if (memory.has_handover) {
     const double along = memory.handover.dot(found.normal);
-    memory.has_handover =
-        contact.depth + along >= 0 && memory.handover.squaredNorm() > 1e-12 * voxel_ * voxel_;
+    memory.has_handover = contact.depth + along >= -0.1 * contact.depth &&
+                          memory.handover.squaredNorm() > 1e-12 * voxel_ * voxel_;
     if (memory.has_handover) {
       contact.candidate += memory.handover;
-      contact.depth += along;
+      contact.depth = std::max(0.0, contact.depth + along);
       const double dt = std::max(contact.dt, 0.0);
       const double gone = kHandoverSpeed * 4 * hold_limit_ * voxel_ * dt;
       memory.handover *=
