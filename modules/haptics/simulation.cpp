@@ -229,6 +229,7 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   MeanSquare early, middle, late;
   const double half = 0.5 * spec.seconds, energy_before = body.energy();
   double stored = 0; // [J], in the surface at the start
+  bool lifts_late = false;
   double late_force = 0, late_depth = 0, t = 0, dt = 1 / spec.device.rate;
   Vec3 last_tip = body.measured(), last_force = Vec3::Zero();
   const double ticks = spec.seconds * spec.device.rate;
@@ -270,6 +271,7 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
       late_force -= force.dot(spec.inward);
       late_depth += body.depth();
       report.touches_late |= felt.touching;
+      lifts_late |= !felt.touching;
     }
     if (row) row({t, body.position(), body.velocity(), force, report.energy.absorbed});
 
@@ -281,7 +283,9 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   report.rms_early = early.root();
   report.stable =
       report.rms_velocity < kStillVelocity || report.rms_velocity < kSettling * report.rms_early;
-  if (report.touches_late && late_depth > 0) report.stiffness_displayed = late_force / late_depth;
+  // Of a tip that bounces, force and depth have means, but their ratio is no stiffness.
+  if (report.touches_late && !lifts_late && late_depth > 0)
+    report.stiffness_displayed = late_force / late_depth;
   report.rms_middle = middle.root();
   report.verdict =
       judge(report, stored + 0.5 * (spec.device.mass + spec.hand.mass) * spec.speed * spec.speed +
