@@ -113,6 +113,34 @@ GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
   return sample;
 }
 
+GridSample FieldSampler::potentialAtGrid(const Vec3& q) const noexcept {
+  Cell cell;
+  if (!findCell(q, cell)) return beyondBand(q);
+  const std::array<std::array<double, 2>, 3> weight = {{{1.0 - cell.fx, 1.0 * cell.fx},
+                                                        {1.0 - cell.fy, 1.0 * cell.fy},
+                                                        {1.0 - cell.fz, 1.0 * cell.fz}}};
+  GridSample sample;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const std::size_t i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
+    const SampleNode& node = cell.node[k * kLayer + j * kRow + i];
+    double value = node.phi;
+    const double w = weight[0][i] * weight[1][j] * weight[2][k];
+    if (sampler_ == Sampler::high) {
+      const Vec3 g(node.gx, node.gy, node.gz);
+      const Vec3 away(weight[0][1] - static_cast<double>(i), weight[1][1] - static_cast<double>(j),
+                      weight[2][1] - static_cast<double>(k));
+      value += 0.5 * g.dot(away);
+      sample.gradient += 0.5 * w * g;
+    }
+    sample.phi += w * value;
+    sample.gradient += value * Vec3((i ? 1 : -1) * weight[1][j] * weight[2][k],
+                                    (j ? 1 : -1) * weight[0][i] * weight[2][k],
+                                    (k ? 1 : -1) * weight[0][i] * weight[1][j]);
+  }
+  sample.region = sample.phi < hand_over_ ? FieldRegion::deep : FieldRegion::band;
+  return sample;
+}
+
 double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {
   Cell cell;
   if (!findCell(q, cell)) [[unlikely]]

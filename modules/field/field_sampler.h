@@ -42,6 +42,10 @@ class FieldSampler {
   FieldSampler(const SurfaceField& field, Sampler sampler); // invalid_argument without samples
 
   GridSample atGrid(const Vec3& q) const noexcept; // q in grid coordinates
+  // The sampler's value with its own derivative, not the blend of nodal gradients: continuous from
+  // cell to cell only in value, but the gradient of a potential (kim: direction O(h), F1; high:
+  // O(h^2)). In the band; elsewhere as atGrid(), which `region` tells.
+  GridSample potentialAtGrid(const Vec3& q) const noexcept;
   // Only the value, for root finding along a ray.
   double phiAtGrid(const Vec3& q) const noexcept;
   // In metres: phi [m].

@@ -12,6 +12,7 @@
 #include "haptics/limit_stage.h"
 #include "haptics/magnet_stage.h"
 #include "haptics/offset_stage.h"
+#include "haptics/potential_stage.h"
 
 namespace patina {
 namespace {
@@ -67,6 +68,8 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
   const double iso = radius + haptics.offset.value_or(0);
   add(std::make_unique<ContactStage>(field, scene.sampler, iso, haptics.history),
       haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always", bytesRead(*field));
+  if (haptics.contact == HapticProperties::Contact::potential)
+    add(std::make_unique<PotentialStage>(field, scene.sampler, iso), "contact = potential");
   if (haptics.offset) {
     add(std::make_unique<OffsetStage>(field, scene.sampler),
         "offset = " + formatNumber(*haptics.offset));

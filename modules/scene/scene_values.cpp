@@ -220,6 +220,16 @@ const std::vector<Entry>& entries() {
        [](const Scene& s) {
          return s.haptics.magnet && s.haptics.magnet->fades ? onOff(true) : Text();
        }},
+      {"contact",
+       [](Scene& s, const std::string& t) {
+         if (t != "ray" && t != "potential")
+           throw Error("contact = '" + t + "': it must be ray or potential");
+         s.haptics.contact =
+             t == "ray" ? HapticProperties::Contact::ray : HapticProperties::Contact::potential;
+       },
+       [](const Scene& s) {
+         return s.haptics.contact == HapticProperties::Contact::ray ? Text() : Text("potential");
+       }},
       {"history", [](Scene& s, const std::string& t) { s.haptics.history = yesOrNo("history", t); },
        [](const Scene& s) { return s.haptics.history ? Text() : onOff(false); }},
       optionalEntry("tip.radius", &HapticProperties::tip_radius, lengthFor),

@@ -345,5 +345,41 @@ TEST(FieldSampler, NeedsTheSampleLayerAndAKnownName) {
   EXPECT_THROW(parseSampler("cubic"), Error);
 }
 
+// Its value is the sampler's, its gradient that of the value itself, by central differences within
+// a cell; the blend of nodal gradients is another one beside a crease.
+TEST(FieldSampler, APotentialIsTheDerivativeOfTheValue) {
+  FieldGrid grid;
+  grid.voxel = 1e-3;
+  grid.origin = Vec3::Constant(-0.016);
+  grid.nodes = {33, 33, 33};
+  const auto box = [](const Vec3& p) {
+    const Vec3 q = p.cwiseAbs() - Vec3(0.008, 0.007, 0.006);
+    return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
+  };
+  const auto field =
+      withSamples(std::make_shared<const SurfaceField>(sampleFunction(box, grid, 12)));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> cell(8, 24), inside(0.1, 0.9);
+  for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
+    const FieldSampler reader(*field, sampler);
+    double apart = 0;
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 corner(std::floor(cell(random)), std::floor(cell(random)),
+                        std::floor(cell(random)));
+      const Vec3 q = corner + Vec3(inside(random), inside(random), inside(random));
+      const GridSample at = reader.potentialAtGrid(q);
+      if (at.region != FieldRegion::band) continue;
+      EXPECT_NEAR(at.phi, reader.phiAtGrid(q), 2e-6);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 step = 0.05 * Vec3::Unit(axis);
+        const double slope = (reader.phiAtGrid(q + step) - reader.phiAtGrid(q - step)) / (2 * 0.05);
+        EXPECT_NEAR(at.gradient[axis], slope, 2e-3);
+      }
+      apart = std::max(apart, (at.gradient - reader.atGrid(q).gradient).norm());
+    }
+    EXPECT_GT(apart, 0.1);
+  }
+}
+
 } // namespace
 } // namespace patina

@@ -80,6 +80,7 @@ TEST(Help, FeelHasExactlyTheOptionsOfThisVersion) {
                                              "--magnet-range",
                                              "--magnet-strength",
                                              "--magnet-fades",
+                                             "--contact",
                                              "--history",
                                              "--tip-radius",
                                              "--force-limit",

@@ -17,6 +17,7 @@ List withEverything() {
           {"magnet.range", "0.002"},
           {"magnet.strength", "250"},
           {"magnet.fades", "on"},
+          {"contact", "potential"},
           {"history", "off"},
           {"tip.radius", "0.0015"},
           {"force.limit", "5"},
@@ -171,7 +172,7 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
     EXPECT_EQ(std::string(error.what()),
               "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
               "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
-              "magnet.fades history tip.radius force.limit resolution voxel band sampler "
+              "magnet.fades contact history tip.radius force.limit resolution voxel band sampler "
               "merge.redistance stabiliser device.mass device.damping device.coulomb "
               "device.encoder device.rate device.delay device");
   }

@@ -152,5 +152,35 @@ TEST(ClosedLoopEnergy, BesideACreaseFallsWithTheVoxel) {
   }
 }
 
+// The form that claims to be conservative everywhere is.
+TEST(ClosedLoopEnergy, OfAPotentialIsNothingAlsoBesideACrease) {
+  using Form = HapticProperties::Contact;
+  const std::array<Mode, 3> modes = {{
+      {"contact", [](HapticProperties& h) { h.contact = Form::potential; }, kDepth},
+      {"finite tip",
+       [](HapticProperties& h) {
+         h.contact = Form::potential;
+         h.tip_radius = 1e-3;
+       },
+       kDepth - 1e-3},
+      {"offset",
+       [](HapticProperties& h) {
+         h.contact = Form::potential;
+         h.offset = 2e-3;
+       },
+       kDepth - 2e-3},
+  }};
+  const std::vector<double> beside = {0, 0.3e-3, 0.5e-3, 1.1e-3, 2.3e-3};
+  const std::vector<Vec3> axes = {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0.3, 0.5, 0.8)};
+  for (const Mode& mode : modes) {
+    const double crease = worstAtAnEdge(mode, 150, beside, axes);
+    const LoopEnergy smooth = onASphere(mode, Sampler::high, 150);
+    std::printf("%-10s potential: %.2g J on a sphere, %.3f %% of K d^2 / 2 about a crease\n",
+                mode.name, smooth.worst, 100 * crease / kStored);
+    EXPECT_LE(crease, 0.01 * kStored) << mode.name;
+    EXPECT_LE(smooth.worst, 3e-6) << mode.name;
+  }
+}
+
 } // namespace
 } // namespace patina
