@@ -128,8 +128,8 @@ TEST_F(BadInput, WordsOfTheCommandLineAreChecked) {
 }
 
 TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
-  expectOneLineError(run({"feel", box, "--path", path, "-o", out, "--offset", "1mm"}),
-                     {"unknown option --offset; see patina feel --help"});
+  expectOneLineError(run({"feel", box, "--path", path, "-o", out, "--banana", "1mm"}),
+                     {"unknown option --banana; see patina feel --help"});
   expectOneLineError(run({"info", box, "--offset=1mm"}), {"unknown option --offset;"});
   expectOneLineError(run({"info", box, "-q"}), {"unknown option -q;"});
   expectOneLineError(run({"info", box, "b"}), {"one FILE at a time: 'b' is one too many"});
