@@ -60,11 +60,6 @@ TEST(SurfacesStudy, RedistancingMakesTheDepthOfAnOverlapRight) {
     EXPECT_LT(more(row, "1 mm below free skin, max [m]"), 0.1 * voxel);
 }
 
-TEST(SurfacesStudy, ATickCostsTheSameForManyObjects) {
-  const WorkPrecisionTable& crowd = quickTables()[5];
-  EXPECT_LT(crowd.rows[1].ns, 1.5 * crowd.rows[0].ns);
-}
-
 // Against a brute-force search over both spheres' free parts.
 TEST(LensDepth, AgreesWithBruteForce) {
   const double R = 0.02, a = 0.01;
