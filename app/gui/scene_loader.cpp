@@ -1,13 +1,12 @@
 #include "app/gui/scene_loader.h"
 
-#include "app/compile_warnings.h"
-
 #include <algorithm>
 #include <new>
 #include <utility>
 
 #include <QMetaObject>
 
+#include "app/compile_warnings.h"
 #include "field/models.h"
 #include "visualization/field_io.h"
 

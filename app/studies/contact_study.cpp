@@ -115,7 +115,7 @@ WorkPrecisionTable vcpOrder(const std::vector<int>& resolutions, Progress& progr
   WorkPrecisionTable table =
       tableOf("VCP on a sphere (T-K06b), rms and max; order 2 with kim", "m");
   const double radius = 0.03;
-  std::vector<double> voxels, errors;
+  OrderFit order;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();
     const auto field = analyticSphere(radius, resolution);
@@ -150,15 +150,11 @@ WorkPrecisionTable vcpOrder(const std::vector<int>& resolutions, Progress& progr
       row.ns = nsPerQuery(tips, [&](const Vec3& tip) { return touch(tip).depth; });
       row.bytes = static_cast<double>(field->bytes());
       row.more = {{"field samples a tick", samples / count}};
-      if (sampler == Sampler::kim) {
-        voxels.push_back(field->grid.voxel);
-        errors.push_back(row.error);
-      }
+      if (sampler == Sampler::kim) order.add(field->grid.voxel, row.error);
       table.rows.push_back(std::move(row));
     }
   }
-  table.order_fitted = fittedOrder(voxels, errors);
-  table.order_expected = 2;
+  order.into(table, 2);
   return table;
 }
 

@@ -20,6 +20,19 @@ struct Study {
   std::vector<WorkPrecisionTable> (*run)(const StudyOptions&, Progress&);
 };
 
+// Rows over refinements of one kind: what they measured against their voxels.
+struct OrderFit {
+  std::vector<double> voxels, errors;
+  void add(double voxel, double error) {
+    voxels.push_back(voxel);
+    errors.push_back(error);
+  }
+  void into(WorkPrecisionTable& table, double expected) const {
+    table.order_fitted = fittedOrder(voxels, errors);
+    table.order_expected = expected;
+  }
+};
+
 // All of them, in the order in which `patina study all` runs them.
 const std::vector<Study>& studies();
 

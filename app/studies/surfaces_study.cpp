@@ -75,7 +75,7 @@ WorkPrecisionTable force(const Mode& mode, const std::vector<int>& resolutions, 
                          Progress& progress) {
   WorkPrecisionTable table =
       tableOf("Force of " + mode.name + " on a sphere, rms and max; order 2 with kim", "N");
-  std::vector<double> voxels, errors;
+  OrderFit order;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();
     const auto field = sphereField(resolution);
@@ -106,15 +106,11 @@ WorkPrecisionTable force(const Mode& mode, const std::vector<int>& resolutions, 
       row.ns = nsPerQuery(points, [&](const Vec3& tip) { return touch(*snapshot, tip).depth; });
       row.bytes = static_cast<double>(field->bytes());
       row.more = {{"magnitude max [N]", magnitude}};
-      if (sampler == Sampler::kim) {
-        voxels.push_back(field->grid.voxel);
-        errors.push_back(row.error);
-      }
+      if (sampler == Sampler::kim) order.add(field->grid.voxel, row.error);
       table.rows.push_back(std::move(row));
     }
   }
-  table.order_fitted = fittedOrder(voxels, errors);
-  table.order_expected = 2;
+  order.into(table, 2);
   return table;
 }
 
@@ -139,7 +135,7 @@ double loopWork(const HapticSnapshot& snapshot, const Vec3& centre, const Vec3& 
 WorkPrecisionTable energy(const std::vector<int>& resolutions, int loops, Progress& progress) {
   WorkPrecisionTable table = tableOf(
       "Work round closed loops (T-ENER), K = 1000 N/m, 2.5 mm deep, rms and max; order 2", "J");
-  std::vector<double> voxels, errors;
+  OrderFit order;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();
     const auto field = sphereField(resolution);
@@ -164,15 +160,11 @@ WorkPrecisionTable energy(const std::vector<int>& resolutions, int loops, Progre
       row.error = std::sqrt(row.error);
       row.ns = nsPerQuery(points, [&](const Vec3& tip) { return touch(*snapshot, tip).depth; });
       row.bytes = static_cast<double>(field->bytes());
-      if (sampler == Sampler::kim) {
-        voxels.push_back(field->grid.voxel);
-        errors.push_back(row.error);
-      }
+      if (sampler == Sampler::kim) order.add(field->grid.voxel, row.error);
       table.rows.push_back(std::move(row));
     }
   }
-  table.order_fitted = fittedOrder(voxels, errors);
-  table.order_expected = 2;
+  order.into(table, 2);
   return table;
 }
 

@@ -1,5 +1,7 @@
 #include "haptics/coupling_stage.h"
 
+#include "haptics/spring_stage.h"
+
 namespace patina {
 
 double inSeries(double stiffness, double coupling) noexcept {
@@ -24,14 +26,7 @@ void CouplingStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   const double f_n = contact.force.dot(n);
   if (f_n < 0 && !magnetic_) contact.force -= f_n * n;
 
-  if (!(contact.stick_radius > 0)) return;
-  contact.force += damping_ * (rate - rate_n * n);
-  const Vec3 drag = contact.force - stiffness_ * (contact.candidate - contact.tip);
-  const Vec3 tangential = drag - drag.dot(n) * n;
-  // The margin keeps rounding from touching a force that was within the bound undamped.
-  const double bearable = stiffness_ * contact.stick_radius * (1 + 1e-9);
-  const double magnitude = tangential.norm();
-  if (magnitude > bearable) contact.force -= (1 - bearable / magnitude) * tangential;
+  dampSticking(contact, damping_ * (rate - rate_n * n));
 }
 
 } // namespace patina

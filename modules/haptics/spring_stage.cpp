@@ -19,6 +19,18 @@ void VelocityFilterStage::apply(Contact& contact, ContactMemory& memory) const n
   contact.velocity = memory.velocity;
 }
 
+void dampSticking(Contact& contact, const Vec3& damper) noexcept {
+  if (!(contact.stick_radius > 0)) return;
+  const Vec3& n = contact.normal;
+  contact.force += damper;
+  const Vec3 drag = contact.force - contact.stiffness * (contact.candidate - contact.tip);
+  const Vec3 tangential = drag - drag.dot(n) * n;
+  // The margin keeps rounding from touching a force that was within the bound undamped.
+  const double bearable = contact.stiffness * contact.stick_radius * (1 + 1e-9);
+  const double magnitude = tangential.norm();
+  if (magnitude > bearable) contact.force -= (1 - bearable / magnitude) * tangential;
+}
+
 void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (!contact.touching && !contact.attracted) return;
   const Vec3& n = contact.normal;
@@ -28,14 +40,7 @@ void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
   const double f_n = contact.force.dot(n);
   if (f_n < 0 && !magnetic_) contact.force -= f_n * n;
 
-  if (!(contact.stick_radius > 0)) return;
-  contact.force -= damping_ * (contact.velocity - v_n * n);
-  const Vec3 drag = contact.force - contact.stiffness * (contact.candidate - contact.tip);
-  const Vec3 tangential = drag - drag.dot(n) * n;
-  // The margin keeps rounding from touching a force that was within the bound undamped.
-  const double bearable = contact.stiffness * contact.stick_radius * (1 + 1e-9);
-  const double magnitude = tangential.norm();
-  if (magnitude > bearable) contact.force -= (1 - bearable / magnitude) * tangential;
+  dampSticking(contact, -damping_ * (contact.velocity - v_n * n));
 }
 
 } // namespace patina

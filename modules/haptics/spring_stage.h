@@ -28,6 +28,10 @@ class VelocityFilterStage final : public ForceStage {
   double time_; // [s]
 };
 
+// While the VCP sticks, adds a tangential damper's force [N] as far as sticking can bear
+// (section 2.6).
+void dampSticking(Contact& contact, const Vec3& damper) noexcept;
+
 // F -= B (v.n) n, then F.n >= 0: the surface never pulls, unless it is magnetic (K08); there the
 // pull is damped as well. While the VCP sticks, its tangential motion is damped as well (section
 // 2.6), within what sticking can bear.

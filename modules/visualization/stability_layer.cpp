@@ -4,12 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <vtkColorTransferFunction.h>
 #include <vtkFloatArray.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 
+#include "visualization/distance_map.h"
 #include "visualization/palette.h"
 #include "visualization/scalar_bar.h"
 #include "visualization/scene_furniture.h"
@@ -41,20 +41,9 @@ vtkSmartPointer<vtkFloatArray> vertexNormals(const TriangleMesh& mesh) {
 } // namespace
 
 vtkSmartPointer<vtkLookupTable> stabilityColors() {
-  const vtkNew<vtkColorTransferFunction> ramp;
-  ramp->SetColorSpaceToDiverging();
-  ramp->AddRGBPoint(-1, palette::kInside[0], palette::kInside[1], palette::kInside[2]);
-  ramp->AddRGBPoint(1, palette::kOutside[0], palette::kOutside[1], palette::kOutside[2]);
-  auto table = vtkSmartPointer<vtkLookupTable>::New();
-  constexpr int kEntries = 255;
-  table->SetNumberOfTableValues(kEntries);
+  const auto table = divergingColors();
   table->SetScaleToLog10();
   table->SetRange(kLeastRatioShown, kMostRatioShown);
-  for (int i = 0; i < kEntries; ++i) {
-    double color[3];
-    ramp->GetColor(2.0 * i / (kEntries - 1) - 1, color);
-    table->SetTableValue(i, color[0], color[1], color[2], 1);
-  }
   table->SetNanColor(palette::kToolShaft[0], palette::kToolShaft[1], palette::kToolShaft[2], 1);
   return table;
 }

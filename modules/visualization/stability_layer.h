@@ -24,7 +24,8 @@ class StabilityLayer {
   // scene: where the surface is; overlay: where the scalar bar is.
   StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
-  // One ratio a vertex; NaN, where nothing can be said, is grey. Throws std::invalid_argument for another number of them.
+  // One ratio a vertex; NaN, where nothing can be said, is grey. Throws std::invalid_argument for
+  // another number of them.
   void update(const TriangleMesh& surface, const std::vector<float>& ratio);
   void setVisible(bool on);
   void setTextSize(int pixels);

@@ -218,9 +218,8 @@ TEST(ContactTiming, TickWithFrictionIsQuickAtAnySizeOfMesh) {
     least = std::min(least, timing.batch);
     most = std::max(most, timing.batch);
   }
-  EXPECT_LE(most / least, 1.1 * kSlowMachine);
-  if (!holds || most / least > 1.1)
-    GTEST_SKIP() << "200 / 700 ns within 10 % do not hold on this machine now: see the rows above";
+  EXPECT_LE(most / least, 1.1); // whatever the machine's speed
+  if (!holds) GTEST_SKIP() << "200 / 700 ns do not hold on this machine now: see the rows above";
 }
 
 TEST(ContactTiming, FiniteTipIsQuickAt1MTriangles) {

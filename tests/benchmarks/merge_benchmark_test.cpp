@@ -68,9 +68,8 @@ TEST(MergeTiming, TickOfAHundredObjectsIsThatOfOne) {
               p50[0], batch[0], p50[1], batch[1], batch[1] / batch[0], clean);
   if (clean < 4) GTEST_SKIP() << "the machine is busy: no pass had a core to itself";
   EXPECT_LE(p50[1], 250 * kSlowMachine);
-  EXPECT_LE(batch[1] / batch[0], 1.1 * kSlowMachine);
-  if (p50[1] > 250 || batch[1] / batch[0] > 1.1)
-    GTEST_SKIP() << "250 ns within 10 % do not hold on this machine now: see above";
+  EXPECT_LE(batch[1] / batch[0], 1.1); // whatever the machine's speed
+  if (p50[1] > 250) GTEST_SKIP() << "250 ns do not hold on this machine now: see above";
 }
 
 // Packed this densely each band reaches over its neighbours: each object holds its own, and the
