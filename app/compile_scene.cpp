@@ -260,14 +260,11 @@ std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene s
   return compileFrom(&old, std::move(scene), progress);
 }
 
-std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
-                                               const HapticProperties& haptics) {
-  Scene scene = old.scene;
-  scene.haptics = haptics;
+std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {
   validate(scene);
   auto compiled = std::make_shared<CompiledScene>(old);
+  compiled->snapshot = compileStages(scene, old.built.field);
   compiled->scene = std::move(scene);
-  compiled->snapshot = compileStages(compiled->scene, compiled->built.field);
   return compiled;
 }
 

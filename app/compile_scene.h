@@ -53,9 +53,9 @@ std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress);
 // twice or less than half the cells that `resolution` asks for); then all is built as by compile().
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
                                                Progress& progress);
-// Only haptic values changed: keeps the field.
-std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old,
-                                               const HapticProperties& haptics);
+// Only values of touch and device changed: keeps the field, whatever reach they ask for; throws
+// Error if that does not fit. Quick.
+std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene);
 
 // Index of the object that a face of the scene's mesh, and so a node that names it, belongs to;
 // -1 for -1.

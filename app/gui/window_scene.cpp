@@ -10,15 +10,6 @@
 namespace patina {
 namespace {
 
-// Only values of touch and device changed: keeps the field.
-std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {
-  validate(scene);
-  auto compiled = std::make_shared<CompiledScene>(old);
-  compiled->snapshot = compileStages(scene, old.built.field);
-  compiled->scene = std::move(scene);
-  return compiled;
-}
-
 Scene withValues(Scene scene, const HapticProperties& haptics, const DeviceChoice& device) {
   scene.haptics = haptics;
   scene.device = device.device;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/types.h"
+#include "scene/device_model.h"
 
 namespace patina {
 
@@ -15,8 +16,6 @@ enum class ContactMode : std::uint8_t {
   ahead,  // a ray along the last direction, about the middle of a deep part (F9)
   newton, // the ray found no surface (F9): one Newton step
 };
-
-inline constexpr int kMaxDelay = 20; // samples, of a device model
 
 // Survives from tick to tick; owned by the servo thread. reset() = the first tick again.
 struct ContactMemory {

@@ -3,13 +3,15 @@
 
 namespace patina {
 
+inline constexpr int kMaxDelay = 20; // samples
+
 struct DeviceModel {
   double mass = 0.1;       // m [kg]
   double damping = 0.5;    // b [N s/m], viscous
   double coulomb = 0;      // fc [N], dry friction
   double encoder_step = 0; // Delta [m], resolution of position; 0 = exact
   double rate = 1000;      // 1/T [Hz]
-  int delay = 0;           // n, whole samples between reading the tip and applying the force
+  int delay = 0; // n <= kMaxDelay, whole samples between reading the tip and applying the force
   bool operator==(const DeviceModel&) const = default;
 };
 

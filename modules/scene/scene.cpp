@@ -46,7 +46,7 @@ void validate(const DeviceModel& device) {
   requireBetween("device.coulomb", device.coulomb, 0, 100, "N");
   requireBetween("device.encoder", device.encoder_step, 0, 0.01, "m");
   requireBetween("device.rate", device.rate, 100, 10000, "Hz");
-  requireBetween("device.delay", device.delay, 0, 20, "samples");
+  requireBetween("device.delay", device.delay, 0, kMaxDelay, "samples");
 }
 
 void validate(const HapticProperties& haptics) {

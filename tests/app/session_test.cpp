@@ -120,23 +120,23 @@ TEST_F(Session, CompiledSceneFeelsItsMesh) {
   EXPECT_NEAR(contact.force.z(), 0.5, 0.1); // 1 mm at 500 N/m, less the facets' sag
 }
 
-TEST_F(Session, RecompileKeepsTheFieldAndChangesTheForce) {
+TEST_F(Session, RetuningKeepsTheFieldAndChangesTheForce) {
   const auto old = compile(smallSphere(), progress);
-  HapticProperties haptics = old->scene.haptics;
-  haptics.stiffness = 250;
-  const auto softer = recompile(*old, haptics);
+  Scene scene = old->scene;
+  scene.haptics.stiffness = 250;
+  const auto softer = retuned(*old, scene);
   EXPECT_EQ(softer->built.field, old->built.field);
   EXPECT_NE(softer->snapshot, old->snapshot);
   EXPECT_EQ(softer->scene.haptics.stiffness, 250);
-  const auto force = [](const CompiledScene& scene) {
+  const auto force = [](const CompiledScene& compiled) {
     ContactMemory memory;
     for (int i = 0; i < 20; ++i)
-      (void)tick(*scene.snapshot, memory, Vec3(0, 0, 0.021 - 0.0001 * i), 0.001);
-    return tick(*scene.snapshot, memory, Vec3(0, 0, 0.019), 0.001).force.norm();
+      (void)tick(*compiled.snapshot, memory, Vec3(0, 0, 0.021 - 0.0001 * i), 0.001);
+    return tick(*compiled.snapshot, memory, Vec3(0, 0, 0.019), 0.001).force.norm();
   };
   EXPECT_NEAR(force(*softer), force(*old) / 2, 1e-12);
-  haptics.stiffness = -1;
-  EXPECT_THROW(recompile(*old, haptics), Error);
+  scene.haptics.stiffness = -1;
+  EXPECT_THROW(retuned(*old, scene), Error);
 }
 
 TEST_F(Session, CancelledCompileThrowsAndKeepsNothing) {

@@ -5,6 +5,7 @@
 // itself; without such a pass the row is printed and skipped.
 #include "app/studies/contact_test_path.h"
 #include "support/busy_machine.h"
+#include "support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -14,19 +15,12 @@
 namespace patina {
 namespace {
 
+using test::kSanitized;
+using test::kSlowMachine;
+
 constexpr double kRadius = 0.05;
 constexpr double kTip = 0.02;
 constexpr int kRepeats = 15;
-// Beyond its limit but within this factor a time is shown and skipped: a slower or busier
-// processor. Beyond the factor it fails: the tick has become slower.
-constexpr double kSlowMachine = 1.3;
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
 // Fields are made once: the finest takes seconds.
 const std::shared_ptr<const SurfaceField>& sphereOf(int frequency, double crack = 0) {
   static std::map<std::pair<int, double>, std::shared_ptr<const SurfaceField>> made;

@@ -11,20 +11,17 @@
 #include "field/build_field.h"
 #include "geometry/shapes.h"
 #include "support/busy_machine.h"
+#include "support/sanitized.h"
 
 namespace patina {
 namespace {
 
+using test::kSanitized;
+using test::kSlowMachine;
+
 constexpr double kRadius = 0.05; // of the sphere that the fixed test touches, at the origin
 constexpr int kFrequency = 7;    // 980 triangles
 constexpr int kRepeats = 10;
-constexpr double kSlowMachine = 1.3;
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 // The touched sphere among `count` of its kind, on one voxel whatever the count.
 Scene spheres(int count) {

@@ -12,6 +12,7 @@
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_report.h"
 #include "geometry/shapes.h"
+#include "support/sanitized.h"
 #include "support/shared_data.h"
 
 namespace patina {
@@ -289,14 +290,8 @@ TEST_F(MeshFile, NonFiniteCoordinatesSurvive) {
   }
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
 TEST_F(MeshFile, AMillionTrianglesAreReadInTime) {
-  if (kSanitized) GTEST_SKIP() << "timed without sanitizers only";
+  if (test::kSanitized) GTEST_SKIP() << "timed without sanitizers only";
   const TriangleMesh mesh = icosphere(0.05, 224);
   const std::vector<std::pair<const char*, double>> limits = {
       {"m.obj", 1.5}, {"m.ply", 0.5}, {"m.stl", 0.5}};

@@ -12,6 +12,10 @@
 
 namespace patina::test {
 
+// Beyond its limit but within this factor a time is shown and skipped: a slower or busier
+// processor. Beyond the factor it fails: the work has become slower.
+inline constexpr double kSlowMachine = 1.3;
+
 // A pass during which its thread had less than this share of a core says nothing.
 inline constexpr double kCleanShare = 0.98;
 
