@@ -57,7 +57,8 @@ double maxSpeed(const FieldGrid& grid) {
 }
 
 std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticProperties& haptics,
-                                               std::shared_ptr<const SurfaceField> field) {
+                                               std::shared_ptr<const SurfaceField> field,
+                                               std::span<const FeltObject>) {
   checkField(field.get(), haptics);
   auto snapshot = std::make_shared<HapticSnapshot>();
   const auto add = [&](std::unique_ptr<const ForceStage> stage, std::string why,
@@ -84,6 +85,7 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
   addForceLaw(*snapshot, haptics, planStabilisers(haptics, scene.device_model, scene.stabilisers),
               magnet, maxSpeed(field->grid));
   snapshot->field = std::move(field);
+  snapshot->base = baseMaterial(haptics);
   return snapshot;
 }
 
@@ -95,23 +97,25 @@ double reachOf(const HapticProperties& haptics) {
 }
 
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
-                                                    std::shared_ptr<const SurfaceField> field) {
+                                                    std::shared_ptr<const SurfaceField> field,
+                                                    std::span<const FeltObject> objects) {
   HapticProperties needed = scene.haptics;
   if (needed.friction && needed.friction->static_coefficient == 0) needed.friction.reset();
   if (needed.damping == 0.0) needed.damping.reset();
   if (needed.offset == 0.0) needed.offset.reset();
   if (needed.magnet && needed.magnet->range * needed.magnet->strength == 0) needed.magnet.reset();
   if (!needed.damping) needed.damping_cutoff.reset();
-  return compiled(scene, needed, std::move(field));
+  return compiled(scene, needed, std::move(field), objects);
 }
 
 std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
-                                                       std::shared_ptr<const SurfaceField> field) {
+                                                       std::shared_ptr<const SurfaceField> field,
+                                                       std::span<const FeltObject> objects) {
   HapticProperties all = scene.haptics;
   if (!all.friction) all.friction = Friction{};
   if (!all.damping) all.damping = 0;
   if (!all.magnet) all.magnet = Magnet{};
-  return compiled(scene, all, std::move(field));
+  return compiled(scene, all, std::move(field), objects);
 }
 
 Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,

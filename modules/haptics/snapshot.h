@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "haptics/felt_object.h"
 #include "haptics/stabilisers.h"
 #include "haptics/stage.h"
 #include "scene/scene.h"
@@ -22,6 +24,7 @@ struct HapticSnapshot {
   std::vector<std::unique_ptr<const ForceStage>> stages;
   std::vector<StageInfo> why; // one entry a stage
   StabiliserPlan stabilisers; // what of it is present is a stage; coupling->stiffness is k_c
+  Material base;              // what a contact is made of where nothing is painted
 };
 
 // How far from the surface its properties are felt: tip radius plus offset or magnetic range [m].
@@ -30,14 +33,17 @@ inline constexpr double kBandBeyondReach = 3;
 double reachOf(const HapticProperties& haptics);
 
 // Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never
-// left out. `field` is the field of the scene's objects in the world frame.
+// left out. `field` is the field of the scene's objects in the world frame, with relief in it where
+// it is baked. `objects`: in the scene's order; empty = nothing is painted on any.
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
-                                                    std::shared_ptr<const SurfaceField> field);
+                                                    std::shared_ptr<const SurfaceField> field,
+                                                    std::span<const FeltObject> objects = {});
 
 // For the proof that pruning changes nothing: every stage that has a neutral value is present with
 // it where the scene has none. (A cut-off and an offset have none: they are other laws.)
 std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
-                                                       std::shared_ptr<const SurfaceField> field);
+                                                       std::shared_ptr<const SurfaceField> field,
+                                                       std::span<const FeltObject> objects = {});
 
 // One servo tick as a pure function of its arguments: dt is passed in, no clock is read.
 // A NaN or infinite tip: no contact, zero force, counted in memory.bad_tips.

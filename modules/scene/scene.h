@@ -13,6 +13,8 @@
 #include "geometry/triangle_mesh.h"
 #include "scene/device_model.h"
 #include "scene/haptic_properties.h"
+#include "scene/object_paint.h"
+#include "scene/relief_settings.h"
 
 namespace patina {
 
@@ -20,6 +22,7 @@ struct SceneObject {
   std::string name;                         // unique in the scene; letters, digits, '-', '_'
   std::shared_ptr<const TriangleMesh> mesh; // [m], object frame
   Pose world_from_object = Pose::Identity();
+  std::shared_ptr<const ObjectPaint> paint; // absent until the first stroke
 };
 
 struct Scene {
@@ -30,10 +33,18 @@ struct Scene {
   bool redistance = false;
   Sampler sampler = Sampler::high;
   HapticProperties haptics;
-  std::string device = "mouse";            // "mouse", "simulated"
+  ReliefSettings relief;                             // of painted relief, where there is any
+  ForceForm material_form = ForceForm::conservative; // of painted stiffness (F6)
+  int paint_size = 512;                              // texels a side of images that painting makes
+  std::string device = "mouse";                      // "mouse", "simulated"
   std::optional<DeviceModel> device_model; // absent: nothing is known that could be unstable
   std::optional<Stabilisers> stabilisers;  // absent: chosen from device_model (auto)
 };
+
+// What is felt where nothing is painted.
+Material baseMaterial(const HapticProperties& haptics);
+// Of all objects' images, height included [m]; 0 without relief. Looks at every texel.
+double highestRelief(const Scene& scene);
 
 // Throws Error in one line, naming the key and the allowed range, if a value makes no sense.
 void validate(const Scene& scene);

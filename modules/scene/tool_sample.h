@@ -9,10 +9,10 @@
 namespace patina {
 
 struct ToolSample {
-  double t = 0;               // [s] since the loop began
-  Vec3 tip = Vec3::Zero();    // [m], world
-  Vec3 force = Vec3::Zero();  // [N] on the hand
-  Vec3 vcp = Vec3::Zero();    // virtual contact point [m]; the tip if there is no contact
+  double t = 0;              // [s] since the loop began
+  Vec3 tip = Vec3::Zero();   // [m], world
+  Vec3 force = Vec3::Zero(); // [N] on the hand
+  Vec3 vcp = Vec3::Zero();   // virtual contact point [m]; the tip if there is no contact
   // The nearest point of the original surface, where contact is seen and an edit acts (K12); the
   // tip if there is neither contact nor pull.
   Vec3 surface = Vec3::Zero();

@@ -1,18 +1,54 @@
-// A scene as a folder that opens again (DESIGN section 8).
+// A scene with its history as a folder that opens again (DESIGN section 8).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "scene/scene.h"
+#include "workspace/journal.h"
 
 namespace patina {
 
-// workspace.json (version 1, relative paths, SHA-256 of each file) and meshes/NAME.ply.
-// Throws FileError naming file and cause: unknown version, wrong hash, a path that leaves the
-// folder.
+// A scene stored after so many events of the journal.
+struct StoredState {
+  std::uint64_t event = 0;
+  std::string file; // states/....json relative to the folder
+};
+
+struct OpenedWorkspace {
+  Scene scene;             // as saved: after `event` events
+  std::uint64_t event = 0; // what the journal holds beyond it is for the reader to apply
+  std::vector<JournalEvent> journal;
+  std::vector<StoredState> states; // ascending; the first is event 0, the scene before any edit
+  std::vector<std::string> notes;  // what was found and mended, one line each
+};
+
+// workspace.json (version 2, relative paths, SHA-256 of each file): the scene as saved. Beside it
+// meshes/, paint/, states/ and journal.jsonl. Version 1, without history, is read too.
+// A torn last record is left out with a note. Throws FileError naming file, line and cause: unknown
+// version, wrong hash, a path that leaves the folder, a journal that is damaged or shorter than
+// what was saved. With `recover` what can be read is kept and the rest becomes notes: the saved
+// scene without a damaged journal, the objects whose files are whole, or, without a readable
+// workspace.json, the newest readable state.
+OpenedWorkspace openWorkspace(const std::filesystem::path& folder, bool recover = false);
+// Scene of a stored state.
+Scene loadState(const std::filesystem::path& folder, const std::string& file);
+// Only the scene as saved.
 Scene loadWorkspace(const std::filesystem::path& folder);
 
-// Atomic: at any moment the folder holds the old workspace or the new one, whole.
+// A state's files, for a StoredSceneEdit or as a place to begin a replay from; on disk when it
+// returns. Files are named by their content, so that equal ones are stored once. Returns the path.
+std::string storeState(const Scene& scene, std::uint64_t event,
+                       const std::filesystem::path& folder);
+
+// Atomic: at any moment, whatever fails, the folder holds the old workspace or the new one, whole.
+// The journal is the one in the folder, `event` how much of it the scene includes; `states` those
+// to keep. Files that nothing names any more are removed after that.
+void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
+                   const std::filesystem::path& folder);
+// A workspace of its own, with no history: state 0 is `scene`. What was in the folder is replaced.
 void saveWorkspace(const Scene& scene, const std::filesystem::path& folder);
 
 bool isWorkspace(const std::filesystem::path& path);

@@ -1,0 +1,36 @@
+// A mesh with its relief image as the servo reads it: height and slope at the closest point (K21).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "geometry/texture_layout.h"
+#include "geometry/triangle_mesh.h"
+#include "scene/tiled_image.h"
+
+namespace patina {
+
+// Corners, texture coordinates and neighbours of one object's faces, packed. Immutable; made once
+// for an object and a layout, whatever is painted later.
+class ReliefFaces;
+std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& world_mesh,
+                                               const CornerUvs& uvs);
+std::size_t bytes(const ReliefFaces& faces);
+
+struct ReliefSurface {
+  std::shared_ptr<const ReliefFaces> faces;
+  std::shared_ptr<const TiledImage> image; // as felt: smoothed where the scene asks for it
+  double height = 0;                       // [m] of g = 1
+};
+
+struct ReliefAt {
+  double height = 0;         // [m], outward
+  Vec3 slope = Vec3::Zero(); // surface gradient of the height, in the face's plane, dimensionless
+  std::int32_t face = -1;    // of the object; a good start for the next query nearby
+};
+
+// Servo thread: no allocation. c: a point on or near the mesh [m], world; near_face: a face of the
+// object thought to be near, from which the closest one is reached across edges.
+ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face) noexcept;
+
+} // namespace patina

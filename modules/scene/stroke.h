@@ -1,0 +1,85 @@
+// One stroke of the brush, as it is recorded, replayed and undone (DESIGN section 9, K15-K19).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/json.h"
+#include "core/types.h"
+#include "scene/material_map.h"
+
+namespace patina {
+
+enum class Tool : std::uint8_t {
+  color,
+  relief,
+  stiffness,
+  static_friction,
+  dynamic_friction,
+  damping,
+  roughness,
+  erase // of everything that was painted, or of `erases` alone
+};
+enum class BrushShape : std::uint8_t {
+  power, // 1 - (d/r)^f, our reading of the paper's lost equation (1) (K17)
+  cone,  // (1 - d/r)^f
+  smooth // (1 - (d/r)^2)^f
+};
+enum class StrokeMode : std::uint8_t {
+  max,      // a place takes the greatest weight of the stroke once: the same at 30 and at 60 Hz
+  build_up, // every dab lays on again
+  add,      // value is added, greatest weight once; not for colour
+  smooth    // every dab moves values towards their neighbours'
+};
+enum class Symmetry : std::uint8_t { none, x, y, z }; // across the middle of the object's box
+
+struct Brush {
+  Tool tool = Tool::color;
+  std::array<double, 3> color{1, 0, 0}; // sRGB in [0, 1], of Tool::color
+  double value = 0;                     // SI, of the other tools: relief [m], stiffness [N/m] ...
+  double radius = 0.005;                // r [m]
+  double radius_per_force = 0;          // k_r [m/N]: r + k_r |F|, K19
+  double least_radius = 0, most_radius = 1; // [m], clamp of that
+  double falloff = 1;                       // f > 0
+  BrushShape shape = BrushShape::power;
+  StrokeMode mode = StrokeMode::max;
+  bool front_only = false; // only faces that look the way the seed face does
+  Symmetry symmetry = Symmetry::none;
+  std::string erases; // "" = everything, or a tool's name
+  bool operator==(const Brush&) const = default;
+};
+
+struct StrokeSample {
+  double t = 0;                 // [s]
+  Vec3 position = Vec3::Zero(); // [m], world: the point of the surface under the tip, or near it
+  double force = 0;             // |F| [N]
+  bool operator==(const StrokeSample&) const = default;
+};
+
+struct Stroke {
+  Brush brush;
+  std::vector<StrokeSample> samples; // times ascend
+  bool operator==(const Stroke&) const = default;
+};
+
+std::string_view name(Tool tool); // as in files: "color", "friction.static", ...
+// The channel that a tool paints; nullopt for colour, relief and erase.
+std::optional<MaterialChannel> channelOf(Tool tool);
+
+// Throws Error in one line that names what is out of range: radius and falloff > 0 (a radius of 0
+// paints nothing and is allowed), finite values, colours in [0, 1], the channel's range.
+void validate(const Brush& brush);
+void validate(const Stroke& stroke);
+
+Json toJson(const Stroke& stroke);
+// Throws Error naming the key. Unknown keys are an error; what may be left out has Brush's value.
+Stroke strokeFrom(const Json& json);
+// {"version": 1, "strokes": [...]}; throws FileError(name, line or 0, "stroke 3: ...").
+std::vector<Stroke> parseStrokes(std::string_view text, const std::string& name);
+Json toJson(const std::vector<Stroke>& strokes);
+
+} // namespace patina

@@ -1,0 +1,61 @@
+// The journal of a workspace: every edit, undo and redo, one record a line, none ever changed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "scene/edit.h"
+
+namespace patina {
+
+struct UndoEvent {
+  int steps = 1;
+  bool operator==(const UndoEvent&) const = default;
+};
+struct RedoEvent {
+  int steps = 1;
+  bool operator==(const RedoEvent&) const = default;
+};
+// A SceneEdit as it stands in the journal: its scene is a state file of the workspace.
+struct StoredSceneEdit {
+  std::string what;
+  std::string state; // path relative to the folder
+  bool operator==(const StoredSceneEdit&) const = default;
+};
+using JournalEvent = std::variant<Stroke, ValueEdit, StoredSceneEdit, UndoEvent, RedoEvent>;
+
+struct JournalText {
+  std::vector<JournalEvent> events; // whole records from the first on
+  // What follows them: a record that was being written when the program ended (torn), or records
+  // that are damaged or out of order (line and cause).
+  bool torn = false;
+  std::size_t damaged_line = 0; // 0 = none
+  std::string damage;
+};
+// A record carries its number (from 1) and a checksum over itself. Bounded; never throws for bad
+// text.
+JournalText parseJournal(std::string_view text);
+std::string journalLine(std::uint64_t number, const JournalEvent& event); // with '\n'
+
+// The file open for appending, locked against a second writer. append() returns when the record is
+// on disk (fsync). On failure throws FileError, and the file ends where it ended before.
+class JournalWriter {
+ public:
+  // Cuts off what follows the first `events` records (a torn record). Throws FileError if the file
+  // is locked by another program.
+  JournalWriter(const std::filesystem::path& path, std::uint64_t events);
+  ~JournalWriter();
+  void append(const JournalEvent& event);
+  std::uint64_t events() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace patina
