@@ -99,14 +99,14 @@ bool MaterialMap::has(MaterialChannel channel) const {
 }
 
 void MaterialMap::dropEmptyLayers() {
-  std::erase_if(blocks_, [](auto& item) {
+  for (auto item = blocks_.begin(); item != blocks_.end();) {
     bool any = false;
-    for (auto& layer : item.second.layer) {
+    for (std::shared_ptr<MaterialLayer>& layer : item->second.layer) {
       if (layer && isEmpty(*layer)) layer.reset();
       any = any || layer;
     }
-    return !any;
-  });
+    item = any ? std::next(item) : blocks_.erase(item);
+  }
 }
 
 std::size_t MaterialMap::bytes() const {

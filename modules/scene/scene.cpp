@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -8,6 +9,12 @@
 
 namespace patina {
 namespace {
+
+constexpr double kMostStiffness = 1e7; // [N/m]
+constexpr double kMostFriction = 10;
+constexpr double kMostDamping = 1e4;      // [N s/m]
+constexpr double kMostRoughness = 1e-3;   // [m]
+constexpr double kMostReliefHeight = 0.1; // [m]
 
 void require(bool holds, const std::string& key, double value, const std::string& range) {
   if (!holds) throw Error(key + " = " + formatNumber(value) + ": it must be " + range);
@@ -27,8 +34,8 @@ void requirePositive(const std::string& key, double value, double high, const st
 }
 
 void validate(const Friction& friction) {
-  requireBetween("friction.static", friction.static_coefficient, 0, 10, "");
-  requireBetween("friction.dynamic", friction.dynamic_coefficient, 0, 10, "");
+  requireBetween("friction.static", friction.static_coefficient, 0, kMostFriction, "");
+  requireBetween("friction.dynamic", friction.dynamic_coefficient, 0, kMostFriction, "");
   requireBetween("friction.depth", friction.depth_gain, 0, 100, "");
   require(friction.dynamic_coefficient <= friction.static_coefficient, "friction.dynamic",
           friction.dynamic_coefficient,
@@ -50,8 +57,8 @@ void validate(const DeviceModel& device) {
 }
 
 void validate(const HapticProperties& haptics) {
-  requireBetween("stiffness", haptics.stiffness, 0, 1e7, "N/m");
-  if (haptics.damping) requireBetween("damping", *haptics.damping, 0, 1e4, "N s/m");
+  requireBetween("stiffness", haptics.stiffness, 0, kMostStiffness, "N/m");
+  if (haptics.damping) requireBetween("damping", *haptics.damping, 0, kMostDamping, "N s/m");
   if (haptics.damping_cutoff) requirePositive("damping.cutoff", *haptics.damping_cutoff, 1e5, "Hz");
   if (haptics.friction) validate(*haptics.friction);
   if (haptics.tip_radius) requireBetween("tip.radius", *haptics.tip_radius, 0, 1, "m");
@@ -106,6 +113,44 @@ void validate(const std::vector<SceneObject>& objects) {
 
 } // namespace
 
+Material baseMaterial(const HapticProperties& haptics) {
+  Material base;
+  base.stiffness = haptics.stiffness;
+  if (haptics.friction) {
+    base.static_friction = haptics.friction->static_coefficient;
+    base.dynamic_friction = haptics.friction->dynamic_coefficient;
+  }
+  base.damping = haptics.damping.value_or(0);
+  return base;
+}
+
+double highestRelief(const Scene& scene) {
+  float highest = 0;
+  for (const SceneObject& object : scene.objects) {
+    if (!object.paint || !object.paint->relief) continue;
+    const TiledImage& image = *object.paint->relief;
+    for (std::size_t i = 0; i < image.tileCount(); ++i)
+      if (const auto& tile = image.sharedTile(i))
+        for (const float g : *tile) highest = std::max(highest, std::abs(g));
+  }
+  return std::abs(scene.relief.height) * static_cast<double>(highest);
+}
+
+MaterialRange rangeOf(MaterialChannel channel) {
+  switch (channel) {
+  case MaterialChannel::stiffness:
+    return {0, kMostStiffness};
+  case MaterialChannel::static_friction:
+  case MaterialChannel::dynamic_friction:
+    return {0, kMostFriction};
+  case MaterialChannel::damping:
+    return {0, kMostDamping};
+  case MaterialChannel::roughness:
+    break;
+  }
+  return {0, kMostRoughness};
+}
+
 void validate(const Scene& scene) {
   validate(scene.objects);
   validate(scene.field);
@@ -113,6 +158,11 @@ void validate(const Scene& scene) {
   if (scene.device != "mouse" && scene.device != "simulated")
     throw Error("device = " + scene.device + ": it must be mouse or simulated");
   if (scene.device_model) validate(*scene.device_model);
+  requireBetween("relief.height", scene.relief.height, -kMostReliefHeight, kMostReliefHeight, "m");
+  requireBetween("relief.smoothing", scene.relief.smoothing, 0, kMostReliefHeight, "m");
+  const int size = scene.paint_size;
+  require(size >= 64 && size <= 4096 && (size & (size - 1)) == 0, "paint.size", size,
+          "64, 128, 256, 512, 1024, 2048 or 4096 texels");
 }
 
 } // namespace patina

@@ -113,6 +113,16 @@ std::string nameOf(const std::optional<Stabilisers>& chosen) {
   return chosen->passivity ? "passivity" : "none";
 }
 
+ForceForm formFor(const char* key, const std::string& text) {
+  if (text == "conservative") return ForceForm::conservative;
+  if (text == "literal") return ForceForm::literal;
+  throw Error(key + (" = '" + text + "': it must be conservative or literal"));
+}
+
+Text nameOf(ForceForm form) {
+  return form == ForceForm::conservative ? Text() : Text("literal");
+}
+
 struct Entry {
   const char* key;
   std::function<void(Scene&, const std::string&)> set;
@@ -269,6 +279,34 @@ const std::vector<Entry>& entries() {
       {"merge.redistance",
        [](Scene& s, const std::string& t) { s.redistance = yesOrNo("merge.redistance", t); },
        [](const Scene& s) { return s.redistance ? onOff(true) : Text(); }},
+      {"relief.mode",
+       [](Scene& s, const std::string& t) {
+         if (t != "pulled" && t != "baked")
+           throw Error("relief.mode = '" + t + "': it must be pulled or baked");
+         s.relief.mode = t == "pulled" ? ReliefMode::pulled : ReliefMode::baked;
+       },
+       [](const Scene& s) { return s.relief.mode == ReliefMode::pulled ? Text() : Text("baked"); }},
+      {"relief.height",
+       [](Scene& s, const std::string& t) { s.relief.height = lengthFor("relief.height", t); },
+       [](const Scene& s) {
+         return s.relief.height == ReliefSettings{}.height ? Text() : text(s.relief.height);
+       }},
+      {"relief.force",
+       [](Scene& s, const std::string& t) { s.relief.form = formFor("relief.force", t); },
+       [](const Scene& s) { return nameOf(s.relief.form); }},
+      {"relief.smoothing",
+       [](Scene& s, const std::string& t) {
+         s.relief.smoothing = isNone(t) ? 0 : lengthFor("relief.smoothing", t);
+       },
+       [](const Scene& s) { return s.relief.smoothing == 0 ? Text() : text(s.relief.smoothing); }},
+      {"material.force",
+       [](Scene& s, const std::string& t) { s.material_form = formFor("material.force", t); },
+       [](const Scene& s) { return nameOf(s.material_form); }},
+      {"paint.size",
+       [](Scene& s, const std::string& t) { s.paint_size = wholeFor("paint.size", t, "texels"); },
+       [](const Scene& s) {
+         return s.paint_size == Scene{}.paint_size ? Text() : Text(std::to_string(s.paint_size));
+       }},
       {"stabiliser", [](Scene& s, const std::string& t) { s.stabilisers = stabilisersFor(t); },
        [](const Scene& s) { return s.stabilisers ? Text(nameOf(s.stabilisers)) : Text(); }},
       deviceEntry("device.mass", &DeviceModel::mass, numberFor),

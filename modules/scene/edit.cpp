@@ -1,0 +1,38 @@
+#include "scene/edit.h"
+
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+std::string describeStroke(const Stroke& stroke) {
+  const Brush& brush = stroke.brush;
+  if (brush.tool == Tool::erase) return brush.erases.empty() ? "erase" : "erase " + brush.erases;
+  std::string text(name(brush.tool));
+  if (brush.mode == StrokeMode::smooth) return text + " smoothed";
+  if (brush.tool == Tool::color) return text;
+  if (brush.mode == StrokeMode::add) text += brush.value < 0 ? " less" : " more by";
+  const std::optional<MaterialChannel> channel = channelOf(brush.tool);
+  const bool length = !channel || *channel == MaterialChannel::roughness;
+  if (length) return text + " " + formatLength(brush.value);
+  const std::string_view measure = unit(*channel);
+  return text + " " + formatNumber(brush.value) +
+         (measure.empty() ? "" : " " + std::string(measure));
+}
+
+std::string describeValues(const ValueEdit& edit) {
+  std::string text;
+  for (const auto& [key, value] : edit.values)
+    text += (text.empty() ? "" : ", ") + (key + " = " + value);
+  return text;
+}
+
+} // namespace
+
+std::string describe(const Edit& edit) {
+  if (const auto* stroke = std::get_if<Stroke>(&edit)) return describeStroke(*stroke);
+  if (const auto* values = std::get_if<ValueEdit>(&edit)) return describeValues(*values);
+  return std::get<SceneEdit>(edit).what;
+}
+
+} // namespace patina

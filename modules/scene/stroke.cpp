@@ -1,0 +1,287 @@
+#include "scene/stroke.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+constexpr double kLongest = 1;       // [m]: no brush is larger than a scene may be felt
+constexpr double kMostFalloff = 1e6; // as good as a hard brush
+constexpr double kMostHeight = 0.1;  // [m] of relief
+
+// Of an enumeration whose names stand in the order of its values.
+template <typename T, std::size_t N>
+T chosen(const char* key, const std::string& text, const std::array<std::string_view, N>& names) {
+  std::string known;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (text == names[i]) return static_cast<T>(i);
+    known += (i ? ", " : "") + std::string(names[i]);
+  }
+  throw Error(std::string(key) + " '" + text + "': it must be one of " + known);
+}
+
+constexpr std::array<std::string_view, 8> kToolNames{
+    "color",   "relief",    "stiffness", "friction.static", "friction.dynamic",
+    "damping", "roughness", "erase"};
+constexpr std::array<std::string_view, 3> kShapeNames{"power", "cone", "smooth"};
+constexpr std::array<std::string_view, 4> kModeNames{"max", "build-up", "add", "smooth"};
+constexpr std::array<std::string_view, 4> kSymmetryNames{"none", "x", "y", "z"};
+
+template <typename T, std::size_t N>
+std::string textOf(T value, const std::array<std::string_view, N>& names) {
+  return std::string(names[static_cast<std::size_t>(value)]);
+}
+
+void require(bool holds, const char* key, double value, const std::string& what) {
+  if (!holds) throw Error(std::string(key) + " = " + formatNumber(value) + ": it must be " + what);
+}
+
+void requireBetween(const char* key, double value, double low, double high) {
+  require(value >= low && value <= high, key, value,
+          "between " + formatNumber(low) + " and " + formatNumber(high));
+}
+
+// Stiffness is not 0: a contact without any is none.
+MaterialRange valueRange(const Brush& brush) {
+  if (brush.tool == Tool::relief) return {-kMostHeight, kMostHeight};
+  MaterialRange range = rangeOf(*channelOf(brush.tool));
+  if (brush.mode == StrokeMode::add) range.least = -range.most;
+  return range;
+}
+
+Vec3 vectorFrom(const Json& json) {
+  const Json::Array& list = json.asArray();
+  if (list.size() != 3) throw Error("must be 3 numbers");
+  return {list[0].asNumber(), list[1].asNumber(), list[2].asNumber()};
+}
+
+Json jsonOf(double x, double y, double z) {
+  Json list = Json::array();
+  list.push(x);
+  list.push(y);
+  list.push(z);
+  return list;
+}
+
+StrokeSample sampleFrom(const Json& json) {
+  StrokeSample sample;
+  for (const auto& [key, value] : json.asObject()) {
+    if (key == "t")
+      sample.t = value.asNumber();
+    else if (key == "position")
+      sample.position = vectorFrom(value);
+    else if (key == "force")
+      sample.force = value.asNumber();
+    else
+      throw Error("unknown key '" + key + "'");
+  }
+  (void)json.at("position");
+  return sample;
+}
+
+std::vector<StrokeSample> samplesFrom(const Json& json) {
+  std::vector<StrokeSample> samples;
+  for (const Json& item : json.asArray()) {
+    try {
+      samples.push_back(sampleFrom(item));
+    } catch (const Error& error) {
+      throw Error("sample " + std::to_string(samples.size() + 1) + ": " + error.what());
+    }
+  }
+  return samples;
+}
+
+void setValue(Brush& brush, const Json& value) {
+  if (value.isArray()) {
+    const Vec3 color = vectorFrom(value);
+    brush.color = {color.x(), color.y(), color.z()};
+    if (brush.tool != Tool::color)
+      throw Error("must be a number for tool " + std::string(name(brush.tool)));
+  } else {
+    brush.value = value.asNumber();
+    if (brush.tool == Tool::color) throw Error("must be [r, g, b] for tool color");
+  }
+}
+
+void setKey(Stroke& stroke, const std::string& key, const Json& value) {
+  Brush& brush = stroke.brush;
+  if (key == "tool")
+    brush.tool = chosen<Tool>("tool", value.asString(), kToolNames);
+  else if (key == "value")
+    setValue(brush, value);
+  else if (key == "radius")
+    brush.radius = value.asNumber();
+  else if (key == "radius_per_force")
+    brush.radius_per_force = value.asNumber();
+  else if (key == "least_radius")
+    brush.least_radius = value.asNumber();
+  else if (key == "most_radius")
+    brush.most_radius = value.asNumber();
+  else if (key == "falloff")
+    brush.falloff = value.asNumber();
+  else if (key == "shape")
+    brush.shape = chosen<BrushShape>("shape", value.asString(), kShapeNames);
+  else if (key == "mode")
+    brush.mode = chosen<StrokeMode>("mode", value.asString(), kModeNames);
+  else if (key == "front_only")
+    brush.front_only = value.asBool();
+  else if (key == "symmetry")
+    brush.symmetry = chosen<Symmetry>("symmetry", value.asString(), kSymmetryNames);
+  else if (key == "erases")
+    brush.erases = value.asString();
+  else if (key == "samples")
+    stroke.samples = samplesFrom(value);
+  else
+    throw Error("unknown key");
+}
+
+Stroke strokeOfKeys(const Json& json) {
+  Stroke stroke;
+  // The tool decides how its value is read, wherever it stands.
+  setKey(stroke, "tool", json.at("tool"));
+  for (const auto& [key, value] : json.asObject()) {
+    try {
+      setKey(stroke, key, value);
+    } catch (const Error& error) {
+      const std::string what = error.what();
+      throw what.starts_with(key) ? Error(what) : Error("'" + key + "' " + what);
+    }
+  }
+  (void)json.at("samples");
+  if (stroke.brush.tool != Tool::erase && stroke.brush.mode != StrokeMode::smooth)
+    (void)json.at("value");
+  return stroke;
+}
+
+} // namespace
+
+std::string_view name(Tool tool) {
+  return kToolNames[static_cast<std::size_t>(tool)];
+}
+
+std::optional<MaterialChannel> channelOf(Tool tool) {
+  switch (tool) {
+  case Tool::stiffness:
+    return MaterialChannel::stiffness;
+  case Tool::static_friction:
+    return MaterialChannel::static_friction;
+  case Tool::dynamic_friction:
+    return MaterialChannel::dynamic_friction;
+  case Tool::damping:
+    return MaterialChannel::damping;
+  case Tool::roughness:
+    return MaterialChannel::roughness;
+  case Tool::color:
+  case Tool::relief:
+  case Tool::erase:
+    break;
+  }
+  return std::nullopt;
+}
+
+void validate(const Brush& brush) {
+  requireBetween("radius", brush.radius, 0, kLongest);
+  requireBetween("radius_per_force", brush.radius_per_force, -kLongest, kLongest);
+  requireBetween("least_radius", brush.least_radius, 0, kLongest);
+  requireBetween("most_radius", brush.most_radius, brush.least_radius, kLongest);
+  require(brush.falloff > 0 && brush.falloff <= kMostFalloff, "falloff", brush.falloff,
+          "above 0 and at most " + formatNumber(kMostFalloff));
+  if (brush.tool == Tool::color) {
+    for (const double part : brush.color) requireBetween("value", part, 0, 1);
+    if (brush.mode == StrokeMode::add) throw Error("mode add: colours cannot be added");
+  } else if (brush.tool != Tool::erase) {
+    const MaterialRange range = valueRange(brush);
+    requireBetween("value", brush.value, range.least, range.most);
+  }
+  if (!brush.erases.empty()) {
+    if (brush.tool != Tool::erase) throw Error("'erases' belongs to tool erase");
+    if (chosen<Tool>("erases", brush.erases, kToolNames) == Tool::erase)
+      throw Error("erases 'erase': it must name another tool");
+  }
+}
+
+void validate(const Stroke& stroke) {
+  validate(stroke.brush);
+  double last = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < stroke.samples.size(); ++i) {
+    const StrokeSample& sample = stroke.samples[i];
+    const std::string where = "sample " + std::to_string(i + 1) + ": ";
+    if (!sample.position.allFinite() || !std::isfinite(sample.t))
+      throw Error(where + "time and position must be finite");
+    if (!(sample.force >= 0) || !std::isfinite(sample.force))
+      throw Error(where + "force = " + formatNumber(sample.force) + ": it must be 0 or more");
+    if (sample.t < last) throw Error(where + "its time is before the last one's");
+    last = sample.t;
+  }
+}
+
+Json toJson(const Stroke& stroke) {
+  const Brush& brush = stroke.brush;
+  const Brush usual;
+  Json json = Json::object();
+  json.set("tool", name(brush.tool));
+  if (brush.tool == Tool::color)
+    json.set("value", jsonOf(brush.color[0], brush.color[1], brush.color[2]));
+  else if (brush.tool != Tool::erase)
+    json.set("value", brush.value);
+  json.set("radius", brush.radius).set("falloff", brush.falloff);
+  json.set("shape", textOf(brush.shape, kShapeNames)).set("mode", textOf(brush.mode, kModeNames));
+  json.set("front_only", brush.front_only);
+  if (brush.radius_per_force != 0) json.set("radius_per_force", brush.radius_per_force);
+  if (brush.least_radius != usual.least_radius) json.set("least_radius", brush.least_radius);
+  if (brush.most_radius != usual.most_radius) json.set("most_radius", brush.most_radius);
+  if (brush.symmetry != Symmetry::none)
+    json.set("symmetry", textOf(brush.symmetry, kSymmetryNames));
+  if (!brush.erases.empty()) json.set("erases", brush.erases);
+  Json samples = Json::array();
+  for (const StrokeSample& sample : stroke.samples) {
+    const Vec3& p = sample.position;
+    Json item = Json::object();
+    item.set("t", sample.t).set("position", jsonOf(p.x(), p.y(), p.z()));
+    item.set("force", sample.force);
+    samples.push(std::move(item));
+  }
+  json.set("samples", std::move(samples));
+  return json;
+}
+
+Stroke strokeFrom(const Json& json) {
+  Stroke stroke = strokeOfKeys(json);
+  validate(stroke);
+  return stroke;
+}
+
+std::vector<Stroke> parseStrokes(std::string_view text, const std::string& file) {
+  const Json json = parseJson(text, file);
+  std::vector<Stroke> strokes;
+  try {
+    const std::int64_t version = json.at("version").asInteger();
+    if (version != 1)
+      throw Error("strokes of version " + std::to_string(version) +
+                  " are unknown; this program reads version 1");
+    for (const Json& item : json.at("strokes").asArray()) {
+      try {
+        strokes.push_back(strokeFrom(item));
+      } catch (const Error& error) {
+        throw Error("stroke " + std::to_string(strokes.size() + 1) + ": " + error.what());
+      }
+    }
+  } catch (const Error& error) {
+    throw FileError(file, 0, error.what());
+  }
+  return strokes;
+}
+
+Json toJson(const std::vector<Stroke>& strokes) {
+  Json list = Json::array();
+  for (const Stroke& stroke : strokes) list.push(toJson(stroke));
+  Json json = Json::object();
+  json.set("version", 1).set("strokes", std::move(list));
+  return json;
+}
+
+} // namespace patina
