@@ -21,6 +21,7 @@ struct OpenedWorkspace {
   Scene scene;             // as saved: after `event` events
   std::uint64_t event = 0; // what the journal holds beyond it is for the reader to apply
   std::vector<JournalEvent> journal;
+  std::filesystem::path journal_file; // for a JournalWriter
   std::vector<StoredState> states; // ascending; the first is event 0, the scene before any edit
   std::vector<std::string> notes;  // what was found and mended, one line each
 };
@@ -50,6 +51,12 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
                    const std::filesystem::path& folder);
 // A workspace of its own, with no history: state 0 is `scene`. What was in the folder is replaced.
 void saveWorkspace(const Scene& scene, const std::filesystem::path& folder);
+
+// The same with a journal of its own that holds `journal`, in place of any that is there: what a
+// history is written with into another folder. Its StoredSceneEdits name states that storeState()
+// has put there. One atomic step, too.
+void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
+                   const std::vector<JournalEvent>& journal, const std::filesystem::path& folder);
 
 bool isWorkspace(const std::filesystem::path& path);
 
