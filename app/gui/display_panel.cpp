@@ -28,6 +28,8 @@ QString caption(Layer layer) {
     return DisplayPanel::tr("Stability");
   case Layer::wireframe:
     return DisplayPanel::tr("Wireframe");
+  default:
+    break;
   }
   return {};
 }

@@ -12,7 +12,10 @@
 
 #include "field/surface_field.h"
 #include "geometry/triangle_mesh.h"
+#include "scene/scene.h"
 #include "scene/tool_sample.h"
+#include "visualization/brush_cursor.h"
+#include "visualization/paint_layer.h"
 #include "visualization/touch_band.h"
 #include "visualization/view_options.h"
 
@@ -45,6 +48,16 @@ class SceneView {
   // Of the layer stability, which takes the mesh's place: a surface and one K*/K a vertex. nullptr
   // = none, and the mesh is shown.
   void setStability(const TriangleMesh* surface, const std::vector<float>& ratio);
+  // Paint of the layers color, relief and material. `scene` is the one whose objects, one after
+  // another, are the mesh; objects without paint of what is shown stay in the layer mesh. A scene
+  // without paint costs nothing. See PaintLayer for what they do.
+  void setPaint(const Scene& scene, std::vector<std::shared_ptr<const TexelMap>> texels = {});
+  void updatePaint(const Scene& scene, const std::vector<PaintPatch>& patches);
+  // nullopt: the range follows what is painted.
+  void lockPaintRange(PaintQuantity quantity, std::optional<ValueRange> range);
+  ValueRange paintRange(PaintQuantity quantity) const; // as shown
+  bool hasPaint(PaintQuantity quantity) const;
+  void setBrush(const std::optional<BrushPlace>& place); // nullopt: no cursor
   void setTipRadius(double radius); // [m]; 0 = a point, drawn as a small sphere
   void setTool(const ToolSample& sample);
 

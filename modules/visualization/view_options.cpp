@@ -8,7 +8,7 @@
 namespace patina {
 namespace {
 
-constexpr std::array<std::pair<Layer, std::string_view>, 9> kLayers{{
+constexpr std::array<std::pair<Layer, std::string_view>, 16> kLayers{{
     {Layer::mesh, "mesh"},
     {Layer::iso, "iso"},
     {Layer::slice, "slice"},
@@ -18,6 +18,13 @@ constexpr std::array<std::pair<Layer, std::string_view>, 9> kLayers{{
     {Layer::nodes, "nodes"},
     {Layer::stability, "stability"},
     {Layer::wireframe, "wireframe"},
+    {Layer::color, "color"},
+    {Layer::relief, "relief"},
+    {Layer::stiffness, "stiffness"},
+    {Layer::static_friction, "friction.static"},
+    {Layer::dynamic_friction, "friction.dynamic"},
+    {Layer::damping, "damping"},
+    {Layer::roughness, "roughness"},
 }};
 
 constexpr std::array<std::pair<ViewPreset, std::string_view>, 7> kViews{{

@@ -19,6 +19,15 @@ enum class Layer : std::uint8_t {
   nodes,     // the field's nodes near the tip (K26)
   stability, // K*/K as colour on the surface, in the place of mesh; see stability_layer.h
   wireframe, // edges of the mesh and of the iso-surface
+  // What was painted, on the surface and (material) on the slice. One is shown at a time: the last
+  // of these that is on, under stability.
+  color,            // in the objects' colours; with relief seen as relief
+  relief,           // its height as colour
+  stiffness,        // and the other values of material as they are felt, paint over the scene's own
+  static_friction,  // "friction.static"
+  dynamic_friction, // "friction.dynamic"
+  damping,
+  roughness
 };
 
 // "mesh,slice,band". Throws Error naming the choices.

@@ -1,0 +1,50 @@
+// What of the paint a picture shows, in which colours and over which range.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <vtkLookupTable.h>
+#include <vtkSmartPointer.h>
+
+#include "scene/material_map.h"
+
+namespace patina {
+
+// One at a time. The material's are in the order of MaterialChannel.
+enum class PaintQuantity : std::uint8_t {
+  color,  // as painted, over the object's own colour, with relief seen as relief
+  relief, // height as colour, and seen as relief
+  stiffness,
+  static_friction,
+  dynamic_friction,
+  damping,
+  roughness
+};
+inline constexpr std::size_t kPaintQuantities = 7;
+
+std::optional<MaterialChannel> channelOf(PaintQuantity quantity);
+PaintQuantity quantityOf(MaterialChannel channel);
+
+// As arrays in files are called: "color", "relief [m]", "stiffness [N/m]", "friction.static" ...
+std::string arrayName(PaintQuantity quantity);
+
+struct ValueRange {
+  double low = 0, high = 1; // SI
+  bool operator==(const ValueRange&) const = default;
+};
+
+// Relief: diverging, its pale middle at 0 whatever the range. Material: sequential, dark is much.
+// Perceptually even, both. Range in SI.
+vtkSmartPointer<vtkLookupTable> paintColors(PaintQuantity quantity, const ValueRange& range);
+
+// Title and factor of a scalar bar: heights and roughness are read in mm or micrometres.
+struct ReadingUnit {
+  std::string title;
+  double per_si = 1;
+};
+ReadingUnit readingUnit(PaintQuantity quantity, const ValueRange& range);
+
+} // namespace patina
