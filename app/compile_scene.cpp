@@ -103,7 +103,7 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, Progr
     box.extend(fieldBounds(*objects[i]->mesh));
     progress.throwIfCancelled();
   }
-  const double reach = reachOf(scene.haptics);
+  const double reach = reachOf(scene);
   const bool keep = old && same(old->scene.field, scene.field) &&
                     suits(old->lattice.voxel, scene.field, box) &&
                     reach / old->lattice.voxel + kBandBeyondReach <= old->band;
@@ -202,7 +202,9 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
   }
   progress.throwIfCancelled();
   compiled->built.field = withSamples(std::move(compiled->built.field));
-  compiled->snapshot = compileStages(compiled->scene, compiled->built.field);
+  compiled->paint = feltPaint(*compiled, nullptr, progress);
+  compiled->snapshot =
+      compileStages(compiled->scene, compiled->paint.field, compiled->paint.objects);
   progress.throwIfCancelled();
   return compiled;
 }
@@ -260,11 +262,22 @@ std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene s
   return compileFrom(&old, std::move(scene), progress);
 }
 
+bool canRetune(const CompiledScene& old, const Scene& scene) {
+  if (scene.objects.size() != old.objects.size()) return false;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (!same(old.objects[i]->object, scene.objects[i])) return false;
+  return same(old.scene.field, scene.field) && old.scene.redistance == scene.redistance &&
+         reachOf(scene) / old.built.field->grid.voxel + kBandBeyondReach <= old.band;
+}
+
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {
   validate(scene);
   auto compiled = std::make_shared<CompiledScene>(old);
-  compiled->snapshot = compileStages(scene, old.built.field);
   compiled->scene = std::move(scene);
+  Progress progress;
+  compiled->paint = feltPaint(*compiled, &old, progress);
+  compiled->snapshot =
+      compileStages(compiled->scene, compiled->paint.field, compiled->paint.objects);
   return compiled;
 }
 

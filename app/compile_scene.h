@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/compile_paint.h"
 #include "core/progress.h"
 #include "field/build_field.h"
 #include "field/merge_fields.h"
@@ -37,7 +38,8 @@ struct CompiledScene {
   Scene scene;
   std::shared_ptr<const TriangleMesh> mesh; // world frame; shared by versions that differ in feel
   MeshReport mesh_report;
-  BuiltField built; // with the sample layer
+  BuiltField built; // with the sample layer; relief is never in it
+  FeltPaint paint;  // what of the scene's paint is felt, and the field with it
   std::shared_ptr<const HapticSnapshot> snapshot;
   BlockLattice lattice;
   double band = 0; // voxels: scene.field.band, or more where an offset or a magnet reaches farther
@@ -53,8 +55,11 @@ std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress);
 // twice or less than half the cells that `resolution` asks for); then all is built as by compile().
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
                                                Progress& progress);
-// Only values of touch and device changed: keeps the field, whatever reach they ask for; throws
-// Error if that does not fit. Quick.
+// Whether retuned() can make `scene` from `old`: the same objects in the same places and the same
+// field values, and what is felt fits into the band.
+bool canRetune(const CompiledScene& old, const Scene& scene);
+// Only values of touch and device, names or paint changed: keeps the field, whatever reach they ask
+// for; throws Error if that does not fit. Quick: only what differs is made anew.
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene);
 
 // Index of the object that a face of the scene's mesh, and so a node that names it, belongs to;

@@ -5,44 +5,64 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "scene/edit.h"
 
 namespace patina {
 
-// The scene after each edit is kept as long as all together stay within a budget; tiles, blocks and
+// The scene after each edit is kept as long as all together stay within a budget; tiles, layers and
 // meshes that scenes share count once. Beyond it scenes of the past are thinned out, ever more the
 // farther they lie back, and made again from the nearest one before by replaying records, which
 // gives the same bits. Scenes that no record makes are never dropped. One thread.
 class EditHistory {
  public:
   using Replay = std::function<Scene(const Scene& before, const Edit& edit)>;
+  using Load = std::function<Scene()>;
 
   EditHistory(Scene start, Replay replay, std::size_t budget_bytes);
 
-  const Scene& scene() const;                    // at the present position
-  std::size_t undoable() const;                  // edits before it
-  std::size_t redoable() const;                  // edits after it
+  const Scene& scene() const { return present_; }
+  const Scene& start() const { return start_; }
+  std::size_t undoable() const { return position_; }
+  std::size_t redoable() const { return entries_.size() - position_; }
   std::vector<std::string> descriptions() const; // of all edits, oldest first
-  const Edit& edit(std::size_t index) const;
+  const Edit& edit(std::size_t index) const { return entries_[index].edit; }
 
   // Drops what could be redone.
   void append(Edit edit, Scene after);
-  // Slow where a scene must be replayed. False and nothing changed if there is no such step.
+  // For a history that was stored: `load` is called if the scene is needed and may be null where
+  // the edit can be replayed. place() then sets where the history stands.
+  void appendStored(Edit edit, Load load);
+  void place(std::size_t position, Scene present);
+  // Slow where a scene must be replayed. False and nothing changed if there is no such step; so too
+  // if replaying throws.
   bool undo(std::size_t steps = 1);
   bool redo(std::size_t steps = 1);
 
-  std::size_t bytes() const;  // of paint that the kept scenes hold, shared parts once
-  std::size_t scenes() const; // kept
+  // The scene after `position` edits; replayed if it is not kept.
+  Scene sceneAt(std::size_t position) const;
+  // Positions whose kept scenes are worth storing: from the present back, with ever twice the cost
+  // of replay (samples of strokes) between them, `cost` at first. Ascending.
+  std::vector<std::size_t> landmarks(double cost) const;
+
+  std::size_t bytes() const { return bytes_; } // of the kept scenes, shared parts once
+  std::size_t scenes() const;                  // kept
 
  private:
   struct Entry {
     Edit edit;
     std::optional<Scene> after;
+    Load load;
   };
+  static const Scene* sceneOf(const Edit& edit); // of a SceneEdit
+  void truncate();
+  void push(Edit edit, std::optional<Scene> after, Load load);
+  bool goTo(std::size_t position);
+  void count(const Scene& scene);
+  void discount(const Scene& scene);
   void thin();
-  Scene sceneAt(std::size_t position) const;
 
   Scene start_;
   Replay replay_;
@@ -50,6 +70,8 @@ class EditHistory {
   std::vector<Entry> entries_;
   std::size_t position_ = 0;
   Scene present_;
+  std::unordered_map<const void*, std::size_t> shared_; // part -> scenes that hold it
+  std::size_t bytes_ = 0;
 };
 
 } // namespace patina

@@ -15,29 +15,37 @@
 
 namespace patina {
 
-inline constexpr std::size_t kHistoryBudget = 512u << 20; // bytes of painted scenes kept for undo
+inline constexpr std::size_t kHistoryBudget = std::size_t{512} << 20; // bytes, see EditHistory
 
 struct EditorNotice {
   std::shared_ptr<const CompiledScene> compiled; // never null
-  std::vector<PaintChange> changes; // what to draw anew; empty and !repaint: values or objects
-  bool repaint = false;             // only paint changed, and only where `changes` says
+  // Only paint changed, and only there: what to draw anew. Absent: anything may have changed.
+  std::optional<std::vector<PaintChange>> changes;
 };
 
 class Editor {
  public:
-  // Called on the editor's thread whenever there is something new to feel and to draw; publishing
+  // Called on the editor's thread whenever there is something new to feel and to draw. Publishing
   // the snapshot is the listener's, so that nothing lies between a dab and the servo.
   using Listener = std::function<void(const EditorNotice&)>;
 
   // A scene without a folder: its history lives in memory until saveAs().
-  Editor(Scene scene, Progress& progress, Listener listener = {});
-  // A workspace: edits that were journaled but not saved are applied. Locks its journal.
-  static std::unique_ptr<Editor> open(const std::filesystem::path& folder, Progress& progress,
-                                      Listener listener = {}, bool recover = false);
+  Editor(Scene scene, Progress& progress, Listener listener = {},
+         std::size_t history_budget = kHistoryBudget);
+  // A workspace. Edits that were journaled but not saved are applied. Its own: the journal is
+  // locked and every edit is in it when its call returns. Otherwise the folder is only read, and
+  // saveAs() gives the editor a folder.
+  struct OpenSpec {
+    bool own = true;
+    bool recover = false; // see openWorkspace()
+    std::size_t history_budget = kHistoryBudget;
+  };
+  static std::unique_ptr<Editor> open(const std::filesystem::path& folder, const OpenSpec& spec,
+                                      Progress& progress, Listener listener = {});
   ~Editor();
 
   std::shared_ptr<const CompiledScene> compiled() const;
-  const Scene& scene() const;
+  const Scene& scene() const; // as it is, a stroke in progress included
   const EditHistory& history() const;
   const std::vector<std::string>& notes() const; // what opening found
   bool unsaved() const;
@@ -47,23 +55,29 @@ class Editor {
   void prepare(Tool tool, Progress& progress);
   void beginStroke(const Brush& brush, Progress& progress);
   PaintReport dab(const StrokeSample& sample); // felt when it returns
-  void endStroke();    // journaled when it returns; a stroke that touched nothing is no edit
+  // Journaled when it returns; false = it touched nothing and is no edit. If it cannot be journaled
+  // the stroke is taken back and FileError thrown.
+  bool endStroke();
   void cancelStroke(); // as it was before
+  bool inStroke() const;
 
-  void apply(const Stroke& stroke, Progress& progress, PaintReport* report = nullptr,
-             std::vector<double>* dab_seconds = nullptr);
+  // Each throws Error and changes nothing if it makes no sense or cannot be journaled.
+  PaintReport apply(const Stroke& stroke, Progress& progress,
+                    std::vector<double>* dab_seconds = nullptr);
   void apply(const ValueEdit& edit, Progress& progress);
   void apply(const SceneEdit& edit, Progress& progress);
-  std::size_t undo(std::size_t steps, Progress& progress); // how many could be undone
+  std::size_t undo(std::size_t steps, Progress& progress); // how many were undone
   std::size_t redo(std::size_t steps, Progress& progress);
 
-  // Into its own folder, or a new one, which is then its own: the workspace, with its history.
+  // The workspace with its history, into its own folder (invalid_argument without one) or into
+  // another, which is then its own.
   void save();
   void saveAs(const std::filesystem::path& folder);
-  const std::optional<std::filesystem::path>& folder() const;
+  std::optional<std::filesystem::path> folder() const;
 
  private:
   struct Impl;
+  explicit Editor(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,0 +1,39 @@
+// What of a scene's paint is felt: material and relief, as the servo reads them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "authoring/painter.h"
+#include "authoring/relief_bake.h"
+#include "haptics/felt_object.h"
+#include "scene/scene.h"
+
+namespace patina {
+
+struct CompiledScene;
+
+// Absent wherever nothing is painted. Immutable; versions share what did not change.
+struct FeltPaint {
+  std::vector<FeltObject> objects;        // in the scene's order; empty = nothing painted is felt
+  std::shared_ptr<const ReliefBake> bake; // only where relief is baked
+  // By object, only where relief is felt: what the servo reads is the image, smoothed if asked for.
+  std::vector<std::shared_ptr<const TiledImage>> relief;
+  std::vector<std::shared_ptr<const TexelMap>> texels; // only where it is smoothed
+  // What is felt: compiled.built.field, or that with relief in it.
+  std::shared_ptr<const SurfaceField> field;
+
+  std::size_t bytes() const; // beyond the scene's own images and maps
+};
+
+// How far from the surface its properties reach [m], relief included.
+double reachOf(const Scene& scene);
+
+// `compiled` has objects, mesh and field; its scene may have changed in paint and values since
+// `before` (null: nothing is kept).
+FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before, Progress& progress);
+
+// What differs between two paints of the same objects, tile by tile; no regions.
+std::vector<PaintChange> paintChanges(const Scene& before, const Scene& after);
+
+} // namespace patina

@@ -1,0 +1,38 @@
+// An edit of the past done again.
+#pragma once
+
+#include <memory>
+
+#include "app/compile_scene.h"
+#include "authoring/painter.h"
+#include "scene/edit.h"
+
+namespace patina {
+
+// The surface that strokes on `compiled` need; `earlier` (may be null) lends what still fits.
+std::shared_ptr<const PaintSurface> paintSurfaceOf(const CompiledScene& compiled,
+                                                   std::shared_ptr<const PaintSurface> earlier,
+                                                   bool with_images, Progress& progress);
+bool needsImages(const Brush& brush);
+
+// What EditHistory calls to make a scene again: the same bits as when the edit was made. Compiles
+// only where strokes must be replayed, and once for scenes of the same objects. Copies share what
+// they compiled. One thread.
+class Replayer {
+ public:
+  Replayer();
+  // Something compiled that scenes of the past may fit to.
+  void lend(std::shared_ptr<const CompiledScene> compiled,
+            std::shared_ptr<const PaintSurface> surface);
+  // invalid_argument for a SceneEdit: no record makes its scene.
+  Scene operator()(const Scene& before, const Edit& edit) const;
+
+ private:
+  struct Known {
+    std::shared_ptr<const CompiledScene> compiled;
+    std::shared_ptr<const PaintSurface> surface;
+  };
+  std::shared_ptr<Known> known_;
+};
+
+} // namespace patina

@@ -1,0 +1,183 @@
+#include "app/workspace_link.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+// Samples of strokes between two stored scenes, at first: about a second of replay.
+constexpr double kLandmarkCost = 500;
+
+// The fold of a journal: edits that are not undone for good, and where the history stands.
+struct Folded {
+  struct Step {
+    const JournalEvent* event = nullptr;
+    std::uint64_t number = 0; // of that event
+  };
+  std::vector<Step> steps;
+  std::size_t position = 0;
+  // After each event: the position, while its steps are still there; by event number.
+  std::vector<std::size_t> position_at{0};
+};
+
+Folded folded(const std::vector<JournalEvent>& journal) {
+  Folded fold;
+  for (std::size_t i = 0; i < journal.size(); ++i) {
+    const std::uint64_t number = i + 1;
+    if (const auto* undo = std::get_if<UndoEvent>(&journal[i])) {
+      if (undo->steps < 0 || static_cast<std::size_t>(undo->steps) > fold.position)
+        throw Error("journal: record " + std::to_string(number) + " undoes more than there is");
+      fold.position -= static_cast<std::size_t>(undo->steps);
+    } else if (const auto* redo = std::get_if<RedoEvent>(&journal[i])) {
+      if (redo->steps < 0 ||
+          static_cast<std::size_t>(redo->steps) > fold.steps.size() - fold.position)
+        throw Error("journal: record " + std::to_string(number) + " redoes more than there is");
+      fold.position += static_cast<std::size_t>(redo->steps);
+    } else {
+      fold.steps.resize(fold.position);
+      fold.steps.push_back({&journal[i], number});
+      ++fold.position;
+    }
+    fold.position_at.push_back(fold.position);
+  }
+  return fold;
+}
+
+// Whether the scene that stood after `event` is the one at that position of the fold's end: its
+// steps must all be older than the event.
+bool stillThere(const Folded& fold, std::uint64_t event, std::size_t position) {
+  if (position > fold.steps.size()) return false;
+  for (std::size_t i = 0; i < position; ++i)
+    if (fold.steps[i].number > event) return false;
+  return true;
+}
+
+Edit editOf(const JournalEvent& event) {
+  if (const auto* stroke = std::get_if<Stroke>(&event)) return *stroke;
+  if (const auto* values = std::get_if<ValueEdit>(&event)) return *values;
+  return SceneEdit{std::get<StoredSceneEdit>(event).what, nullptr};
+}
+
+} // namespace
+
+WorkspaceLink::WorkspaceLink(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
+                                          EditHistory::Replay replay, std::size_t budget,
+                                          bool keep_journal, bool recover) {
+  OpenedWorkspace found = openWorkspace(folder, recover);
+  Opened opened;
+  opened.notes = std::move(found.notes);
+  const Folded fold = folded(found.journal);
+  std::map<std::size_t, std::string> state_at; // by position
+  for (const StoredState& state : found.states) {
+    if (state.event >= fold.position_at.size()) continue;
+    const std::size_t position = fold.position_at[state.event];
+    if (stillThere(fold, state.event, position)) state_at[position] = state.file;
+  }
+  const auto loader = [&](const std::string& file) {
+    return [folder, file] { return loadState(folder, file); };
+  };
+  const auto first = state_at.find(0);
+  Scene start = first == state_at.end() ? found.scene : loadState(folder, first->second);
+  opened.history = std::make_unique<EditHistory>(std::move(start), std::move(replay), budget);
+  for (std::size_t i = 0; i < fold.steps.size(); ++i) {
+    EditHistory::Load load;
+    if (const auto* scene = std::get_if<StoredSceneEdit>(fold.steps[i].event))
+      load = loader(scene->state);
+    else if (const auto state = state_at.find(i + 1); state != state_at.end())
+      load = loader(state->second);
+    opened.history->appendStored(editOf(*fold.steps[i].event), std::move(load));
+  }
+  // The saved scene, where the history still has it; what the journal says beyond is replayed.
+  const std::uint64_t saved_event = std::min<std::uint64_t>(found.event, found.journal.size());
+  const std::size_t saved = fold.position_at[saved_event];
+  if (stillThere(fold, saved_event, saved)) opened.history->place(saved, found.scene);
+  opened.unsaved = saved_event < found.journal.size();
+  if (opened.unsaved || opened.history->undoable() != fold.position)
+    opened.history->place(fold.position, opened.history->sceneAt(fold.position));
+  if (!keep_journal) return opened;
+  if (found.states.empty()) { // of a version without history: it begins here
+    opened.link = create(folder, *opened.history);
+    return opened;
+  }
+  auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
+  link->journal_ = std::make_unique<JournalWriter>(found.journal_file, found.journal.size());
+  link->states_ = std::move(found.states);
+  link->event_of_.push_back(0);
+  for (const Folded::Step& step : fold.steps) link->event_of_.push_back(step.number);
+  opened.link = std::move(link);
+  return opened;
+}
+
+std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path& folder,
+                                                     const EditHistory& history) {
+  auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
+  std::vector<JournalEvent> journal;
+  link->states_.push_back({0, storeState(history.start(), 0, folder)});
+  link->event_of_.push_back(0);
+  const std::size_t count = history.undoable() + history.redoable();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Edit& edit = history.edit(i);
+    const std::uint64_t event = i + 1;
+    if (const auto* stroke = std::get_if<Stroke>(&edit))
+      journal.emplace_back(*stroke);
+    else if (const auto* values = std::get_if<ValueEdit>(&edit))
+      journal.emplace_back(*values);
+    else
+      journal.emplace_back(StoredSceneEdit{std::get<SceneEdit>(edit).what,
+                                           storeState(history.sceneAt(event), event, folder)});
+    link->event_of_.push_back(event);
+  }
+  for (const std::size_t position : history.landmarks(kLandmarkCost))
+    link->states_.push_back({position, storeState(history.sceneAt(position), position, folder)});
+  if (history.redoable() > 0) journal.emplace_back(UndoEvent{static_cast<int>(history.redoable())});
+  saveWorkspace(history.scene(), journal.size(), link->states_, journal, folder);
+  link->journal_ =
+      std::make_unique<JournalWriter>(openWorkspace(folder).journal_file, journal.size());
+  return link;
+}
+
+void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after) {
+  if (const auto* stroke = std::get_if<Stroke>(&edit)) {
+    journal_->append(*stroke);
+  } else if (const auto* values = std::get_if<ValueEdit>(&edit)) {
+    journal_->append(*values);
+  } else {
+    const SceneEdit& whole = std::get<SceneEdit>(edit);
+    const std::string state = storeState(*whole.scene, journal_->events() + 1, folder_);
+    journal_->append(StoredSceneEdit{whole.what, state});
+  }
+  event_of_.resize(position_after);
+  event_of_.push_back(journal_->events());
+}
+
+void WorkspaceLink::recordUndo(std::size_t steps) {
+  journal_->append(UndoEvent{static_cast<int>(steps)});
+}
+
+void WorkspaceLink::recordRedo(std::size_t steps) {
+  journal_->append(RedoEvent{static_cast<int>(steps)});
+}
+
+void WorkspaceLink::save(const EditHistory& history) {
+  std::vector<StoredState> states;
+  if (!states_.empty() && states_.front().event == 0) states.push_back(states_.front());
+  for (const std::size_t position : history.landmarks(kLandmarkCost)) {
+    const std::uint64_t event = event_of_[position];
+    const auto stored = std::find_if(states_.begin(), states_.end(),
+                                     [&](const StoredState& s) { return s.event == event; });
+    states.push_back(
+        stored != states_.end()
+            ? *stored
+            : StoredState{event, storeState(history.sceneAt(position), event, folder_)});
+  }
+  saveWorkspace(history.scene(), journal_->events(), states, folder_);
+  states_ = std::move(states);
+}
+
+} // namespace patina

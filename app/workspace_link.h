@@ -1,0 +1,49 @@
+// An editor's tie to its folder: the journal it writes, the states it keeps.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/edit_history.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+
+// Belongs to the editor's thread. Every call returns when what it did is on disk; on failure it
+// throws FileError and has done nothing.
+class WorkspaceLink {
+ public:
+  // What openWorkspace() found, folded into a history; edits beyond the saved scene are replayed.
+  // `keep_journal`: lock the journal and write to it, else only read.
+  struct Opened {
+    std::unique_ptr<EditHistory> history;
+    std::unique_ptr<WorkspaceLink> link; // null unless keep_journal
+    std::vector<std::string> notes;
+    bool unsaved = false; // the journal holds more than the saved scene
+  };
+  static Opened open(const std::filesystem::path& folder, EditHistory::Replay replay,
+                     std::size_t budget, bool keep_journal, bool recover);
+  // Writes the whole history into another folder, taking the place of a workspace there, and ties
+  // to it.
+  static std::unique_ptr<WorkspaceLink> create(const std::filesystem::path& folder,
+                                               const EditHistory& history);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  void recordEdit(const Edit& edit, std::size_t position_after);
+  void recordUndo(std::size_t steps);
+  void recordRedo(std::size_t steps);
+  void save(const EditHistory& history);
+
+ private:
+  explicit WorkspaceLink(std::filesystem::path folder);
+
+  std::filesystem::path folder_;
+  std::unique_ptr<JournalWriter> journal_;
+  std::vector<std::uint64_t> event_of_; // by position: the event after which the scene is that one
+  std::vector<StoredState> states_;     // on disk
+};
+
+} // namespace patina
