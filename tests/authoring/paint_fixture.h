@@ -1,0 +1,72 @@
+// A scene made ready for the brush, without the program's own compile step.
+#pragma once
+
+#include <memory>
+
+#include "authoring/paint_surface.h"
+#include "authoring/painter.h"
+#include "field/build_field.h"
+#include "geometry/shapes.h"
+
+namespace patina::test {
+
+inline SceneObject objectOf(const std::string& name, TriangleMesh mesh,
+                            const Pose& pose = Pose::Identity()) {
+  return {name, std::make_shared<const TriangleMesh>(std::move(mesh)), pose, nullptr};
+}
+
+inline Scene sceneOf(std::vector<SceneObject> objects, int resolution = 60, int paint_size = 128) {
+  Scene scene;
+  scene.objects = std::move(objects);
+  scene.field.resolution = resolution;
+  scene.paint_size = paint_size;
+  return scene;
+}
+
+inline Scene sceneOf(TriangleMesh mesh, int resolution = 60, int paint_size = 128) {
+  return sceneOf({objectOf("only", std::move(mesh))}, resolution, paint_size);
+}
+
+// The objects' meshes one after another, in the world.
+inline TriangleMesh jointMesh(const Scene& scene) {
+  TriangleMesh joint;
+  for (const SceneObject& object : scene.objects) {
+    const auto first = static_cast<std::int32_t>(joint.positions.size());
+    for (const Vec3& p : object.mesh->positions)
+      joint.positions.push_back(object.world_from_object * p);
+    for (const Triangle& t : object.mesh->triangles)
+      joint.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return joint;
+}
+
+inline std::shared_ptr<const PaintSurface> surfaceOf(const Scene& scene, bool images = true) {
+  Progress progress;
+  auto mesh = std::make_shared<const TriangleMesh>(jointMesh(scene));
+  auto field = buildField(*mesh, scene.field, progress).field;
+  auto surface = paintSurface(scene, std::move(mesh), std::move(field), progress);
+  return images ? withImages(*surface, scene, progress) : surface;
+}
+
+inline Brush brushOf(Tool tool, double radius, double value = 0) {
+  Brush brush;
+  brush.tool = tool;
+  brush.radius = radius;
+  brush.value = value;
+  return brush;
+}
+
+// A stroke of one dab, or at equal times along a line.
+inline Stroke strokeAt(const Brush& brush, const Vec3& p) {
+  return {brush, {{0, p, 0}}};
+}
+inline Stroke strokeAlong(const Brush& brush, const Vec3& from, const Vec3& to, int pieces) {
+  Stroke stroke{brush, {}};
+  for (int k = 0; k <= pieces; ++k) {
+    const double t = static_cast<double>(k) / pieces;
+    stroke.samples.push_back({t, from + t * (to - from), 0});
+  }
+  return stroke;
+}
+
+} // namespace patina::test
