@@ -15,13 +15,6 @@
 
 namespace patina {
 
-// What changed of one object's paint since it was last given.
-struct PaintPatch {
-  std::size_t object = 0;
-  std::vector<std::size_t> color_tiles, relief_tiles; // of its images
-  std::vector<MaterialMap::Index> material_blocks;
-};
-
 // Objects that have nothing painted of what is shown are not drawn here and cost nothing. UI
 // thread. Images become textures; material becomes values at the points of a surface that is as
 // fine as the material's grid, so that a plate of two triangles shows it too, and a change of range
@@ -34,13 +27,11 @@ class PaintLayer {
   PaintLayer(const PaintLayer&) = delete;
   PaintLayer& operator=(const PaintLayer&) = delete;
 
-  // Everything anew, at the next prepare(): objects, poses, values of the scene. What did not
-  // change (the same pointers) is kept. `texels`: maps that exist already, one an object or none;
-  // what is missing is made when relief is drawn.
-  void set(const Scene& scene, std::vector<std::shared_ptr<const TexelMap>> texels = {});
-  // Only paint changed, and only where the patches say. Cheap: work is done in prepare(), once for
-  // any number of patches.
-  void update(const Scene& scene, const std::vector<PaintPatch>& patches);
+  // The scene as it is now, after every edit and every dab: what changed is found by comparing
+  // pointers of objects, tiles and blocks, and drawn by the next prepare(), once for any number of
+  // calls. `texels`: maps that exist already, one an object or none; what is missing is made when
+  // relief is drawn.
+  void set(const Scene& scene, const std::vector<std::shared_ptr<const TexelMap>>& texels = {});
 
   void show(std::optional<PaintQuantity> quantity); // nullopt: nothing
   // Whether there is anything of it to see, and whether an object is drawn here and not elsewhere.

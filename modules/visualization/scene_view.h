@@ -48,11 +48,12 @@ class SceneView {
   // Of the layer stability, which takes the mesh's place: a surface and one K*/K a vertex. nullptr
   // = none, and the mesh is shown.
   void setStability(const TriangleMesh* surface, const std::vector<float>& ratio);
-  // Paint of the layers color, relief and material. `scene` is the one whose objects, one after
-  // another, are the mesh; objects without paint of what is shown stay in the layer mesh. A scene
-  // without paint costs nothing. See PaintLayer for what they do.
-  void setPaint(const Scene& scene, std::vector<std::shared_ptr<const TexelMap>> texels = {});
-  void updatePaint(const Scene& scene, const std::vector<PaintPatch>& patches);
+  // Paint of the layers color, relief and material; call it after every edit and dab (only what
+  // changed is drawn anew). `scene` is the one whose objects, one after another, are the mesh;
+  // objects without paint of what is shown stay in the layer mesh. A scene without paint costs
+  // nothing. See PaintLayer.
+  void setPaint(const Scene& scene,
+                const std::vector<std::shared_ptr<const TexelMap>>& texels = {});
   // nullopt: the range follows what is painted.
   void lockPaintRange(PaintQuantity quantity, std::optional<ValueRange> range);
   ValueRange paintRange(PaintQuantity quantity) const; // as shown
