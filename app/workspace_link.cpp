@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "app/journal_fold.h"
 #include "core/error.h"
 
 namespace patina {
@@ -12,44 +13,9 @@ namespace {
 // Samples of strokes between two stored scenes, at first: about a second of replay.
 constexpr double kLandmarkCost = 500;
 
-// The fold of a journal: edits that are not undone for good, and where the history stands.
-struct Folded {
-  struct Step {
-    const JournalEvent* event = nullptr;
-    std::uint64_t number = 0; // of that event
-  };
-  std::vector<Step> steps;
-  std::size_t position = 0;
-  // After each event: the position, while its steps are still there; by event number.
-  std::vector<std::size_t> position_at{0};
-};
-
-Folded folded(const std::vector<JournalEvent>& journal) {
-  Folded fold;
-  for (std::size_t i = 0; i < journal.size(); ++i) {
-    const std::uint64_t number = i + 1;
-    if (const auto* undo = std::get_if<UndoEvent>(&journal[i])) {
-      if (undo->steps < 0 || static_cast<std::size_t>(undo->steps) > fold.position)
-        throw Error("journal: record " + std::to_string(number) + " undoes more than there is");
-      fold.position -= static_cast<std::size_t>(undo->steps);
-    } else if (const auto* redo = std::get_if<RedoEvent>(&journal[i])) {
-      if (redo->steps < 0 ||
-          static_cast<std::size_t>(redo->steps) > fold.steps.size() - fold.position)
-        throw Error("journal: record " + std::to_string(number) + " redoes more than there is");
-      fold.position += static_cast<std::size_t>(redo->steps);
-    } else {
-      fold.steps.resize(fold.position);
-      fold.steps.push_back({&journal[i], number});
-      ++fold.position;
-    }
-    fold.position_at.push_back(fold.position);
-  }
-  return fold;
-}
-
 // Whether the scene that stood after `event` is the one at that position of the fold's end: its
 // steps must all be older than the event.
-bool stillThere(const Folded& fold, std::uint64_t event, std::size_t position) {
+bool stillThere(const FoldedJournal& fold, std::uint64_t event, std::size_t position) {
   if (position > fold.steps.size()) return false;
   for (std::size_t i = 0; i < position; ++i)
     if (fold.steps[i].number > event) return false;
@@ -72,7 +38,7 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   OpenedWorkspace found = openWorkspace(folder, recover);
   Opened opened;
   opened.notes = std::move(found.notes);
-  const Folded fold = folded(found.journal);
+  const FoldedJournal fold = folded(found.journal);
   std::map<std::size_t, std::string> state_at; // by position
   for (const StoredState& state : found.states) {
     if (state.event >= fold.position_at.size()) continue;
@@ -109,7 +75,7 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   link->journal_ = std::make_unique<JournalWriter>(found.journal_file, found.journal.size());
   link->states_ = std::move(found.states);
   link->event_of_.push_back(0);
-  for (const Folded::Step& step : fold.steps) link->event_of_.push_back(step.number);
+  for (const FoldedJournal::Step& step : fold.steps) link->event_of_.push_back(step.number);
   opened.link = std::move(link);
   return opened;
 }
