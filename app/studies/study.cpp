@@ -2,6 +2,8 @@
 
 #include "app/studies/contact_study.h"
 #include "app/studies/field_study.h"
+#include "app/studies/material_study.h"
+#include "app/studies/paint_study.h"
 #include "app/studies/stability_study.h"
 #include "app/studies/surfaces_study.h"
 
@@ -12,6 +14,8 @@ const std::vector<Study>& studies() {
       {"field", "samplers and storage of the field on sphere, torus and box", fieldStudy},
       {"contact", "the contact step against a closed form on the fixed test", contactStudy},
       {"surfaces", "offset, magnetic and merged surfaces; work round closed loops", surfacesStudy},
+      {"paint", "brush coverage; height and slope of baked and pulled relief", paintStudy},
+      {"material", "painted stiffness: its value, and work round closed loops", materialStudy},
       {"stability", "the closed loop against eigenvalues and closed forms; what quietens it",
        stabilityStudy},
   };
