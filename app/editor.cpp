@@ -124,14 +124,16 @@ bool Editor::inStroke() const {
 }
 
 void Editor::prepare(Tool tool, Progress& progress) {
-  impl_->surface = paintSurfaceOf(*impl_->compiled, impl_->surface, needsImages(tool), progress);
+  impl_->surface = paintSurfaceOf(*impl_->compiled, impl_->compiled->scene, impl_->surface,
+                                  needsImages(tool), progress);
 }
 
 void Editor::beginStroke(const Brush& brush, Progress& progress) {
   Impl& at = *impl_;
   at.require(!at.painter, "a stroke is being painted");
   validate(brush);
-  at.surface = paintSurfaceOf(*at.compiled, at.surface, needsImages(brush), progress);
+  at.surface =
+      paintSurfaceOf(*at.compiled, at.compiled->scene, at.surface, needsImages(brush), progress);
   auto painter = std::make_unique<Painter>(at.surface, at.compiled->scene);
   painter->begin(brush);
   at.painter = std::move(painter);

@@ -3,17 +3,60 @@
 #include <stdexcept>
 #include <utility>
 
+#include "field/build_field.h"
+#include "haptics/snapshot.h"
+
 namespace patina {
 
+namespace {
+
+FieldSpec plainSpec(const CompiledScene& compiled, Box3& box) {
+  for (const auto& object : compiled.objects) box.extend(fieldBounds(*object->mesh));
+  return widened(compiled.scene.field, box, 0, kBandBeyondReach);
+}
+
+bool isOn(const SurfaceField& field, const FieldGrid& grid, double band) {
+  return field.grid.origin == grid.origin && field.grid.voxel == grid.voxel &&
+         field.grid.nodes == grid.nodes && field.band == band;
+}
+
+Scene plain(const Scene& scene) {
+  Scene result;
+  result.objects = scene.objects;
+  for (SceneObject& object : result.objects) object.paint = nullptr;
+  result.field = scene.field;
+  result.redistance = scene.redistance;
+  return result;
+}
+
+std::shared_ptr<const PaintSurface> plainSurface(const CompiledScene& compiled, const Scene& scene,
+                                                 std::shared_ptr<const PaintSurface> earlier,
+                                                 Progress& progress) {
+  Box3 box;
+  const FieldSpec spec = plainSpec(compiled, box);
+  const FieldGrid grid = gridAround(box, spec);
+  // Several objects have a joint mesh of their own for each lattice.
+  const bool several = compiled.objects.size() > 1;
+  if (earlier && earlier->mesh == compiled.mesh &&
+      (several || isOn(*earlier->field, grid, spec.band)))
+    return earlier;
+  std::shared_ptr<const SurfaceField> field = compiled.built.field;
+  const bool is_plain = several
+                            ? compiled.lattice.anchor == grid.origin &&
+                                  compiled.lattice.voxel == grid.voxel && compiled.band == spec.band
+                            : isOn(*field, grid, spec.band);
+  if (!is_plain) field = compile(plain(scene), progress)->built.field;
+  return paintSurface(scene, compiled.mesh, std::move(field), progress);
+}
+
+} // namespace
+
 std::shared_ptr<const PaintSurface> paintSurfaceOf(const CompiledScene& compiled,
+                                                   const Scene& scene,
                                                    std::shared_ptr<const PaintSurface> earlier,
                                                    bool with_images, Progress& progress) {
-  const bool fits = earlier && earlier->mesh == compiled.mesh;
-  std::shared_ptr<const PaintSurface> surface =
-      fits ? std::move(earlier)
-           : paintSurface(compiled.scene, compiled.mesh, compiled.built.field, progress);
-  if (with_images && !hasImages(*surface)) surface = withImages(*surface, compiled.scene, progress);
-  return surface;
+  auto surface = plainSurface(compiled, scene, std::move(earlier), progress);
+  return with_images ? withImages(*surface, scene, progress) : surface;
 }
 
 bool needsImages(const Brush& brush) {
@@ -39,7 +82,7 @@ Scene Replayer::operator()(const Scene& before, const Edit& edit) const {
   Progress progress;
   if (!known_->compiled || !canRetune(*known_->compiled, before))
     *known_ = {compile(before, progress), nullptr};
-  known_->surface = paintSurfaceOf(*known_->compiled, std::move(known_->surface),
+  known_->surface = paintSurfaceOf(*known_->compiled, before, std::move(known_->surface),
                                    needsImages(stroke->brush), progress);
   return painted(known_->surface, before, *stroke);
 }

@@ -9,8 +9,12 @@
 
 namespace patina {
 
-// The surface that strokes on `compiled` need; `earlier` (may be null) lends what still fits.
+// The surface that strokes on `scene` need; `compiled` is of the same objects and field values,
+// `earlier` (may be null) lends what still fits. Its field is the one that objects and field values
+// alone give, so that a stroke paints the same nodes when it is replayed; slow to make where what
+// is felt has a wider band or an older lattice.
 std::shared_ptr<const PaintSurface> paintSurfaceOf(const CompiledScene& compiled,
+                                                   const Scene& scene,
                                                    std::shared_ptr<const PaintSurface> earlier,
                                                    bool with_images, Progress& progress);
 bool needsImages(const Brush& brush);

@@ -58,7 +58,7 @@ WorkPrecisionTable coverage(const std::vector<int>& sizes, int dabs, Progress& p
     Scene scene = slabScene(kSide, kThickness, 60);
     scene.paint_size = size;
     const auto compiled = compile(scene, progress);
-    const auto surface = paintSurfaceOf(*compiled, nullptr, true, progress);
+    const auto surface = paintSurfaceOf(*compiled, compiled->scene, nullptr, true, progress);
     for (const WeightForm& form : kForms) {
       for (const double falloff : {1.0, 3.0, 1e5}) {
         if (falloff > 3 && form.shape != BrushShape::power) continue; // the hard brush
