@@ -1,0 +1,111 @@
+// Baked relief in contact deeper than the band, and on several objects.
+#include <gtest/gtest.h>
+
+#include "authoring/relief_shapes.h"
+#include "field/field_sampler.h"
+#include "field/merged_shapes.h"
+
+namespace patina {
+namespace {
+
+using namespace test;
+
+constexpr double kRadius = 0.02;
+
+Vec2 onSphere(const Vec3& p) { // continuous but at the poles of z and one meridian
+  return {std::atan2(p.y(), p.x()) / (2 * M_PI) + 0.5, std::acos(p.z() / p.norm()) / M_PI};
+}
+
+std::shared_ptr<const TiledImage> white() {
+  return reliefImage(64, [](double, double) { return 1.0; });
+}
+
+// Depth grows on the way in, without a jump, from outside to where coarse nodes blunt the middle.
+TEST(BakedRelief, DepthIsContinuousThroughTheEndOfTheBand) {
+  const TriangleMesh mesh = icosphere(kRadius, 12);
+  FieldSpec spec;
+  spec.resolution = 100;
+  const auto base = fieldOf(mesh, spec);
+  const double h = base->grid.voxel;
+  for (const double voxels : {4.0, -4.0, 0.0}) {
+    const std::vector<ReliefSource> sources{
+        sourceOf(mesh, uvsBy(mesh, onSphere), white(), voxels * h)};
+    const auto field = bakeOf(base, mesh, sources).baked(sources);
+    for (const Sampler kind : {Sampler::kim, Sampler::high}) {
+      const FieldSampler sampler(*field, kind);
+      const Vec3 n = Vec3(0.3, -0.5, 0.7).normalized();
+      const double step = 0.02;
+      double last = 0.6;
+      for (double r = kRadius / h + 7; r > 10; r -= step) {
+        const double phi = sampler.at(r * h * n).phi / h, exact = r - kRadius / h - voxels;
+        if (exact < 0.5) {
+          EXPECT_LE(phi, last + 1e-3) << r;
+          EXPECT_GE(phi, last - 10 * step) << r;
+          // Coarse nodes take over from -1.25 where 4 of the 8 voxels are relief.
+          EXPECT_NEAR(phi, exact, exact > -1.2 ? 0.1 : 1.5) << r;
+          last = phi;
+        } else {
+          EXPECT_LE(phi, exact + 0.1) << "no lower bound at " << r;
+          EXPECT_GT(phi, 0);
+        }
+      }
+    }
+  }
+}
+
+TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
+  const std::vector<TriangleMesh> meshes{movedBy(icosphere(kRadius, 12), Vec3(-0.016, 0, 0)),
+                                         movedBy(icosphere(kRadius, 12), Vec3(0.016, 0, 0))};
+  for (const bool redistance : {false, true}) {
+    const MergedShapes m = mergedShapes(meshes, 0x1p-10, redistance);
+    const auto first = static_cast<std::int32_t>(meshes[0].triangles.size());
+    const auto uvs =
+        uvsBy(meshes[1], [](const Vec3& p) { return onSphere(p - Vec3(0.016, 0, 0)); });
+    // The first object has a layout but no image; faces of the second are those of the joint mesh.
+    const std::vector<ReliefSource> sources{
+        {0, first, uvsBy(meshes[0], onSphere), nullptr, 1e-3},
+        {first, static_cast<std::int32_t>(uvs->size()), uvs, white(), 1e-3}};
+    const ReliefBake bake = bakeOf(m.field, m.joint, sources);
+    const auto field = bake.baked(sources);
+    const auto fall = static_cast<float>(1e-3 / m.field->grid.voxel);
+    std::size_t moved = 0, shared = 0;
+    for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
+      shared += field->sample[slot] == m.field->sample[slot];
+      for (std::size_t n = 0; n < kBlockNodes; ++n) {
+        const float before = m.field->distance[slot]->phi[n];
+        const std::int32_t face = m.field->face[slot]->at(n);
+        const bool moves = face >= first && std::abs(before) < kBeyondBand;
+        moved += moves;
+        ASSERT_EQ(field->distance[slot]->phi[n], moves ? before - fall : before);
+      }
+    }
+    EXPECT_GT(moved, 10000U);
+    EXPECT_GT(shared, field->blockCount() / 4);
+
+    auto flat = sources;
+    flat[1].image = nullptr;
+    EXPECT_EQ(bake.rebaked(*field, sources, flat)->distance, m.field->distance);
+    EXPECT_EQ(bake.rebaked(*field, sources, flat)->sample, m.field->sample);
+  }
+}
+
+// An object without a layout costs nothing and stays as it is.
+TEST(BakedRelief, NeedsNoLayoutWhereThereIsNoRelief) {
+  const std::vector<TriangleMesh> meshes{movedBy(icosphere(kRadius, 6), Vec3(-0.03, 0, 0)),
+                                         movedBy(icosphere(kRadius, 6), Vec3(0.03, 0, 0))};
+  const MergedShapes m = mergedShapes(meshes, 0x1p-9);
+  const auto faces = static_cast<std::int32_t>(meshes[0].triangles.size());
+  std::vector<ReliefSource> sources{{0, faces, nullptr, nullptr, 1e-3},
+                                    {faces, faces, nullptr, nullptr, 1e-3}};
+  const std::size_t none = bakeOf(m.field, m.joint, sources).bytes();
+  sources[1].uvs = uvsBy(meshes[1], [](const Vec3& p) { return onSphere(p - Vec3(0.03, 0, 0)); });
+  const std::size_t one = bakeOf(m.field, m.joint, sources).bytes();
+  sources[0].uvs = uvsBy(meshes[0], [](const Vec3& p) { return onSphere(p + Vec3(0.03, 0, 0)); });
+  const std::size_t both = bakeOf(m.field, m.joint, sources).bytes();
+  EXPECT_NEAR(static_cast<double>(both - one), static_cast<double>(one - none),
+              0.1 * static_cast<double>(one - none));
+  EXPECT_GT(one - none, 5 * none / 4);
+}
+
+} // namespace
+} // namespace patina
