@@ -38,12 +38,11 @@ class PaintLayer {
   bool has(PaintQuantity quantity) const;
   bool draws(std::size_t object) const;
 
-  // nullopt: what is painted, felt values and the scene's own, widened as painting goes on.
+  // nullopt: what is painted and the scene's own value, rounded, widened as painting goes on.
   void lockRange(PaintQuantity quantity, std::optional<ValueRange> range);
   bool locked(PaintQuantity quantity) const;
   ValueRange range(PaintQuantity quantity) const; // as shown, after prepare()
-  // What is painted by itself, e.g. for a slice through it; nullptr for colour.
-  vtkLookupTable* colors() const;
+  vtkLookupTable* colors() const; // of what is shown, in SI, after prepare(); nullptr for colour
 
   void setVisible(bool on); // surfaces and bar
   // Brings textures and values up to date with what was given. Before a render.

@@ -36,6 +36,9 @@ struct ValueRange {
   bool operator==(const ValueRange&) const = default;
 };
 
+// The least range with round ends and quarters that holds both ends of this one; never empty.
+ValueRange rounded(const ValueRange& range);
+
 // Relief: diverging, its pale middle at 0 whatever the range. Material: sequential, dark is much.
 // Perceptually even, both. Range in SI.
 vtkSmartPointer<vtkLookupTable> paintColors(PaintQuantity quantity, const ValueRange& range);

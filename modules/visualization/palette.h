@@ -34,6 +34,16 @@ inline constexpr Color kForce{0.78, 0.10, 0.22};
 inline constexpr Color kInside{0.706, 0.204, 0.118};
 inline constexpr Color kOutside{0.130, 0.330, 0.640};
 
+// Stations of the sequential map, from little to much; ever darker, so that it is read in grey,
+// too.
+inline constexpr std::array<Color, 5> kMuch{{
+    {0.985, 0.945, 0.760},
+    {0.640, 0.830, 0.590},
+    {0.180, 0.630, 0.610},
+    {0.150, 0.390, 0.600},
+    {0.170, 0.130, 0.370},
+}};
+
 // Series of plots: told apart by luminance as well as hue.
 inline constexpr std::array<Color, 6> kSeries{{
     {0.12, 0.36, 0.66},

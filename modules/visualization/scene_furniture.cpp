@@ -4,12 +4,11 @@
 
 #include <vtkCaptionActor2D.h>
 #include <vtkLight.h>
+#include <vtkMatrix4x4.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
-
-#include "core/types.h"
 
 namespace patina {
 
@@ -27,6 +26,14 @@ vtkSmartPointer<vtkActor> surfaceActor(const palette::Color& color) {
   property->SetEdgeColor(palette::forVtk(palette::kEdges));
   property->SetLineWidth(1);
   return actor;
+}
+
+void place(vtkActor& actor, const Pose& world_from_object) {
+  const vtkNew<vtkMatrix4x4> matrix;
+  const Eigen::Matrix4d pose = world_from_object.matrix();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) matrix->SetElement(row, column, pose(row, column));
+  actor.SetUserMatrix(matrix);
 }
 
 void addLights(vtkRenderer& renderer) {

@@ -7,12 +7,15 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
+#include "core/types.h"
 #include "visualization/palette.h"
 
 namespace patina {
 
 // An actor with an empty mapper and the matt material of all surfaces.
 vtkSmartPointer<vtkActor> surfaceActor(const palette::Color& color);
+// Of objects that are drawn in their own frame.
+void place(vtkActor& actor, const Pose& world_from_object);
 // Three lamps that go with the camera.
 void addLights(vtkRenderer& renderer);
 vtkSmartPointer<vtkAxesActor> axesActor();

@@ -1,5 +1,6 @@
 #include "visualization/surface_data.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <vtkCellArray.h>
@@ -54,9 +55,28 @@ vtkSmartPointer<vtkCellArray> cells(vtkTypeInt32Array* connectivity, std::size_t
   return array;
 }
 
-} // namespace
+constexpr double kCrease = 40; // degrees
 
-vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, double crease_deg) {
+// What the corners of one vertex have in common is one point.
+struct Made {
+  Vec3 normal;
+  Vec2 uv;
+  std::int32_t index;
+};
+
+vtkSmartPointer<vtkFloatArray> floats(const std::vector<float>& values, int components,
+                                      const char* name) {
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh, double crease_deg,
+                                       const CornerUvs* uvs,
+                                       std::vector<std::int32_t>* vertex_of_point) {
   const std::vector<Vec3> face_normals = areaNormals(mesh);
   std::vector<bool> usable(mesh.triangles.size());
   std::size_t count = 0;
@@ -67,11 +87,11 @@ vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, double crease
   const Fans fans = fansOf(mesh, usable);
   const double cosine = std::cos(crease_deg * M_PI / 180);
 
-  std::vector<float> points, normals;
+  std::vector<float> points, normals, coordinates;
   points.reserve(mesh.positions.size() * 3);
   normals.reserve(mesh.positions.size() * 3);
   std::vector<std::int32_t> drawn_vertex(mesh.triangles.size() * 3, -1);
-  std::vector<std::pair<Vec3, std::int32_t>> made; // normals of this vertex so far
+  std::vector<Made> made; // of this vertex so far
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     made.clear();
     for (std::int32_t at = fans.first[v]; at < fans.first[v + 1]; ++at) {
@@ -84,32 +104,28 @@ vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, double crease
         if (own.dot(n) >= cosine * own.norm() * n.norm()) sum += n;
       }
       // Corners that saw the same neighbours summed them in the same order: equal bit for bit.
+      const Vec2 uv = uvs != nullptr ? Vec2((*uvs)[static_cast<std::size_t>(corner / 3)]
+                                                  [static_cast<std::size_t>(corner % 3)])
+                                     : Vec2::Zero();
       std::int32_t index = -1;
-      for (const auto& [normal, where] : made)
-        if (normal == sum) index = where;
+      for (const Made& one : made)
+        if (one.normal == sum && one.uv == uv) index = one.index;
       if (index < 0) {
         index = static_cast<std::int32_t>(points.size() / 3);
-        made.emplace_back(sum, index);
+        made.push_back({sum, uv, index});
         const Vec3 unit = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3::UnitZ();
         for (int axis = 0; axis < 3; ++axis) {
           points.push_back(static_cast<float>(mesh.positions[v][axis]));
           normals.push_back(static_cast<float>(unit[axis]));
         }
+        if (uvs != nullptr)
+          for (int axis = 0; axis < 2; ++axis) coordinates.push_back(static_cast<float>(uv[axis]));
+        if (vertex_of_point != nullptr) vertex_of_point->push_back(static_cast<std::int32_t>(v));
       }
       drawn_vertex[static_cast<std::size_t>(corner)] = index;
     }
   }
 
-  const auto vertices = static_cast<vtkIdType>(points.size() / 3);
-  const vtkNew<vtkFloatArray> point_array;
-  point_array->SetNumberOfComponents(3);
-  point_array->SetNumberOfTuples(vertices);
-  std::copy(points.begin(), points.end(), point_array->GetPointer(0));
-  const vtkNew<vtkFloatArray> normal_array;
-  normal_array->SetName("Normals");
-  normal_array->SetNumberOfComponents(3);
-  normal_array->SetNumberOfTuples(vertices);
-  std::copy(normals.begin(), normals.end(), normal_array->GetPointer(0));
   const vtkNew<vtkTypeInt32Array> connectivity;
   connectivity->SetNumberOfValues(static_cast<vtkIdType>(3 * count));
   vtkIdType next = 0;
@@ -118,11 +134,29 @@ vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, double crease
 
   auto data = vtkSmartPointer<vtkPolyData>::New();
   const vtkNew<vtkPoints> vtk_points;
-  vtk_points->SetData(point_array);
+  vtk_points->SetData(floats(points, 3, "Points"));
   data->SetPoints(vtk_points);
-  data->GetPointData()->SetNormals(normal_array);
+  data->GetPointData()->SetNormals(floats(normals, 3, "Normals"));
+  if (uvs != nullptr)
+    data->GetPointData()->SetTCoords(floats(coordinates, 2, "Texture coordinates"));
   data->SetPolys(cells(connectivity, count));
   return data;
+}
+
+} // namespace
+
+vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, double crease_deg) {
+  return splitData(mesh, crease_deg, nullptr, nullptr);
+}
+
+vtkSmartPointer<vtkPolyData> texturedData(const TriangleMesh& mesh, const CornerUvs& uvs) {
+  return splitData(mesh, kCrease, &uvs, nullptr);
+}
+
+vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh,
+                                         std::vector<std::int32_t>& vertex_of_point) {
+  vertex_of_point.clear();
+  return splitData(mesh, kCrease, nullptr, &vertex_of_point);
 }
 
 vtkSmartPointer<vtkPolyData> plainData(const TriangleMesh& mesh) {

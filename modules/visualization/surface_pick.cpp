@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
+
+#include "geometry/triangle_tree.h"
 
 namespace patina {
 namespace {
@@ -57,6 +61,50 @@ std::optional<Vec3> firstSurfaceAlong(const SurfaceField& field, const Vec3& ori
     }
     previous = t;
     t += std::max(0.25, 0.9 * phi);
+  }
+  return std::nullopt;
+}
+
+std::optional<SurfacePoint> surfacePointAt(const SurfaceField& field, const TriangleMesh& mesh,
+                                           const Vec3& p) {
+  const Vec3 q = field.grid.toGrid(p);
+  if (!q.allFinite()) return std::nullopt;
+  std::set<std::int32_t> faces;
+  std::array<int, 3> low{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    low[a] = static_cast<int>(std::clamp(std::floor(q[axis]), -2.0, field.grid.nodes[a] + 1.0));
+  }
+  for (int k = -1; k <= 2; ++k)
+    for (int j = -1; j <= 2; ++j)
+      for (int i = -1; i <= 2; ++i) {
+        const std::int32_t face = field.faceAt(low[0] + i, low[1] + j, low[2] + k);
+        if (face >= 0 && static_cast<std::size_t>(face) < mesh.triangles.size()) faces.insert(face);
+      }
+  std::optional<SurfacePoint> best;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::int32_t face : faces) {
+    const auto f = static_cast<std::size_t>(face);
+    const SurfacePoint point{
+        face, closestBarycentric(p, mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2))};
+    const double distance = (position(mesh, point) - p).squaredNorm();
+    if (distance < nearest) {
+      nearest = distance;
+      best = point;
+    }
+  }
+  return best;
+}
+
+std::optional<ObjectPoint> objectPointOf(const Scene& scene, const SurfacePoint& joint) {
+  if (joint.face < 0) return std::nullopt;
+  std::int64_t first = 0;
+  for (std::size_t object = 0; object < scene.objects.size(); ++object) {
+    const auto faces = static_cast<std::int64_t>(scene.objects[object].mesh->triangles.size());
+    if (joint.face < first + faces)
+      return ObjectPoint{object,
+                         {static_cast<std::int32_t>(joint.face - first), joint.barycentric}};
+    first += faces;
   }
   return std::nullopt;
 }

@@ -1,0 +1,43 @@
+// How steep painted relief is at a texel, for its shading.
+#pragma once
+
+#include <memory>
+
+#include "geometry/texel_map.h"
+#include "geometry/triangle_mesh.h"
+#include "scene/tiled_image.h"
+
+namespace patina {
+
+// Refers to what it is made of, which must outlive it.
+class ReliefSlope {
+ public:
+  ReliefSlope(const TriangleMesh& mesh, const CornerUvs& uvs, const TexelMap& texels);
+
+  // Gradient of g along the surface at texel (i, j) [1/m], in the mesh's frame and tangent to the
+  // texel's face: central differences, one-sided where a neighbour shows another place of the
+  // surface or repeats the chart's edge, so that no seam is seen. Second order in the texel inside
+  // a chart, first at its edge. Zero where the texel shows nothing.
+  Vec3 at(const TiledImage& g, int i, int j) const;
+
+ private:
+  struct Place {
+    std::int32_t face = -1;
+    Vec3 barycentric = Vec3::Zero();
+    bool covered = false; // the face covers the texel's centre
+  };
+  Place placeOf(int i, int j) const;
+  Vec3 point(const Place& place) const;
+  Vec3 inside(const TiledImage& g, int i, int j, const Place& place) const;
+
+  const TriangleMesh* mesh_;
+  const CornerUvs* uvs_;
+  const TexelMap* texels_;
+};
+
+// Three bytes a texel, finer near zero; slopes beyond 2 count as 2. The shader's other half is
+// kSlopeShader in image_surface.cpp.
+inline constexpr double kSteepest = 2;
+std::array<unsigned char, 3> encodedSlope(const Vec3& slope);
+
+} // namespace patina
