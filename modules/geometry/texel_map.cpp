@@ -24,12 +24,6 @@ std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-bool hasArea(const Corners& uv) {
-  const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0], c = uv[2] - uv[1];
-  const double longest2 = std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
-  return std::abs(a[0] * b[1] - a[1] * b[0]) > 1e-13 * longest2;
-}
-
 // On a grid of 2^-32 texels, so that differences are exact and their products can be compared
 // exactly: the rule that two faces at an edge share no centre and miss none has no tolerance.
 Corners inTexels(const Corners& uv, int width, int height) {

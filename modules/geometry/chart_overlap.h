@@ -1,0 +1,22 @@
+// Whether a chart covers itself on its plane, and cuts where it does. Internal to the atlas.
+#pragma once
+
+#include <vector>
+
+#include "geometry/atlas_charts.h"
+
+namespace patina {
+
+// Axes of a chart's plane; e1 x e2 is its normal.
+struct ChartPlane {
+  Vec3 e1, e2;
+  explicit ChartPlane(const Vec3& normal);
+  Vec2 operator()(const Vec3& p) const { return {e1.dot(p), e2.dot(p)}; }
+};
+
+// The chart itself, or connected pieces of it of which none covers itself. All faces look along the
+// chart's normal, so a piece is embedded exactly if no vertex is wound round twice and its border
+// neither crosses nor overlaps itself: the border is short, and no pair of faces need be compared.
+std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart);
+
+} // namespace patina
