@@ -12,6 +12,8 @@
 
 namespace patina {
 
+inline constexpr std::size_t kHistoryBudget = std::size_t{512} << 20; // bytes
+
 // The scene after each edit is kept as long as all together stay within a budget; tiles, layers and
 // meshes that scenes share count once. Beyond it scenes of the past are thinned out, ever more the
 // farther they lie back, and made again from the nearest one before by replaying records, which

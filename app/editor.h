@@ -15,8 +15,6 @@
 
 namespace patina {
 
-inline constexpr std::size_t kHistoryBudget = std::size_t{512} << 20; // bytes, see EditHistory
-
 struct EditorNotice {
   std::shared_ptr<const CompiledScene> compiled; // never null
   // Only paint changed, and only there: what to draw anew. Absent: anything may have changed.

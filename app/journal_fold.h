@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "workspace/journal.h"
@@ -20,7 +21,7 @@ struct FoldedJournal {
   std::vector<std::size_t> position_at{0};
 };
 
-// Throws Error for a record that undoes or redoes more than there is.
-FoldedJournal folded(const std::vector<JournalEvent>& journal);
+// Throws FileError(name) for a record that undoes or redoes more than there is.
+FoldedJournal folded(const std::vector<JournalEvent>& journal, const std::string& name);
 
 } // namespace patina

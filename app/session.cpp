@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "app/journal_fold.h"
+#include "app/replay.h"
+#include "app/workspace_link.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/iso_surface.h"
@@ -92,6 +95,19 @@ void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMe
   if (thin && !has_tip_radius) opened.warnings.push_back(where + ": " + *thin);
 }
 
+void openFolder(const std::filesystem::path& folder, OpenedScene& opened) {
+  OpenedWorkspace found = openWorkspace(folder);
+  const FoldedJournal fold = folded(found.journal, found.journal_file.string());
+  opened.history = {fold.position, fold.steps.size() - fold.position};
+  for (const std::string& note : found.notes) opened.warnings.push_back(note);
+  if (found.event >= found.journal.size()) {
+    opened.scene = std::move(found.scene);
+    return;
+  }
+  opened.scene =
+      WorkspaceLink::open(folder, Replayer(), kHistoryBudget, false, false).history->scene();
+}
+
 } // namespace
 
 bool isVolumeFile(const std::filesystem::path& path) {
@@ -117,7 +133,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   if (std::filesystem::is_directory(path)) {
     if (!isWorkspace(path))
       throw FileError(path.string(), 0, "is a folder without workspace.json, not a workspace");
-    opened.scene = loadWorkspace(path);
+    openFolder(path, opened);
     if (options.unit_chosen) warnOf("--unit", "workspace");
     if (options.iso) warnOf("--iso", "workspace");
     const bool has_radius =
@@ -141,8 +157,9 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
 
 Scene sceneOf(TriangleMesh mesh, const std::string& name) {
   Scene scene;
-  scene.objects.push_back(
-      {name, std::make_shared<const TriangleMesh>(std::move(mesh)), Pose::Identity()});
+  SceneObject& object = scene.objects.emplace_back();
+  object.name = name;
+  object.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
   return scene;
 }
 

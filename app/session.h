@@ -22,9 +22,14 @@ struct OpenOptions {
   bool tip_radius_chosen = false; // what is opened gets a tip radius: no advice to set one
 };
 
+struct StoredHistory {
+  std::size_t undoable = 0, redoable = 0; // edits
+};
+
 struct OpenedScene {
-  Scene scene;
-  std::vector<std::string> warnings; // one line each
+  Scene scene;                          // of a workspace: as its journal leaves it, saved or not
+  std::vector<std::string> warnings;    // one line each
+  std::optional<StoredHistory> history; // of a workspace
 };
 
 // What the engines leave out of a mesh, in words: one line a kind, nothing if nothing.
@@ -40,7 +45,8 @@ bool isFieldFile(const std::filesystem::path& path);
 std::filesystem::path inputPath(const std::filesystem::path& path);
 
 // A mesh (.obj .ply .stl), a workspace folder or its workspace.json, a volume (.vti). Throws
-// FileError; nothing is kept.
+// FileError; nothing is kept and nothing written. Slow for a workspace that was not saved after its
+// last strokes: they are painted anew.
 OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options);
 
 // A mesh in metres as a scene of one object.

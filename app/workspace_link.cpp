@@ -38,7 +38,7 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   OpenedWorkspace found = openWorkspace(folder, recover);
   Opened opened;
   opened.notes = std::move(found.notes);
-  const FoldedJournal fold = folded(found.journal);
+  const FoldedJournal fold = folded(found.journal, found.journal_file.string());
   std::map<std::size_t, std::string> state_at; // by position
   for (const StoredState& state : found.states) {
     if (state.event >= fold.position_at.size()) continue;
