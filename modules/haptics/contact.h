@@ -6,6 +6,7 @@
 
 #include "core/types.h"
 #include "scene/device_model.h"
+#include "scene/material_map.h"
 
 namespace patina {
 
@@ -47,6 +48,17 @@ struct ContactMemory {
 
   bool attracted = false; // a magnet pulled
 
+  // Of relief and roughness, a tick ago.
+  struct Leaning {
+    bool known = false;
+    double height = 0; // [m]
+    double depth = 0;  // [m]
+    Vec3 slope = Vec3::Zero();
+  };
+  Leaning relief, roughness;
+  std::int32_t relief_object = -1, relief_face = -1; // where the next look-up begins
+  double sideways = 0;                               // [N], of the stiffness slope
+
   Vec3 last_raw = Vec3::Zero();    // [N], before limit and fade
   bool has_last_raw = false;       // there is a force that the next one can be compared with
   Vec3 fault_force = Vec3::Zero(); // [N], what is being faded
@@ -78,6 +90,7 @@ struct Contact {
   Vec3 tip = Vec3::Zero();      // [m], world
   Vec3 velocity = Vec3::Zero(); // [m/s], backward difference; filtered only by a stage
   double dt = 0;                // [s], since the last finite tip
+  Material material;            // the snapshot's base, until a stage knows better
 
   bool touching = false;
   bool deep = false; // deeper than the band: the direction is the coarse nodes'
@@ -94,10 +107,16 @@ struct Contact {
   // The nearest point of the original surface: where contact is seen and where an edit acts.
   // Differs from the candidate by the tip's radius and the offset. The tip where nothing is near.
   Vec3 surface = Vec3::Zero();
-  double stiffness = 0;      // K at the contact [N/m]
-  double stick_radius = 0;   // [m], how far p may be from c while it sticks; 0 = it does not
-  double slip_step = 0;      // [m], how far the VCP let go this tick by a rule of its own
-  double known_step = 0;     // [N], a step of the force that the model itself makes this tick
+  std::int32_t object = 0; // that it belongs to, where that matters
+  // As the tip moves (pull_back.h); zero unless painted and conservative.
+  Vec3 stiffness_gradient = Vec3::Zero(); // [N/m^2]
+  Vec3 roughness_gradient = Vec3::Zero(); // over the surface, dimensionless
+  Vec3 slope = Vec3::Zero();              // of the relief: normal is along n - slope
+  double relief_step = 0;                 // [m], by which relief moved the VCP this tick, at most
+  double stiffness = 0;    // K at the contact [N/m]; of the whole law, where a coupling softens it
+  double stick_radius = 0; // [m], how far p may be from c while it sticks; 0 = it does not
+  double slip_step = 0;    // [m], how far the VCP let go this tick by a rule of its own
+  double known_step = 0;   // [N], a step of the force that the model itself makes this tick
   Vec3 force = Vec3::Zero(); // on the hand [N]
 };
 

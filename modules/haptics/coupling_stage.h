@@ -10,21 +10,22 @@ double inSeries(double stiffness, double coupling) noexcept;
 
 // Takes the place of spring, velocity filter and damping. The tip is tied to the virtual contact
 // point by a spring k_c in series with the surface's own and by a damper on the vector s = p - x
-// between them:
+// between them (B is the plan's, or the material's where that damps more, up to most_damping):
 //   F = k s + B ds/dt,  k = K k_c / (K + k_c),  then F.n >= 0 unless the surface is magnetic.
 // ds/dt is the backward difference while contact lasts; the first tick of a contact has none. Along
 // the surface the damper acts only while the VCP sticks (the tip slides freely otherwise), and with
 // the spring it pulls no harder than sticking can bear. Behind a magnet stage its pull is damped.
 class CouplingStage final : public ForceStage {
  public:
-  CouplingStage(double stiffness, double coupling, double damping, bool magnetic = false)
-      : stiffness_(inSeries(stiffness, coupling)), damping_(damping), magnetic_(magnetic) {}
+  CouplingStage(double coupling, double damping, double most_damping, bool magnetic = false)
+      : coupling_(coupling), damping_(damping), most_damping_(most_damping), magnetic_(magnetic) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "coupling"; }
 
  private:
-  double stiffness_; // k [N/m]
-  double damping_;   // B [N s/m]
+  double coupling_; // k_c [N/m]
+  double damping_;  // B [N s/m]
+  double most_damping_;
   bool magnetic_;
 };
 

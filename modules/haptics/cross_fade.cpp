@@ -24,6 +24,7 @@ void CrossFade::turnTo(const HapticSnapshot* next) noexcept {
   // What the old law measured is not the new one's: neither its force nor its clearance.
   next_memory_.has_last_raw = false;
   next_memory_.clearance = std::numeric_limits<double>::infinity();
+  next_memory_.relief.known = next_memory_.roughness.known = false;
 }
 
 Contact CrossFade::tick(const Vec3& tip, double dt) noexcept {

@@ -5,6 +5,7 @@
 #include "core/numbers.h"
 #include "haptics/coupling_stage.h"
 #include "haptics/limit_stage.h"
+#include "haptics/material_stage.h"
 #include "haptics/spring_stage.h"
 
 namespace patina {
@@ -15,8 +16,9 @@ void addStage(HapticSnapshot& snapshot, std::unique_ptr<const ForceStage> stage,
   snapshot.stages.push_back(std::move(stage));
 }
 
-void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics, StabiliserPlan plan,
-                 const MagnetMaker& magnet, double max_speed) {
+void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
+                 const PaintedRange& range, StabiliserPlan plan, const MagnetMaker& magnet,
+                 double max_speed, bool slopes) {
   const auto add = [&](std::unique_ptr<const ForceStage> stage, std::string why) {
     addStage(snapshot, std::move(stage), std::move(why));
   };
@@ -34,24 +36,27 @@ void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics, Stab
     add(magnet(softened), says("magnet.range", softened.range));
   };
 
-  LimitSpec limit{haptics.force_limit, soft(stiffestLaw(haptics)), haptics.damping.value_or(0),
-                  max_speed};
+  LimitSpec limit{haptics.force_limit, soft(stiffestLaw(hardest(haptics, range))),
+                  range.most.damping, max_speed};
   if (plan.coupling) {
+    const CouplingPlan& coupling = *plan.coupling;
     addMagnet();
-    limit.damping = plan.coupling->damping;
-    add(std::make_unique<CouplingStage>(haptics.stiffness, plan.coupling->stiffness, limit.damping,
+    limit.damping = std::max(coupling.damping, std::min(range.most.damping, coupling.most_damping));
+    add(std::make_unique<CouplingStage>(coupling.stiffness, coupling.damping, coupling.most_damping,
                                         pulls),
         plan.why);
   } else {
-    add(std::make_unique<SpringStage>(haptics.stiffness), says("stiffness", haptics.stiffness));
+    add(std::make_unique<SpringStage>(), says("stiffness", haptics.stiffness));
     addMagnet();
-    if (haptics.damping_cutoff)
+    const bool painted = range.has(MaterialChannel::damping);
+    if (haptics.damping_cutoff && (haptics.damping || painted))
       add(std::make_unique<VelocityFilterStage>(*haptics.damping_cutoff),
           says("damping.cutoff", *haptics.damping_cutoff));
-    if (haptics.damping)
-      add(std::make_unique<DampingStage>(*haptics.damping, pulls),
-          says("damping", *haptics.damping));
+    if (haptics.damping || painted)
+      add(std::make_unique<DampingStage>(pulls),
+          painted ? "damping is painted" : says("damping", *haptics.damping));
   }
+  if (slopes) add(std::make_unique<StiffnessSlopeStage>(), "material.force = conservative");
   if (plan.passivity) add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
   add(std::make_unique<LimitStage>(limit), "always");
   snapshot.stabilisers = std::move(plan);

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "haptics/painted_range.h"
 #include "haptics/snapshot.h"
 
 namespace patina {
@@ -15,8 +16,10 @@ void addStage(HapticSnapshot& snapshot, std::unique_ptr<const ForceStage> stage,
 
 // Spring, magnet, velocity filter and damping as `haptics` has them, or in their place the plan's
 // coupling, behind which the magnet too is no stiffer than the coupling; then the plan's passivity
-// controller, then the limit. max_speed: the jump fault's v_max [m/s]. Keeps the plan.
-void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics, StabiliserPlan plan,
-                 const MagnetMaker& magnet, double max_speed);
+// controller, then the limit. max_speed: the jump fault's v_max [m/s]. slopes: painted stiffness is
+// felt as a potential. Keeps the plan.
+void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
+                 const PaintedRange& range, StabiliserPlan plan, const MagnetMaker& magnet,
+                 double max_speed, bool slopes);
 
 } // namespace patina

@@ -1,5 +1,6 @@
 #include "haptics/friction_stage.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace patina {
@@ -11,15 +12,15 @@ constexpr double kMaxTurn = 0.1; // [rad] a tick
 } // namespace
 
 FrictionStage::FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                             double tip_radius, const Friction& friction)
-    : field_(std::move(field)), sampler_(*field_, sampler), friction_(friction),
-      iso_(tip_radius / field_->grid.voxel), trail_(kTrailVoxels * field_->grid.voxel),
-      per_voxel_(1 / field_->grid.voxel) {}
+                             double tip_radius, const Friction& friction, bool raised)
+    : field_(std::move(field)), sampler_(*field_, sampler), depth_gain_(friction.depth_gain),
+      slip_(friction.slip), raised_(raised), iso_(tip_radius / field_->grid.voxel),
+      trail_(kTrailVoxels * field_->grid.voxel), per_voxel_(1 / field_->grid.voxel) {}
 
 void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  const double gain = 1 + friction_.depth_gain * contact.depth / kFrictionDepthReference;
-  const double stick = friction_.static_coefficient * gain * contact.depth;
-  const double slip = friction_.dynamic_coefficient * gain * contact.depth;
+  const double gain = 1 + depth_gain_ * contact.depth / kFrictionDepthReference;
+  const double slip = contact.material.dynamic_friction * gain * contact.depth;
+  const double stick = std::max(contact.material.static_friction * gain * contact.depth, slip);
   if (!contact.touching || !(stick > 0)) {
     memory.has_stuck = false;
     memory.slipping = false;
@@ -33,7 +34,7 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
     memory.has_stuck = true;
     memory.slipping = false;
   }
-  const Vec3 against = friction_.slip == Friction::SlipDirection::displacement
+  const Vec3 against = slip_ == Friction::SlipDirection::displacement
                            ? againstMotion(contact, memory)
                            : Vec3::Zero();
 
@@ -51,7 +52,8 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
     const Vec3 offset =
         slip * (against.isZero(0) ? Vec3(dragged / std::sqrt(dragged_squared)) : against);
     // Where c itself is not on the surface there is nothing to project to.
-    const bool on_surface = !contact.held && !contact.approximate && !memory.has_handover;
+    const bool on_surface =
+        !raised_ && !contact.held && !contact.approximate && !memory.has_handover;
     p = c + (on_surface ? ontoSurface(contact, offset, slip) : offset);
   }
   if (!memory.slipping) contact.slip_step += (p - memory.stuck).norm();

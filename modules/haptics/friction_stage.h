@@ -11,6 +11,7 @@ namespace patina {
 
 inline constexpr double kFrictionDepthReference = 1e-3; // d_ref of K10 [m]
 
+// mu_s and mu_d are the material's; painted so that mu_s < mu_d, a surface sticks as it slides.
 // The VCP p stays where it is until |p - c| exceeds mu_s d, then trails the frictionless candidate
 // c at mu_d d until |p - c| < mu_d d. Where p trails:
 //  paper         in the direction from c to where p was: on a curved path it lags by up to mu_d d;
@@ -20,8 +21,10 @@ inline constexpr double kFrictionDepthReference = 1e-3; // d_ref of K10 [m]
 //                one.
 class FrictionStage final : public ForceStage {
  public:
+  // Of `friction` only what a material has not. raised: the surface that is felt is not phi =
+  // tip_radius (relief), and there is nothing to bring p back to.
   FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
-                const Friction& friction);
+                const Friction& friction, bool raised = false);
 
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "friction"; }
@@ -32,7 +35,9 @@ class FrictionStage final : public ForceStage {
 
   std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
-  Friction friction_;
+  double depth_gain_;
+  Friction::SlipDirection slip_;
+  bool raised_;
   double iso_;       // voxels
   double trail_;     // [m]
   double per_voxel_; // [1/m]

@@ -34,8 +34,9 @@ bool LimitStage::jumped(const Contact& contact, const ContactMemory& memory) con
   const double period = std::clamp(contact.dt, 1e-4, 0.05);
   const double per_speed = 2 * (spec_.stiffness * period + spec_.damping);
   const double cap = std::max(spec_.force_limit, kHandSpeed * per_speed);
-  const double allowed = std::min(spec_.max_speed * per_speed, cap) +
-                         spec_.stiffness * contact.slip_step + contact.known_step;
+  const double allowed =
+      std::min(spec_.max_speed * per_speed, cap) + spec_.stiffness * contact.slip_step +
+      (spec_.stiffness + spec_.damping / period) * contact.relief_step + contact.known_step;
   return (contact.force - memory.last_raw).squaredNorm() > allowed * allowed;
 }
 

@@ -11,18 +11,19 @@ inline constexpr double kFaultFadeTime = 0.05; // [s]
 
 struct LimitSpec {
   double force_limit = 3.3;      // [N], of the magnitude: the vector is scaled
-  double stiffness = 500;        // K [N/m]
-  double damping = 0;            // B [N s/m]
+  double stiffness = 500;        // K [N/m], of the stiffest part
+  double damping = 0;            // B [N s/m], of the most damped one
   double max_speed = kHandSpeed; // v_max [m/s]
 };
 
 // Jump fault: where the force (before the limit) changes within a tick by more than
-// 2 v_max (K T + B), plus K times what the VCP let go as a slip began and the step of a magnet
-// where its band ends, the last force fades to zero over kFaultFadeTime; whole force comes back
-// once that is over and the tip has left contact. A v_max above kHandSpeed raises the threshold up
-// to the force limit and no further: a large model of ordinary stiffness would never fault. T is
-// the time since the last tick, taken between 0.1 and 50 ms, so that a missed tick is no fault. The
-// first tick is none either. The rate of the force is never limited.
+// 2 v_max (K T + B), plus K times what the VCP let go as a slip began, the step of a magnet where
+// its band ends and what relief moved the VCP by (K + B/T), the last force fades to zero over
+// kFaultFadeTime; whole force comes back once that is over and the tip has left contact. A v_max
+// above kHandSpeed raises the threshold up to the force limit and no further: a large model of
+// ordinary stiffness would never fault. T is the time since the last tick, taken between 0.1 and 50
+// ms, so that a missed tick is no fault. The first tick is none either. The rate of the force is
+// never limited.
 class LimitStage final : public ForceStage {
  public:
   explicit LimitStage(const LimitSpec& spec) : spec_(spec) {}

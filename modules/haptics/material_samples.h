@@ -14,21 +14,29 @@ namespace patina {
 // and the first layer of its upper neighbours. Only channels that are painted somewhere.
 struct MaterialSampleBlock; // material_samples.cpp
 struct MaterialSamples {
+  // Of one channel's nodes in one block.
+  struct Extremes {
+    std::array<double, kMaterialChannels> least{}, most{};
+  };
   Vec3 origin = Vec3::Zero(); // [m], object frame
   double per_voxel = 0;       // [1/m]
   std::array<int, 3> first{}, blocks{};
   std::vector<std::int32_t> top; // slot, -1 = base everywhere
   std::vector<std::shared_ptr<const MaterialSampleBlock>> block;
+  std::vector<Extremes> extremes; // by slot
   std::vector<MaterialMap::Index> block_at;
   std::array<bool, kMaterialChannels> painted{};
   Material base;
+  Material least, most; // of each channel anywhere, base included
   std::size_t bytes() const;
 };
 
-// What is felt at a point, and how stiffness changes about it.
+// What is felt at a point, and how it changes about it.
 struct MaterialAt {
   Material material;
-  Vec3 stiffness_gradient = Vec3::Zero(); // [N/m^2], object frame; of the trilinear interpolant
+  // Of the trilinear interpolant, object frame; zero where the channel is not painted.
+  Vec3 stiffness_gradient = Vec3::Zero(); // [N/m^2]
+  Vec3 roughness_gradient = Vec3::Zero(); // dimensionless
 };
 
 // `before` (made from an earlier version of `map` with the same base) keeps blocks whose layers are

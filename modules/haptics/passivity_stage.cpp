@@ -6,8 +6,11 @@
 namespace patina {
 
 void PassivityStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  const double stored =
-      contact.touching ? 0.5 * contact.stiffness * (contact.vcp - contact.tip).squaredNorm() : 0.0;
+  // On a slope of relief the VCP lies farther than the potential's depth.
+  const double stored = contact.touching
+                            ? 0.5 * contact.stiffness * (contact.vcp - contact.tip).squaredNorm() /
+                                  (1 + contact.slope.squaredNorm())
+                            : 0.0;
   const double most = stored + spec_.reserve;
   if (!memory.has_last_tip) memory.energy = most;
 

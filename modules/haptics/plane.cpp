@@ -33,8 +33,9 @@ std::shared_ptr<const HapticSnapshot> planeSnapshot(const HapticProperties& hapt
   addStage(*snapshot, std::make_unique<PlaneStage>(), "always");
   // Without a limit nothing is a fault: what is looked for is how the loop itself ends.
   const bool limited = std::isfinite(haptics.force_limit);
-  addForceLaw(*snapshot, haptics, plan, {},
-              limited ? kHandSpeed : std::numeric_limits<double>::infinity());
+  snapshot->base = baseMaterial(haptics);
+  addForceLaw(*snapshot, haptics, paintedRange(snapshot->base, {}), plan, {},
+              limited ? kHandSpeed : std::numeric_limits<double>::infinity(), false);
   return snapshot;
 }
 

@@ -27,10 +27,18 @@ struct ReliefAt {
   double height = 0;         // [m], outward
   Vec3 slope = Vec3::Zero(); // surface gradient of the height, in the face's plane, dimensionless
   std::int32_t face = -1;    // of the object; a good start for the next query nearby
+  double distance = 0;       // [m], from c to the mesh
 };
 
 // Servo thread: no allocation. c: a point on or near the mesh [m], world; near_face: a face of the
-// object thought to be near, from which the closest one is reached across edges.
+// object thought to be near, from which the closest one is reached across edges. Face -1 (or one
+// that the object does not have): no height.
+//
+// The image passes through its texels by Catmull-Rom's cubics, which a bilinear surface would do as
+// well but for its slope: that steps from texel to texel, and the force with it. Here it is
+// continuous, and still the derivative of the height. Error O(texel^3), against O(texel^2). Between
+// texels that differ it may overshoot, by an eighth of a step at most along each axis. Beyond a
+// chart's gutter it reads with a weight of half a per cent.
 ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face) noexcept;
 
 } // namespace patina

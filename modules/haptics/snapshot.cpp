@@ -11,8 +11,10 @@
 #include "haptics/friction_stage.h"
 #include "haptics/limit_stage.h"
 #include "haptics/magnet_stage.h"
+#include "haptics/material_stage.h"
 #include "haptics/offset_stage.h"
 #include "haptics/potential_stage.h"
+#include "haptics/relief_stage.h"
 
 namespace patina {
 namespace {
@@ -20,12 +22,13 @@ namespace {
 constexpr double kMinVelocityPeriod = 1e-6; // [s]; less measures nothing
 constexpr double kMaxVelocity = 1e6;        // [m/s]; beyond it the tip was set, not moved
 
-void checkField(const SurfaceField* field, const HapticProperties& haptics) {
+void checkField(const SurfaceField* field, const HapticProperties& haptics, double relief,
+                double roughness) {
   if (!field) throw std::invalid_argument("compileStages: no field");
   if (field->sample.size() != field->blockCount()) {
     throw std::invalid_argument("compileStages: the field has no sample layer");
   }
-  const double reach = reachOf(haptics) / field->grid.voxel;
+  const double reach = reachOf(haptics, relief + roughness) / field->grid.voxel;
   if (reach + kBandBeyondReach > field->band) {
     std::string what;
     if (haptics.tip_radius) what = "tip.radius = " + formatLength(*haptics.tip_radius);
@@ -34,6 +37,8 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics) {
     };
     if (haptics.offset) with("offset", *haptics.offset);
     if (haptics.magnet) with("magnet.range", haptics.magnet->range);
+    if (relief > 0) with("relief, highest", relief);
+    if (roughness > 0) with("roughness, peak", roughness);
     throw Error(what + " does not fit into the band of " + formatNumber(field->band) +
                 " voxels; set band to " + formatNumber(std::ceil(reach + kBandBeyondReach)) +
                 " or more");
@@ -56,44 +61,117 @@ double maxSpeed(const FieldGrid& grid) {
   return kHandSpeed * std::max(1.0, cells * grid.voxel / kHandWorkspace);
 }
 
+// The shell over everything that is pulled, [m] above the field's surface.
+struct Shell {
+  double relief = 0, roughness = 0;
+};
+
+Shell shellOf(const PaintedRange& range) {
+  const bool rough = range.has(MaterialChannel::roughness);
+  return {range.relief, rough ? kRoughnessPeak * range.most.roughness : 0.0};
+}
+
+std::string namesOf(const PaintedRange& range) {
+  std::string text;
+  for (const MaterialChannel channel : kAllMaterialChannels)
+    if (range.has(channel)) text += (text.empty() ? "" : ", ") + std::string(name(channel));
+  return text + (text.empty() ? "neutral" : " painted");
+}
+
+template <class Part> std::size_t bytesOf(std::span<const FeltObject> objects, const Part& part) {
+  std::size_t bytes = 0;
+  for (const FeltObject& object : objects) bytes += part(object);
+  return bytes;
+}
+
+// What a stage may be present for although the scene has no use for it.
+enum class Unneeded { left_out, present };
+
 std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticProperties& haptics,
                                                std::shared_ptr<const SurfaceField> field,
-                                               std::span<const FeltObject>) {
-  checkField(field.get(), haptics);
+                                               std::span<const FeltObject> objects,
+                                               Unneeded unneeded) {
   auto snapshot = std::make_shared<HapticSnapshot>();
+  snapshot->base = baseMaterial(haptics);
+  const PaintedRange range = paintedRange(snapshot->base, objects);
+  const Shell shell = shellOf(range);
+  checkField(field.get(), haptics, shell.relief, shell.roughness);
+  const bool all = unneeded == Unneeded::present;
   const auto add = [&](std::unique_ptr<const ForceStage> stage, std::string why,
                        std::size_t bytes = 0) {
     addStage(*snapshot, std::move(stage), std::move(why), bytes);
   };
   const double radius = haptics.tip_radius.value_or(0);
-  const double iso = radius + haptics.offset.value_or(0);
+  const double iso = radius + haptics.offset.value_or(0) + shell.relief + shell.roughness;
   add(std::make_unique<ContactStage>(field, scene.sampler, iso, haptics.history),
       haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always", bytesRead(*field));
-  if (haptics.contact == HapticProperties::Contact::potential)
-    add(std::make_unique<PotentialStage>(field, scene.sampler, iso), "contact = potential");
+  const bool baked = range.baked && scene.relief.form == ForceForm::conservative;
+  const bool potential = haptics.contact == HapticProperties::Contact::potential;
+  if (potential || baked)
+    add(std::make_unique<PotentialStage>(field, scene.sampler, iso),
+        potential ? "contact = potential" : "relief.force = conservative");
   if (haptics.offset) {
     add(std::make_unique<OffsetStage>(field, scene.sampler),
         "offset = " + formatNumber(*haptics.offset));
   }
-  if (haptics.friction) {
-    add(std::make_unique<FrictionStage>(field, scene.sampler, iso, *haptics.friction),
-        "friction.static = " + formatNumber(haptics.friction->static_coefficient));
+  MagnetRelief raised;
+  raised.leans = scene.relief.form == ForceForm::conservative;
+  if (objects.size() > 1 && (range.any() || shell.relief > 0)) {
+    add(std::make_unique<OwnerStage>(field, objects),
+        std::to_string(objects.size()) + " objects, some painted");
+    if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(field, objects);
+  }
+  const bool slopes =
+      range.has(MaterialChannel::stiffness) && scene.material_form == ForceForm::conservative;
+  if (range.any() || all) {
+    add(std::make_unique<MaterialStage>(field, scene.sampler, objects, slopes), namesOf(range),
+        bytesOf(objects, [](const FeltObject& o) { return o.material ? o.material->bytes() : 0; }));
+  }
+  if (shell.relief > 0 || all) {
+    auto reliefs = std::make_shared<const Reliefs>(field, scene.sampler, objects);
+    add(std::make_unique<ReliefStage>(reliefs, shell.relief, scene.relief.form),
+        shell.relief > 0 ? "relief up to " + formatLength(shell.relief) : "neutral",
+        reliefs->bytes());
+    if (shell.relief > 0) raised.reliefs = std::move(reliefs);
+  }
+  if (shell.roughness > 0 || all) {
+    add(std::make_unique<RoughnessStage>(field, scene.sampler, objects, shell.roughness,
+                                         scene.relief.form),
+        shell.roughness > 0 ? "roughness up to " + formatLength(range.most.roughness) + " rms"
+                            : "neutral");
+  }
+  const bool painted_friction =
+      std::max(range.most.static_friction, range.most.dynamic_friction) > 0 && range.any();
+  if (haptics.friction || painted_friction) {
+    const Friction friction = scene.haptics.friction.value_or(Friction{});
+    add(std::make_unique<FrictionStage>(field, scene.sampler, iso, friction,
+                                        shell.relief + shell.roughness > 0),
+        haptics.friction ? "friction.static = " + formatNumber(friction.static_coefficient)
+                         : "friction is painted");
   }
   const MagnetMaker magnet = [&](const Magnet& spec) {
-    return std::make_unique<MagnetStage>(field, scene.sampler, radius, spec);
+    return std::make_unique<MagnetStage>(field, scene.sampler, radius, spec, raised);
   };
-  addForceLaw(*snapshot, haptics, planStabilisers(haptics, scene.device_model, scene.stabilisers),
-              magnet, maxSpeed(field->grid));
+  const std::optional<double> most_damping =
+      range.has(MaterialChannel::damping) ? std::optional(range.most.damping) : std::nullopt;
+  addForceLaw(
+      *snapshot, haptics, range,
+      planStabilisers(hardest(haptics, range), scene.device_model, scene.stabilisers, most_damping),
+      magnet, maxSpeed(field->grid), slopes || all);
   snapshot->field = std::move(field);
-  snapshot->base = baseMaterial(haptics);
   return snapshot;
 }
 
 } // namespace
 
-double reachOf(const HapticProperties& haptics) {
-  return haptics.tip_radius.value_or(0) +
+double reachOf(const HapticProperties& haptics, double relief) {
+  return haptics.tip_radius.value_or(0) + relief +
          std::max(haptics.offset.value_or(0), haptics.magnet ? haptics.magnet->range : 0.0);
+}
+
+double raisedBy(std::span<const FeltObject> objects) {
+  const Shell shell = shellOf(paintedRange({}, objects));
+  return shell.relief + shell.roughness;
 }
 
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
@@ -104,8 +182,7 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   if (needed.damping == 0.0) needed.damping.reset();
   if (needed.offset == 0.0) needed.offset.reset();
   if (needed.magnet && needed.magnet->range * needed.magnet->strength == 0) needed.magnet.reset();
-  if (!needed.damping) needed.damping_cutoff.reset();
-  return compiled(scene, needed, std::move(field), objects);
+  return compiled(scene, needed, std::move(field), objects, Unneeded::left_out);
 }
 
 std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
@@ -115,7 +192,7 @@ std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
   if (!all.friction) all.friction = Friction{};
   if (!all.damping) all.damping = 0;
   if (!all.magnet) all.magnet = Magnet{};
-  return compiled(scene, all, std::move(field), objects);
+  return compiled(scene, all, std::move(field), objects, Unneeded::present);
 }
 
 Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
@@ -125,6 +202,7 @@ Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& 
   contact.candidate = tip;
   contact.vcp = tip;
   contact.surface = tip;
+  contact.material = snapshot.base;
   const double period = dt > 0 && dt < 1e6 ? dt : 0;
   contact.dt = memory.gap + period;
   if (!tip.allFinite()) {

@@ -27,10 +27,14 @@ struct HapticSnapshot {
   Material base;              // what a contact is made of where nothing is painted
 };
 
-// How far from the surface its properties are felt: tip radius plus offset or magnetic range [m].
-// The field's band must be kBandBeyondReach voxels more; compileStages throws Error otherwise.
+// How far from the surface its properties are felt: tip radius plus offset or magnetic range, and
+// the highest |height| of relief that is pulled, roughness included [m] (raisedBy()). The field's
+// band must be kBandBeyondReach voxels more; compileStages throws Error otherwise.
 inline constexpr double kBandBeyondReach = 3;
-double reachOf(const HapticProperties& haptics);
+double reachOf(const HapticProperties& haptics, double relief = 0);
+// [m], of the surface that is felt over the one in the field: kRoughnessPeak times the roughest
+// paint and the highest pulled relief.
+double raisedBy(std::span<const FeltObject> objects);
 
 // Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never
 // left out. `field` is the field of the scene's objects in the world frame, with relief in it where

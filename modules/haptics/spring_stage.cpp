@@ -6,8 +6,8 @@ namespace patina {
 
 void SpringStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (!contact.touching) return;
-  contact.stiffness = stiffness_;
-  contact.force = stiffness_ * (contact.vcp - contact.tip);
+  contact.stiffness = contact.material.stiffness;
+  contact.force = contact.stiffness * (contact.vcp - contact.tip);
 }
 
 VelocityFilterStage::VelocityFilterStage(double cutoff_hz)
@@ -35,12 +35,13 @@ void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (!contact.touching && !contact.attracted) return;
   const Vec3& n = contact.normal;
   const double v_n = contact.velocity.dot(n);
+  const double damping = contact.material.damping;
   const double share = contact.touching ? 1 : contact.attraction;
-  contact.force -= share * damping_ * v_n * n;
+  contact.force -= share * damping * v_n * n;
   const double f_n = contact.force.dot(n);
   if (f_n < 0 && !magnetic_) contact.force -= f_n * n;
 
-  dampSticking(contact, -damping_ * (contact.velocity - v_n * n));
+  dampSticking(contact, -damping * (contact.velocity - v_n * n));
 }
 
 } // namespace patina

@@ -5,15 +5,11 @@
 
 namespace patina {
 
-// F = K (p - x).
+// F = K (p - x), K of the contact's material.
 class SpringStage final : public ForceStage {
  public:
-  explicit SpringStage(double stiffness) : stiffness_(stiffness) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "spring"; }
-
- private:
-  double stiffness_; // [N/m]
 };
 
 // contact.velocity through a first-order low-pass: less noise of a coarse encoder for a delay that
@@ -32,18 +28,16 @@ class VelocityFilterStage final : public ForceStage {
 // (section 2.6).
 void dampSticking(Contact& contact, const Vec3& damper) noexcept;
 
-// F -= B (v.n) n, then F.n >= 0: the surface never pulls, unless it is magnetic (K08); there the
-// pull is damped as well. While the VCP sticks, its tangential motion is damped as well (section
-// 2.6), within what sticking can bear.
+// F -= B (v.n) n, B of the contact's material (of the scene, where a magnet pulls), then F.n >= 0:
+// the surface never pulls, unless it is magnetic (K08); there the pull is damped as well. While the
+// VCP sticks, its tangential motion is damped as well (section 2.6), within what sticking can bear.
 class DampingStage final : public ForceStage {
  public:
-  explicit DampingStage(double damping, bool magnetic = false)
-      : damping_(damping), magnetic_(magnetic) {}
+  explicit DampingStage(bool magnetic = false) : magnetic_(magnetic) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "damping"; }
 
  private:
-  double damping_; // [N s/m]
   bool magnetic_;
 };
 

@@ -49,16 +49,24 @@ CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& de
   if (haptics.damping)
     damping = std::max(damping, std::min(*haptics.damping, too_much / kDampingMargin));
   loop.virtual_damping = damping;
-  return {std::max(stiffnessLimit(loop) / kMargin, kLeastCoupling * ruleOfThumb(loop)), damping};
+  return {std::max(stiffnessLimit(loop) / kMargin, kLeastCoupling * ruleOfThumb(loop)), damping,
+          std::max(damping, too_much / kDampingMargin)};
 }
 
 StabiliserPlan planStabilisers(const HapticProperties& haptics,
                                const std::optional<DeviceModel>& device,
-                               const std::optional<Stabilisers>& chosen) {
+                               const std::optional<Stabilisers>& chosen,
+                               std::optional<double> most_damping) {
   StabiliserPlan plan;
   if (!device && !chosen) return plan;
   const DeviceModel model = device.value_or(DeviceModel{});
   plan.predicted_limit = stiffnessLimit(sceneLoop(haptics, model));
+  if (most_damping && *most_damping > haptics.damping.value_or(0)) {
+    HapticProperties damped = haptics;
+    damped.damping = most_damping;
+    plan.predicted_limit =
+        std::min(*plan.predicted_limit, stiffnessLimit(sceneLoop(damped, model)));
+  }
   const double stiffest = stiffestLaw(haptics);
   const bool safe = kMargin * stiffest <= *plan.predicted_limit;
   const Stabilisers wanted = chosen.value_or(Stabilisers{!safe, false});

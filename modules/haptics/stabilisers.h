@@ -12,8 +12,9 @@
 namespace patina {
 
 struct CouplingPlan {
-  double stiffness = 0; // k_c [N/m]
-  double damping = 0;   // B [N s/m], of spring and surface together
+  double stiffness = 0;    // k_c [N/m]
+  double damping = 0;      // B [N s/m], of spring and surface together
+  double most_damping = 0; // where the surface itself has more, up to here
 };
 
 struct StabiliserPlan {
@@ -39,9 +40,11 @@ CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& de
 
 // chosen absent = automatic: nothing without a device model, nothing where the scene is stable with
 // a margin of two, else the coupling. A chosen stabiliser without a device model takes
-// DeviceModel{}.
+// DeviceModel{}. Of painted surfaces `haptics` are the hardest (painted_range.h), and most_damping
+// [N s/m] the most damped; it must be as stable there.
 StabiliserPlan planStabilisers(const HapticProperties& haptics,
                                const std::optional<DeviceModel>& device,
-                               const std::optional<Stabilisers>& chosen);
+                               const std::optional<Stabilisers>& chosen,
+                               std::optional<double> most_damping = {});
 
 } // namespace patina

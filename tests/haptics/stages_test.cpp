@@ -62,7 +62,7 @@ TEST(CompileStages, PruningChangesNoForce) {
   for (const Scene& scene : {sceneOf(500), damped, withFriction(sceneOf(500), 0.5, 0.3), finite}) {
     const auto pruned = compileStages(scene, sphere);
     const auto full = compileAllStages(scene, sphere);
-    EXPECT_EQ(full->stages.size(), 6u);
+    EXPECT_EQ(full->stages.size(), 10u);
     EXPECT_LT(pruned->stages.size(), 6u);
     ContactMemory a, b;
     std::mt19937 random(1);

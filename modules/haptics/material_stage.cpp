@@ -1,0 +1,67 @@
+#include "haptics/material_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptics/pull_back.h"
+
+namespace patina {
+
+OwnerStage::OwnerStage(std::shared_ptr<const SurfaceField> field,
+                       std::span<const FeltObject> objects)
+    : field_(std::move(field)), sampler_(*field_, Sampler::kim) {
+  for (const FeltObject& object : objects) first_face_.push_back(object.first_face);
+}
+
+std::int32_t OwnerStage::ownerAt(const Vec3& p) const noexcept {
+  const std::int32_t face = sampler_.faceNear(p);
+  const auto next = std::upper_bound(first_face_.begin(), first_face_.end(), face);
+  return static_cast<std::int32_t>(std::max<std::ptrdiff_t>(next - first_face_.begin() - 1, 0));
+}
+
+void OwnerStage::apply(Contact& contact, ContactMemory&) const noexcept {
+  if (contact.touching) contact.object = ownerAt(contact.surface);
+}
+
+MaterialStage::MaterialStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
+                             std::span<const FeltObject> objects, bool gradients)
+    : field_(std::move(field)), sampler_(*field_, sampler), per_voxel_(1 / field_->grid.voxel),
+      gradients_(gradients) {
+  for (const FeltObject& object : objects)
+    objects_.push_back({object.material, object.object_from_world});
+}
+
+void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
+  const auto i = static_cast<std::size_t>(contact.object);
+  if (!contact.touching || i >= objects_.size() || !objects_[i].samples) return;
+  const Painted& object = objects_[i];
+  const MaterialAt at = materialAt(*object.samples, object.object_from_world * contact.surface);
+  contact.material = at.material;
+  const auto inWorld = [&](const Vec3& gradient) {
+    return Vec3(object.object_from_world.linear().transpose() * gradient);
+  };
+  if (!at.roughness_gradient.isZero(0)) contact.roughness_gradient = inWorld(at.roughness_gradient);
+  if (!gradients_ || at.stiffness_gradient.isZero(0)) return;
+  const Vec3& n = contact.normal;
+  const double phi = (contact.tip - contact.surface).dot(n);
+  contact.stiffness_gradient =
+      pulledBack(sampler_, per_voxel_ * (contact.tip - sampler_.grid().origin), n, per_voxel_ * phi,
+                 inWorld(at.stiffness_gradient));
+}
+
+void StiffnessSlopeStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  const double last = memory.sideways;
+  memory.sideways = 0;
+  if (contact.touching && contact.material.stiffness > 0) {
+    // d of the potential: along the surface's own normal, not the slope of its relief.
+    const double square = contact.depth * contact.depth / (1 + contact.slope.squaredNorm());
+    const double softened = contact.stiffness / contact.material.stiffness;
+    const Vec3 force = -0.5 * square * softened * softened * contact.stiffness_gradient;
+    contact.force += force;
+    memory.sideways = force.norm();
+  }
+  // It comes and goes with the cells of the map, which is no jump.
+  contact.known_step += last + memory.sideways;
+}
+
+} // namespace patina

@@ -1,0 +1,38 @@
+#include "haptics/painted_range.h"
+
+#include <algorithm>
+
+namespace patina {
+
+bool PaintedRange::any() const {
+  return std::find(painted.begin(), painted.end(), true) != painted.end();
+}
+
+PaintedRange paintedRange(const Material& base, std::span<const FeltObject> objects) {
+  PaintedRange range;
+  range.least = range.most = base;
+  for (const FeltObject& object : objects) {
+    if (object.relief)
+      range.relief = std::max(range.relief, object.highest);
+    else
+      range.baked = range.baked || object.highest > 0;
+    if (!object.material) continue;
+    for (const MaterialChannel channel : kAllMaterialChannels) {
+      const auto c = static_cast<std::size_t>(channel);
+      range.painted[c] = range.painted[c] || object.material->painted[c];
+      double& least = valueOf(range.least, channel);
+      double& most = valueOf(range.most, channel);
+      least = std::min(least, valueOf(object.material->least, channel));
+      most = std::max(most, valueOf(object.material->most, channel));
+    }
+  }
+  return range;
+}
+
+HapticProperties hardest(HapticProperties haptics, const PaintedRange& range) {
+  haptics.stiffness = range.most.stiffness;
+  if (range.has(MaterialChannel::damping)) haptics.damping = range.least.damping;
+  return haptics;
+}
+
+} // namespace patina

@@ -1,0 +1,26 @@
+// What the objects of a scene may feel like at most and at least, painted or not.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "haptics/felt_object.h"
+#include "scene/haptic_properties.h"
+
+namespace patina {
+
+struct PaintedRange {
+  std::array<bool, kMaterialChannels> painted{}; // on some object
+  Material least, most;                          // the scene's own values included
+  double relief = 0;                             // H [m], of |height| of pulled relief
+  bool baked = false;                            // relief is in the field
+
+  bool has(MaterialChannel channel) const { return painted[static_cast<std::size_t>(channel)]; }
+  bool any() const;
+};
+PaintedRange paintedRange(const Material& base, std::span<const FeltObject> objects);
+
+// `haptics` with the stiffest surface and the least damping there is: what a loop must bear.
+HapticProperties hardest(HapticProperties haptics, const PaintedRange& range);
+
+} // namespace patina

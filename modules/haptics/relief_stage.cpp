@@ -1,0 +1,164 @@
+#include "haptics/relief_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "haptics/pull_back.h"
+
+namespace patina {
+namespace {
+
+constexpr double kLostVoxels = 0.25;
+
+void notTouching(Contact& contact, ContactMemory& memory) noexcept {
+  contact.touching = contact.held = contact.deep = contact.approximate = false;
+  contact.candidate = contact.vcp = contact.surface = contact.tip;
+  contact.normal.setZero();
+  contact.slope.setZero();
+  contact.depth = 0;
+  memory.has_stuck = memory.has_stretch = memory.slipping = false;
+}
+
+// d -= gap, and the normal leans by `slope` more. n - slope is longer than 1: of a potential, the
+// depth along the leaning normal is not the distance.
+void lower(Contact& contact, ContactMemory& memory, double gap, const Vec3& slope) noexcept {
+  const bool leans = !slope.isZero(0);
+  if (gap == 0 && !leans) return;
+  const double steep = std::sqrt(1 + contact.slope.squaredNorm());
+  const double depth = contact.depth / steep - gap;
+  if (!(depth > 0)) {
+    notTouching(contact, memory);
+    return;
+  }
+  const Vec3 outward = steep * contact.normal - slope; // n - all slopes
+  contact.slope += slope;
+  const double length = std::sqrt(1 + contact.slope.squaredNorm());
+  contact.depth = depth * length;
+  contact.normal = outward / length;
+  contact.candidate = contact.tip + depth * outward;
+  contact.vcp = contact.candidate;
+}
+
+// By how much the relief itself has moved the VCP since the last tick, at most.
+void announceStep(Contact& contact, ContactMemory::Leaning& last, double height) noexcept {
+  const ContactMemory::Leaning now{true, height, contact.depth, contact.slope};
+  if (last.known)
+    contact.relief_step +=
+        std::abs(now.height - last.height) *
+            std::sqrt(1 + std::max(now.slope.squaredNorm(), last.slope.squaredNorm())) +
+        std::max(now.depth, last.depth) * (now.slope - last.slope).norm();
+  last = now;
+}
+
+Vec3 byTheTip(const FieldSampler& sampler, const Contact& contact, const Vec3& slope) noexcept {
+  if (slope.isZero(0)) return slope;
+  const double per_voxel = 1 / sampler.grid().voxel;
+  const Vec3 n = (std::sqrt(1 + contact.slope.squaredNorm()) * contact.normal + contact.slope);
+  const double phi = (contact.tip - contact.surface).dot(n);
+  return pulledBack(sampler, per_voxel * (contact.tip - sampler.grid().origin), n, per_voxel * phi,
+                    slope);
+}
+
+} // namespace
+
+Reliefs::Reliefs(std::shared_ptr<const SurfaceField> field, Sampler sampler,
+                 std::span<const FeltObject> objects)
+    : field_(std::move(field)), sampler_(*field_, sampler),
+      lost_(kLostVoxels * field_->grid.voxel) {
+  for (const FeltObject& object : objects)
+    parts_.push_back({object.first_face, object.relief, object.highest});
+}
+
+ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory) const noexcept {
+  ReliefAt at;
+  const auto i = static_cast<std::size_t>(object);
+  if (i >= parts_.size() || !parts_[i].relief) return at;
+  const Part& part = parts_[i];
+  if (memory.relief_object == object) at = reliefAt(*part.relief, c, memory.relief_face);
+  if (at.face < 0 || at.distance > lost_) {
+    const std::int32_t near = sampler_.faceNear(c);
+    const ReliefAt afresh = reliefAt(*part.relief, c, near < 0 ? -1 : near - part.first_face);
+    if (afresh.face >= 0 && (at.face < 0 || afresh.distance < at.distance)) at = afresh;
+  }
+  memory.relief_object = object;
+  memory.relief_face = at.face;
+  if (std::abs(at.height) > part.highest) { // between texels a cubic overshoots
+    at.height = std::copysign(part.highest, at.height);
+    at.slope.setZero();
+  }
+  return at;
+}
+
+std::size_t Reliefs::bytes() const {
+  std::size_t sum = 0;
+  for (const Part& part : parts_)
+    if (part.relief) sum += patina::bytes(*part.relief->faces);
+  return sum;
+}
+
+void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  if (!contact.touching || contact.normal.isZero(0)) {
+    memory.relief.known = false;
+    if (contact.touching) lower(contact, memory, shell_, Vec3::Zero());
+    return;
+  }
+  const ReliefAt at = reliefs_->at(contact.object, contact.surface, memory);
+  const Vec3 slope =
+      form_ == ForceForm::literal ? Vec3::Zero() : byTheTip(reliefs_->sampler(), contact, at.slope);
+  lower(contact, memory, shell_ - at.height, slope);
+  announceStep(contact, memory.relief, at.height);
+}
+
+RoughPattern roughPattern(const Vec3& p) noexcept {
+  // Directions of a tetrahedron, turned; wavelengths about 1 mm whose ratios are no small
+  // fractions.
+  struct Wave {
+    double x, y, z, phase;
+  };
+  static constexpr std::array<Wave, 4> kWaves = {{{4931.2, 3021.7, 1987.3, 0.3},
+                                                  {-1264.9, -2718.6, 6012.4, 1.9},
+                                                  {2307.5, -5671.8, -2413.6, 4.1},
+                                                  {-5377.3, 2988.1, -1902.7, 5.2}}};
+  const double amplitude = std::numbers::sqrt2 / 2; // 4 a^2 / 2 = 1
+  RoughPattern pattern;
+  for (const Wave& wave : kWaves) {
+    const Vec3 k(wave.x, wave.y, wave.z); // [rad/m]
+    const double angle = k.dot(p) + wave.phase;
+    pattern.height += amplitude * std::cos(angle);
+    pattern.slope -= amplitude * std::sin(angle) * k;
+  }
+  return pattern;
+}
+
+RoughnessStage::RoughnessStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
+                               std::span<const FeltObject> objects, double shell, ForceForm form)
+    : field_(std::move(field)), sampler_(*field_, sampler), shell_(shell), form_(form) {
+  for (const FeltObject& object : objects) object_from_world_.push_back(object.object_from_world);
+}
+
+void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  if (!contact.touching) {
+    memory.roughness.known = false;
+    return;
+  }
+  double height = 0;
+  Vec3 slope = Vec3::Zero();
+  const double roughness = contact.material.roughness;
+  const auto i = static_cast<std::size_t>(contact.object);
+  const bool rough = roughness > 0 && i < object_from_world_.size() && !contact.normal.isZero(0);
+  if (rough) {
+    const Pose& object_from_world = object_from_world_[i];
+    const RoughPattern pattern = roughPattern(object_from_world * contact.surface);
+    height = roughness * pattern.height;
+    if (form_ == ForceForm::conservative)
+      slope = byTheTip(sampler_, contact,
+                       roughness * (object_from_world.linear().transpose() * pattern.slope) +
+                           pattern.height * contact.roughness_gradient);
+  }
+  lower(contact, memory, shell_ - height, slope);
+  announceStep(contact, memory.roughness, height);
+}
+
+} // namespace patina

@@ -1,0 +1,134 @@
+#include "haptics/material_samples.h"
+
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+#include "haptics/painted_fixture.h"
+
+namespace patina {
+namespace {
+
+constexpr double kVoxel = 0x1p-10;
+
+// T-K22a: an affine field, exact in floats at the nodes, is one between them.
+TEST(MaterialSamples, ReproduceAnAffineFieldToRounding) {
+  const auto affine = [](const Vec3& p) {
+    return 1024 + 0x1p12 * p.x() - 0x1p13 * p.y() + 0x1p11 * p.z();
+  };
+  const auto map = coveredMap(kVoxel, cube(12e-3), MaterialChannel::stiffness, affine);
+  const auto samples = materialSamples(*map, Material{}, nullptr, nullptr);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> in(-11e-3, 11e-3);
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 p(in(random), in(random), in(random));
+    const MaterialAt at = materialAt(*samples, p);
+    ASSERT_NEAR(at.material.stiffness, affine(p), 1e-14 * 1024);
+    ASSERT_NEAR(at.material.stiffness, map->at(p, Material{}).stiffness, 1e-14 * 1024);
+    ASSERT_LT((at.stiffness_gradient - Vec3(0x1p12, -0x1p13, 0x1p11)).norm(), 1e-9);
+  }
+}
+
+// One look-up against the map's own, over blocks, borders and nodes; a second channel beside it.
+TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> value(0, 900), weight(0, 1);
+  auto map = std::make_shared<MaterialMap>(Vec3(1e-3, -2e-3, 0.3e-3), kVoxel);
+  for (const MaterialMap::Index& b :
+       {MaterialMap::Index{0, 0, 0}, {1, 0, 0}, {-1, 0, 2}, {4, -3, 1}})
+    for (const auto channel : {MaterialChannel::stiffness, MaterialChannel::dynamic_friction}) {
+      MaterialLayer& layer = map->writable(b, channel);
+      for (std::size_t n = 0; n < kMaterialNodes; ++n) {
+        layer.value[n] = static_cast<float>(value(random));
+        layer.weight[n] = static_cast<float>(weight(random));
+      }
+    }
+  Material base;
+  base.stiffness = 333.3;
+  base.damping = 1.7;
+  const auto samples = materialSamples(*map, base, nullptr, nullptr);
+  std::uniform_real_distribution<double> in(-0.04, 0.05);
+  int painted = 0;
+  for (int i = 0; i < 40000; ++i) {
+    const Vec3 p(in(random), in(random), in(random));
+    const Material wanted = map->at(p, base), found = materialAt(*samples, p).material;
+    ASSERT_NEAR(found.stiffness, wanted.stiffness, 1e-10);
+    ASSERT_NEAR(found.dynamic_friction, wanted.dynamic_friction, 1e-10);
+    ASSERT_EQ(found.damping, base.damping);
+    painted += wanted.stiffness != base.stiffness;
+    if (wanted.stiffness == base.stiffness) {
+      ASSERT_EQ(found.stiffness, base.stiffness);
+    }
+  }
+  EXPECT_GT(painted, 100);
+  const double far = 1e300, nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(materialAt(*samples, Vec3(far, -far, 0)).material, base);
+  EXPECT_EQ(materialAt(*samples, Vec3(nan, 0, 0)).material, base);
+}
+
+TEST(MaterialSamples, HoldTheExtremesOfEveryChannelAndTheBase) {
+  auto map = coveredMap(kVoxel, cube(3e-3), MaterialChannel::stiffness,
+                        [](const Vec3& p) { return p.x() > 0 ? 2000 : 100; });
+  coveredMap(
+      kVoxel, cube(1e-3), MaterialChannel::damping, [](const Vec3&) { return 3; }, map);
+  const auto samples = materialSamples(*map, Material{}, nullptr, nullptr);
+  EXPECT_EQ(samples->most.stiffness, 2000);
+  EXPECT_EQ(samples->least.stiffness, 100);
+  EXPECT_EQ(samples->most.damping, 3);
+  EXPECT_EQ(samples->least.damping, 0);
+  EXPECT_EQ(samples->most.roughness, 0);
+  EXPECT_FALSE(samples->painted[4]);
+}
+
+TEST(MaterialSamples, OfAnEmptyMapAreNothing) {
+  EXPECT_EQ(materialSamples(MaterialMap(Vec3::Zero(), kVoxel), Material{}, nullptr, nullptr),
+            nullptr);
+}
+
+// An edit makes its own blocks and those that read them, and no other; the result is that of a
+// fresh build, also where paint is taken away.
+TEST(MaterialSamples, ShareWhatAnEditDidNotTouch) {
+  const Material base;
+  auto before = coveredMap(kVoxel, cube(30e-3), MaterialChannel::stiffness,
+                           [](const Vec3& p) { return 800 + 1e4 * p.x(); });
+  const auto old = materialSamples(*before, base, nullptr, nullptr);
+  const auto check = [&](const MaterialMap& map, std::size_t most_made) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto now = materialSamples(map, base, before.get(), old.get());
+    const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
+    const auto fresh = materialSamples(map, base, nullptr, nullptr);
+    std::size_t made = 0;
+    for (const auto& block : now->block)
+      made += std::find(old->block.begin(), old->block.end(), block) == old->block.end();
+    std::printf("%zu of %zu blocks made anew in %.0f us\n", made, now->block.size(), us.count());
+    EXPECT_LE(made, most_made);
+    EXPECT_GE(made, 1u);
+    ASSERT_EQ(now->block_at, fresh->block_at);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> in(-0.035, 0.035);
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 p(in(random), in(random), in(random));
+      ASSERT_EQ(materialAt(*now, p).material, materialAt(*fresh, p).material);
+    }
+  };
+  MaterialMap edited = *before;
+  edited.writable({1, -1, 2}, MaterialChannel::stiffness).value[77] = 12345;
+  check(edited, 8);
+  MaterialMap grown = *before; // outside the old table
+  grown.writable({6, 0, 0}, MaterialChannel::stiffness).value[0] = 5;
+  check(grown, 8);
+  MaterialMap less(before->origin(), before->voxel());
+  for (const auto& [index, block] : before->blocks())
+    if (index != MaterialMap::Index{0, 0, 0} && index != MaterialMap::Index{3, 3, 3})
+      less.writable(index, MaterialChannel::stiffness) =
+          *before->layer(index, MaterialChannel::stiffness);
+  // Copies of layers are other layers; take those of `before` itself.
+  MaterialMap shrunk = *before;
+  shrunk.writable({0, 0, 0}, MaterialChannel::stiffness) = MaterialLayer{};
+  shrunk.writable({3, 3, 3}, MaterialChannel::stiffness) = MaterialLayer{};
+  shrunk.dropEmptyLayers();
+  check(shrunk, 16);
+}
+
+} // namespace
+} // namespace patina
