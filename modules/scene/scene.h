@@ -22,7 +22,7 @@ struct SceneObject {
   std::string name;                         // unique in the scene; letters, digits, '-', '_'
   std::shared_ptr<const TriangleMesh> mesh; // [m], object frame
   Pose world_from_object = Pose::Identity();
-  std::shared_ptr<const ObjectPaint> paint; // absent until the first stroke
+  std::shared_ptr<const ObjectPaint> paint{}; // absent until the first stroke
 };
 
 struct Scene {
