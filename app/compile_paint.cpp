@@ -100,7 +100,7 @@ std::vector<ReliefSource> sourcesOf(const CompiledScene& compiled, const FeltPai
     source.first_face = first;
     source.faces = static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
     first += source.faces;
-    if (!paint.relief[i]) continue;
+    if (i >= paint.relief.size() || !paint.relief[i]) continue;
     source.uvs = paintOf(compiled.scene, i)->layout.uvs;
     source.image = paint.relief[i];
     source.height = compiled.scene.relief.height;
@@ -225,6 +225,10 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
   }
   if (relief && scene.relief.mode == ReliefMode::baked) bake(compiled, same_field, made, progress);
   return made;
+}
+
+std::vector<ReliefSource> reliefSources(const CompiledScene& compiled) {
+  return sourcesOf(compiled, compiled.paint);
 }
 
 std::vector<PaintChange> paintChanges(const Scene& before, const Scene& after) {

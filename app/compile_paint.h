@@ -33,6 +33,9 @@ double reachOf(const Scene& scene);
 // `before` (null: nothing is kept).
 FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before, Progress& progress);
 
+// What of it an engine that bakes reads; without relief no source has an image.
+std::vector<ReliefSource> reliefSources(const CompiledScene& compiled);
+
 // What differs between two paints of the same objects, tile by tile; no regions.
 std::vector<PaintChange> paintChanges(const Scene& before, const Scene& after);
 

@@ -3,9 +3,10 @@
 namespace patina::cli {
 
 std::vector<Command> allCommands() {
-  return {infoCommand(),     sceneCommand(),       fieldCommand(),  sampleCommand(), feelCommand(),
-          simulateCommand(), renderCommand(),      exportCommand(), studyCommand(),  modelCommand(),
-          devicesCommand(),  latencyTestCommand(), guiCommand(),    manCommand()};
+  return {infoCommand(),        sceneCommand(),  fieldCommand(), sampleCommand(), feelCommand(),
+          simulateCommand(),    paintCommand(),  undoCommand(),  redoCommand(),   embossCommand(),
+          renderCommand(),      exportCommand(), studyCommand(), modelCommand(),  devicesCommand(),
+          latencyTestCommand(), guiCommand(),    manCommand()};
 }
 
 } // namespace patina::cli

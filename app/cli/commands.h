@@ -1,4 +1,4 @@
-// Every command, one a source file of the same name.
+// Every command, one a source file of the same name (redo beside undo).
 #pragma once
 
 #include "app/cli/command.h"
@@ -11,6 +11,10 @@ Command fieldCommand();
 Command sampleCommand();
 Command feelCommand();
 Command simulateCommand();
+Command paintCommand();
+Command undoCommand();
+Command redoCommand();
+Command embossCommand();
 Command renderCommand();
 Command exportCommand();
 Command studyCommand();

@@ -3,11 +3,11 @@
 #include <map>
 
 #include "app/cli/commands.h"
+#include "app/cli/mesh_output.h"
 #include "app/cli/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/models.h"
-#include "geometry/mesh_io.h"
 #include "geometry/mesh_report.h"
 #include "geometry/mesh_unit.h"
 #include "geometry/shapes.h"
@@ -101,19 +101,6 @@ const Model& modelNamed(const std::string& name) {
   throw Error("model: there is no '" + name + "'; there are" + known);
 }
 
-double metresPerUnit(MeshUnit unit) {
-  switch (unit) {
-  case MeshUnit::mm:
-    return 0.001;
-  case MeshUnit::cm:
-    return 0.01;
-  case MeshUnit::in:
-    return 0.0254;
-  default:
-    return 1;
-  }
-}
-
 int runModel(const ModelOptions& options, Console& console) {
   const Model& model = modelNamed(options.name);
   Sizes sizes(model.sizes.begin(), model.sizes.end());
@@ -123,15 +110,12 @@ int runModel(const ModelOptions& options, Console& console) {
                   namesOf(model.sizes));
     sizes[key] = value;
   }
-  if (options.unit == MeshUnit::fit) throw Error("--unit: fit is for reading; use mm, cm, m or in");
-  requireWritable(options.output);
-  TriangleMesh mesh = model.make(sizes);
+  requireMeshOutput(options.output, options.unit);
+  const TriangleMesh mesh = model.make(sizes);
   console.progress().throwIfCancelled();
   const Box3 box = bounds(mesh);
   const MeshReport report = inspect(mesh);
-  if (const double scale = metresPerUnit(options.unit); scale != 1)
-    for (Vec3& position : mesh.positions) position /= scale;
-  writeMesh(options.output, mesh);
+  writeMeshIn(options.output, mesh, options.unit);
 
   Json json = Json::object();
   json.set("model", model.name);
@@ -192,9 +176,7 @@ Command modelCommand() {
            options->sizes[key] = value;
          }});
   }
-  command.arguments.push_back(
-      {"--unit", "mm|cm|m|in", "Unit of the numbers in the file.", "mm", false, false,
-       [options](const auto& text) { options->unit = parseMeshUnit(text); }});
+  addUnitOfOutput(command, options->unit);
   command.run = [options](Console& console) { return runModel(*options, console); };
   return command;
 }

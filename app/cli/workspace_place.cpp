@@ -1,0 +1,30 @@
+#include "app/cli/workspace_place.h"
+
+#include "app/session.h"
+#include "core/error.h"
+#include "workspace/workspace.h"
+
+namespace patina::cli {
+
+namespace fs = std::filesystem;
+
+fs::path workspaceFolder(const fs::path& input) {
+  const fs::path folder = inputPath(input);
+  if (!fs::exists(folder)) throw FileError(folder.string(), 0, "no such folder");
+  if (!fs::is_directory(folder) || !isWorkspace(folder))
+    throw FileError(folder.string(), 0, "is not a workspace; patina scene makes one of a mesh");
+  return folder;
+}
+
+void requireWorkspacePlace(const fs::path& folder) {
+  if (!fs::exists(folder) || isWorkspace(folder)) return;
+  if (!fs::is_directory(folder) || !fs::is_empty(folder))
+    throw FileError(folder.string(), 0, "exists and is not a workspace; choose another folder");
+}
+
+bool sameFolder(const fs::path& a, const fs::path& b) {
+  std::error_code unknown; // of one that is not there
+  return fs::equivalent(a, b, unknown);
+}
+
+} // namespace patina::cli
