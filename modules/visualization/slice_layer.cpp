@@ -9,6 +9,7 @@
 #include <vtkProperty.h>
 
 #include "visualization/distance_map.h"
+#include "visualization/painted_value.h"
 #include "visualization/palette.h"
 #include "visualization/scalar_bar.h"
 
@@ -43,10 +44,23 @@ struct Ink {
   double shown;    // voxels: a little less than the band, where every cell has all of its nodes
   double edge = 0; // voxels, of the tinted band; 0 = none
   palette::Color tint{};
+  std::optional<SliceMaterial> material{};
 
-  void paint(double phi_voxels, unsigned char* rgba) const {
+  // At `place` [m].
+  void paint(double phi_voxels, const Vec3& place, unsigned char* rgba) const {
     const double mm = phi_voxels * voxel_mm;
-    const unsigned char* color = map->MapValue(mm);
+    std::array<double, 3> color{};
+    if (material) {
+      const PaintedValue value = paintedValue(*material->scene, material->channel, place);
+      // A hair of paint is seen as paint; the rim is softened.
+      const double cover = std::clamp(25 * value.weight, 0.0, 1.0);
+      const unsigned char* of_value = material->colors->MapValue(value.felt);
+      for (std::size_t c = 0; c < 3; ++c)
+        color[c] = cover * of_value[c] + (1 - cover) * 255 * palette::kBackgroundLow[c];
+    } else {
+      const unsigned char* of_distance = map->MapValue(mm);
+      std::copy(of_distance, of_distance + 3, color.begin());
+    }
     const double to_line = std::abs(mm - step_mm * std::round(mm / step_mm)) / voxel_mm;
     const double thin = 0.35 * coverage(to_line, 0.10, texel);
     const double thick = 0.90 * coverage(std::abs(phi_voxels), 0.28, texel);
@@ -64,7 +78,12 @@ struct Ink {
   }
 };
 
-vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Ink& ink) {
+struct Corners {
+  Vec3 origin, across, up; // [m]; the plane's whole sides
+};
+
+vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Corners& corners,
+                                      const Ink& ink) {
   auto image = vtkSmartPointer<vtkImageData>::New();
   const int columns = plane.columns - 1, rows = plane.rows - 1; // cells
   const int width = texelsOver(columns), height = texelsOver(rows);
@@ -84,7 +103,10 @@ vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Ink& ink) {
       const double phi = (1 - v) * ((1 - u) * node(column, row) + u * node(column + 1, row)) +
                          v * ((1 - u) * node(column, row + 1) + u * node(column + 1, row + 1));
       if (std::isfinite(phi))
-        ink.paint(phi, rgba);
+        ink.paint(phi,
+                  corners.origin + (x + 0.5) / width * corners.across +
+                      (y + 0.5) / height * corners.up,
+                  rgba);
       else
         std::fill(rgba, rgba + 4, static_cast<unsigned char>(0));
     }
@@ -137,7 +159,8 @@ SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
 }
 
 void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
-                        const std::optional<TouchBand>& band) {
+                        const std::optional<TouchBand>& band,
+                        const std::optional<SliceMaterial>& material) {
   const auto along = static_cast<std::size_t>(place.axis);
   const FieldGrid& grid = field.grid;
   Vec3 corner = Vec3::Zero();
@@ -166,7 +189,12 @@ void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
     ink.edge = band->edge / grid.voxel;
     ink.tint = bandColor(*band);
   }
-  texture_->SetInputData(painted(planeOf(field, place), ink));
+  ink.material = material;
+  shows_distance_ = !material;
+  const Vec3 origin = grid.toWorld(corner);
+  texture_->SetInputData(painted(planeOf(field, place),
+                                 {origin, grid.toWorld(across) - origin, grid.toWorld(up) - origin},
+                                 ink));
   bar_->SetLookupTable(map);
   bar_->SetLabelFormat(limit_mm < 1 ? "%+.2f" : limit_mm < 50 ? "%+.1f" : "%+.0f");
 }
@@ -179,7 +207,7 @@ void SliceLayer::setVisible(bool on) {
   // Before the first update() a window system may want a frame: VTK fails on a texture of nothing.
   const bool made = texture_->GetNumberOfInputConnections(0) > 0;
   actor_->SetVisibility(on && made);
-  bar_->SetVisibility(on && made);
+  bar_->SetVisibility(on && made && shows_distance_);
 }
 
 } // namespace patina

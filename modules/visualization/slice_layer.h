@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <vtkActor.h>
+#include <vtkLookupTable.h>
 #include <vtkPlane.h>
 #include <vtkPlaneSource.h>
 #include <vtkRenderer.h>
@@ -13,6 +14,7 @@
 #include <vtkTexture.h>
 
 #include "field/surface_field.h"
+#include "scene/scene.h"
 #include "visualization/scene_view.h"
 #include "visualization/touch_band.h"
 
@@ -25,6 +27,13 @@ struct FieldPlane {
 };
 FieldPlane planeOf(const SurfaceField& field, const SlicePlace& place);
 
+// Painted material in place of distance: where something is painted in the colours of its surface.
+struct SliceMaterial {
+  const Scene* scene;
+  MaterialChannel channel;
+  vtkLookupTable* colors; // of values in SI
+};
+
 class SliceLayer {
  public:
   // scene: where the plane stands; overlay: where the scalar bar does.
@@ -32,7 +41,8 @@ class SliceLayer {
 
   // A band is tinted from the surface to its edge, and the edge is a line.
   void update(const SurfaceField& field, const SlicePlace& place,
-              const std::optional<TouchBand>& band = {});
+              const std::optional<TouchBand>& band = {},
+              const std::optional<SliceMaterial>& material = {});
   void setVisible(bool on);
   void setTextSize(int pixels);
   // The plane itself, to cut the surfaces with; its normal is the slice's axis.
@@ -46,6 +56,7 @@ class SliceLayer {
   vtkSmartPointer<vtkScalarBarActor> bar_;
   vtkSmartPointer<vtkPlane> plane_;
   double position_ = 0;
+  bool shows_distance_ = true; // with its bar
 };
 
 } // namespace patina

@@ -1,0 +1,48 @@
+#include "visualization/painted_value.h"
+
+#include <cmath>
+
+namespace patina {
+namespace {
+
+bool nearPaint(const MaterialMap& map, const Vec3& p) {
+  const Vec3 q = (p - map.origin()) / map.voxel();
+  if (!q.allFinite() || q.cwiseAbs().maxCoeff() > 1e9) return false;
+  // The cell's nodes lie in two blocks along each axis at most.
+  for (int corner = 0; corner < 8; ++corner) {
+    MaterialMap::Index block{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      block[axis] = static_cast<std::int32_t>(std::floor(
+          (std::floor(q[static_cast<int>(axis)]) + (corner >> axis & 1)) / kMaterialSide));
+    if (map.blocks().contains(block)) return true;
+    if (corner == 0 &&
+        (q.array() - kMaterialSide * (q / kMaterialSide).array().floor()).maxCoeff() <
+            kMaterialSide - 1)
+      return false;
+  }
+  return false;
+}
+
+} // namespace
+
+PaintedValue paintedValue(const Scene& scene, MaterialChannel channel, const Vec3& world) {
+  const Material base = baseMaterial(scene.haptics);
+  PaintedValue best{0, valueOf(base, channel)};
+  for (const SceneObject& object : scene.objects) {
+    if (!object.paint || !object.paint->material) continue;
+    const MaterialMap& map = *object.paint->material;
+    const Vec3 p = object.world_from_object.inverse() * world;
+    if (!nearPaint(map, p)) continue;
+    // value + (1 - weight) * base at two bases tells the weight.
+    Material none = base, one = base;
+    valueOf(none, channel) = 0;
+    valueOf(one, channel) = 1;
+    const double value = valueOf(map.at(p, none), channel);
+    const double weight = 1 - (valueOf(map.at(p, one), channel) - value);
+    if (std::abs(weight) > std::abs(best.weight))
+      best = {weight, value + (1 - weight) * valueOf(base, channel)};
+  }
+  return best;
+}
+
+} // namespace patina
