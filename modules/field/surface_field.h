@@ -17,7 +17,8 @@
 namespace patina {
 
 // Signed distance in voxels (so that nothing depends on the scale), negative inside. A node farther
-// than the band holds +-kBeyondBand with the right sign.
+// than the band holds +-kBeyondBand with the right sign; one that relief moved out of it keeps its
+// value.
 struct DistanceBlock {
   std::array<float, kBlockNodes> phi;
 };

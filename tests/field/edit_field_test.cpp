@@ -1,0 +1,104 @@
+#include "field/edit_field.h"
+
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "field/analytic_fields.h"
+
+namespace patina {
+namespace {
+
+using namespace test;
+
+bool isStored(float phi) {
+  return std::abs(phi) < kBeyondBand;
+}
+
+// K04, one node at a time.
+float difference(const SurfaceField& field, const std::array<int, 3>& at, std::size_t axis) {
+  auto low = at, high = at;
+  --low[axis];
+  ++high[axis];
+  const auto phi = [&](const std::array<int, 3>& n) { return field.phiAt(n[0], n[1], n[2]); };
+  const float before = phi(low), here = phi(at), after = phi(high);
+  if (isStored(before) && isStored(after)) return (after - before) * 0.5F;
+  if (isStored(after)) return after - here;
+  return isStored(before) ? here - before : 0;
+}
+
+// A grid of whole blocks, so that phiAt() knows every node that is stored.
+FieldGrid wholeBlocks() {
+  return {Vec3::Constant(-0.04), 1e-3, {80, 80, 80}};
+}
+
+TEST(SampleLayer, HoldsEachNodesOwnDifferences) {
+  const auto field = sampledField(sphereDistance(0.025), wholeBlocks(), 4);
+  std::size_t complete = 0, nodes = 0;
+  for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
+    const auto& block = field->block_at[slot];
+    const SampleBlock& sample = *field->sample[slot];
+    for (int z = 0; z < kSampleSide; ++z)
+      for (int y = 0; y < kSampleSide; ++y)
+        for (int x = 0; x < kSampleSide; ++x, ++nodes) {
+          const std::array<int, 3> at{kBlockSide * block[0] + x, kBlockSide * block[1] + y,
+                                      kBlockSide * block[2] + z};
+          const SampleNode& node =
+              sample.node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)];
+          const float phi = field->phiAt(at[0], at[1], at[2]);
+          ASSERT_EQ(node.phi, phi);
+          ASSERT_EQ(node.gx, isStored(phi) ? difference(*field, at, 0) : 0);
+          ASSERT_EQ(node.gy, isStored(phi) ? difference(*field, at, 1) : 0);
+          ASSERT_EQ(node.gz, isStored(phi) ? difference(*field, at, 2) : 0);
+          if (x == kBlockSide || y == kBlockSide || z == kBlockSide) continue;
+          bool all = true;
+          for (int c = 0; c < 8; ++c)
+            all = all &&
+                  isStored(field->phiAt(at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)));
+          ASSERT_EQ(sample.cellComplete(x, y, z), all);
+          complete += all;
+        }
+  }
+  EXPECT_GT(complete, nodes / 10);
+  EXPECT_LT(complete, nodes / 2);
+}
+
+bool sameSamples(const SurfaceField& a, const SurfaceField& b) {
+  for (std::size_t slot = 0; slot < a.blockCount(); ++slot)
+    if (std::memcmp(a.sample[slot].get(), b.sample[slot].get(), sizeof(SampleBlock)) != 0)
+      return false;
+  return true;
+}
+
+TEST(RenewSamples, GivesThoseOfTheWholeFieldAndSharesTheRest) {
+  const auto original = sampledField(sphereDistance(0.025), wholeBlocks(), 4);
+  std::mt19937 random(3);
+  SurfaceField field = *original;
+  for (int edit = 0; edit < 20; ++edit) {
+    const SurfaceField before = field;
+    const auto slot = static_cast<std::int32_t>(random() % field.blockCount());
+    auto block = std::make_shared<DistanceBlock>(*field.distance[static_cast<std::size_t>(slot)]);
+    for (float& phi : block->phi)
+      if (isStored(phi)) phi += 0.25F;
+    field.distance[static_cast<std::size_t>(slot)] = block;
+    renewSamples(field, std::array{slot}, *original);
+    SurfaceField bare = field;
+    bare.sample.clear();
+    ASSERT_TRUE(
+        sameSamples(field, *withSamples(std::make_shared<const SurfaceField>(std::move(bare)))));
+    std::size_t renewed = 0;
+    for (std::size_t s = 0; s < field.blockCount(); ++s)
+      renewed += field.sample[s] != before.sample[s];
+    EXPECT_GE(renewed, 1U);
+    EXPECT_LE(renewed, 27U);
+  }
+  std::vector<std::int32_t> all(field.blockCount());
+  for (std::size_t s = 0; s < all.size(); ++s) all[s] = static_cast<std::int32_t>(s);
+  field.distance = original->distance;
+  renewSamples(field, all, *original);
+  EXPECT_EQ(field.sample, original->sample);
+}
+
+} // namespace
+} // namespace patina
