@@ -82,28 +82,23 @@ Turned turned(const ChartOutline& outline) {
   return {aligned, box.sizes()};
 }
 
-// By quarters, the box's corner at the origin again.
-Eigen::Affine2d quarterTurned(const Turned& chart, int quarters) {
-  const Eigen::Vector2d shift(quarters == 1   ? chart.size[1]
-                              : quarters == 2 ? chart.size[0]
-                                              : 0,
-                              quarters == 2   ? chart.size[1]
-                              : quarters == 3 ? chart.size[0]
-                                              : 0);
-  static constexpr int kCosine[4] = {1, 0, -1, 0}, kSine[4] = {0, 1, 0, -1};
-  Eigen::Matrix2d quarter;
-  quarter << kCosine[quarters], -kSine[quarters], kSine[quarters], kCosine[quarters];
-  return Eigen::Translation2d(shift) * Eigen::Affine2d(quarter) * chart.aligned_from_plane;
-}
+// Cells that a chart touches.
+struct Mask {
+  int width, height;
+  std::vector<std::uint8_t> cells;
+  std::uint8_t& at(int x, int y) {
+    return cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(x)];
+  }
+};
 
-// Cells that a chart touches: those its border crosses, and those inside, all or nothing.
-CellShape shapeOf(const ChartOutline& outline, const Eigen::Affine2d& cells_from_plane,
-                  const Vec2& size) {
-  CellShape shape;
-  shape.width = static_cast<int>(size[0]) + 1;
-  shape.height = static_cast<int>(size[1]) + 1;
-  std::vector<std::vector<std::array<int, 2>>> touched(static_cast<std::size_t>(shape.height));
-  std::vector<std::vector<double>> crossings(touched.size());
+// Those its border crosses, and those inside: cells that the border spares are so wholly or not.
+Mask maskOf(const ChartOutline& outline, const Eigen::Affine2d& cells_from_plane,
+            const Vec2& size) {
+  Mask mask{static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1, {}};
+  mask.cells.assign(static_cast<std::size_t>(mask.width) * static_cast<std::size_t>(mask.height),
+                    0);
+  Mask flips = mask; // 1 = from this cell's centre on the inside is outside and vice versa
   const auto cell = [](double at, int count) {
     return std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
   };
@@ -111,36 +106,50 @@ CellShape shapeOf(const ChartOutline& outline, const Eigen::Affine2d& cells_from
   for (const auto& edge : outline.edges) {
     Vec2 a = cells_from_plane * edge[0], b = cells_from_plane * edge[1];
     if (a[1] > b[1]) std::swap(a, b);
-    const auto at = [&](double y) {
-      return b[1] > a[1] ? a[0] + std::clamp((y - a[1]) / (b[1] - a[1]), 0.0, 1.0) * (b[0] - a[0])
-                         : a[0];
-    };
-    const int last = cell(b[1] + kSlack, shape.height);
-    for (int row = cell(a[1] - kSlack, shape.height); row <= last; ++row) {
-      double from = at(row), to = at(row + 1);
-      if (!(b[1] > a[1])) to = b[0];
+    const double slope = b[1] > a[1] ? (b[0] - a[0]) / (b[1] - a[1]) : 0;
+    const auto at = [&](double y) { return a[0] + (std::clamp(y, a[1], b[1]) - a[1]) * slope; };
+    const int last = cell(b[1] + kSlack, mask.height);
+    for (int row = cell(a[1] - kSlack, mask.height); row <= last; ++row) {
+      double from = at(row), to = b[1] > a[1] ? at(row + 1) : b[0];
       if (from > to) std::swap(from, to);
-      touched[static_cast<std::size_t>(row)].push_back(
-          {cell(from - kSlack, shape.width), cell(to + kSlack, shape.width) + 1});
+      const int end = cell(to + kSlack, mask.width);
+      for (int x = cell(from - kSlack, mask.width); x <= end; ++x) mask.at(x, row) = 1;
       const double middle = row + 0.5;
-      if (a[1] <= middle && middle < b[1])
-        crossings[static_cast<std::size_t>(row)].push_back(at(middle));
+      if (!(a[1] <= middle && middle < b[1])) continue;
+      const double first = std::ceil(at(middle) - 0.5);
+      if (first < mask.width) flips.at(std::max(0, static_cast<int>(first)), row) ^= 1;
     }
   }
-  for (int row = 0; row < shape.height; ++row) {
-    auto& runs = touched[static_cast<std::size_t>(row)];
-    auto& across = crossings[static_cast<std::size_t>(row)];
-    std::sort(across.begin(), across.end());
-    for (std::size_t k = 0; k + 1 < across.size(); k += 2)
-      runs.push_back({cell(across[k], shape.width), cell(across[k + 1], shape.width) + 1});
-    std::sort(runs.begin(), runs.end());
-    for (const auto& run : runs) {
-      if (!shape.runs.empty() && shape.runs.back().row == row && shape.runs.back().to >= run[0])
-        shape.runs.back().to = std::max(shape.runs.back().to, run[1]);
-      else
-        shape.runs.push_back({row, run[0], run[1]});
-    }
+  for (int row = 0; row < mask.height; ++row) {
+    std::uint8_t inside = 0;
+    for (int x = 0; x < mask.width; ++x) mask.at(x, row) |= inside ^= flips.at(x, row);
   }
+  return mask;
+}
+
+Mask quarterTurned(Mask& mask) {
+  Mask result{mask.height, mask.width, std::vector<std::uint8_t>(mask.cells.size())};
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x) result.at(mask.height - 1 - y, x) = mask.at(x, y);
+  return result;
+}
+
+// What the above does to points.
+Eigen::Affine2d quarterTurn(const Mask& mask) {
+  Eigen::Affine2d turn;
+  turn.matrix() << 0, -1, mask.height, 1, 0, 0, 0, 0, 1;
+  return turn;
+}
+
+CellShape shapeOf(Mask& mask) {
+  CellShape shape{{}, mask.width, mask.height};
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x) {
+      if (!mask.at(x, y)) continue;
+      const int from = x;
+      while (x < mask.width && mask.at(x, y)) ++x;
+      shape.runs.push_back({y, from, x});
+    }
   return shape;
 }
 
@@ -162,30 +171,29 @@ std::vector<Eigen::Affine2d> placedAt(const Problem& problem, double scale) {
   for (std::size_t k = 0; k < problem.order.size(); ++k) {
     const std::size_t c = problem.order[k];
     const Turned& chart = problem.turned[c];
-    const double cells_per_unit = scale / unit;
+    Eigen::Affine2d cells_from_plane = Eigen::Scaling(scale / unit) * chart.aligned_from_plane;
+    Mask mask = maskOf(problem.charts[c], cells_from_plane, chart.size * scale / unit);
     const bool carefully = k < kCarefully;
     std::optional<CellPlace> best;
     CellShape best_shape;
-    Eigen::Affine2d best_turn;
     int top = grid.size();
     for (int quarters = 0; quarters < (carefully ? 4 : 1); ++quarters) {
-      const Eigen::Affine2d turn = quarterTurned(chart, quarters);
-      const Vec2 box = quarters % 2 == 0 ? chart.size : Vec2(chart.size[1], chart.size[0]);
-      CellShape shape =
-          shapeOf(problem.charts[c], Eigen::Scaling(cells_per_unit) * turn, box * cells_per_unit);
+      if (quarters > 0) {
+        cells_from_plane = quarterTurn(mask) * cells_from_plane;
+        mask = quarterTurned(mask);
+      }
+      CellShape shape = shapeOf(mask);
       std::optional<CellPlace> place = grid.place(shape, carefully ? 0 : cursor, top);
       if (!place && !carefully) place = grid.place(shape, 0, top);
       if (!place) continue;
       best = place;
       top = place->y + shape.height - 1; // the next turn must lie lower
       best_shape = std::move(shape);
-      best_turn = turn;
+      result[c] = Eigen::Scaling(unit) * Eigen::Translation2d(best->x, best->y) * cells_from_plane;
     }
     if (!best) return {};
     grid.add(best_shape, *best);
     cursor = best->y;
-    result[c] =
-        Eigen::Translation2d(best->x * unit, best->y * unit) * Eigen::Scaling(scale) * best_turn;
   }
   return result;
 }
@@ -232,7 +240,7 @@ Packing packed(const std::vector<ChartOutline>& charts, int image_size, int gap)
   // Rounds of kTried scales at once, in falling order: what is found does not hang on the threads.
   constexpr std::size_t kTried = 3;
   double low = 0, high = std::min(image_size / std::sqrt(sum), 1.5 * image_size / longest);
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < 4; ++round) {
     std::array<std::vector<Eigen::Affine2d>, kTried> found;
     const auto scaleOf = [&](std::size_t k) {
       return low + (high - low) * static_cast<double>(k + 1) / (kTried + 1);

@@ -253,6 +253,30 @@ std::optional<Clash> clashIn(const std::vector<FlatFace>& flat,
   return widest;
 }
 
+// The faces at a long piece's ends, unless a face is nearly as long as the piece.
+std::optional<Clash> endsOf(const std::vector<FlatFace>& flat,
+                            const std::vector<std::int32_t>& piece, double longest) {
+  Eigen::AlignedBox2d box;
+  Vec2 largest = Vec2::Zero();
+  for (const std::int32_t f : piece) {
+    Eigen::AlignedBox2d face;
+    for (const Vec2& p : flat[index(f)].corners) face.extend(p);
+    box.extend(face);
+    largest = largest.cwiseMax(face.sizes());
+  }
+  int axis = 0;
+  const double length = box.sizes().maxCoeff(&axis);
+  if (length <= longest || largest[axis] > 0.6 * length) return std::nullopt;
+  const auto middle = [&](std::int32_t f) {
+    const auto& corners = flat[index(f)].corners;
+    return corners[0][axis] + corners[1][axis] + corners[2][axis];
+  };
+  const auto [first, last] =
+      std::minmax_element(piece.begin(), piece.end(),
+                          [&](std::int32_t a, std::int32_t b) { return middle(a) < middle(b); });
+  return Clash{*first, *last};
+}
+
 // The faces of a piece that are nearer, in steps across edges, to one of two of its faces; the new
 // pieces are numbered `number` and number + 1.
 std::array<std::vector<std::int32_t>, 2> cut(const std::vector<FlatFace>& flat,
@@ -286,7 +310,7 @@ ChartPlane::ChartPlane(const Vec3& normal) {
   e2 = normal.cross(e1);
 }
 
-std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart) {
+std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart, double longest) {
   const std::vector<FlatFace> flat = flattened(surface, chart);
   std::vector<std::int32_t> piece_of(flat.size(), 0);
   std::vector<std::int32_t> whole(flat.size());
@@ -298,7 +322,8 @@ std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart) {
   while (!open.empty()) {
     const std::vector<std::int32_t> piece = std::move(open.back());
     open.pop_back();
-    const std::optional<Clash> found = clashIn(flat, piece, piece_of, rank);
+    std::optional<Clash> found = clashIn(flat, piece, piece_of, rank);
+    if (!found) found = endsOf(flat, piece, longest);
     if (!found) {
       if (piece.size() == flat.size()) return {std::move(chart)};
       Chart part{{}, chart.normal};

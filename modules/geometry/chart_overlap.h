@@ -17,6 +17,7 @@ struct ChartPlane {
 // The chart itself, or connected pieces of it of which none covers itself. All faces look along the
 // chart's normal, so a piece is embedded exactly if no vertex is wound round twice and its border
 // neither crosses nor overlaps itself: the border is short, and no pair of faces need be compared.
-std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart);
+// Pieces longer than `longest` along an axis of the plane are cut too, as far as their faces allow.
+std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart, double longest);
 
 } // namespace patina

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 
 #include <tbb/parallel_for.h>
 
@@ -106,10 +107,14 @@ Span reachedIn(const Corners& corners, int j) {
 double squaredDistanceToBorder(const Corners& corners, const Vec2& p) {
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec2 &a = corners[k], edge = corners[(k + 1) % 3] - a;
+    const Vec2 *a = &corners[k], *b = &corners[(k + 1) % 3];
+    // From one end for both faces at an edge: they are equally near to the last bit.
+    if (std::tie((*b)[1], (*b)[0]) < std::tie((*a)[1], (*a)[0])) std::swap(a, b);
+    const Vec2 edge = *b - *a;
     const double length2 = edge.squaredNorm();
-    const double t = length2 > 0 ? std::clamp((p - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
-    best = std::min(best, (p - a - t * edge).squaredNorm());
+    const double t = length2 > 0 ? std::clamp((p - *a).dot(edge) / length2, 0.0, 1.0) : 0.0;
+    const Vec2 nearest = t < 1 ? Vec2(*a + t * edge) : *b;
+    best = std::min(best, (p - nearest).squaredNorm());
   }
   return best;
 }

@@ -21,16 +21,19 @@ constexpr int kGap = 2 * kGutter; // texels between charts
 // Charts with less than this many texels are joined to neighbours even at the price of stretch:
 // their gaps would cost more than they show.
 constexpr double kSmallChart = 256;
+// Sides of a square that holds all charts, at most: longer ones would make the others small.
+constexpr double kLongest = 1.5;
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-std::vector<Chart> chartsOf(const AtlasSurface& surface, double small_area) {
-  std::vector<Chart> grown = grownCharts(surface, small_area);
+std::vector<Chart> chartsOf(const AtlasSurface& surface, int image_size) {
+  const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
+  std::vector<Chart> grown = grownCharts(surface, 2 * kSmallChart * area / image_size / image_size);
   std::vector<std::vector<Chart>> pieces(grown.size());
   tbb::parallel_for(std::size_t{0}, grown.size(), [&](std::size_t c) {
-    pieces[c] = embeddedPieces(surface, std::move(grown[c]));
+    pieces[c] = embeddedPieces(surface, std::move(grown[c]), kLongest * std::sqrt(area));
   });
   std::vector<Chart> charts;
   for (auto& list : pieces)
@@ -224,8 +227,7 @@ TextureLayout madeAtlas(const TriangleMesh& mesh, int image_size) {
   if (image_size < 16 || image_size > 16384)
     throw std::invalid_argument("an atlas has 16 to 16384 texels a side");
   const AtlasSurface surface = atlasSurface(mesh);
-  const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
-  std::vector<Chart> charts = chartsOf(surface, 2 * kSmallChart * area / image_size / image_size);
+  std::vector<Chart> charts = chartsOf(surface, image_size);
   const Packing packing = packedOrFewer(surface, charts, image_size);
 
   auto uvs = std::make_shared<CornerUvs>(mesh.triangles.size());
