@@ -31,7 +31,7 @@ double Dab::reach() const {
 }
 
 Dab Dab::in(const Pose& other_from_world) const {
-  return {other_from_world * from, other_from_world * to, radius_from, radius_to};
+  return {other_from_world * from, other_from_world * to, radius_from, radius_to, front};
 }
 
 double weightAt(const Dab& dab, const Brush& brush, const Vec3& p) {

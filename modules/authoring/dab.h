@@ -11,11 +11,12 @@ namespace patina {
 struct Dab {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero(); // [m], world
   double radius_from = 0, radius_to = 0;       // [m]
+  Vec3 front = Vec3::Zero();                   // world: only what looks this way; zero = any side
 
   Vec3 centre() const { return 0.5 * (from + to); }
   // Of a sphere about the centre that holds all of it.
   double reach() const;
-  Dab in(const Pose& other_from_world) const; // the same in another frame
+  Dab in(const Pose& other_from_world) const; // the same path in another frame
 };
 
 double weightAt(const Dab& dab, const Brush& brush, const Vec3& p); // K17

@@ -29,7 +29,7 @@ MaterialStroke::MaterialStroke(std::shared_ptr<const PaintSurface> surface, std:
       base_(base), channels_(std::move(channels)) {}
 
 std::size_t MaterialStroke::paint(const Dab& dab, const Brush& brush) {
-  const Dab local = dab.in(world_from_object_.inverse());
+  const Dab local = dab.in(world_from_object_.inverse()); // but its front
   if (brush.mode == StrokeMode::smooth && brush.tool != Tool::erase) return smooth(local, brush);
   return lay(local, brush);
 }
@@ -50,8 +50,9 @@ template <typename Visit>
 void MaterialStroke::forNodes(const Dab& local, const Brush& brush, const Index& block,
                               const Visit& visit) const {
   for (std::size_t node = 0; node < kMaterialNodes; ++node) {
-    const double weight = weightAt(local, brush, placeOf(block, node));
-    if (weight > 0) visit(node, weight);
+    const Vec3 place = placeOf(block, node);
+    const double weight = weightAt(local, brush, place);
+    if (weight > 0 && !looksAway(place, local.front)) visit(node, weight);
   }
 }
 
@@ -86,6 +87,15 @@ bool MaterialStroke::isNearSurface(const Index& block) const {
       for (int x = low[0]; x <= high[0]; ++x)
         if (field.slotOf(x, y, z) >= 0) return true;
   return false;
+}
+
+bool MaterialStroke::looksAway(const Vec3& place, const Vec3& front) const {
+  if (front.isZero(0)) return false;
+  const SurfaceField& field = *surface_->field;
+  const Vec3 q = field.grid.toGrid(world_from_object_ * place);
+  const auto nearest = [&](int axis) { return static_cast<int>(std::lround(q[axis])); };
+  const std::int32_t face = field.faceAt(nearest(0), nearest(1), nearest(2));
+  return face >= 0 && faceNormal(*surface_->mesh, static_cast<std::size_t>(face)).dot(front) <= 0;
 }
 
 std::size_t MaterialStroke::lay(const Dab& local, const Brush& brush) {

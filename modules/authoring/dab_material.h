@@ -40,7 +40,8 @@ class MaterialStroke {
   template <typename Visit>
   void forNodes(const Dab& local, const Brush& brush, const Index& block, const Visit& visit) const;
   bool isNearSurface(const Index& block) const;
-  Vec3 placeOf(const Index& block, std::size_t node) const; // object frame
+  bool looksAway(const Vec3& place, const Vec3& front) const; // the side that a node belongs to
+  Vec3 placeOf(const Index& block, std::size_t node) const;   // object frame
   Pair pairAt(const std::array<std::int32_t, 3>& node, MaterialChannel channel) const;
   void set(const Index& block, std::size_t node, MaterialChannel channel, const Pair& pair);
   std::size_t lay(const Dab& local, const Brush& brush);

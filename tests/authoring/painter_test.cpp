@@ -2,7 +2,7 @@
 
 #include "authoring/surface_values.h"
 #include "authoring/volume_fill.h"
-#include "tests/authoring/paint_fixture.h"
+#include "authoring/paint_fixture.h"
 
 namespace patina {
 namespace {
