@@ -20,10 +20,16 @@ int runField(const FieldOptions& options, Console& console) {
   const Scene scene = openWith(options.input, options.scene, console);
   if (scene.objects.empty())
     throw Error(options.input.string() + ": needs an object to build a field");
-  // One object needs no more than its field.
-  const BuiltField built = scene.objects.size() == 1
-                               ? buildField(worldMesh(scene), scene.field, console.progress())
-                               : compile(scene, console.progress())->built;
+  // One object needs no more than its field, unless relief is in it.
+  const bool baked = scene.relief.mode == ReliefMode::baked && highestRelief(scene) > 0;
+  BuiltField built;
+  if (scene.objects.size() == 1 && !baked) {
+    built = buildField(worldMesh(scene), scene.field, console.progress());
+  } else {
+    const auto compiled = compile(scene, console.progress());
+    built = compiled->built;
+    built.field = compiled->paint.field;
+  }
   console.progress().throwIfCancelled();
   writeField(options.output, *built.field);
   console.report(fieldJson(*built.field, built.report),
@@ -43,7 +49,7 @@ Command fieldCommand() {
       "about the surface, as a volume that ParaView opens. JSON: seconds, cpu_seconds, voxel [m], "
       "resolution (cells), origin [m], band_voxels, blocks, bytes, dense_bytes, "
       "dropped_triangles, ambiguous_signs, redistanced_nodes (depths re-measured where objects "
-      "overlap).";
+      "overlap). Baked relief is in it, pulled relief is not.";
   command.examples = {"patina field bunny.ply -o bunny.vti --resolution 200",
                       "patina field bunny.ply -o bunny.vti --voxel 0.5mm --band 6 --json"};
   command.input("MESH", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "app/cli/commands.h"
+#include "app/cli/paint_report.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
 #include "app/cli/stability_report.h"
@@ -97,6 +98,8 @@ void describeLayers(const SurfaceField& field, std::size_t mesh_bytes,
   Json layers = Json::array();
   std::vector<LayerBytes> all = field.layerBytes();
   if (mesh_bytes) all.insert(all.begin(), {"mesh", mesh_bytes});
+  if (compiled)
+    for (LayerBytes& layer : paintLayers(*compiled)) all.push_back(std::move(layer));
   for (const LayerBytes& layer : all) {
     Json entry = Json::object();
     entry.set("name", layer.name);
@@ -149,8 +152,19 @@ void describeField(const SurfaceField& field, const FieldReport& report, Json& j
   rows.insert(rows.end(), more.begin(), more.end());
 }
 
+void describeHistory(const StoredHistory& history, Json& json, TextRows& rows) {
+  if (history.undoable + history.redoable == 0) return;
+  Json entry = Json::object();
+  entry.set("undo", history.undoable);
+  entry.set("redo", history.redoable);
+  json.set("history", std::move(entry));
+  rows.emplace_back("history", formatCount(history.undoable) + " edits can be undone, " +
+                                   formatCount(history.redoable) + " redone");
+}
+
 int runInfo(const InfoOptions& options, Console& console) {
-  Scene scene = openWith(options.input, options.scene, console);
+  OpenedScene opened = openedWith(options.input, options.scene, console);
+  Scene& scene = opened.scene;
   const bool is_folder = std::filesystem::is_directory(inputPath(options.input));
   const bool is_field = !is_folder && isFieldFile(options.input);
   const char* kind = is_folder ? "workspace" : is_field ? "field" : "mesh";
@@ -161,6 +175,7 @@ int runInfo(const InfoOptions& options, Console& console) {
   if (is_folder) {
     for (const auto& [key, value] : values(scene)) rows.emplace_back(key, withUnit(key, value));
     json.set("values", valuesJson(scene));
+    describeHistory(*opened.history, json, rows);
   }
   describeObjects(scene, json, rows);
   if (options.no_field || scene.objects.empty()) {
@@ -189,6 +204,7 @@ int runInfo(const InfoOptions& options, Console& console) {
     describeField(*compiled->built.field, compiled->built.report, json, rows);
     describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), compiled.get(), json, rows);
     describeStages(*compiled, json, rows);
+    describeRelief(*compiled, json, rows);
     describeStability(*compiled, json, rows, console.progress());
   }
   console.report(json, aligned(rows));
@@ -208,13 +224,17 @@ Command infoCommand() {
       "on "
       "short strokes over the mesh). Of a field (.vti) written by patina: the file's own grid and "
       "layers, and its surface as the mesh; stages stay empty. Where the scene has a device "
-      "(device.* values), the smallest K*(x)/K of the surface and where.\n"
+      "(device.* values), the smallest K*(x)/K of the surface and where. Of a painted scene also "
+      "the "
+      "bytes of its paint, how high its relief is and what height the device bears, and the edits "
+      "that can be undone.\n"
       "JSON: kind, triangles, vertices, bounds [m], watertight, components, defects (non_finite, "
       "degenerate, duplicate, boundary_edges, non_manifold_edges, misoriented_edges), objects "
       "(name, "
       "triangles), layers (name, bytes; why, of the one that keeps several objects apart), stages "
       "(name, why, bytes, ns), field (as patina field), stability (as patina "
-      "render; only with a device).";
+      "render; only with a device); of a painted scene more layers, relief (object, highest, "
+      "wavelength [m]; admissible [m], exceeded: with a device), history (undo, redo).";
   command.examples = {"patina info bunny.ply", "patina info workspace --json",
                       "patina info huge.stl --unit m --no-field"};
   command.input("FILE", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

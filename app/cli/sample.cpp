@@ -48,8 +48,19 @@ struct SampledSurface {
   std::shared_ptr<const SurfaceField> field;
   std::optional<SurfaceOracle> oracle; // absent: only the field is known
   Sampler sampler = Sampler::high;
-  HapticProperties haptics;
+  std::shared_ptr<const CompiledScene> compiled; // null: only the field is known
 };
+
+Material materialAt(const SampledSurface& surface, std::int32_t face, const Vec3& closest) {
+  if (!surface.compiled) return baseMaterial({});
+  const Scene& scene = surface.compiled->scene;
+  const Material base = baseMaterial(scene.haptics);
+  const std::int32_t index = objectOfFace(*surface.compiled, face);
+  if (index < 0) return base;
+  const SceneObject& object = scene.objects[static_cast<std::size_t>(index)];
+  if (!object.paint || !object.paint->material) return base;
+  return object.paint->material->at(object.world_from_object.inverse() * closest, base);
+}
 
 SampledSurface open(const SampleOptions& options, Console& console) {
   SampledSurface surface;
@@ -67,10 +78,10 @@ SampledSurface open(const SampleOptions& options, Console& console) {
     return surface;
   }
   const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
-  surface.field = compiled->built.field;
+  surface.field = compiled->paint.field;
   surface.oracle.emplace(feltTriangles(*compiled, console.progress()));
   surface.sampler = compiled->scene.sampler;
-  surface.haptics = compiled->scene.haptics;
+  surface.compiled = compiled;
   return surface;
 }
 
@@ -98,8 +109,7 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
   } else {
     face = sampler.faceNear(p);
   }
-  const double friction =
-      surface.haptics.friction ? surface.haptics.friction->static_coefficient : 0;
+  const Material material = materialAt(surface, face, closest);
   return {p.x(),
           p.y(),
           p.z(),
@@ -112,8 +122,8 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
           closest.y(),
           closest.z(),
           in_band ? 1.0 : 0.0,
-          surface.haptics.stiffness,
-          friction};
+          material.stiffness,
+          material.static_friction};
 }
 
 int runSample(const SampleOptions& options, Console& console) {
@@ -161,11 +171,14 @@ Command sampleCommand() {
       "Points come with the columns x [m],y [m],z [m]; further columns are ignored. Out go phi [m] "
       "(negative inside), the unit direction nx,ny,nz, the nearest face, the closest point "
       "cx,cy,cz "
-      "[m], in_band (1 or 0), stiffness [N/m] and static friction.\n"
+      "[m], in_band (1 or 0), stiffness [N/m] and static friction: as painted at the closest "
+      "point, "
+      "the scene's own elsewhere.\n"
       "With a mesh or workspace the face and closest point are exact, and so are phi and the "
       "direction beyond the band; of several objects the closest point is one of their union's, "
       "which "
-      "none of them hides. With a field alone they are what the field knows: closest point "
+      "none of them hides. Where relief is baked, phi and the direction are those of the relief. "
+      "With a field alone they are what the field knows: closest point "
       "= point - phi n, and beyond the band phi is a bound outside, the coarse nodes' estimate "
       "inside; trust neither where in_band is 0.\n"
       "JSON: points, in_band, bad_points (NaN or infinite), sampler, voxel [m].";

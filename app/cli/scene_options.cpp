@@ -108,13 +108,18 @@ bool setsTipRadius(const Settings& settings) {
   return false;
 }
 
-Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console) {
+OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& options,
+                       Console& console) {
   OpenOptions open = options.open;
   open.tip_radius_chosen = setsTipRadius(options.settings);
   OpenedScene opened = openScene(path, open);
   for (const std::string& warning : opened.warnings) console.warn(warning);
   applySettings(opened.scene, options.settings);
-  return std::move(opened.scene);
+  return opened;
+}
+
+Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console) {
+  return openedWith(path, options, console).scene;
 }
 
 std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console) {

@@ -40,6 +40,8 @@ void applySettings(Scene& scene, const Settings& settings);
 bool setsTipRadius(const Settings& settings);
 
 // Opens, warns, and applies the settings. Throws FileError or Error; see openScene().
+OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& options,
+                       Console& console);
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console);
 // compile(), with what should be known of the result as warnings.
 std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console);
