@@ -32,5 +32,6 @@ TriangleMesh parseStl(std::string_view bytes, const std::string& name);
 // By extension; PLY and STL binary. Atomic. PLY stores doubles and OBJ the shortest text, so both
 // read back bit for bit; STL stores floats and no texture.
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+std::string plyBytes(const TriangleMesh& mesh); // what it writes as PLY
 
 } // namespace patina

@@ -60,6 +60,25 @@ std::string objText(const TriangleMesh& mesh) {
   return out;
 }
 
+std::string stlBytes(const TriangleMesh& mesh) {
+  std::string out(80, ' ');
+  constexpr std::string_view kTitle = "binary STL"; // must not begin with "solid"
+  out.replace(0, kTitle.size(), kTitle);
+  out.reserve(84 + 50 * mesh.triangles.size());
+  appendBytes(out, static_cast<std::uint32_t>(mesh.triangles.size()));
+  const auto appendVector = [&](const Vec3& v) {
+    for (int k = 0; k < 3; ++k) appendBytes(out, static_cast<float>(v[k]));
+  };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    appendVector(faceNormal(mesh, t));
+    for (int k = 0; k < 3; ++k) appendVector(mesh.corner(t, k));
+    appendBytes(out, std::uint16_t{0});
+  }
+  return out;
+}
+
+} // namespace
+
 std::string plyBytes(const TriangleMesh& mesh) {
   const bool textured = !mesh.corner_uvs.empty();
   std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
@@ -82,25 +101,6 @@ std::string plyBytes(const TriangleMesh& mesh) {
   }
   return out;
 }
-
-std::string stlBytes(const TriangleMesh& mesh) {
-  std::string out(80, ' ');
-  constexpr std::string_view kTitle = "binary STL"; // must not begin with "solid"
-  out.replace(0, kTitle.size(), kTitle);
-  out.reserve(84 + 50 * mesh.triangles.size());
-  appendBytes(out, static_cast<std::uint32_t>(mesh.triangles.size()));
-  const auto appendVector = [&](const Vec3& v) {
-    for (int k = 0; k < 3; ++k) appendBytes(out, static_cast<float>(v[k]));
-  };
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    appendVector(faceNormal(mesh, t));
-    for (int k = 0; k < 3; ++k) appendVector(mesh.corner(t, k));
-    appendBytes(out, std::uint16_t{0});
-  }
-  return out;
-}
-
-} // namespace
 
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   switch (meshFileType(path)) {

@@ -30,9 +30,10 @@ struct StoredSceneEdit {
 using JournalEvent = std::variant<Stroke, ValueEdit, StoredSceneEdit, UndoEvent, RedoEvent>;
 
 struct JournalText {
+  std::string from; // the state file that the first record follows; "" where no heading says so
   std::vector<JournalEvent> events; // whole records from the first on
-  // What follows them: a record that was being written when the program ended (torn), or records
-  // that are damaged or out of order (line and cause).
+  // What follows them: a record that was being written when the program or the machine stopped
+  // (torn), or records that are damaged or out of order (line and cause).
   bool torn = false;
   std::size_t damaged_line = 0; // 0 = none
   std::string damage;
@@ -40,17 +41,20 @@ struct JournalText {
 // A record carries its number (from 1) and a checksum over itself. Bounded; never throws for bad
 // text.
 JournalText parseJournal(std::string_view text);
+std::string journalHeading(const std::string& from);                      // line 1, with '\n'
 std::string journalLine(std::uint64_t number, const JournalEvent& event); // with '\n'
 
 // The file open for appending, locked against a second writer. append() returns when the record is
 // on disk (fsync). On failure throws FileError, and the file ends where it ended before.
 class JournalWriter {
  public:
-  // Cuts off what follows the first `events` records (a torn record). Throws FileError if the file
-  // is locked by another program.
+  // The file must exist (saveWorkspace begins it). Cuts off what follows the first `events`
+  // records: a torn record; damaged ones are first copied beside the file, as NAME.damaged. Throws
+  // FileError if the file is locked by another program, has fewer records, or has a whole one more:
+  // then another program has written it since it was read.
   JournalWriter(const std::filesystem::path& path, std::uint64_t events);
   ~JournalWriter();
-  void append(const JournalEvent& event);
+  void append(const JournalEvent& event); // Error, too, for a stroke that could not be read again
   std::uint64_t events() const;
 
  private:

@@ -1,5 +1,7 @@
 #include "workspace/manifest.h"
 
+#include <limits>
+
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
@@ -40,14 +42,86 @@ void requireInside(const std::string& relative) {
   if (!inside) throw Error("path '" + relative + "' leaves the workspace's folder");
 }
 
+ContentFile fileFrom(const Json& json, const char* key = "file") {
+  ContentFile file{json.at(key).asString(), json.at("sha256").asString()};
+  requireInside(file.path);
+  return file;
+}
+
+Json toJson(const ContentFile& file) {
+  Json json = Json::object();
+  json.set("file", file.path).set("sha256", file.sha256);
+  return json;
+}
+
+std::optional<ContentFile> fileIfAny(const Json& json, const char* key) {
+  const Json* found = json.find(key);
+  return found ? std::optional(fileFrom(*found)) : std::nullopt;
+}
+
+std::uint64_t countFrom(const Json& json) {
+  const std::int64_t count = json.asInteger();
+  if (count < 0) throw Error("a number of edits cannot be " + std::to_string(count));
+  return static_cast<std::uint64_t>(count);
+}
+
+ManifestPaint paintFrom(const Json& json) {
+  ManifestPaint paint;
+  if (const Json* layout = json.find("layout")) {
+    const std::int64_t charts = layout->at("charts").asInteger();
+    if (charts < 0 || charts > std::numeric_limits<int>::max()) throw Error("bad 'charts'");
+    paint.layout = ManifestLayout{layout->at("made").asBool(), static_cast<int>(charts), {}};
+    if (layout->find("file")) paint.layout->file = fileFrom(*layout);
+  }
+  paint.color = fileIfAny(json, "color");
+  paint.relief = fileIfAny(json, "relief");
+  paint.material = fileIfAny(json, "material");
+  if ((paint.color || paint.relief) && !paint.layout)
+    throw Error("a painted image has no 'layout'");
+  return paint;
+}
+
+Json toJson(const ManifestPaint& paint) {
+  Json json = Json::object();
+  if (paint.layout) {
+    Json layout = paint.layout->file ? toJson(*paint.layout->file) : Json::object();
+    layout.set("made", paint.layout->made).set("charts", paint.layout->charts);
+    json.set("layout", std::move(layout));
+  }
+  if (paint.color) json.set("color", toJson(*paint.color));
+  if (paint.relief) json.set("relief", toJson(*paint.relief));
+  if (paint.material) json.set("material", toJson(*paint.material));
+  return json;
+}
+
 ManifestObject objectFrom(const Json& json) {
   ManifestObject object;
   object.name = json.at("name").asString();
-  object.mesh = json.at("mesh").asString();
-  object.sha256 = json.at("sha256").asString();
+  object.mesh = fileFrom(json, "mesh");
   object.world_from_object = poseFrom(json.at("world_from_object"));
-  requireInside(object.mesh);
+  if (const Json* paint = json.find("paint")) object.paint = paintFrom(*paint);
   return object;
+}
+
+ManifestState stateFrom(const Json& json) {
+  return {countFrom(json.at("event")), fileFrom(json)};
+}
+
+void readHistory(const Json& json, Manifest& manifest) {
+  manifest.event = countFrom(json.at("event"));
+  if (const Json* journal = json.find("journal")) {
+    manifest.journal =
+        ManifestJournal{journal->at("file").asString(), journal->at("check").asString()};
+    requireInside(manifest.journal->file);
+  }
+  if (const Json* states = json.find("states"))
+    for (const Json& state : states->asArray()) manifest.states.push_back(stateFrom(state));
+  for (std::size_t i = 0; i < manifest.states.size(); ++i) {
+    const bool ascends = i == 0 ? manifest.states[0].event == 0
+                                : manifest.states[i - 1].event < manifest.states[i].event;
+    if (!ascends) throw Error("'states' must begin with event 0 and ascend");
+  }
+  if (manifest.journal && manifest.states.empty()) throw Error("'states' is missing");
 }
 
 std::string textOf(const Json& value) {
@@ -64,9 +138,10 @@ Json jsonOf(const std::string& text) {
 
 Manifest manifestFrom(const Json& json) {
   const std::int64_t version = json.at("version").asInteger();
-  if (version != kWorkspaceVersion) {
+  if (version < 1 || version > kWorkspaceVersion) {
     throw Error("workspace version " + std::to_string(version) +
-                " is unknown; this program reads version " + std::to_string(kWorkspaceVersion));
+                " is unknown; this program reads versions 1 to " +
+                std::to_string(kWorkspaceVersion));
   }
   Manifest manifest;
   for (const Json& object : json.at("objects").asArray())
@@ -75,6 +150,7 @@ Manifest manifestFrom(const Json& json) {
   for (const auto& [key, value] : json.at("values").asObject())
     list.emplace_back(key, textOf(value));
   setValues(manifest.values, list);
+  if (version >= 2) readHistory(json, manifest);
   return manifest;
 }
 
@@ -84,8 +160,9 @@ Json toJson(const Manifest& manifest) {
   Json objects = Json::array();
   for (const ManifestObject& object : manifest.objects) {
     Json json = Json::object();
-    json.set("name", object.name).set("mesh", object.mesh).set("sha256", object.sha256);
+    json.set("name", object.name).set("mesh", object.mesh.path).set("sha256", object.mesh.sha256);
     json.set("world_from_object", toJson(object.world_from_object));
+    if (object.paint) json.set("paint", toJson(*object.paint));
     objects.push(std::move(json));
   }
   Json list = Json::object();
@@ -95,19 +172,51 @@ Json toJson(const Manifest& manifest) {
   Json json = Json::object();
   json.set("version", kWorkspaceVersion).set("units", "SI");
   json.set("objects", std::move(objects)).set("values", std::move(list));
+  json.set("event", static_cast<std::int64_t>(manifest.event));
+  if (!manifest.journal) return json;
+  Json journal = Json::object();
+  journal.set("file", manifest.journal->file).set("check", manifest.journal->check);
+  Json states = Json::array();
+  for (const ManifestState& state : manifest.states) {
+    Json item = Json::object();
+    item.set("event", static_cast<std::int64_t>(state.event));
+    item.set("file", state.file.path).set("sha256", state.file.sha256);
+    states.push(std::move(item));
+  }
+  json.set("journal", std::move(journal)).set("states", std::move(states));
   return json;
 }
 
-Manifest readManifest(const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / kManifestName;
-  const Json json = parseJson(readFile(path), path.string());
+Manifest parseManifest(std::string_view text, const std::string& name) {
+  const Json json = parseJson(text, name);
   try {
     return manifestFrom(json);
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
-    throw FileError(path.string(), 0, error.what());
+    throw FileError(name, 0, error.what());
   }
+}
+
+Manifest readManifest(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / kManifestName;
+  return parseManifest(readFile(path), path.string());
+}
+
+std::vector<ContentFile> filesOf(const std::vector<ManifestObject>& objects) {
+  std::vector<ContentFile> files;
+  const auto add = [&](const std::optional<ContentFile>& file) {
+    if (file) files.push_back(*file);
+  };
+  for (const ManifestObject& object : objects) {
+    files.push_back(object.mesh);
+    if (!object.paint) continue;
+    if (object.paint->layout) add(object.paint->layout->file);
+    add(object.paint->color);
+    add(object.paint->relief);
+    add(object.paint->material);
+  }
+  return files;
 }
 
 } // namespace patina

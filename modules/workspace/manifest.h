@@ -1,8 +1,11 @@
-// workspace.json: what it says, apart from the files that it names.
+// workspace.json and the states beside it: what they say, apart from the files that they name.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/json.h"
@@ -10,24 +13,57 @@
 
 namespace patina {
 
-inline constexpr int kWorkspaceVersion = 1;
+inline constexpr int kWorkspaceVersion = 2; // 1, without paint and history, is read too
 inline constexpr const char* kManifestName = "workspace.json";
+
+struct ContentFile {
+  std::string path; // relative to the folder, inside it
+  std::string sha256;
+};
+
+struct ManifestLayout {
+  bool made = false;
+  int charts = 0;
+  std::optional<ContentFile> file; // absent: the mesh's own texture coordinates
+};
+
+struct ManifestPaint {
+  std::optional<ManifestLayout> layout;
+  std::optional<ContentFile> color, relief, material;
+};
 
 struct ManifestObject {
   std::string name;
-  std::string mesh;   // path relative to the folder, inside it
-  std::string sha256; // of the mesh file
+  ContentFile mesh;
   Pose world_from_object = Pose::Identity();
+  std::optional<ManifestPaint> paint;
+};
+
+struct ManifestState {
+  std::uint64_t event = 0;
+  ContentFile file;
+};
+
+struct ManifestJournal {
+  std::string file;  // relative to the folder
+  std::string check; // of the record `event`, or of the heading: tells another journal
 };
 
 struct Manifest {
   std::vector<ManifestObject> objects;
-  Scene values; // everything but the objects
+  Scene values;                           // everything but the objects
+  std::uint64_t event = 0;                // how many records of the journal are in it
+  std::optional<ManifestJournal> journal; // absent in a state, and in version 1
+  std::vector<ManifestState> states;
 };
 
 Json toJson(const Manifest& manifest);
 
-// Throws FileError naming the file: unknown version, a path that leaves the folder, a bad value.
+// Throws FileError(name): unknown version, a path that leaves the folder, a bad value.
+Manifest parseManifest(std::string_view text, const std::string& name);
 Manifest readManifest(const std::filesystem::path& folder);
+
+// Every file that the objects need.
+std::vector<ContentFile> filesOf(const std::vector<ManifestObject>& objects);
 
 } // namespace patina

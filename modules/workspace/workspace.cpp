@@ -1,98 +1,23 @@
 #include "workspace/workspace.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fcntl.h>
-#include <set>
-#include <unistd.h>
+#include <memory>
+#include <stdexcept>
 
+#include "core/append_file.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "geometry/mesh_io.h"
-#include "workspace/manifest.h"
-#include "workspace/sha256.h"
+#include "workspace/content_files.h"
+#include "workspace/history_files.h"
+#include "workspace/stored_objects.h"
 
 namespace patina {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMeshFolder = "meshes";
-constexpr std::string_view kTemporaryPrefix = ".saving-";
-
-// `..` is refused in the manifest; a symbolic link may still lead out of the folder.
-fs::path insidePath(const fs::path& folder, const std::string& relative) {
-  const fs::path root = fs::weakly_canonical(folder);
-  const fs::path full = fs::weakly_canonical(folder / relative);
-  const auto [end, unused] = std::mismatch(root.begin(), root.end(), full.begin(), full.end());
-  if (end != root.end()) {
-    throw FileError((folder / kManifestName).string(), 0,
-                    "path '" + relative + "' leaves the workspace's folder");
-  }
-  return full;
-}
-
-void syncFolder(const fs::path& folder) {
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = fd >= 0 && (::fsync(fd) == 0 || errno == EINVAL);
-  const int code = errno;
-  if (fd >= 0) ::close(fd);
-  if (!synced)
-    throw FileError(folder.string(), 0, std::string("cannot be flushed: ") + std::strerror(code));
-}
-
-void makeFolder(const fs::path& folder) {
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (!fs::is_directory(folder)) {
-    throw FileError(folder.string(), 0,
-                    "cannot be made a folder: " +
-                        (code ? code.message() : std::string("a file stands there")));
-  }
-}
-
-// The name holds the content's hash: a new mesh never takes the place of one that the old
-// workspace.json still names.
-ManifestObject storeMesh(const SceneObject& object, const fs::path& folder) {
-  const fs::path meshes = folder / kMeshFolder;
-  const fs::path temporary = meshes / (std::string(kTemporaryPrefix) + std::to_string(::getpid()) +
-                                       "-" + object.name + ".ply");
-  writeMesh(temporary, *object.mesh);
-  ManifestObject stored;
-  stored.name = object.name;
-  stored.world_from_object = object.world_from_object;
-  stored.sha256 = sha256(readFile(temporary));
-  stored.mesh =
-      std::string(kMeshFolder) + "/" + object.name + "-" + stored.sha256.substr(0, 8) + ".ply";
-  std::error_code code;
-  fs::rename(temporary, folder / stored.mesh, code);
-  if (code) throw FileError((folder / stored.mesh).string(), 0, code.message());
-  return stored;
-}
-
-bool isStoredMeshName(const std::string& name) {
-  if (name.starts_with(kTemporaryPrefix) || name.starts_with("." + std::string(kTemporaryPrefix)))
-    return true;
-  constexpr std::size_t kTail = sizeof("-01234567.ply") - 1;
-  if (name.size() <= kTail || !name.ends_with(".ply") || name[name.size() - kTail] != '-')
-    return false;
-  return name.find_first_not_of("0123456789abcdef", name.size() - kTail + 1) == name.size() - 4;
-}
-
-// Only names that saving makes; a file that a person put there stays.
-void removeUnused(const fs::path& meshes, const std::vector<ManifestObject>& objects) {
-  std::set<std::string> used;
-  for (const ManifestObject& object : objects) used.insert(fs::path(object.mesh).filename());
-  std::error_code code;
-  std::vector<fs::path> unused;
-  for (fs::directory_iterator item(meshes, code), end; !code && item != end; item.increment(code)) {
-    const std::string name = item->path().filename();
-    if (isStoredMeshName(name) && !used.contains(name)) unused.push_back(item->path());
-  }
-  // What cannot be removed only takes room: the workspace is saved all the same.
-  for (const fs::path& path : unused) fs::remove(path, code);
-}
+constexpr const char* kAdvice =
+    "; put it back from a copy, or recover the workspace: the scene as saved is whole";
 
 // Saving over a workspace that a newer program wrote would lose what this one cannot read.
 void refuseNewer(const fs::path& folder) {
@@ -111,45 +36,160 @@ void refuseNewer(const fs::path& folder) {
   }
 }
 
+std::optional<Manifest> manifestIfReadable(const fs::path& folder) {
+  try {
+    return readManifest(folder);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
+}
+
+// Held while a workspace is replaced, so that another program does not go on writing its history.
+std::unique_ptr<AppendFile> lockOld(const fs::path& folder) {
+  const std::optional<Manifest> old = manifestIfReadable(folder);
+  std::error_code code;
+  if (!old || !old->journal || !fs::exists(folder / old->journal->file, code)) return nullptr;
+  return std::make_unique<AppendFile>(insidePath(folder, old->journal->file));
+}
+
+void readHistory(const fs::path& folder, const Manifest& manifest, OpenedWorkspace& opened) {
+  for (const ManifestState& state : manifest.states) {
+    loadContent(folder, state.file);
+    opened.states.push_back({state.event, state.file.path});
+  }
+  const fs::path path = insidePath(folder, manifest.journal->file);
+  if (!fs::exists(path)) throw FileError(path.string(), 0, std::string("is missing") + kAdvice);
+  const std::string text = readFile(path);
+  JournalText journal = parseJournal(text);
+  const std::string cause = mismatch(journalLines(text), manifest.states.front().file.path,
+                                     manifest.event, manifest.journal->check);
+  if (journal.damaged_line != 0)
+    throw FileError(path.string(), journal.damaged_line, journal.damage + kAdvice);
+  if (!cause.empty()) throw FileError(path.string(), 0, cause + kAdvice);
+  if (journal.torn)
+    opened.notes.push_back(path.string() +
+                           ": the last record was not written whole and is left out");
+  for (const JournalEvent& event : journal.events)
+    if (const auto* edit = std::get_if<StoredSceneEdit>(&event)) loadNamed(folder, edit->state);
+  opened.journal = std::move(journal.events);
+  opened.journal_file = path;
+  opened.event = manifest.event;
+}
+
+// states.front() is event 0 and they ascend.
+std::vector<ManifestState> manifestStates(const std::vector<StoredState>& states,
+                                          const fs::path& folder) {
+  std::vector<ManifestState> stored;
+  for (const StoredState& state : states) {
+    const bool ascends = stored.empty() ? state.event == 0 : state.event > stored.back().event;
+    if (!ascends) throw std::invalid_argument("saveWorkspace: states must ascend from event 0");
+    ManifestState& item = stored.emplace_back();
+    item.event = state.event;
+    loadNamed(folder, state.file, &item.file);
+  }
+  if (stored.empty()) throw std::invalid_argument("saveWorkspace: no state 0");
+  return stored;
+}
+
+// The journal that goes on from `first_state`: the one that workspace.json names, or, where that is
+// broken, the newest that fits.
+std::string journalOf(const fs::path& folder, const std::string& first_state) {
+  const std::optional<Manifest> old = manifestIfReadable(folder);
+  std::vector<std::string> names;
+  if (old && old->journal)
+    names.push_back(old->journal->file);
+  else
+    names = journalNames(folder);
+  for (const std::string& name : names) {
+    const std::string text = readFile(insidePath(folder, name));
+    if (headingOf(journalLines(text)) == first_state) return name;
+  }
+  throw FileError(folder.string(), 0,
+                  "another program has replaced this workspace; save to another folder");
+}
+
+// The one moment at which the old workspace becomes the new one, and what follows.
+void commit(Manifest manifest, const std::string& journal, std::string_view journal_text,
+            const fs::path& folder) {
+  const JournalLines lines = journalLines(journal_text);
+  manifest.journal = ManifestJournal{journal, checkOf(lines, manifest.event)};
+  if (manifest.journal->check.empty())
+    throw std::invalid_argument("saveWorkspace: the journal has fewer events");
+  writeFileAtomically(folder / kManifestName, toJson(manifest).dump() + "\n");
+  removeUnused(folder, manifest, lines);
+}
+
+void replace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
+             const std::vector<JournalEvent>& events, const fs::path& folder) {
+  Manifest manifest = storeObjects(scene, folder);
+  manifest.event = event;
+  manifest.states = manifestStates(states, folder);
+  std::string text = journalHeading(states.front().file);
+  std::uint64_t number = 0;
+  for (const JournalEvent& item : events) text += journalLine(++number, item);
+  // Under a name of its own: the old history must not be taken for the new one's.
+  const std::string name = nextJournalName(folder);
+  writeFileAtomically(folder / name, text);
+  commit(std::move(manifest), name, text, folder);
+}
+
 } // namespace
 
+OpenedWorkspace openWorkspace(const fs::path& folder, bool recover) {
+  if (recover) return recoverWorkspace(folder);
+  const Manifest manifest = readManifest(folder);
+  OpenedWorkspace opened;
+  opened.scene = loadScene(manifest, folder, (folder / kManifestName).string());
+  if (manifest.journal) readHistory(folder, manifest, opened);
+  return opened;
+}
+
+Scene loadState(const fs::path& folder, const std::string& file) {
+  const std::string name = (folder / file).string();
+  return loadScene(parseManifest(loadNamed(folder, file), name), folder, name);
+}
+
 Scene loadWorkspace(const fs::path& folder) {
-  Manifest manifest = readManifest(folder);
-  Scene scene = std::move(manifest.values);
-  for (ManifestObject& object : manifest.objects) {
-    const fs::path path = insidePath(folder, object.mesh);
-    // Hashed and parsed from the same bytes, so that the file cannot change in between.
-    const std::string bytes = readFile(path);
-    if (sha256(bytes) != object.sha256) {
-      throw FileError(path.string(), 0,
-                      "is not the file that was saved (its SHA-256 differs from workspace.json)");
-    }
-    auto mesh = std::make_shared<const TriangleMesh>(parsePly(bytes, path.string()));
-    scene.objects.push_back({std::move(object.name), std::move(mesh), object.world_from_object});
-  }
-  try {
-    validate(scene);
-  } catch (const Error& error) {
-    throw FileError((folder / kManifestName).string(), 0, error.what());
-  }
-  return scene;
+  return loadScene(readManifest(folder), folder, (folder / kManifestName).string());
+}
+
+std::string storeState(const Scene& scene, std::uint64_t event, const fs::path& folder) {
+  validate(scene);
+  makeFolder(folder);
+  Manifest manifest = storeObjects(scene, folder);
+  manifest.event = event;
+  return storeContent(folder, "states/" + std::to_string(event), ".json",
+                      toJson(manifest).dump() + "\n")
+      .path;
+}
+
+void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
+                   const fs::path& folder) {
+  validate(scene);
+  refuseNewer(folder);
+  Manifest manifest = storeObjects(scene, folder);
+  manifest.event = event;
+  manifest.states = manifestStates(states, folder);
+  const std::string journal = journalOf(folder, states.front().file);
+  const std::string text = readFile(insidePath(folder, journal));
+  commit(std::move(manifest), journal, text, folder);
+}
+
+void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
+                   const std::vector<JournalEvent>& journal, const fs::path& folder) {
+  validate(scene);
+  makeFolder(folder);
+  refuseNewer(folder);
+  const auto lock = lockOld(folder);
+  replace(scene, event, states, journal, folder);
 }
 
 void saveWorkspace(const Scene& scene, const fs::path& folder) {
   validate(scene);
   makeFolder(folder);
   refuseNewer(folder);
-  const fs::path meshes = folder / kMeshFolder;
-  makeFolder(meshes);
-  Manifest manifest;
-  manifest.values = scene;
-  for (const SceneObject& object : scene.objects)
-    manifest.objects.push_back(storeMesh(object, folder));
-  syncFolder(meshes);
-  syncFolder(folder);
-  // The one moment at which the old workspace becomes the new one.
-  writeFileAtomically(folder / kManifestName, toJson(manifest).dump() + "\n");
-  removeUnused(meshes, manifest.objects);
+  const auto lock = lockOld(folder);
+  replace(scene, 0, {{0, storeState(scene, 0, folder)}}, {}, folder);
 }
 
 bool isWorkspace(const fs::path& path) {

@@ -21,18 +21,22 @@ struct OpenedWorkspace {
   Scene scene;             // as saved: after `event` events
   std::uint64_t event = 0; // what the journal holds beyond it is for the reader to apply
   std::vector<JournalEvent> journal;
-  std::filesystem::path journal_file; // for a JournalWriter
-  std::vector<StoredState> states; // ascending; the first is event 0, the scene before any edit
-  std::vector<std::string> notes;  // what was found and mended, one line each
+  std::filesystem::path journal_file; // for a JournalWriter; empty where there is no history
+  // Ascending; the first is event 0, the scene before any edit. Empty without a history: it begins
+  // with the next saveWorkspace().
+  std::vector<StoredState> states;
+  std::vector<std::string> notes; // what was found and mended, one line each
 };
 
 // workspace.json (version 2, relative paths, SHA-256 of each file): the scene as saved. Beside it
-// meshes/, paint/, states/ and journal.jsonl. Version 1, without history, is read too.
+// meshes/, paint/, states/ and journal-N.jsonl. Version 1, without history, is read too.
 // A torn last record is left out with a note. Throws FileError naming file, line and cause: unknown
-// version, wrong hash, a path that leaves the folder, a journal that is damaged or shorter than
-// what was saved. With `recover` what can be read is kept and the rest becomes notes: the saved
-// scene without a damaged journal, the objects whose files are whole, or, without a readable
-// workspace.json, the newest readable state.
+// version, wrong hash, a path that leaves the folder, a journal that is damaged, another
+// workspace's, or shorter than what was saved. With `recover` what can be read is kept and the rest
+// becomes notes: of a damaged journal the records before the damage, if the saved ones are among
+// them; in place of a damaged scene the latest state that is whole, which the journal goes on from,
+// or else the objects whose files are whole; without a readable workspace.json the journal and its
+// states, or else the newest readable state. Nothing on disk is changed.
 OpenedWorkspace openWorkspace(const std::filesystem::path& folder, bool recover = false);
 // Scene of a stored state.
 Scene loadState(const std::filesystem::path& folder, const std::string& file);

@@ -66,7 +66,8 @@ const std::vector<Library>& libraries() {
 bool isSystem(const std::string& included) {
   if (included.find('.') == std::string::npos) return included.find('/') == std::string::npos;
   static const Names kSystem{"unistd.h", "fcntl.h",  "sched.h",     "time.h",      "stdlib.h",
-                             "poll.h",   "dirent.h", "immintrin.h", "emmintrin.h", "signal.h"};
+                             "poll.h",   "dirent.h", "immintrin.h", "emmintrin.h", "signal.h",
+                             "dlfcn.h"};
   return kSystem.contains(included) || included.starts_with("sys/");
 }
 

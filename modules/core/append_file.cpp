@@ -1,0 +1,80 @@
+#include "core/append_file.h"
+
+#include <cerrno>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+// Some network file systems have no locks; a person who works there alone must not be kept out.
+bool lock(int fd) {
+  int result;
+  do {
+    result = ::flock(fd, LOCK_EX | LOCK_NB);
+  } while (result != 0 && errno == EINTR);
+  return result == 0 || errno != EWOULDBLOCK;
+}
+
+} // namespace
+
+AppendFile::AppendFile(const std::filesystem::path& path)
+    : name_(path.string()), file_(openRetrying(name_.c_str(), O_RDWR)) {
+  if (file_.get() < 0) throw FileError(name_, 0, "cannot be opened for writing: " + reason(errno));
+  if (!lock(file_.get())) {
+    throw FileError(name_, 0,
+                    "another program is writing it; close that one, or save to another folder");
+  }
+  struct stat info {};
+  if (::fstat(file_.get(), &info) != 0)
+    throw FileError(name_, 0, "cannot be read: " + reason(errno));
+  if (info.st_nlink == 0) throw FileError(name_, 0, "was replaced meanwhile; open it again");
+  size_ = static_cast<std::uint64_t>(info.st_size);
+}
+
+std::string AppendFile::content() const {
+  ::lseek(file_.get(), 0, SEEK_SET);
+  std::string bytes = readAll(file_.get(), name_);
+  if (bytes.size() > size_) bytes.resize(size_);
+  return bytes;
+}
+
+bool AppendFile::cut(std::uint64_t size) {
+  int result;
+  do {
+    result = ::ftruncate(file_.get(), static_cast<off_t>(size));
+  } while (result != 0 && errno == EINTR);
+  return result == 0 && syncRetrying(file_.get());
+}
+
+void AppendFile::truncate(std::uint64_t size) {
+  if (!cut(size)) throw FileError(name_, 0, "cannot be cut: " + reason(errno));
+  size_ = size;
+  longer_ = false;
+}
+
+void AppendFile::append(std::string_view bytes) {
+  if (longer_) truncate(size_);
+  bool done = writeAllAt(file_.get(), bytes, static_cast<std::int64_t>(size_));
+  const char* what = "cannot be written: ";
+  if (done) {
+    what = "cannot be flushed to disk: ";
+    int result;
+    do {
+      result = ::fdatasync(file_.get()); // the size is flushed with the data
+    } while (result != 0 && errno == EINTR);
+    done = result == 0;
+  }
+  if (!done) {
+    const int code = errno;
+    longer_ = !cut(size_);
+    throw FileError(name_, 0, what + reason(code));
+  }
+  size_ += bytes.size();
+}
+
+} // namespace patina

@@ -1,0 +1,36 @@
+// A file that grows by whole pieces, and by one program at a time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/descriptor.h"
+
+namespace patina {
+
+// Holds a lock on the file for as long as it lives.
+class AppendFile {
+ public:
+  // The file must exist. Throws FileError: missing, or locked by another program (or another
+  // AppendFile of this one).
+  explicit AppendFile(const std::filesystem::path& path);
+
+  std::string content() const;
+  std::uint64_t size() const { return size_; }
+  void truncate(std::uint64_t size); // on disk when it returns; throws FileError
+  // On disk when it returns. On failure throws FileError, and the file ends where it ended before;
+  // if even that is refused, the next append() tries it again first.
+  void append(std::string_view bytes);
+
+ private:
+  bool cut(std::uint64_t size);
+
+  std::string name_;
+  Descriptor file_;
+  std::uint64_t size_ = 0;
+  bool longer_ = false; // a piece that failed could not be cut off
+};
+
+} // namespace patina

@@ -1,0 +1,79 @@
+#include "core/descriptor.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/error.h"
+
+namespace patina {
+
+int Descriptor::close() {
+  if (fd_ < 0) return 0;
+  const int result = ::close(fd_);
+  fd_ = -1;
+  // Linux has closed it by then; closing again could hit another file.
+  return result != 0 && errno == EINTR ? 0 : result;
+}
+
+int openRetrying(const char* path, int flags, mode_t mode) {
+  int fd;
+  do {
+    fd = ::open(path, flags | O_CLOEXEC, mode);
+  } while (fd < 0 && errno == EINTR);
+  return fd;
+}
+
+bool syncRetrying(int fd) {
+  int result;
+  do {
+    result = ::fsync(fd);
+  } while (result != 0 && errno == EINTR);
+  // Some file systems cannot sync a folder and say so with EINVAL: nothing more can be done there.
+  return result == 0 || errno == EINVAL;
+}
+
+bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(fd, bytes.data(), bytes.size(), offset);
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      return false;
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    offset += written;
+  }
+  return true;
+}
+
+std::string readAll(int fd, const std::string& name) {
+  struct stat info {};
+  if (::fstat(fd, &info) != 0) throw FileError(name, 0, "cannot be read: " + reason(errno));
+  if (S_ISDIR(info.st_mode)) throw FileError(name, 0, "is a folder, not a file");
+  std::string bytes;
+  // One byte more than the size, so that the end is seen without another growth.
+  std::size_t room = info.st_size > 0 ? static_cast<std::size_t>(info.st_size) + 1 : 65536;
+  std::size_t used = 0;
+  for (;;) {
+    bytes.resize(used + room);
+    const ssize_t got = ::read(fd, bytes.data() + used, room);
+    if (got < 0) {
+      if (errno == EINTR) continue;
+      throw FileError(name, 0, "cannot be read: " + reason(errno));
+    }
+    used += static_cast<std::size_t>(got);
+    if (got == 0) break;
+    room = std::max<std::size_t>(bytes.size() - used, 65536);
+  }
+  bytes.resize(used);
+  return bytes;
+}
+
+std::string reason(int code) {
+  return std::strerror(code);
+}
+
+} // namespace patina

@@ -1,0 +1,33 @@
+// System calls on files, with what signals interrupt done again. Internal to file and append_file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <sys/types.h>
+
+namespace patina {
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  // A full disk may show only here: 0, or -1 and errno.
+  int close();
+
+ private:
+  int fd_;
+};
+
+int openRetrying(const char* path, int flags, mode_t mode = 0);
+bool syncRetrying(int fd);
+// false and errno; part of the bytes may then be there.
+bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset);
+// The whole file from its beginning. Throws FileError(name).
+std::string readAll(int fd, const std::string& name);
+std::string reason(int code); // of errno, for people
+
+} // namespace patina
