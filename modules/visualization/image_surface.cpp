@@ -27,6 +27,7 @@ constexpr const char* kSlopeShader =
     "  vec3 reliefTilt = normalMatrix * (2.0 * reliefRoot * abs(reliefRoot));\n"
     "  normalVCVSOutput = normalize(normalVCVSOutput - (gl_FrontFacing ? 1.0 : -1.0) * "
     "reliefTilt);\n";
+constexpr const char* kNormalTag = "//VTK::Normal::Impl";
 
 vtkSmartPointer<vtkImageData> texture(int width, int height, int components) {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -180,7 +181,7 @@ void ImageSurface::drawSlope() {
   if (!image) {
     if (slope_texture_) {
       actor_->GetProperty()->RemoveTexture(kSlopeName);
-      actor_->GetShaderProperty()->ClearAllFragmentShaderReplacements();
+      actor_->GetShaderProperty()->ClearFragmentShaderReplacement(kNormalTag, true);
       slope_texture_ = nullptr;
       slope_ = nullptr;
       slope_image_ = nullptr;
@@ -222,8 +223,7 @@ void ImageSurface::drawSlope() {
   }
   slope_texture_ = smooth(slope_);
   actor_->GetProperty()->SetTexture(kSlopeName, slope_texture_);
-  actor_->GetShaderProperty()->AddFragmentShaderReplacement("//VTK::Normal::Impl", true,
-                                                            kSlopeShader, false);
+  actor_->GetShaderProperty()->AddFragmentShaderReplacement(kNormalTag, true, kSlopeShader, false);
 }
 
 } // namespace patina

@@ -72,7 +72,7 @@ ValueRange MaterialSurface::prepare(MaterialChannel channel) {
     fineness_ = map_->voxel();
     const RefinedSurface fine = refined(*mesh_, fineness_);
     std::vector<std::int32_t> vertex;
-    const auto data = surfaceData(fine.mesh, vertex);
+    const auto data = surfaceData(fine.mesh, fine.normals, vertex);
     points_.clear();
     for (const std::int32_t v : vertex)
       points_.push_back(fine.mesh.positions[static_cast<std::size_t>(v)]);

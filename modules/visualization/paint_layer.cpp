@@ -98,7 +98,7 @@ void PaintLayer::Impl::setColors(const ValueRange& wanted) {
   read->SetRange(reading.per_si * wanted.low, reading.per_si * wanted.high);
   bar->SetLookupTable(read);
   bar->SetTitle((reading.title + "\n").c_str());
-  bar->SetLabelFormat(*quantity == PaintQuantity::relief ? "%+.4g" : "%.4g");
+  bar->SetLabelFormat("%.4g");
 }
 
 void PaintLayer::Impl::showWhatIsDrawn() {

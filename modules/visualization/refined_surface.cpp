@@ -15,6 +15,7 @@ constexpr double kPieceArea = 0.22;
 struct Piece {
   Triangle corners;
   std::array<Vec2, 3> uv;
+  std::array<Vec3, 3> normal;
 };
 
 struct Extent {
@@ -44,6 +45,7 @@ class Refiner {
       if (split(piece)) continue;
       result_.mesh.triangles.push_back(piece.corners);
       if (with_uvs) result_.mesh.corner_uvs.push_back(piece.uv);
+      result_.normals.push_back(piece.normal);
       result_.parent.push_back(face);
     }
   }
@@ -83,6 +85,7 @@ class Refiner {
     Piece first = piece, second = piece;
     first.corners[next] = second.corners[edge] = vertex;
     first.uv[next] = second.uv[edge] = uv;
+    first.normal[next] = second.normal[edge] = 0.5 * (piece.normal[edge] + piece.normal[next]);
     pieces_.push_back(first);
     pieces_.push_back(second);
     return true;
@@ -112,10 +115,12 @@ RefinedSurface refined(const TriangleMesh& mesh, double max_edge, std::size_t mo
 
   Refiner refiner(mesh, max_edge);
   const bool with_uvs = !mesh.corner_uvs.empty();
+  const CornerNormals normals = smoothNormals(mesh);
   for (std::size_t f = 0; f < usable.size(); ++f)
     if (usable[f])
-      refiner.add({mesh.triangles[f], with_uvs ? mesh.corner_uvs[f] : std::array<Vec2, 3>{}},
-                  static_cast<std::int32_t>(f), with_uvs);
+      refiner.add(
+          {mesh.triangles[f], with_uvs ? mesh.corner_uvs[f] : std::array<Vec2, 3>{}, normals[f]},
+          static_cast<std::int32_t>(f), with_uvs);
   return refiner.take();
 }
 

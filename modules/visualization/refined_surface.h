@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "visualization/surface_data.h"
 
 namespace patina {
 
 struct RefinedSurface {
   TriangleMesh mesh;                // the same surface; with texture coordinates if it had them
+  CornerNormals normals;            // as smooth as the coarse surface's; not of unit length
   std::vector<std::int32_t> parent; // of each triangle, its face in the mesh that was refined
 };
 

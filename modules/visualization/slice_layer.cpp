@@ -52,8 +52,8 @@ struct Ink {
     std::array<double, 3> color{};
     if (material) {
       const PaintedValue value = paintedValue(*material->scene, material->channel, place);
-      // A hair of paint is seen as paint; the rim is softened.
-      const double cover = std::clamp(25 * value.weight, 0.0, 1.0);
+      // Little paint is seen as paint; the rim is softened.
+      const double cover = std::clamp(8 * value.weight, 0.0, 1.0);
       const unsigned char* of_value = material->colors->MapValue(value.felt);
       for (std::size_t c = 0; c < 3; ++c)
         color[c] = cover * of_value[c] + (1 - cover) * 255 * palette::kBackgroundLow[c];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
@@ -55,8 +56,6 @@ vtkSmartPointer<vtkCellArray> cells(vtkTypeInt32Array* connectivity, std::size_t
   return array;
 }
 
-constexpr double kCrease = 40; // degrees
-
 // What the corners of one vertex have in common is one point.
 struct Made {
   Vec3 normal;
@@ -74,19 +73,14 @@ vtkSmartPointer<vtkFloatArray> floats(const std::vector<float>& values, int comp
   return array;
 }
 
-vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh, double crease_deg,
-                                       const CornerUvs* uvs,
+// Corners with the same normal and coordinates share a point.
+vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh,
+                                       const CornerNormals& corner_normals, const CornerUvs* uvs,
                                        std::vector<std::int32_t>* vertex_of_point) {
-  const std::vector<Vec3> face_normals = areaNormals(mesh);
   std::vector<bool> usable(mesh.triangles.size());
-  std::size_t count = 0;
-  for (std::size_t f = 0; f < usable.size(); ++f) {
-    usable[f] = face_normals[f].allFinite();
-    if (usable[f]) ++count;
-  }
+  for (std::size_t f = 0; f < usable.size(); ++f) usable[f] = corner_normals[f][0].allFinite();
+  const auto count = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), true));
   const Fans fans = fansOf(mesh, usable);
-  const double cosine = std::cos(crease_deg * M_PI / 180);
-
   std::vector<float> points, normals, coordinates;
   points.reserve(mesh.positions.size() * 3);
   normals.reserve(mesh.positions.size() * 3);
@@ -95,25 +89,16 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh, double crease_d
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     made.clear();
     for (std::int32_t at = fans.first[v]; at < fans.first[v + 1]; ++at) {
-      const std::int32_t corner = fans.corners[static_cast<std::size_t>(at)];
-      const Vec3& own = face_normals[static_cast<std::size_t>(corner / 3)];
-      Vec3 sum = Vec3::Zero();
-      for (std::int32_t other = fans.first[v]; other < fans.first[v + 1]; ++other) {
-        const Vec3& n = face_normals[static_cast<std::size_t>(
-            fans.corners[static_cast<std::size_t>(other)] / 3)];
-        if (own.dot(n) >= cosine * own.norm() * n.norm()) sum += n;
-      }
-      // Corners that saw the same neighbours summed them in the same order: equal bit for bit.
-      const Vec2 uv = uvs != nullptr ? Vec2((*uvs)[static_cast<std::size_t>(corner / 3)]
-                                                  [static_cast<std::size_t>(corner % 3)])
-                                     : Vec2::Zero();
+      const auto corner = static_cast<std::size_t>(fans.corners[static_cast<std::size_t>(at)]);
+      const Vec3& normal = corner_normals[corner / 3][corner % 3];
+      const Vec2 uv = uvs != nullptr ? Vec2((*uvs)[corner / 3][corner % 3]) : Vec2::Zero();
       std::int32_t index = -1;
       for (const Made& one : made)
-        if (one.normal == sum && one.uv == uv) index = one.index;
+        if (one.normal == normal && one.uv == uv) index = one.index;
       if (index < 0) {
         index = static_cast<std::int32_t>(points.size() / 3);
-        made.push_back({sum, uv, index});
-        const Vec3 unit = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3::UnitZ();
+        made.push_back({normal, uv, index});
+        const Vec3 unit = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3::UnitZ();
         for (int axis = 0; axis < 3; ++axis) {
           points.push_back(static_cast<float>(mesh.positions[v][axis]));
           normals.push_back(static_cast<float>(unit[axis]));
@@ -122,7 +107,7 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh, double crease_d
           for (int axis = 0; axis < 2; ++axis) coordinates.push_back(static_cast<float>(uv[axis]));
         if (vertex_of_point != nullptr) vertex_of_point->push_back(static_cast<std::int32_t>(v));
       }
-      drawn_vertex[static_cast<std::size_t>(corner)] = index;
+      drawn_vertex[corner] = index;
     }
   }
 
@@ -145,18 +130,42 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh, double crease_d
 
 } // namespace
 
+CornerNormals smoothNormals(const TriangleMesh& mesh, double crease_deg) {
+  const std::vector<Vec3> face_normals = areaNormals(mesh);
+  std::vector<bool> usable(mesh.triangles.size());
+  for (std::size_t f = 0; f < usable.size(); ++f) usable[f] = face_normals[f].allFinite();
+  const Fans fans = fansOf(mesh, usable);
+  const double cosine = std::cos(crease_deg * M_PI / 180);
+  const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  CornerNormals normals(mesh.triangles.size(), {none, none, none});
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    for (std::int32_t at = fans.first[v]; at < fans.first[v + 1]; ++at) {
+      const auto corner = static_cast<std::size_t>(fans.corners[static_cast<std::size_t>(at)]);
+      const Vec3& own = face_normals[corner / 3];
+      Vec3 sum = Vec3::Zero();
+      for (std::int32_t other = fans.first[v]; other < fans.first[v + 1]; ++other) {
+        const Vec3& n = face_normals[static_cast<std::size_t>(
+            fans.corners[static_cast<std::size_t>(other)] / 3)];
+        if (own.dot(n) >= cosine * own.norm() * n.norm()) sum += n;
+      }
+      // Corners that saw the same neighbours summed them in the same order: equal bit for bit.
+      normals[corner / 3][corner % 3] = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3::Zero();
+    }
+  return normals;
+}
+
 vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, double crease_deg) {
-  return splitData(mesh, crease_deg, nullptr, nullptr);
+  return splitData(mesh, smoothNormals(mesh, crease_deg), nullptr, nullptr);
 }
 
 vtkSmartPointer<vtkPolyData> texturedData(const TriangleMesh& mesh, const CornerUvs& uvs) {
-  return splitData(mesh, kCrease, &uvs, nullptr);
+  return splitData(mesh, smoothNormals(mesh), &uvs, nullptr);
 }
 
-vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh,
+vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, const CornerNormals& normals,
                                          std::vector<std::int32_t>& vertex_of_point) {
   vertex_of_point.clear();
-  return splitData(mesh, kCrease, nullptr, &vertex_of_point);
+  return splitData(mesh, normals, nullptr, &vertex_of_point);
 }
 
 vtkSmartPointer<vtkPolyData> plainData(const TriangleMesh& mesh) {
