@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/chart_border.h"
+
 namespace patina {
 namespace {
 
@@ -47,16 +49,6 @@ std::vector<FlatFace> flattened(const AtlasSurface& surface, const Chart& chart)
   }
   return flat;
 }
-
-struct BorderEdge {
-  std::int32_t from_vertex, to_vertex;
-  Vec2 from, to; // the chart lies on the left
-  std::int32_t face;
-};
-
-struct Clash {
-  std::int32_t a, b; // faces that cover each other, or touch where the chart does
-};
 
 // Interior of a piece: how often the faces round a vertex cross the ray to its right.
 std::optional<Clash> woundTwice(const std::vector<FlatFace>& flat,
@@ -216,10 +208,10 @@ class BorderGrid {
 };
 
 // `piece_of` tells which faces are in the piece: those with its number.
-std::optional<Clash> clashIn(const std::vector<FlatFace>& flat,
+std::optional<Clash> clashIn(const AtlasSurface& surface, const std::vector<FlatFace>& flat,
                              const std::vector<std::int32_t>& piece,
                              const std::vector<std::int32_t>& piece_of,
-                             std::vector<std::int32_t>& rank) {
+                             std::vector<std::int32_t>& rank, double clearance) {
   if (piece.size() < 2) return std::nullopt;
   const std::int32_t number = piece_of[index(piece[0])];
   if (const auto found = woundTwice(flat, piece)) return found;
@@ -250,6 +242,7 @@ std::optional<Clash> clashIn(const std::vector<FlatFace>& flat,
     }
     return ++found < 4 * border.size();
   });
+  if (!widest && clearance > 0) return nearMiss(surface, border, clearance);
   return widest;
 }
 
@@ -310,7 +303,8 @@ ChartPlane::ChartPlane(const Vec3& normal) {
   e2 = normal.cross(e1);
 }
 
-std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart, double longest) {
+std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart,
+                                  const ChartLimits& limits) {
   const std::vector<FlatFace> flat = flattened(surface, chart);
   std::vector<std::int32_t> piece_of(flat.size(), 0);
   std::vector<std::int32_t> whole(flat.size());
@@ -322,8 +316,8 @@ std::vector<Chart> embeddedPieces(const AtlasSurface& surface, Chart chart, doub
   while (!open.empty()) {
     const std::vector<std::int32_t> piece = std::move(open.back());
     open.pop_back();
-    std::optional<Clash> found = clashIn(flat, piece, piece_of, rank);
-    if (!found) found = endsOf(flat, piece, longest);
+    std::optional<Clash> found = clashIn(surface, flat, piece, piece_of, rank, limits.clearance);
+    if (!found) found = endsOf(flat, piece, limits.longest);
     if (!found) {
       if (piece.size() == flat.size()) return {std::move(chart)};
       Chart part{{}, chart.normal};

@@ -21,8 +21,9 @@ constexpr int kGap = 2 * kGutter; // texels between charts
 // Charts with less than this many texels are joined to neighbours even at the price of stretch:
 // their gaps would cost more than they show.
 constexpr double kSmallChart = 256;
-// Sides of a square that holds all charts, at most: longer ones would make the others small.
-constexpr double kLongest = 1.5;
+constexpr double kLeastShare = 0.4; // of the image that charts fill, as is hoped for
+// Sides of the image, about: longer charts would make the others small.
+constexpr double kLongest = 0.95;
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -31,9 +32,11 @@ std::size_t index(std::int32_t i) {
 std::vector<Chart> chartsOf(const AtlasSurface& surface, int image_size) {
   const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
   std::vector<Chart> grown = grownCharts(surface, 2 * kSmallChart * area / image_size / image_size);
+  const double side = std::sqrt(area / kLeastShare); // of the whole image, about
+  const ChartLimits limits{kLongest * side, kGap * side / image_size};
   std::vector<std::vector<Chart>> pieces(grown.size());
   tbb::parallel_for(std::size_t{0}, grown.size(), [&](std::size_t c) {
-    pieces[c] = embeddedPieces(surface, std::move(grown[c]), kLongest * std::sqrt(area));
+    pieces[c] = embeddedPieces(surface, std::move(grown[c]), limits);
   });
   std::vector<Chart> charts;
   for (auto& list : pieces)
