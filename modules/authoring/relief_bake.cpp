@@ -26,6 +26,10 @@ std::vector<ReliefImage> imagesOf(std::span<const ReliefSource> sources, double 
   return images;
 }
 
+bool same(const DistanceBlock& a, const DistanceBlock& b) {
+  return std::memcmp(&a, &b, sizeof(a)) == 0;
+}
+
 bool meet(const BlockFeet& feet, const UvBox& box) {
   return feet.low[0] <= box.high[0] && feet.high[0] >= box.low[0] && feet.low[1] <= box.high[1] &&
          feet.high[1] >= box.low[1];
@@ -70,12 +74,10 @@ struct ReliefBake::Impl {
     return range;
   }
 
-  // False if no node moves.
-  bool move(std::size_t slot, const std::vector<ReliefImage>& images, DistanceBlock& out) const {
+  void move(std::size_t slot, const std::vector<ReliefImage>& images, DistanceBlock& out) const {
     const BlockFeet& block = feet.block[slot];
     const std::array<float, kBlockNodes>& phi = base->distance[slot]->phi;
     const NodeUv* uv = feet.uv.data() + block.first;
-    bool moves = false;
     const auto each = [&](const auto& image_of) {
       std::size_t entry = 0;
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
@@ -84,24 +86,22 @@ struct ReliefBake::Impl {
         const ReliefImage* image = image_of(entry);
         const float fall = image ? image->at(uv[entry]) : 0.0F;
         ++entry;
-        if (fall == 0) continue; // -0 - -0 would lose its sign
-        out.phi[n] = phi[n] - fall;
-        moves = true;
+        if (fall != 0) out.phi[n] = phi[n] - fall; // -0 less -0 would lose its sign
       }
+    };
+    const auto felt = [&](std::int32_t source) -> const ReliefImage* {
+      if (source == BlockFeet::kNone) return nullptr;
+      const ReliefImage& image = images[static_cast<std::size_t>(source)];
+      return image.isFlat() ? nullptr : &image;
     };
     if (block.source == BlockFeet::kMixed) {
       const std::int32_t* source = feet.source.data() + block.first_source;
-      each([&](std::size_t entry) -> const ReliefImage* {
-        const std::int32_t s = source[entry];
-        if (s == BlockFeet::kNone || images[static_cast<std::size_t>(s)].isFlat()) return nullptr;
-        return &images[static_cast<std::size_t>(s)];
-      });
-    } else {
-      const ReliefImage* image = &images[static_cast<std::size_t>(block.source)];
-      if (image->isFlat()) return false;
+      each([&](std::size_t entry) { return felt(source[entry]); });
+    } else if (const ReliefImage* image = felt(block.source)) {
       each([&](std::size_t) { return image; });
+    } else {
+      out = *base->distance[slot];
     }
-    return moves;
   }
 
   // The blocks of `which` made anew in `field`; returns those that differ from what it held.
@@ -114,13 +114,12 @@ struct ReliefBake::Impl {
                         for (std::size_t i = range.begin(); i < range.end(); ++i) {
                           const auto slot = static_cast<std::size_t>(which[i]);
                           std::shared_ptr<const DistanceBlock>& held = field.distance[slot];
-                          const bool moves = move(slot, images, moved);
-                          const DistanceBlock& now = moves ? moved : *base->distance[slot];
-                          differs[i] = std::memcmp(&now, held.get(), sizeof(now)) != 0;
-                          if (!moves)
-                            held = base->distance[slot];
-                          else if (differs[i])
-                            held = std::make_shared<const DistanceBlock>(moved);
+                          move(slot, images, moved);
+                          differs[i] = !same(moved, *held);
+                          if (!differs[i]) continue;
+                          held = same(moved, *base->distance[slot])
+                                     ? base->distance[slot]
+                                     : std::make_shared<const DistanceBlock>(moved);
                         }
                       });
     std::vector<std::int32_t> changed;
