@@ -1,9 +1,12 @@
 #include "haptics/local_stiffness.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Eigenvalues>
+
+#include "haptics/coupling_stage.h"
 
 namespace patina {
 namespace {
@@ -32,14 +35,23 @@ struct StiffnessProbe::WayIn {
   ContactMemory memory;  // of a tick just outside
 };
 
-StiffnessProbe::StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field)
-    : wall_(compileStages(wallOf(scene), std::move(field))), sampler_(*wall_->field, scene.sampler),
+StiffnessProbe::StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field,
+                               std::span<const FeltObject> objects, std::optional<double> coupling)
+    : wall_(compileStages(wallOf(scene), std::move(field), objects)),
+      sampler_(*wall_->field, scene.sampler),
       reach_(scene.haptics.tip_radius.value_or(0) + scene.haptics.offset.value_or(0)),
-      depth_(std::min(kForce, scene.haptics.force_limit) / scene.haptics.stiffness) {}
+      raised_(raisedBy(objects)), press_(std::min(kForce, scene.haptics.force_limit)),
+      coupling_(coupling), painted_(!objects.empty()) {}
+
+// Painted friction and damping are in the wall's stages, but a first tick of contact has neither
+// slid nor, with kRest, a velocity.
+Contact StiffnessProbe::contactAt(const WayIn& way, const Vec3& tip) const {
+  ContactMemory memory = way.memory;
+  return tick(*wall_, memory, tip, kRest);
+}
 
 Vec3 StiffnessProbe::forceAt(const WayIn& way, const Vec3& tip) const {
-  ContactMemory memory = way.memory;
-  return tick(*wall_, memory, tip, kRest).force;
+  return contactAt(way, tip).force;
 }
 
 Eigen::Matrix3d StiffnessProbe::differenced(const WayIn& way, const Vec3& tip, double step) const {
@@ -65,14 +77,26 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
   way.outward = sample.gradient / slope;
   way.surface = point + (reach_ - sample.phi) * way.outward;
   const double voxel = sampler_.grid().voxel;
-  tick(*wall_, way.memory, way.surface + kStart * voxel * way.outward, kRest);
+  tick(*wall_, way.memory, way.surface + (raised_ + kStart * voxel) * way.outward, kRest);
   // In a cleft the way in is not free: the tip is there without having come from anywhere.
   if (way.memory.in_contact) way.memory.reset();
 
+  double stiffness = wall_->base.stiffness;
+  if (painted_) { // what is felt there, and how high
+    const Vec3 below = way.surface - (raised_ + press_ / stiffness) * way.outward;
+    const Contact contact = contactAt(way, below);
+    if (contact.touching) stiffness = contact.material.stiffness;
+    if (contact.touching && raised_ > 0)
+      way.surface =
+          below + contact.depth / std::sqrt(1 + contact.slope.squaredNorm()) * way.outward;
+  }
+  if (coupling_) stiffness = inSeries(stiffness, *coupling_);
   LocalStiffness result;
-  result.depth = depth.value_or(depth_);
+  result.depth = depth.value_or(press_ / stiffness);
   result.tip = way.surface - result.depth * way.outward;
-  const Vec3 force = forceAt(way, result.tip);
+  const Contact contact = contactAt(way, result.tip);
+  result.material = contact.material;
+  const Vec3& force = contact.force;
   result.force = force.norm();
   if (!(result.force > 0)) return std::nullopt;
   result.normal = force / result.force;

@@ -14,6 +14,7 @@ struct LocalStiffness {
   Vec3 normal = Vec3::Zero(); // of the force there, unit, outward
   double depth = 0;           // [m], beneath the surface that is felt, along the way in
   double force = 0;           // [N], magnitude there
+  Material material;          // there
   // -dF/dx [N/m] of the frictionless wall. Not symmetric where the interpolated direction is not
   // the gradient of the interpolated depth: beside creases and near a medial axis.
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
@@ -36,28 +37,34 @@ struct LocalStiffness {
 // of a voxel two thirds (edge of a box). Nearer to the surface than two steps it is half the depth.
 class StiffnessProbe {
  public:
-  // Throws as compileStages().
-  StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field);
+  // Throws as compileStages(). `coupling` [N/m]: of the loop that the wall will stand in; the same
+  // force then presses deeper.
+  StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field,
+                 std::span<const FeltObject> objects = {}, std::optional<double> coupling = {});
 
   // `point` on or near the surface, no further than the band; pressed in against the field's
-  // direction there, by `depth` [m] or, without, by 1 N / K (by the force limit over K where that
-  // is less). nullopt where there is no direction or no force. Any thread.
+  // direction there, by `depth` [m] beneath what is felt, relief included, or, without, by 1 N over
+  // the stiffness there (by the force limit where that is less). nullopt where there is no
+  // direction or no force. Any thread.
   std::optional<LocalStiffness> at(const Vec3& point, std::optional<double> depth = {}) const;
 
   // As above, with the step in voxels.
   std::optional<LocalStiffness> at(const Vec3& point, std::optional<double> depth,
                                    double step) const;
-  double depth() const { return depth_; } // [m], taken where none is given
 
  private:
   struct WayIn;
+  Contact contactAt(const WayIn& way, const Vec3& tip) const;
   Vec3 forceAt(const WayIn& way, const Vec3& tip) const;
   Eigen::Matrix3d differenced(const WayIn& way, const Vec3& tip, double step) const;
 
   std::shared_ptr<const HapticSnapshot> wall_;
   FieldSampler sampler_;
-  double reach_; // [m], from the surface out to where it is felt
-  double depth_; // [m], unless another is asked for
+  double reach_;  // [m], from the surface out to where it is felt
+  double raised_; // [m], of which the most that relief may be
+  double press_;  // [N]
+  std::optional<double> coupling_;
+  bool painted_;
 };
 
 } // namespace patina

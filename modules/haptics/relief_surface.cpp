@@ -27,8 +27,8 @@ struct PackedFace {
 };
 
 constexpr int kMostSteps = 64;
-// Steps across edges that bring the point no nearer: round a vertex they may be needed.
-constexpr int kMostStalls = 4;
+// Steps across edges that bring the point no nearer: half way round a vertex they may be needed.
+constexpr int kMostStalls = 8;
 
 } // namespace
 
@@ -100,7 +100,7 @@ Foot walk(const ReliefFaces& mesh, const Vec3& p, std::int32_t start) noexcept {
   for (int step = 0, stalls = 0; step < kMostSteps && stalls <= kMostStalls; ++step) {
     const std::int32_t next =
         beyond(mesh.faces[static_cast<std::size_t>(at.face)], at.barycentric, from);
-    if (next < 0) break;
+    if (next < 0 || (next == best.face && stalls > 1)) break; // once round
     from = at.face;
     at = footOn(mesh, next, p);
     if (at.squared < best.squared) {

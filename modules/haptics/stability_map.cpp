@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "haptics/coupling_stage.h"
+#include "haptics/painted_range.h"
 #include "haptics/stabilisers.h"
 
 namespace patina {
@@ -47,7 +48,7 @@ double wallLoad(const LocalStiffness& at, const LoopLimits& limits) {
 }
 
 bool slips(const LocalStiffness& at, const LoopLimits& limits) {
-  return limits.softening * at.lambda_min < -kGrip;
+  return limits.softening(at.material.stiffness) * at.lambda_min < -kGrip;
 }
 
 bool jumps(const LocalStiffness& at) {
@@ -56,20 +57,32 @@ bool jumps(const LocalStiffness& at) {
 
 } // namespace
 
-LoopLimits loopLimits(const Scene& scene) {
-  const HapticProperties& haptics = scene.haptics;
+double LoopLimits::softening(double stiffness) const {
+  return coupled && stiffness > 0 ? inSeries(stiffness, coupling) / stiffness : 1;
+}
+
+LoopLimits loopLimits(const Scene& scene, std::span<const FeltObject> objects) {
+  const PaintedRange range = paintedRange(baseMaterial(scene.haptics), objects);
+  HapticProperties haptics = hardest(scene.haptics, range);
   const DeviceModel device = scene.device_model.value_or(DeviceModel{});
-  SampledLoop loop = sceneLoop(haptics, device);
   LoopLimits limits;
-  const auto plan = planStabilisers(haptics, scene.device_model, scene.stabilisers).coupling;
+  const auto plan =
+      planStabilisers(haptics, scene.device_model, scene.stabilisers, range.most.damping).coupling;
+  const auto borne = [&](double damping) {
+    SampledLoop loop = sceneLoop(haptics, device);
+    loop.virtual_damping = damping;
+    if (plan) loop.cutoff.reset();
+    return stiffnessLimit(loop);
+  };
+  double least = haptics.damping.value_or(0), most = range.most.damping;
   if (plan) {
-    loop.virtual_damping = plan->damping;
-    loop.cutoff.reset();
-    limits.softening = inSeries(haptics.stiffness, plan->stiffness) / haptics.stiffness;
     limits.coupling = plan->stiffness;
     limits.coupled = true;
+    least = plan->damping;
+    most = std::min(most, plan->most_damping);
   }
-  limits.damped = stiffnessLimit(loop);
+  limits.damped = borne(least);
+  if (most > least) limits.damped = std::min(limits.damped, borne(most));
   limits.plain = stiffnessLimit(sampledLoop(device));
   if (limits.plain > 0)
     limits.whirl = device.damping * device.damping / (device.mass * limits.plain);
@@ -77,27 +90,31 @@ LoopLimits loopLimits(const Scene& scene) {
 }
 
 double stabilityRatio(const LocalStiffness& at, const Scene& scene, const LoopLimits& limits) {
-  const HapticProperties& haptics = scene.haptics;
-  const double damped = std::max(limits.damped, kNegligible * haptics.stiffness);
-  const double plane = haptics.stiffness / damped;
-  double load = limits.softening * (slips(at, limits) ? plane : wallLoad(at, limits));
-  if (haptics.friction && haptics.friction->static_coefficient > 0)
-    load = std::max(load, limits.softening * plane);
-  if (haptics.magnet && haptics.magnet->range > 0)
-    load = std::max(load, (limits.coupled ? inSeries(haptics.magnet->strength, limits.coupling)
-                                          : haptics.magnet->strength) /
-                              damped);
+  const double stiffness = at.material.stiffness;
+  const double softening = limits.softening(stiffness);
+  const double damped = std::max(limits.damped, kNegligible * stiffness);
+  const double plane = stiffness / damped;
+  double load = softening * (slips(at, limits) ? plane : wallLoad(at, limits));
+  // The wall itself has none of the scene's friction, but what is painted.
+  const bool sticks = (scene.haptics.friction && scene.haptics.friction->static_coefficient > 0) ||
+                      std::max(at.material.static_friction, at.material.dynamic_friction) > 0;
+  if (sticks) load = std::max(load, softening * plane);
+  const std::optional<Magnet>& magnet = scene.haptics.magnet;
+  if (magnet && magnet->range > 0)
+    load = std::max(load, magnet->strength * limits.softening(magnet->strength) / damped);
   return load > 0 ? 1 / load : std::numeric_limits<double>::infinity();
 }
 
 StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField> field,
-                          const TriangleMesh& mesh, Progress& progress) {
-  const StiffnessProbe probe(scene, std::move(field));
-  const float unknown = std::numeric_limits<float>::quiet_NaN();
+                          const TriangleMesh& mesh, Progress& progress,
+                          std::span<const FeltObject> objects) {
   StabilityMap map;
-  map.limits = loopLimits(scene);
+  map.limits = loopLimits(scene, objects);
   // A softer surface is pressed deeper by the same force, and what bends counts by depth.
-  const double depth = probe.depth() / map.limits.softening;
+  const StiffnessProbe probe(scene, std::move(field), objects,
+                             map.limits.coupled ? std::optional(map.limits.coupling)
+                                                : std::nullopt);
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
   map.ratio.assign(mesh.positions.size(), unknown);
   map.least.assign(mesh.positions.size(), unknown);
   map.worst_ratio = std::numeric_limits<double>::quiet_NaN();
@@ -107,7 +124,7 @@ StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField
       progress.report(static_cast<double>(v) / static_cast<double>(mesh.positions.size()),
                       "stability");
     }
-    const auto at = probe.at(mesh.positions[v], depth);
+    const auto at = probe.at(mesh.positions[v]);
     if (!at) continue;
     map.least[v] = static_cast<float>(at->lambda_min);
     if (jumps(*at)) {

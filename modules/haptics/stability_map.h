@@ -12,25 +12,29 @@ namespace patina {
 
 // What the loop bears: K* [N/m] of the scene's device (DeviceModel{} where none is set), exact for
 // one direction and without a hand (stability_limit.h), with the coupling where the scene chooses
-// it or gets it by itself (planStabilisers).
+// it or gets it by itself (planStabilisers). Of painted damping the least and the most are tried,
+// and the worse one counts everywhere.
 struct LoopLimits {
-  double plain = 0;     // where nothing but the device damps: along the surface
-  double damped = 0;    // where damping helps: along the normal, and while friction sticks
-  double whirl = 0;     // b^2 / (m K*): what the device's damping holds against a whirl
-  double softening = 1; // by the coupling: k / K of two springs in a row
+  double plain = 0;  // where nothing but the device damps: along the surface
+  double damped = 0; // where damping helps: along the normal, and while friction sticks
+  double whirl = 0;  // b^2 / (m K*): what the device's damping holds against a whirl
   bool coupled = false;
   double coupling = 0; // k_c [N/m], where coupled
+
+  // k / K of two springs in a row, by which the coupling softens a surface.
+  double softening(double stiffness) const;
 };
-LoopLimits loopLimits(const Scene& scene);
+LoopLimits loopLimits(const Scene& scene, std::span<const FeltObject> objects = {});
 
 // Where lambda_min is below -kGrip a light grip no longer keeps the tip in its place: it slips off,
 // as from a ridge, a thin spike or a narrow leg.
 inline constexpr double kGrip = 300; // [N/m]
 
-// K*(x)/K: above 1 the loop is stable at this point, below 1 it buzzes. What the wall asks for in
-// each direction over what the loop bears in it, the worst direction; and, each on its own, the
-// terms that a frictionless wall does not show: friction in stick is K in every direction, the
-// magnet is k_m along the normal, just outside. Infinite if nothing needs bearing.
+// K of the material at the point, painted or not. K*(x)/K: above 1 the loop is stable at this
+// point, below 1 it buzzes. What the wall asks for in each direction over what the loop bears in
+// it, the worst direction; and, each on its own, the terms that a frictionless wall does not show:
+// friction in stick is K in every direction, the magnet is k_m along the normal, just outside.
+// Infinite if nothing needs bearing.
 //
 // Directions are the eigenvectors of the wall's whole matrix. Those of its symmetric part (2.1.7)
 // are the safe side of it: beside creases they see up to three K where nothing buzzes. A complex
@@ -61,6 +65,7 @@ struct StabilityMap {
 // Every vertex of `mesh`, which lies on the field's surface, pressed as StiffnessProbe says. Some
 // 5 to 15 us a vertex on one core; polls progress, throws Cancelled, and as compileStages().
 StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField> field,
-                          const TriangleMesh& mesh, Progress& progress);
+                          const TriangleMesh& mesh, Progress& progress,
+                          std::span<const FeltObject> objects = {});
 
 } // namespace patina

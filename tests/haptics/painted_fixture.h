@@ -32,6 +32,63 @@ inline FeltObject feltMaterial(const MaterialMap& map, const Scene& scene) {
   return object;
 }
 
+// A box of 40 x 40 x 12 mm whose top is z = 0, with the image laid over it from above, and its
+// field.
+struct Slab {
+  static constexpr double kSide = 0.04;
+  std::shared_ptr<const TriangleMesh> mesh;
+  Field field;
+  std::shared_ptr<const ReliefFaces> faces;
+};
+inline CornerUvs uvsFromAbove(const TriangleMesh& mesh, double side) {
+  CornerUvs uvs(mesh.triangles.size());
+  for (std::size_t f = 0; f < uvs.size(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = mesh.corner(f, k);
+      uvs[f][static_cast<std::size_t>(k)] = Vec2(p.x(), p.y()) / side + Vec2::Constant(0.5);
+    }
+  return uvs;
+}
+inline Slab slab(double voxel, int cells = 1, double band = 8) {
+  Slab made;
+  TriangleMesh mesh = box(Vec3(Slab::kSide, Slab::kSide, 0.012), cells);
+  for (Vec3& p : mesh.positions) p.z() -= 0.006;
+  FieldSpec spec;
+  spec.voxel = voxel;
+  spec.band = band;
+  Progress progress;
+  made.field = withSamples(buildField(mesh, spec, progress).field);
+  made.faces = reliefFaces(mesh, uvsFromAbove(mesh, Slab::kSide));
+  made.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
+  return made;
+}
+
+// g(u, v) at the texels' centres.
+inline std::shared_ptr<TiledImage> imageOf(int size,
+                                           const std::function<double(double, double)>& g) {
+  auto image = std::make_shared<TiledImage>(size, size, 1);
+  for (int j = 0; j < size; ++j)
+    for (int i = 0; i < size; ++i) {
+      const double value = g((i + 0.5) / size, (j + 0.5) / size);
+      if (value != 0)
+        image->writable(image->tileOf(i, j))[image->offsetOf(i, j)] = static_cast<float>(value);
+    }
+  return image;
+}
+
+inline FeltObject feltRelief(std::shared_ptr<const ReliefFaces> faces,
+                             std::shared_ptr<const TiledImage> image, double height,
+                             double greatest = 1) {
+  FeltObject object;
+  auto relief = std::make_shared<ReliefSurface>();
+  relief->faces = std::move(faces);
+  relief->image = std::move(image);
+  relief->height = height;
+  object.relief = std::move(relief);
+  object.highest = std::abs(height) * greatest;
+  return object;
+}
+
 inline Box3 cube(double half) {
   return {Vec3::Constant(-half), Vec3::Constant(half)};
 }

@@ -1,0 +1,315 @@
+// Pulled relief as it is felt: T-K21a, T-K21f, F6, F8.
+#include <cstdio>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "haptics/painted_fixture.h"
+
+namespace patina {
+namespace {
+
+constexpr double kSide = Slab::kSide;
+constexpr double kPi = std::numbers::pi;
+
+std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const FeltObject& object,
+                                                   const Field& field) {
+  return compileStages(scene, field, std::span(&object, 1));
+}
+
+// T-K21a: a constant gray of 1, s = 1 mm, on a sphere; also engraved, and with either form.
+TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
+  const double R = 0.03, K = 500;
+  const TriangleMesh mesh = icosphere(R, 60);
+  FieldSpec spec;
+  spec.resolution = 120;
+  Progress progress;
+  const Field sphere = withSamples(buildField(mesh, spec, progress).field);
+  const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
+  const auto white = imageOf(64, [](double, double) { return 1; });
+  const double h = sphere->grid.voxel;
+  for (const double s : {1e-3, -1e-3})
+    for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
+      Scene scene = sceneOf(K);
+      scene.relief.form = form;
+      const auto snapshot = compiledWith(scene, feltRelief(faces, white, s), sphere);
+      std::mt19937 random(1);
+      for (int i = 0; i < 300; ++i) {
+        const Vec3 n = randomDirection(random);
+        const double d = 1.2e-3;
+        const Contact contact = touchOnce(*snapshot, (R + s - d) * n);
+        ASSERT_TRUE(contact.touching);
+        // The facets of the mesh lie up to 3 um inside the sphere.
+        ASSERT_NEAR(contact.force.norm() / K, d, h * h / (4 * R) + 3.5e-6);
+        ASSERT_LT((contact.force.normalized() - n).norm(), 5e-3);
+        ASSERT_FALSE(touchOnce(*snapshot, (R + s + 1e-5) * n).touching);
+        ASSERT_TRUE(touchOnce(*snapshot, (R + s + 1e-5) * n).force.isZero(0));
+      }
+    }
+}
+
+// A zero image: bit for bit the scene without it, wherever the shell is the surface itself.
+TEST(PulledRelief, OfNoHeightChangesNoBit) {
+  const Slab plane = slab(0.5e-3);
+  const Scene scene = withFriction(sceneOf(500), 0.5, 0.3);
+  const FeltObject black =
+      feltRelief(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3, 0);
+  const auto without = compileStages(scene, plane.field);
+  const auto with = compiledWith(scene, black, plane.field);
+  EXPECT_EQ(with->stages.size(), without->stages.size());
+  const auto all = compileAllStages(scene, plane.field, std::span(&black, 1));
+  ContactMemory a, b;
+  std::mt19937 random(2);
+  Vec3 tip(0, 0, 1e-3);
+  for (int i = 0; i < 5000; ++i) {
+    tip += 1e-4 * randomDirection(random);
+    if (tip.cwiseAbs().maxCoeff() > 2e-3) tip *= 0.5;
+    const Contact one = tick(*without, a, tip, 1e-3), other = tick(*all, b, tip, 1e-3);
+    ASSERT_EQ(one.force, other.force) << i;
+    ASSERT_EQ(one.vcp, other.vcp) << i;
+  }
+}
+
+// Where others are raised and the image is 0, to the ray's tolerance.
+TEST(PulledRelief, WhereTheImageIsZeroTheForceIsThatOfTheBareSurface) {
+  const Slab plane = slab(0.5e-3);
+  const Scene scene = sceneOf(500);
+  const FeltObject part =
+      feltRelief(plane.faces, imageOf(128, [](double u, double) { return u > 0.7 ? 1 : 0; }), 1e-3);
+  const auto without = compileStages(scene, plane.field);
+  const auto with = compiledWith(scene, part, plane.field);
+  for (double x = -8e-3; x < 6e-3; x += 0.37e-3)
+    for (double z = 0.4e-3; z > -2e-3; z -= 0.11e-3) {
+      const Vec3 tip(x, 1e-3, z);
+      EXPECT_LT((touchOnce(*with, tip).force - touchOnce(*without, tip).force).norm(), 1e-6)
+          << x << z;
+    }
+}
+
+// T-K21f: on the flank of a ramp of slope a the force leans by atan(a); as in the papers it does
+// not.
+TEST(PulledRelief, TheForceIsThatOfTheTexturedSurface) {
+  const Slab plane = slab(0.5e-3);
+  for (const double a : {0.1, 0.5}) {
+    const double s = a * kSide;
+    const FeltObject ramp =
+        feltRelief(plane.faces, imageOf(64, [](double u, double) { return u - 0.5; }), s, 0.1);
+    for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
+      Scene scene = sceneOf(500);
+      scene.relief.form = form;
+      const auto snapshot = compiledWith(scene, ramp, plane.field);
+      const double x = 1.3e-3, d = 0.5e-3;
+      const Contact contact = touchOnce(*snapshot, Vec3(x, 0.7e-3, a * x - d));
+      const double lean = std::atan2(-contact.force.x(), contact.force.z());
+      EXPECT_NEAR(lean, form == ForceForm::literal ? 0 : std::atan(a), 1e-5);
+      EXPECT_NEAR(contact.force.z(), 500 * d, 1e-5);
+      EXPECT_NEAR(contact.force.y(), 0, 1e-6);
+      // The VCP bears the spring's force; the surface point is the unraised one.
+      EXPECT_LT((500 * (contact.vcp - contact.tip) - contact.force).norm(), 1e-12);
+      EXPECT_LT((contact.surface - Vec3(x, 0.7e-3, 0)).norm(), 1e-6);
+    }
+  }
+}
+
+// F8: 2.5 voxels, at least 22 texels a wavelength. The height is where the force vanishes.
+double heightFelt(const HapticSnapshot& snapshot, double x, double y, double most, double K) {
+  const Contact contact = touchOnce(snapshot, Vec3(x, y, -3 * most));
+  return contact.force.z() / K - 3 * most;
+}
+
+TEST(PulledRelief, HasItsWholeHeightAtAWavelengthOfTwoAndAHalfVoxels) {
+  const double voxel = 0.5e-3, wavelength = 2.5 * voxel, A = 0.1e-3, K = 500;
+  const Slab plane = slab(voxel);
+  const int size = 736; // 23 texels a wavelength
+  const double k = 2 * kPi / wavelength;
+  const FeltObject object = feltRelief(
+      plane.faces, imageOf(size, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
+      A);
+  const auto snapshot = compiledWith(sceneOf(K), object, plane.field);
+  // Amplitude by projection onto the wave, and the extremes.
+  const int count = 2000;
+  double amplitude = 0, highest = -1, lowest = 1, slope = 0;
+  for (int i = 0; i < count; ++i) {
+    const double x = wavelength * (3.0 * i / count - 1.5);
+    const double h = heightFelt(*snapshot, x, 0.3e-3, A, K);
+    amplitude += 2.0 / count * h * std::cos(k * x);
+    highest = std::max(highest, h);
+    lowest = std::min(lowest, h);
+    const Contact contact = touchOnce(*snapshot, Vec3(x, 0.3e-3, -3 * A));
+    slope += 2.0 / count * contact.force.x() / contact.force.z() * std::sin(k * x);
+  }
+  std::printf("2.5 voxels: amplitude %.4f, peak to peak %.4f, slope %.4f of what was painted\n",
+              amplitude / A, (highest - lowest) / (2 * A), slope / (A * k));
+  EXPECT_NEAR(amplitude, A, 0.01 * A);
+  EXPECT_NEAR(highest - lowest, 2 * A, 0.01 * 2 * A);
+  EXPECT_NEAR(slope, A * k, 0.01 * A * k);
+}
+
+double loopWork(const HapticSnapshot& snapshot, const std::vector<Vec3>& corners, int steps) {
+  ContactMemory memory;
+  double work = 0;
+  Vec3 last_force = tick(snapshot, memory, corners.back(), 1e-3).force, last_tip = corners.back();
+  for (const Vec3& corner : corners) {
+    const Vec3 from = last_tip;
+    for (int i = 1; i <= steps; ++i) {
+      const Vec3 tip = from + static_cast<double>(i) / steps * (corner - from);
+      const Contact contact = tick(snapshot, memory, tip, 1e-3);
+      EXPECT_FALSE(contact.fault);
+      work += 0.5 * (contact.force + last_force).dot(tip - last_tip);
+      last_force = contact.force;
+      last_tip = tip;
+    }
+  }
+  return work;
+}
+
+// F6: pressed in by dz at a valley, released at a peak: K (h1 - h2) dz from the form of the papers.
+TEST(PulledRelief, OnlyTheLiteralFormDoesWorkRoundALoop) {
+  const Slab plane = slab(0.5e-3);
+  const double A = 0.25e-3, wavelength = 2e-3, K = 500, dz = 1e-3, k = 2 * kPi / wavelength;
+  const FeltObject object = feltRelief(
+      plane.faces, imageOf(1024, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
+      A);
+  const double valley = 0.5 * wavelength, peak = 0;
+  const std::vector<Vec3> path{Vec3(valley, 1e-4, -1e-3 - dz), Vec3(peak, 1e-4, -1e-3 - dz),
+                               Vec3(peak, 1e-4, -1e-3), Vec3(valley, 1e-4, -1e-3)};
+  const double theory = K * 2 * A * dz;
+  Scene scene = sceneOf(K);
+  scene.relief.form = ForceForm::literal;
+  const double literal = loopWork(*compiledWith(scene, object, plane.field), path, 3000);
+  scene.relief.form = ForceForm::conservative;
+  const double conservative = loopWork(*compiledWith(scene, object, plane.field), path, 3000);
+  std::printf("literal %.5g J of %.5g J a loop, conservative %.2g of it\n", literal, theory,
+              conservative / theory);
+  EXPECT_NEAR(literal, theory, 0.002 * theory);
+  EXPECT_LT(std::abs(conservative), 0.01 * theory);
+}
+
+// On a sphere the closest point moves by R / r of what the tip does: J^T, K12.
+TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
+  const double R = 0.012, K = 500, s = 1.2e-3;
+  const TriangleMesh mesh = icosphere(R, 80);
+  FieldSpec spec;
+  spec.resolution = 100;
+  spec.band = 14;
+  Progress progress;
+  const Field sphere = withSamples(buildField(mesh, spec, progress).field);
+  CornerUvs uvs(mesh.triangles.size());
+  for (std::size_t f = 0; f < uvs.size(); ++f)
+    for (int c = 0; c < 3; ++c)
+      uvs[f][static_cast<std::size_t>(c)] = Vec2(mesh.corner(f, c).x() / (2.2 * R) + 0.5, 0.5);
+  const auto faces = reliefFaces(mesh, uvs);
+  const FeltObject object =
+      feltRelief(faces, imageOf(256, [](double u, double) { return std::sin(12 * u); }), s);
+  const auto at = [&](double angle, double r) {
+    return Vec3(r * std::sin(angle), 2e-4, r * std::cos(angle));
+  };
+  Scene scene = sceneOf(K);
+  std::vector<Vec3> path;
+  const double low = R - 3e-3, high = R - 1.5e-3;
+  for (int i = -10; i <= 10; ++i) path.push_back(at(0.03 * i, low));
+  for (int i = 10; i >= -10; --i) path.push_back(at(0.03 * i, high));
+  const auto height = [&](double angle) {
+    return s * std::sin(12 * (R * std::sin(angle) / (2.2 * R) + 0.5));
+  };
+  const double theory = std::abs(K * (height(0.3) - height(-0.3)) * (high - low));
+  scene.relief.form = ForceForm::literal;
+  const double literal = loopWork(*compiledWith(scene, object, sphere), path, 300);
+  scene.relief.form = ForceForm::conservative;
+  const double conservative = loopWork(*compiledWith(scene, object, sphere), path, 300);
+  std::printf("sphere: literal %.4g J of %.4g J, conservative %.2g of it\n", literal, theory,
+              conservative / theory);
+  EXPECT_NEAR(std::abs(literal), theory, 0.02 * theory);
+  EXPECT_LT(std::abs(conservative), 0.01 * theory);
+}
+
+// The force is continuous from texel to texel: what a bilinear surface's slope would not give.
+TEST(PulledRelief, TheForceDoesNotStepFromTexelToTexel) {
+  const Slab plane = slab(0.5e-3);
+  const double A = 0.2e-3, wavelength = 2e-3, k = 2 * kPi / wavelength; // 6.4 texels
+  const FeltObject object = feltRelief(
+      plane.faces, imageOf(128, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
+      A);
+  const auto snapshot = compiledWith(sceneOf(500), object, plane.field);
+  ContactMemory memory;
+  const double d = 1e-3, step = 1e-6;
+  Vec3 last = tick(*snapshot, memory, Vec3(-2e-3, 0, -d), 1e-3).force;
+  double worst = 0;
+  for (double x = -2e-3 + step; x < 2e-3; x += step) {
+    const Vec3 force = tick(*snapshot, memory, Vec3(x, 0, -d), 1e-3).force;
+    worst = std::max(worst, (force - last).norm() / step);
+    last = force;
+  }
+  // No more than the smooth surface's own stiffness, and its P h''.
+  EXPECT_LT(worst, 1.5 * 500 * (1 + (A * k) * (A * k) + (d + A) * A * k * k));
+}
+
+// Friction over relief: the tip sticks and slides on it, and lets go where the relief falls away.
+TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
+  const Slab plane = slab(0.5e-3);
+  const double mu = 0.4;
+  const FeltObject flat =
+      feltRelief(plane.faces, imageOf(64, [](double, double) { return 0.5; }), 1e-3);
+  const auto snapshot = compiledWith(withFriction(sceneOf(500), mu, mu), flat, plane.field);
+  ContactMemory memory;
+  const double d = 0.8e-3;
+  glide(*snapshot, memory, Vec3(0, 0, 1.5e-3));
+  glide(*snapshot, memory, Vec3(0, 0, 0.5e-3 - d));
+  const Contact slid = glide(*snapshot, memory, Vec3(4e-3, 0, 0.5e-3 - d), 1e-5);
+  EXPECT_NEAR(slid.force.z(), 500 * d, 1e-4);
+  EXPECT_NEAR(slid.force.x(), -mu * 500 * d, 1e-4);
+  const Contact off = glide(*snapshot, memory, Vec3(4e-3, 0, 0.51e-3));
+  EXPECT_FALSE(off.touching);
+  EXPECT_FALSE(memory.has_stuck);
+  EXPECT_TRUE(off.force.isZero(0));
+  EXPECT_EQ(off.vcp, off.tip);
+}
+
+TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
+  const Slab plane = slab(0.5e-3, 1, 12);
+  Scene scene = sceneOf(500);
+  scene.haptics.magnet = Magnet{1e-3, 300, false};
+  const FeltObject flat =
+      feltRelief(plane.faces, imageOf(64, [](double, double) { return 0.5; }), 2e-3);
+  const auto snapshot = compiledWith(scene, flat, plane.field);
+  for (const double above : {0.2e-3, 0.7e-3}) {
+    const Contact contact = touchOnce(*snapshot, Vec3(1e-3, 0, 1e-3 + above));
+    EXPECT_TRUE(contact.attracted);
+    EXPECT_NEAR(contact.force.z(), -300 * above, 1e-5);
+  }
+  EXPECT_FALSE(touchOnce(*snapshot, Vec3(1e-3, 0, 2.05e-3)).attracted);
+}
+
+TEST(PulledRelief, HigherThanTheBandIsRefusedWithTheRemedy) {
+  const Slab plane = slab(0.5e-3);
+  const FeltObject object =
+      feltRelief(plane.faces, imageOf(64, [](double, double) { return 1; }), 5e-3);
+  try {
+    compiledWith(sceneOf(500), object, plane.field);
+    FAIL() << "accepted";
+  } catch (const std::exception& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("relief"), std::string::npos) << text;
+    EXPECT_NE(text.find("set band to 13"), std::string::npos) << text;
+  }
+}
+
+TEST(BakedRelief, IsFeltAsAPotentialOrAsInThePaper) {
+  const Slab plane = slab(0.5e-3);
+  FeltObject baked;
+  baked.highest = 1e-3;
+  Scene scene = sceneOf(500);
+  scene.relief.mode = ReliefMode::baked;
+  const auto names = [&] {
+    std::string list;
+    const auto snapshot = compiledWith(scene, baked, plane.field);
+    for (const StageInfo& stage : snapshot->why) list += stage.name + " ";
+    return list;
+  };
+  EXPECT_EQ(names(), "contact potential spring limit ");
+  scene.relief.form = ForceForm::literal;
+  EXPECT_EQ(names(), "contact spring limit ");
+}
+
+} // namespace
+} // namespace patina
