@@ -1,0 +1,190 @@
+// patina undo and redo: bit for bit, across processes, over every kind of edit.
+#include "integration/painted.h"
+
+namespace patina::test {
+namespace {
+
+class History : public Painted {};
+
+TEST_F(History, UndoBringsBackEverySceneBitwiseAndRedoToo) {
+  std::vector<Scene> scenes{loadWorkspace(workspace)};
+  const Stroke strokes[] = {stroke(Tool::stiffness, 900, 0.006, {{0, 0, kTop}}),
+                            stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),
+                            stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
+                            stroke(Tool::dynamic_friction, 0.3, 0.006, {{0, 0.01, kTop}})};
+  for (const Stroke& one : strokes) {
+    ASSERT_EQ(run({"paint", workspace, "--strokes", script("s.json", {one}), "-o", workspace}).exit,
+              0);
+    scenes.push_back(loadWorkspace(workspace));
+    ASSERT_FALSE(same(scenes.back(), scenes[scenes.size() - 2]));
+  }
+  ASSERT_EQ(run({"scene", "-o", workspace, "--set", "stiffness=700"}).exit, 0);
+  scenes.push_back(loadWorkspace(workspace));
+  const std::string aside = folder.write("aside.txt", "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", box + "@" + aside}).exit, 0);
+  scenes.push_back(loadWorkspace(workspace));
+  ASSERT_EQ(scenes.back().objects.size(), 2U);
+
+  for (std::size_t i = scenes.size() - 1; i-- > 0;) {
+    const Json report = runJson({"undo", workspace});
+    EXPECT_EQ(report.at("undone").asInteger(), 1);
+    EXPECT_EQ(report.at("history").asInteger(), static_cast<std::int64_t>(i));
+    EXPECT_EQ(report.at("redo").asInteger(), static_cast<std::int64_t>(scenes.size() - 1 - i));
+    EXPECT_TRUE(same(loadWorkspace(workspace), scenes[i])) << i;
+  }
+  for (std::size_t i = 1; i < scenes.size(); ++i) {
+    EXPECT_EQ(runJson({"redo", workspace}).at("redone").asInteger(), 1);
+    EXPECT_TRUE(same(loadWorkspace(workspace), scenes[i])) << i;
+  }
+  EXPECT_EQ(runJson({"undo", workspace, "--steps", "4"}).at("undone").asInteger(), 4);
+  EXPECT_TRUE(same(loadWorkspace(workspace), scenes[2]));
+  EXPECT_EQ(runJson({"redo", workspace, "--steps", "3"}).at("redone").asInteger(), 3);
+  EXPECT_TRUE(same(loadWorkspace(workspace), scenes[5]));
+}
+
+TEST_F(History, NothingToUndoIsSaidAndTouchesNothing) {
+  const std::string before = fingerprint(workspace);
+  for (const char* command : {"undo", "redo"}) {
+    const Outcome outcome = run({command, workspace, "--json"});
+    EXPECT_EQ(outcome.exit, 0);
+    EXPECT_NE(outcome.err.find("there is nothing to"), std::string::npos);
+    const Json report = parseJson(outcome.out, "stdout");
+    for (const char* key : {"history", "redo", "undone", "redone"})
+      EXPECT_EQ(report.at(key).asInteger(), 0) << key;
+  }
+  EXPECT_EQ(fingerprint(workspace), before);
+}
+
+TEST_F(History, MoreStepsThanThereAreTakeAll) {
+  const Scene start = loadWorkspace(workspace);
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
+  EXPECT_EQ(runJson({"undo", workspace, "--steps", "99"}).at("undone").asInteger(), 3);
+  EXPECT_TRUE(same(loadWorkspace(workspace), start));
+  EXPECT_EQ(runJson({"redo", workspace, "--steps", "99"}).at("redone").asInteger(), 3);
+  expectOneLineError(run({"undo", workspace, "--steps", "0"}), {"--steps"});
+  expectOneLineError(run({"undo", workspace, "--steps", "-1"}), {"--steps"});
+}
+
+TEST_F(History, ListNamesEveryEditAndWhatIsUndone) {
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
+  ASSERT_EQ(run({"scene", "-o", workspace, "--set", "stiffness=700"}).exit, 0);
+  ASSERT_EQ(run({"undo", workspace}).exit, 0);
+  const std::string before = fingerprint(workspace);
+  const Json list = runJson({"undo", workspace, "--list"});
+  const auto& edits = list.at("edits").asArray();
+  ASSERT_EQ(edits.size(), 4U);
+  EXPECT_EQ(edits[0].at("what").asString(), "stiffness 900 N/m");
+  EXPECT_EQ(edits[1].at("what").asString(), "relief 0.5 mm");
+  EXPECT_EQ(edits[3].at("what").asString(), "stiffness = 700");
+  EXPECT_TRUE(edits[2].at("done").asBool());
+  EXPECT_FALSE(edits[3].at("done").asBool());
+  EXPECT_EQ(list.at("undone").asInteger(), 0);
+  EXPECT_NE(run({"redo", workspace, "--list"}).out.find("stiffness = 700  (undone)"),
+            std::string::npos);
+  EXPECT_EQ(fingerprint(workspace), before);
+}
+
+TEST_F(History, AnEditAfterUndoDropsWhatWasUndone) {
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
+  ASSERT_EQ(run({"undo", workspace, "--steps", "2"}).exit, 0);
+  ASSERT_EQ(run({"scene", "-o", workspace, "--set", "stiffness=700"}).exit, 0);
+  const Json list = runJson({"redo", workspace, "--list"});
+  EXPECT_EQ(list.at("edits").asArray().size(), 2U);
+  EXPECT_EQ(list.at("redo").asInteger(), 0);
+}
+
+// The history goes with a copy, and each then has its own.
+TEST_F(History, GoesWithTheOutputOfPaint) {
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", folder / "a"}).exit, 0);
+  const Scene painted = loadWorkspace(folder / "a");
+  const std::string more = script("more.json", {stroke(Tool::damping, 2, 0.006, {{0, 0, kTop}})});
+  ASSERT_EQ(run({"paint", folder / "a", "--strokes", more, "-o", folder / "b"}).exit, 0);
+  EXPECT_EQ(runJson({"undo", folder / "b"}).at("history").asInteger(), 3);
+  EXPECT_TRUE(same(loadWorkspace(folder / "b"), painted));
+  ASSERT_EQ(run({"undo", folder / "b", "--steps", "3"}).exit, 0);
+  EXPECT_TRUE(same(loadWorkspace(folder / "b"), loadWorkspace(workspace)));
+  EXPECT_TRUE(same(loadWorkspace(folder / "a"), painted));
+}
+
+TEST_F(History, WhatIsNoWorkspaceIsNamed) {
+  expectOneLineError(run({"undo", box}), {"box.ply", "not a workspace"});
+  expectOneLineError(run({"redo", folder / "none"}), {"none"});
+}
+
+// Damage is told in one line, leaves the folder as it is, and what is whole can be had elsewhere.
+TEST_F(History, DamagedJournalsAreNamedAndTheSceneIsRecovered) {
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
+  const Scene painted = loadWorkspace(workspace);
+  const std::filesystem::path journal = openWorkspace(workspace).journal_file;
+  std::string text = readFile(journal);
+  const std::size_t second = text.find("\"n\":2");
+  ASSERT_NE(second, std::string::npos);
+  text[text.find("radius", second)] = 'R';
+  writeFileAtomically(journal, text);
+  const std::string before = fingerprint(workspace);
+  const std::string name = journal.filename().string();
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"undo", workspace},
+           {"info", workspace},
+           {"paint", workspace, "--strokes", three(), "-o", workspace},
+           {"paint", workspace, "--strokes", journal.string(), "-o", folder / "out"},
+           {"scene", "-o", workspace, "--set", "stiffness=700"}})
+    expectOneLineError(run(words), {name + ":"});
+  EXPECT_EQ(fingerprint(workspace), before);
+  const Outcome recovered = run({"scene", "-o", folder / "whole", "--recover", workspace});
+  EXPECT_EQ(recovered.exit, 0) << recovered.err;
+  EXPECT_NE(recovered.err.find(name), std::string::npos) << recovered.err;
+  EXPECT_TRUE(same(loadWorkspace(folder / "whole"), painted));
+  EXPECT_EQ(fingerprint(workspace), before);
+  EXPECT_EQ(run({"paint", folder / "whole", "--strokes", three(), "-o", folder / "whole"}).exit, 0);
+}
+
+TEST_F(History, ATornLastRecordIsLeftOutWithANote) {
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
+  const Scene painted = loadWorkspace(workspace);
+  const std::filesystem::path journal = openWorkspace(workspace).journal_file;
+  writeFileAtomically(journal, readFile(journal) + "{\"n\":4,\"stro");
+  const Outcome info = run({"info", workspace});
+  EXPECT_EQ(info.exit, 0);
+  EXPECT_NE(info.err.find("warning"), std::string::npos) << info.err;
+  EXPECT_EQ(run({"scene", "-o", workspace, "--set", "stiffness=700"}).exit, 0);
+  ASSERT_EQ(run({"undo", workspace}).exit, 0);
+  EXPECT_TRUE(same(loadWorkspace(workspace), painted));
+}
+
+TEST_F(History, WrongHashesAndPathsThatLeaveTheFolderAreRefusedWithoutAChange) {
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
+  const std::string manifest = workspace + "/workspace.json", whole = readFile(manifest);
+  const auto tryWith = [&](const std::string& text, const std::vector<std::string>& parts) {
+    writeFileAtomically(manifest, text);
+    const std::string before = fingerprint(workspace);
+    for (const auto& words : std::vector<std::vector<std::string>>{
+             {"undo", workspace},
+             {"info", workspace},
+             {"paint", workspace, "--strokes", three(), "-o", workspace}})
+      expectOneLineError(run(words), parts);
+    EXPECT_EQ(fingerprint(workspace), before);
+  };
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  };
+  tryWith(replaced("\"version\": 2", "\"version\": 77"), {"version", "77"});
+  tryWith(replaced("meshes/", "../meshes/"), {"../meshes"});
+  tryWith(replaced("\"sha256\": \"", "\"sha256\": \"0"), {"workspace.json"});
+  writeFileAtomically(manifest, whole);
+  for (const auto& item : std::filesystem::directory_iterator(workspace + "/paint")) {
+    std::string bytes = readFile(item.path());
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    writeFileAtomically(item.path(), bytes);
+  }
+  expectOneLineError(run({"info", workspace}), {"SHA-256"});
+  // The history has no need of the painted files: it is painted anew.
+  const Outcome recovered = run({"scene", "-o", folder / "whole", "--recover", workspace});
+  EXPECT_EQ(recovered.exit, 0) << recovered.err;
+}
+
+} // namespace
+} // namespace patina::test
