@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "app/cli/commands.h"
@@ -19,10 +20,11 @@ namespace {
 
 struct RenderOptions {
   std::filesystem::path input, output;
-  std::set<Layer> layers = {Layer::mesh};
+  std::set<Layer> layers = {Layer::mesh, Layer::color};
   ViewPreset view = ViewPreset::iso;
   PictureSize size;
   std::optional<Vec3> tip;
+  std::optional<ValueRange> range;
   SceneOptions scene;
 };
 
@@ -51,6 +53,32 @@ template <typename Value> std::string choices(const std::vector<Value>& all) {
   std::string text;
   for (const Value value : all) text += (text.empty() ? "" : " ") + std::string(name(value));
   return text;
+}
+
+// LOW,HIGH in SI, or with a unit where they are lengths.
+ValueRange parseRange(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) throw Error("'" + text + "' is not LOW,HIGH");
+  const ValueRange range{parseLength(text.substr(0, comma)), parseLength(text.substr(comma + 1))};
+  if (!(range.low < range.high)) throw Error("'" + text + "': LOW must be less than HIGH");
+  return range;
+}
+
+// The paint that is read against a scale, at most one; it must be there.
+std::optional<PaintQuantity> readPaint(const std::set<Layer>& layers, const Scene& scene) {
+  std::optional<PaintQuantity> found;
+  for (const Layer layer : layers) {
+    const auto quantity = paintOf(layer);
+    if (!quantity || quantity == PaintQuantity::color) continue;
+    if (found)
+      throw Error("--show: of the layers " + std::string(name(layerOf(*found))) + " and " +
+                  std::string(name(layer)) + " the surface can have the colours of one");
+    found = quantity;
+  }
+  if (found && !hasPaint(scene, *found))
+    throw Error("--show: the layer " + std::string(name(layerOf(*found))) +
+                " needs a workspace where it was painted");
+  return found;
 }
 
 // The tool as the servo leaves it when it comes to `tip` from outside.
@@ -85,18 +113,25 @@ int runRender(const RenderOptions& options, Console& console) {
   const auto band = touchBand(scene.haptics);
   if (options.layers.contains(Layer::band) && !band)
     throw Error("--show: the layer band needs a scene with an offset or a magnet");
+  const auto quantity = readPaint(options.layers, scene);
+  if (options.range && !quantity)
+    throw Error("--range: no layer of those shown has a range: show relief, stiffness ...");
   requireDisplay();
-  const bool only_mesh = options.layers == std::set<Layer>{Layer::mesh} ||
-                         options.layers == std::set<Layer>{Layer::mesh, Layer::wireframe};
+  const bool only_mesh = std::all_of(options.layers.begin(), options.layers.end(), [](Layer layer) {
+    return layer == Layer::mesh || layer == Layer::wireframe || paintOf(layer);
+  });
   SceneView view;
+  if (quantity) view.lockPaintRange(*quantity, options.range);
   Json json = Json::object();
   TextRows rows = {{"picture", options.output.string()}};
   if (only_mesh) {
     view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
+    view.setPaint(scene);
   } else {
     const auto compiled = compileFor(std::move(scene), console);
     view.setBand(band);
     view.setMesh(compiled->mesh);
+    view.setPaint(compiled->scene);
     view.setField(compiled->built.field);
     if (const auto radius = compiled->scene.haptics.tip_radius) {
       view.setTipRadius(*radius);
@@ -129,6 +164,15 @@ int runRender(const RenderOptions& options, Console& console) {
   json.set("height", options.size.height);
   json.set("layers", layers);
   json.set("view", std::string(name(options.view)));
+  if (quantity) {
+    const ValueRange range = view.paintRange(*quantity);
+    Json ends = Json::array();
+    ends.push(range.low);
+    ends.push(range.high);
+    json.set("range", ends);
+    rows.emplace_back("range", arrayName(*quantity) + " from " + rounded(range.low) + " to " +
+                                   rounded(range.high));
+  }
   rows.insert(rows.begin() + 1, {"layers", layer_text});
   console.report(json, aligned(rows));
   return kDone;
@@ -148,17 +192,21 @@ Command renderCommand() {
       "the layer stability colours the surface by K*(x)/K for the scene's device (device.* values; "
       "without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below 1 the loop would buzz "
       "when pressed with 1 N, grey where the force jumps; "
-      "colours end at 0.25 and 4.\n"
+      "colours end at 0.25 and 4. The layers from color on show what was painted in a workspace: "
+      "color with relief shaded as relief, the others against a scale, one at a time, material "
+      "also "
+      "on the slice; objects without it stay as they are.\n"
       "Needs a display; on a machine without one: xvfb-run -a patina render ...\n"
       "JSON: picture, width, height, layers, view; stability (ratio_min, at [m], ratio_median, "
       "buzzing, slipping, jumping (fractions of the surface), limit [N/m], limit_damped [N/m], "
-      "coupled, device_given).";
+      "coupled, device_given); range (of the scale, [2]).";
   command.examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
-                      "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm"};
+                      "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm",
+                      "patina render workspace -o stiffness.png --show stiffness --range 0,2000"};
   command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
   command.output("PICTURE.png", "The picture.", options->output);
   command.arguments.push_back(
-      {"--show", "LAYERS", "Layers, with commas between.", "mesh", false, false,
+      {"--show", "LAYERS", "Layers, with commas between.", "mesh,color", false, false,
        [options](const auto& text) { options->layers = parseLayers(text); }});
   command.arguments.push_back({"--view", "NAME", "Where the camera stands.", "iso", false, false,
                                [options](const auto& text) { options->view = parseView(text); }});
@@ -169,6 +217,10 @@ Command renderCommand() {
   command.arguments.push_back(
       {"--tip", "X,Y,Z", "Place of the tip [m]; units as 1mm,0,2mm.", "", false, false,
        [options](const std::string& text) { options->tip = parsePoint(text); }});
+  command.arguments.push_back(
+      {"--range", "LOW,HIGH", "Ends of the scale of what was painted, SI or as 0,0.5mm.",
+       "what is there", false, false,
+       [options](const std::string& text) { options->range = parseRange(text); }});
   addHapticOptions(command, options->scene);
   addFieldOptions(command, options->scene);
   addSamplerOption(command, options->scene);

@@ -14,15 +14,6 @@
 namespace patina {
 namespace {
 
-bool hasPaintOf(const SceneObject& object, PaintQuantity quantity) {
-  const ObjectPaint* paint = object.paint.get();
-  if (paint == nullptr) return false;
-  if (const auto channel = channelOf(quantity))
-    return paint->material != nullptr && paint->material->has(*channel);
-  if (!paint->layout.uvs) return false;
-  return paint->relief != nullptr || (quantity == PaintQuantity::color && paint->color != nullptr);
-}
-
 // Smallest range of both.
 ValueRange both(const ValueRange& a, const ValueRange& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
@@ -52,7 +43,7 @@ struct PaintLayer::Impl {
   vtkPlane* clip = nullptr;
 
   static std::size_t at(PaintQuantity q) { return static_cast<std::size_t>(q); }
-  bool draws(const Drawn& drawn) const { return quantity && hasPaintOf(drawn.object, *quantity); }
+  bool draws(const Drawn& drawn) const { return quantity && hasPaint(drawn.object, *quantity); }
 
   void remove(Drawn& drawn) {
     if (drawn.image) scene->RemoveActor(&drawn.image->actor());
@@ -158,7 +149,7 @@ void PaintLayer::show(std::optional<PaintQuantity> quantity) {
 
 bool PaintLayer::has(PaintQuantity quantity) const {
   return std::any_of(impl_->objects.begin(), impl_->objects.end(),
-                     [&](const Impl::Drawn& drawn) { return hasPaintOf(drawn.object, quantity); });
+                     [&](const Impl::Drawn& drawn) { return hasPaint(drawn.object, quantity); });
 }
 
 bool PaintLayer::draws(std::size_t object) const {

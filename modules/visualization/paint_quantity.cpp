@@ -57,6 +57,20 @@ PaintQuantity quantityOf(MaterialChannel channel) {
                                     static_cast<int>(PaintQuantity::stiffness));
 }
 
+bool hasPaint(const SceneObject& object, PaintQuantity quantity) {
+  const ObjectPaint* paint = object.paint.get();
+  if (paint == nullptr) return false;
+  if (const auto channel = channelOf(quantity))
+    return paint->material != nullptr && paint->material->has(*channel);
+  if (!paint->layout.uvs) return false;
+  return paint->relief != nullptr || (quantity == PaintQuantity::color && paint->color != nullptr);
+}
+
+bool hasPaint(const Scene& scene, PaintQuantity quantity) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const SceneObject& object) { return hasPaint(object, quantity); });
+}
+
 std::string arrayName(PaintQuantity quantity) {
   if (quantity == PaintQuantity::color) return "color";
   if (quantity == PaintQuantity::relief) return "relief [m]";

@@ -9,7 +9,7 @@
 #include <vtkLookupTable.h>
 #include <vtkSmartPointer.h>
 
-#include "scene/material_map.h"
+#include "scene/scene.h"
 
 namespace patina {
 
@@ -27,6 +27,11 @@ inline constexpr std::size_t kPaintQuantities = 7;
 
 std::optional<MaterialChannel> channelOf(PaintQuantity quantity);
 PaintQuantity quantityOf(MaterialChannel channel);
+
+// Whether an object, or any object of a scene, has some of it painted. Relief is seen in colour,
+// too.
+bool hasPaint(const SceneObject& object, PaintQuantity quantity);
+bool hasPaint(const Scene& scene, PaintQuantity quantity);
 
 // As arrays in files are called: "color", "relief [m]", "stiffness [N/m]", "friction.static" ...
 std::string arrayName(PaintQuantity quantity);

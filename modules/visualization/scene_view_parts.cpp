@@ -16,10 +16,9 @@ namespace patina {
 
 std::optional<PaintQuantity> SceneView::Impl::shownPaint() const {
   if (painted.objects.empty() || mapShown()) return std::nullopt;
-  constexpr auto kFirst = static_cast<int>(Layer::color);
   for (int q = kPaintQuantities - 1; q >= 0; --q) {
     const auto quantity = static_cast<PaintQuantity>(q);
-    if (on(static_cast<Layer>(kFirst + q)) && paint.has(quantity)) return quantity;
+    if (on(layerOf(quantity)) && paint.has(quantity)) return quantity;
   }
   return std::nullopt;
 }

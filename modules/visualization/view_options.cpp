@@ -82,6 +82,15 @@ const std::vector<Layer>& allLayers() {
   return layers;
 }
 
+std::optional<PaintQuantity> paintOf(Layer layer) {
+  if (layer < Layer::color) return std::nullopt;
+  return static_cast<PaintQuantity>(static_cast<int>(layer) - static_cast<int>(Layer::color));
+}
+
+Layer layerOf(PaintQuantity quantity) {
+  return static_cast<Layer>(static_cast<int>(quantity) + static_cast<int>(Layer::color));
+}
+
 ViewPreset parseView(std::string_view text) {
   return parsed(kViews, text, "view");
 }

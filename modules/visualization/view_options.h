@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "visualization/paint_quantity.h"
 
 namespace patina {
 
@@ -34,6 +37,10 @@ enum class Layer : std::uint8_t {
 std::set<Layer> parseLayers(std::string_view text);
 std::string_view name(Layer layer);
 const std::vector<Layer>& allLayers();
+
+// The paint that a layer shows; nullopt for those that show none.
+std::optional<PaintQuantity> paintOf(Layer layer);
+Layer layerOf(PaintQuantity quantity);
 
 enum class ViewPreset : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z, iso };
 
