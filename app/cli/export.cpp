@@ -1,4 +1,5 @@
 #include "app/cli/commands.h"
+#include "app/cli/paint_images.h"
 #include "app/cli/reports.h"
 #include "app/cli/scene_options.h"
 #include "app/cli/stability_report.h"
@@ -69,8 +70,8 @@ int runExport(const ExportOptions& options, Console& console) {
                  {{"stability [K*/K]", stability->map.ratio},
                   {"least stiffness [N/m]", stability->map.least}});
   else
-    writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->built.field, iso));
-  writeField(folder / "field.vti", *compiled->built.field);
+    writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->paint.field, iso));
+  writeField(folder / "field.vti", *compiled->paint.field);
   writeCsv(folder / "vertices.csv", vertexTable(*compiled));
   if (!samples.empty()) {
     writeToolPathVtp(folder / "path.vtp", samples);
@@ -78,6 +79,8 @@ int runExport(const ExportOptions& options, Console& console) {
     blocks.emplace_back("path", "path.vtp");
   }
   writeCollectionVtm(folder / "scene.vtm", blocks);
+
+  const std::vector<std::string> images = writePaintImages(compiled->scene, folder, console);
 
   Json files = Json::array();
   TextRows rows;
@@ -90,6 +93,10 @@ int runExport(const ExportOptions& options, Console& console) {
   if (!samples.empty()) {
     rows.emplace_back("forces", (folder / "forces.csv").string());
     files.push("forces.csv");
+  }
+  for (const std::string& image : images) {
+    rows.emplace_back("image", (folder / image).string());
+    files.push(image);
   }
   rows.emplace_back("all", (folder / "scene.vtm").string());
   files.push("scene.vtm");
@@ -116,7 +123,8 @@ Command exportCommand() {
       "Into the folder: mesh.vtp (of several objects with the index of each triangle's), "
       "surface.vtp (the surface that the tip's centre feels), "
       "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens them "
-      "together, and with --path also path.vtp and forces.csv (as patina feel).\n"
+      "together, and with --path also path.vtp and forces.csv (as patina feel). Painted images go "
+      "beside them, as .png (16 bits) and .exr (floats).\n"
       "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop would "
       "buzz, and the least stiffness of any direction, below 0 where the tip slips off.\n"
       "JSON: folder, files; stability (as patina render).";

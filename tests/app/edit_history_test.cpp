@@ -6,9 +6,12 @@
 #include <stdexcept>
 
 #include "geometry/shapes.h"
+#include "support/same_scene.h"
 
 namespace patina {
 namespace {
+
+using test::same;
 
 Scene startScene() {
   Scene scene;
@@ -16,17 +19,6 @@ Scene startScene() {
   object.name = "ball";
   object.mesh = std::make_shared<const TriangleMesh>(icosphere(0.05, 3));
   return scene;
-}
-
-bool same(const Scene& a, const Scene& b) {
-  if (values(a) != values(b) || a.objects.size() != b.objects.size()) return false;
-  for (std::size_t i = 0; i < a.objects.size(); ++i) {
-    const SceneObject &left = a.objects[i], &right = b.objects[i];
-    if (left.name != right.name || left.mesh != right.mesh || !left.paint != !right.paint)
-      return false;
-    if (left.paint && !patina::same(*left.paint, *right.paint)) return false;
-  }
-  return true;
 }
 
 // Writes one tile, chosen by the stroke, so that most tiles are shared between versions.

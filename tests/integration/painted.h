@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "integration/program.h"
 #include "scene/stroke.h"
+#include "support/same_scene.h"
 #include "workspace/sha256.h"
 #include "workspace/workspace.h"
 
@@ -24,20 +25,6 @@ inline std::string fingerprint(const std::filesystem::path& folder) {
   std::string all;
   for (const std::string& line : lines) all += line + "\n";
   return all;
-}
-
-inline bool same(const Scene& a, const Scene& b) {
-  if (values(a) != values(b) || a.objects.size() != b.objects.size()) return false;
-  for (std::size_t i = 0; i < a.objects.size(); ++i) {
-    const SceneObject &left = a.objects[i], &right = b.objects[i];
-    if (left.name != right.name || left.mesh->positions != right.mesh->positions ||
-        left.mesh->triangles != right.mesh->triangles ||
-        left.world_from_object.matrix() != right.world_from_object.matrix() ||
-        !left.paint != !right.paint)
-      return false;
-    if (left.paint && !patina::same(*left.paint, *right.paint)) return false;
-  }
-  return true;
 }
 
 // A hard brush: its weight is 1 up to its edge.

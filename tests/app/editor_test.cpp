@@ -1,0 +1,164 @@
+// One place for edits: what it does to the scene, what it tells, and what it takes back.
+#include "app/editor.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "app/painted_scenes.h"
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+using namespace test;
+
+class Editors : public testing::Test {
+ protected:
+  Progress progress;
+};
+
+TEST_F(Editors, EveryStrokeIsOneEditAndUndoIsBitwise) {
+  Editor editor(ballScene(), progress);
+  std::vector<Scene> scenes{editor.scene()};
+  for (const Stroke& one : manyStrokes(24)) {
+    const std::size_t before = editor.history().undoable();
+    editor.apply(one, progress);
+    if (editor.history().undoable() > before) scenes.push_back(editor.scene());
+  }
+  ASSERT_GT(scenes.size(), 15U);
+  for (std::size_t i = scenes.size() - 1; i-- > 0;) {
+    ASSERT_EQ(editor.undo(1, progress), 1U);
+    ASSERT_TRUE(same(editor.scene(), scenes[i])) << i;
+  }
+  EXPECT_EQ(editor.undo(1, progress), 0U);
+  EXPECT_EQ(editor.redo(1000, progress), scenes.size() - 1);
+  EXPECT_TRUE(same(editor.scene(), scenes.back()));
+}
+
+// With a budget of nothing all of the past is replayed, to the same bits.
+TEST_F(Editors, ReplayGivesTheBitsOfTheFirstTime) {
+  const std::vector<Stroke> strokes = manyStrokes(24);
+  Editor ample(ballScene(), progress);
+  Editor sparing(ballScene(), progress, {}, 1);
+  std::vector<Scene> scenes;
+  for (const Stroke& one : strokes) {
+    ample.apply(one, progress);
+    sparing.apply(one, progress);
+  }
+  ASSERT_LT(sparing.history().scenes(), 4U);
+  ASSERT_EQ(sparing.history().undoable(), ample.history().undoable());
+  const std::size_t edits = ample.history().undoable();
+  for (std::size_t i = 0; i <= edits; i += 3)
+    EXPECT_TRUE(same(sparing.history().sceneAt(i), ample.history().sceneAt(i))) << i;
+  sparing.undo(edits, progress);
+  EXPECT_TRUE(same(sparing.scene(), ballScene()));
+}
+
+// The field that is felt may be wider or older; the one that is painted by is not.
+TEST_F(Editors, WhatWasSetMeanwhileDoesNotMoveTheGrid) {
+  const std::vector<Stroke> strokes = manyStrokes(16);
+  Editor plain(ballScene(), progress);
+  Editor eventful(ballScene(), progress);
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    if (i == 3) eventful.apply(ValueEdit{{{"offset", "7mm"}}}, progress);
+    if (i == 9) eventful.apply(ValueEdit{{{"offset", "none"}}}, progress);
+    if (i == 12) eventful.apply(ValueEdit{{{"voxel", "0.5mm"}}}, progress);
+    if (i == 12) eventful.apply(ValueEdit{{{"resolution", "60"}}}, progress);
+    plain.apply(strokes[i], progress);
+    eventful.apply(strokes[i], progress);
+  }
+  EXPECT_TRUE(same(plain.scene(), eventful.scene()));
+}
+
+TEST_F(Editors, ADabIsFeltWhenItReturnsAndTellsWhatChanged) {
+  std::vector<EditorNotice> notices;
+  Editor editor(ballScene(), progress,
+                [&](const EditorNotice& notice) { notices.push_back(notice); });
+  const auto before = editor.compiled();
+  editor.beginStroke(dabAt(Tool::stiffness, 900, 0.01, {}).brush, progress);
+  EXPECT_TRUE(editor.inStroke());
+  EXPECT_TRUE(notices.empty());
+  const PaintReport report = editor.dab({0, Vec3(0, 0, kBall), 0.5});
+  EXPECT_GT(report.nodes, 0U);
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_EQ(notices[0].compiled, editor.compiled());
+  ASSERT_TRUE(notices[0].changes);
+  ASSERT_EQ(notices[0].changes->size(), 1U);
+  EXPECT_FALSE(notices[0].changes->front().material_blocks.empty());
+  EXPECT_FALSE(feelAlike(*before->snapshot, *editor.compiled()->snapshot));
+  EXPECT_EQ(editor.compiled()->built.field, before->built.field); // nothing was built anew
+  EXPECT_TRUE(editor.endStroke());
+  EXPECT_EQ(editor.history().undoable(), 1U);
+}
+
+TEST_F(Editors, ACancelledStrokeLeavesNoTrace) {
+  Editor editor(ballScene(), progress);
+  editor.apply(dabAt(Tool::relief, 3e-4, 0.01, Vec3(0, 0, kBall)), progress);
+  const Scene before = editor.scene();
+  const auto snapshot = editor.compiled()->snapshot;
+  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, {}).brush, progress);
+  editor.dab({0, Vec3(0, 0, kBall), 0});
+  EXPECT_FALSE(same(editor.scene(), before));
+  editor.cancelStroke();
+  EXPECT_FALSE(editor.inStroke());
+  EXPECT_TRUE(same(editor.scene(), before));
+  EXPECT_EQ(editor.compiled()->snapshot, snapshot);
+  EXPECT_EQ(editor.history().undoable(), 1U);
+}
+
+TEST_F(Editors, AStrokeThatTouchesNothingIsNoEdit) {
+  Editor editor(ballScene(), progress);
+  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, {}).brush, progress);
+  EXPECT_EQ(editor.dab({0, Vec3(0, 0, 1), 0}).missed, 1U);
+  EXPECT_FALSE(editor.endStroke());
+  EXPECT_EQ(editor.history().undoable(), 0U);
+}
+
+TEST_F(Editors, OtherEditsWaitForTheStrokeToEnd) {
+  Editor editor(ballScene(), progress);
+  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, {}).brush, progress);
+  EXPECT_THROW(editor.beginStroke(Brush{}, progress), std::invalid_argument);
+  EXPECT_THROW(editor.apply(ValueEdit{{{"stiffness", "1"}}}, progress), std::invalid_argument);
+  EXPECT_THROW(editor.undo(1, progress), std::invalid_argument);
+  EXPECT_THROW(editor.redo(1, progress), std::invalid_argument);
+  editor.cancelStroke();
+  EXPECT_THROW(editor.dab({}), std::invalid_argument);
+  EXPECT_THROW(editor.endStroke(), std::invalid_argument);
+}
+
+TEST_F(Editors, EditsThatMakeNoSenseChangeNothing) {
+  Editor editor(ballScene(), progress);
+  const auto before = editor.compiled();
+  EXPECT_THROW(editor.apply(ValueEdit{{{"stiffness", "-1"}}}, progress), Error);
+  EXPECT_THROW(editor.apply(ValueEdit{{{"no.such", "1"}}}, progress), Error);
+  Stroke bad = dabAt(Tool::relief, 1e-3, -1, Vec3(0, 0, kBall));
+  EXPECT_THROW(editor.apply(bad, progress), Error);
+  EXPECT_THROW(editor.apply(SceneEdit{"nothing", nullptr}, progress), std::invalid_argument);
+  EXPECT_EQ(editor.compiled(), before);
+  EXPECT_EQ(editor.history().undoable(), 0U);
+  EXPECT_FALSE(editor.inStroke());
+}
+
+TEST_F(Editors, ObjectsComeAndGoWithUndo) {
+  Editor editor(ballScene(), progress);
+  editor.apply(dabAt(Tool::stiffness, 900, 0.01, Vec3(0, 0, kBall)), progress);
+  const Scene one = editor.scene();
+  Scene two = one;
+  two.objects.push_back(ballScene().objects[0]);
+  two.objects[1].name = "other";
+  two.objects[1].world_from_object.translation() = Vec3(0.08, 0, 0);
+  editor.apply(SceneEdit{"add other", std::make_shared<const Scene>(two)}, progress);
+  editor.apply(dabAt(Tool::stiffness, 200, 0.01, Vec3(0.08, 0, kBall)), progress);
+  ASSERT_TRUE(editor.scene().objects[1].paint);
+  EXPECT_TRUE(same(*editor.scene().objects[0].paint, *one.objects[0].paint));
+  const Scene painted = editor.scene();
+  EXPECT_EQ(editor.undo(2, progress), 2U);
+  EXPECT_TRUE(same(editor.scene(), one));
+  EXPECT_EQ(editor.compiled()->objects.size(), 1U);
+  EXPECT_EQ(editor.redo(2, progress), 2U);
+  EXPECT_TRUE(same(editor.scene(), painted));
+}
+
+} // namespace
+} // namespace patina

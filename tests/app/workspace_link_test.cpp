@@ -1,0 +1,161 @@
+// An editor in a folder: what its journal and states give back in another process.
+#include "app/workspace_link.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include "app/editor.h"
+#include "app/journal_fold.h"
+#include "app/painted_scenes.h"
+#include "app/session.h"
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+using namespace test;
+namespace fs = std::filesystem;
+
+class Links : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(root);
+    saveWorkspace(ballScene(), folder);
+  }
+  void TearDown() override { fs::remove_all(root); }
+
+  std::unique_ptr<Editor> open(bool own = true) {
+    Editor::OpenSpec spec;
+    spec.own = own;
+    return Editor::open(folder, spec, progress);
+  }
+  Scene read(const fs::path& path) { return openScene(path, {}).scene; }
+
+  const fs::path root = fs::temp_directory_path() / ("patina-link-" + std::to_string(getpid()));
+  const fs::path folder = root / "ball";
+  Progress progress;
+};
+
+TEST_F(Links, EditsAreThereWithoutASave) {
+  Scene last;
+  {
+    const auto editor = open();
+    for (const Stroke& one : manyStrokes(6)) editor->apply(one, progress);
+    editor->apply(ValueEdit{{{"stiffness", "640"}}}, progress);
+    EXPECT_TRUE(editor->unsaved());
+    last = editor->scene();
+  }
+  EXPECT_FALSE(same(loadWorkspace(folder), last)); // it was not saved
+  EXPECT_TRUE(same(read(folder), last));
+  const auto again = open();
+  EXPECT_TRUE(again->unsaved());
+  EXPECT_TRUE(same(again->scene(), last));
+  again->save();
+  EXPECT_FALSE(again->unsaved());
+  EXPECT_TRUE(same(loadWorkspace(folder), last));
+}
+
+TEST_F(Links, UndoAndRedoGoOnInAnotherProcess) {
+  std::vector<Scene> scenes;
+  std::size_t edits = 0;
+  {
+    const auto editor = open();
+    scenes.push_back(editor->scene());
+    for (const Stroke& one : manyStrokes(10)) {
+      editor->apply(one, progress);
+      if (editor->history().undoable() > edits) scenes.push_back(editor->scene());
+      edits = editor->history().undoable();
+    }
+    editor->save();
+    editor->undo(2, progress);
+  }
+  {
+    const auto editor = open();
+    EXPECT_EQ(editor->history().undoable(), edits - 2);
+    EXPECT_EQ(editor->history().redoable(), 2U);
+    EXPECT_TRUE(same(editor->scene(), scenes[edits - 2]));
+    EXPECT_EQ(editor->redo(1, progress), 1U);
+    EXPECT_TRUE(same(editor->scene(), scenes[edits - 1]));
+    EXPECT_EQ(editor->undo(100, progress), edits - 1);
+    EXPECT_TRUE(same(editor->scene(), scenes[0]));
+  }
+  const auto editor = open();
+  EXPECT_EQ(editor->redo(100, progress), edits);
+  EXPECT_TRUE(same(editor->scene(), scenes[edits]));
+}
+
+TEST_F(Links, AWholeHistoryIsWrittenIntoAnotherFolder) {
+  const fs::path other = root / "other";
+  const auto editor = open();
+  for (const Stroke& one : manyStrokes(5)) editor->apply(one, progress);
+  Scene moved = editor->scene();
+  moved.objects[0].world_from_object.translation() = Vec3(0.01, 0, 0);
+  editor->apply(SceneEdit{"move ball", std::make_shared<const Scene>(moved)}, progress);
+  editor->apply(dabAt(Tool::stiffness, 300, 0.008, Vec3(0.01, 0, kBall)), progress);
+  const std::size_t edits = editor->history().undoable();
+  const Scene last = editor->scene();
+  editor->undo(1, progress);
+  editor->saveAs(other);
+  EXPECT_EQ(editor->folder(), other);
+  Editor::OpenSpec reading;
+  reading.own = false;
+  const auto copy = Editor::open(other, reading, progress);
+  EXPECT_EQ(copy->history().undoable(), edits - 1);
+  EXPECT_EQ(copy->history().redoable(), 1U);
+  EXPECT_TRUE(same(copy->scene(), editor->scene()));
+  EXPECT_EQ(copy->redo(1, progress), 1U);
+  EXPECT_TRUE(same(copy->scene(), last));
+  EXPECT_EQ(copy->undo(100, progress), edits);
+  EXPECT_TRUE(same(copy->scene(), ballScene()));
+  EXPECT_FALSE(copy->folder()); // it only reads
+}
+
+TEST_F(Links, AJournalHasOneWriter) {
+  const auto first = open();
+  first->apply(ValueEdit{{{"stiffness", "640"}}}, progress);
+  EXPECT_THROW(open(), FileError);
+  const auto reader = open(false);
+  EXPECT_EQ(reader->scene().haptics.stiffness, 640);
+}
+
+// A tie to a folder that is gone: the edit is refused and nothing has happened.
+TEST_F(Links, WhatCannotBeJournaledIsTakenBack) {
+  const auto editor = open();
+  editor->apply(dabAt(Tool::relief, 3e-4, 0.01, Vec3(0, 0, kBall)), progress);
+  const Scene before = editor->scene();
+  Stroke endless = dabAt(Tool::relief, 3e-4, 0.01, Vec3(0, kBall, 0));
+  endless.samples.push_back({1, Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), 0});
+  EXPECT_THROW(editor->apply(endless, progress), Error);
+  EXPECT_TRUE(same(editor->scene(), before));
+  EXPECT_EQ(editor->history().undoable(), 1U);
+  EXPECT_FALSE(editor->inStroke());
+}
+
+TEST(JournalFold, KeepsWhatStandsAndWhereItStands) {
+  const auto value = [](const char* text) { return ValueEdit{{{"stiffness", text}}}; };
+  const std::vector<JournalEvent> journal{value("1"), value("2"),   value("3"),  UndoEvent{2},
+                                          value("4"), UndoEvent{1}, RedoEvent{1}};
+  const FoldedJournal fold = folded(journal, "j");
+  ASSERT_EQ(fold.steps.size(), 2U);
+  EXPECT_EQ(fold.steps[0].number, 1U);
+  EXPECT_EQ(fold.steps[1].number, 5U);
+  EXPECT_EQ(fold.steps[1].event, &journal[4]);
+  EXPECT_EQ(fold.position, 2U);
+  EXPECT_EQ(fold.position_at, (std::vector<std::size_t>{0, 1, 2, 3, 1, 2, 1, 2}));
+}
+
+TEST(JournalFold, MoreThanThereIsIsRefusedByName) {
+  for (const std::vector<JournalEvent>& journal :
+       {std::vector<JournalEvent>{UndoEvent{1}}, {RedoEvent{1}}, {UndoEvent{-1}}}) {
+    try {
+      folded(journal, "j.jsonl");
+      ADD_FAILURE();
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("j.jsonl: record 1"), std::string::npos);
+    }
+  }
+}
+
+} // namespace
+} // namespace patina
