@@ -49,10 +49,18 @@ struct EditThread::Impl {
     {
       const std::lock_guard lock(mutex);
       if (!task.replaces.empty())
-        std::erase_if(queue, [&](const Task& other) { return other.replaces == task.replaces; });
+        drop([&](const Task& other) { return other.replaces == task.replaces; });
       queue.push_back(std::move(task));
     }
     wakes.notify_one();
+  }
+
+  // Those that wait and are meant; the mutex is held.
+  template <typename Meant> void drop(Meant meant) {
+    for (Task& task : queue)
+      if (meant(task) && task.done)
+        board.done([done = std::move(task.done)] { done(Cancelled().what()); });
+    std::erase_if(queue, meant);
   }
 
   void run() {
@@ -237,9 +245,7 @@ void EditThread::discard(Done done) {
 
 void EditThread::cancel() {
   const std::lock_guard lock(impl_->mutex);
-  for (Impl::Task& task : impl_->queue)
-    if (task.done) impl_->board.done([done = std::move(task.done)] { done(Cancelled().what()); });
-  impl_->queue.clear();
+  impl_->drop([](const Impl::Task&) { return true; });
   if (impl_->working && impl_->progress) impl_->progress->cancel();
 }
 

@@ -8,6 +8,14 @@
 #include "core/error.h"
 
 namespace patina {
+namespace {
+
+bool sameField(const Scene& a, const Scene& b) {
+  return a.field.resolution == b.field.resolution && a.field.voxel == b.field.voxel &&
+         a.field.band == b.field.band && a.redistance == b.redistance;
+}
+
+} // namespace
 
 EditWorker::EditWorker(EditNewsBoard& board, std::function<void(const CompiledScene&)> publish,
                        std::filesystem::path autosave_root)
@@ -83,14 +91,14 @@ void EditWorker::tryValues(const std::function<void(Scene&)>& set) {
   if (tried_) setValues(wanted, tried_->values);
   set(wanted);
   validate(wanted);
-  const bool shown = tried_.has_value();
-  tried_ = valueEdit(editor_->scene(), wanted);
-  if (!tried_) {
-    if (shown) show(editor_->compiled(), std::nullopt, false);
-    return;
-  }
-  if (canRetune(*editor_->compiled(), wanted))
-    show(retuned(*editor_->compiled(), std::move(wanted)), std::nullopt, false);
+  const CompiledScene& compiled = *editor_->compiled();
+  std::optional<ValueEdit> now = valueEdit(compiled.scene, wanted);
+  if (!now) {
+    if (tried_) show(editor_->compiled(), std::nullopt, false);
+  } else if (sameField(wanted, compiled.scene)) {
+    show(retuned(compiled, std::move(wanted)), std::nullopt, false);
+  } // else the field is built anew, which waits until the values rest
+  tried_ = std::move(now);
 }
 
 void EditWorker::settleValues(Progress& progress) {

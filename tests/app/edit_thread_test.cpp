@@ -1,0 +1,232 @@
+// Edits on a thread of their own: order, what becomes one edit, and that nobody waits.
+#include "app/edit_thread.h"
+
+#include <gtest/gtest.h>
+
+#include "app/edit_desk.h"
+#include "app/value_edit.h"
+#include "support/sanitized.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+using test::circle;
+using test::Desk;
+using test::Folder;
+using test::oneBall;
+using test::stiffBrush;
+
+std::shared_ptr<const Scene> renamed(const CompiledScene& present, const std::string& name) {
+  auto scene = std::make_shared<Scene>(present.scene);
+  scene->objects[0].name = name;
+  return scene;
+}
+
+TEST(EditThread, AStrokeInPiecesIsOneEditAndPaintsWhatTheEditorPaints) {
+  Desk desk;
+  desk.open(oneBall());
+  const auto samples = circle(11);
+  desk.edits.beginStroke(stiffBrush());
+  desk.edits.dabs({samples.begin(), samples.begin() + 3});
+  desk.edits.dabs({samples.begin() + 3, samples.end()});
+  desk.edits.endStroke();
+  ASSERT_TRUE(desk.settle());
+  EXPECT_EQ(desk.standing.edits.size(), 1u);
+  EXPECT_EQ(desk.standing.done, 1u);
+  EXPECT_TRUE(desk.standing.unsaved);
+  EXPECT_FALSE(desk.changes.empty());
+
+  Progress progress;
+  Editor editor(oneBall(), progress);
+  editor.apply(Stroke{stiffBrush(), samples}, progress);
+  const auto& made = desk.compiled->scene.objects[0].paint;
+  ASSERT_TRUE(made && made->material);
+  EXPECT_TRUE(same(*made, *editor.scene().objects[0].paint));
+}
+
+TEST(EditThread, MoreSamplesThanCanBePaintedAreThinnedAndTheLastOneCounts) {
+  Desk desk;
+  desk.open(oneBall());
+  desk.edits.beginStroke(stiffBrush());
+  desk.edits.dabs(circle(400, 0, 2));
+  desk.edits.endStroke();
+  ASSERT_TRUE(desk.settle());
+  const Scene& scene = desk.compiled->scene;
+  ASSERT_TRUE(scene.objects[0].paint);
+  const auto& map = *scene.objects[0].paint->material;
+  const Material base = baseMaterial(scene.haptics);
+  for (const double angle : {0.0, 1.0, 2.0}) {
+    const Vec3 p = 0.02 * Vec3(std::cos(angle), std::sin(angle), 0.1).normalized();
+    EXPECT_GT(map.at(p, base).stiffness, 800) << angle;
+  }
+}
+
+TEST(EditThread, DraggedValuesAreFeltAtOnceAndAreOneEditWhenTheyRest) {
+  std::atomic<double> felt{0};
+  Desk desk({}, [&](const CompiledScene& c) { felt = c.scene.haptics.stiffness; });
+  desk.open(oneBall());
+  for (int k = 510; k <= 700; k += 10)
+    desk.edits.tryValues([k](Scene& scene) { scene.haptics.stiffness = k; });
+  ASSERT_TRUE(desk.waitUntil([&] { return felt == 700; }));
+  EXPECT_EQ(desk.standing.done, 0u);
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 1; }));
+  EXPECT_EQ(desk.standing.edits.front(), "stiffness = 700");
+  EXPECT_EQ(desk.compiled->scene.haptics.stiffness, 700);
+}
+
+TEST(EditThread, ValuesThatComeBackToWhereTheyWereAreNoEdit) {
+  std::atomic<double> felt{0};
+  Desk desk({}, [&](const CompiledScene& c) { felt = c.scene.haptics.stiffness; });
+  desk.open(oneBall());
+  desk.edits.tryValues([](Scene& scene) { scene.haptics.stiffness = 900; });
+  desk.edits.tryValues([](Scene& scene) { scene.haptics.stiffness = 500; });
+  ASSERT_TRUE(desk.settle());
+  EXPECT_EQ(felt, 500);
+  EXPECT_TRUE(desk.standing.edits.empty());
+}
+
+TEST(EditThread, ValuesThatMakeNoSenseAreToldOfAndChangeNothing) {
+  Desk desk;
+  desk.open(oneBall());
+  std::string problem;
+  desk.edits.tryValues([](Scene& scene) { scene.haptics.stiffness = -1; },
+                       [&](const std::string& line) { problem = line; });
+  ASSERT_TRUE(desk.waitUntil([&] { return !problem.empty(); }));
+  EXPECT_NE(problem.find("stiffness"), std::string::npos);
+  ASSERT_TRUE(desk.settle());
+  EXPECT_EQ(desk.compiled->scene.haptics.stiffness, 500);
+}
+
+TEST(EditThread, AnythingElseEndsTheStrokeFirst) {
+  Desk desk;
+  desk.open(oneBall());
+  desk.edits.beginStroke(stiffBrush());
+  desk.edits.dabs(circle(5));
+  desk.edits.undo();
+  desk.edits.dabs(circle(5)); // of no stroke
+  ASSERT_TRUE(desk.settle()); // which redoes it
+  EXPECT_EQ(desk.standing.edits.size(), 1u);
+  EXPECT_EQ(desk.standing.done, 1u);
+  EXPECT_TRUE(desk.problems.empty());
+}
+
+TEST(EditThread, TheHistoryGoesToAnyStepAndBack) {
+  Desk desk;
+  desk.open(oneBall());
+  for (const char* name : {"a", "b", "c"})
+    desk.edits.apply(name, [name](const CompiledScene& c) { return renamed(c, name); });
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 3; }));
+  EXPECT_EQ(desk.compiled->scene.objects[0].name, "c");
+  desk.edits.goTo(1);
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 1; }));
+  EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
+  EXPECT_EQ(desk.standing.edits.size(), 3u);
+  desk.edits.redo();
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 2; }));
+  EXPECT_EQ(desk.compiled->scene.objects[0].name, "b");
+}
+
+TEST(EditThread, NoCallWaitsForWhatIsUnderWayAndCancelEndsIt) {
+  Desk desk;
+  desk.open(oneBall());
+  std::string outcome;
+  const auto begin = std::chrono::steady_clock::now();
+  desk.edits.apply(
+      "finer",
+      [](const CompiledScene& present) {
+        auto scene = std::make_shared<Scene>(present.scene);
+        scene->field.resolution = 400;
+        return scene;
+      },
+      false, [&](const std::string& problem) { outcome = problem; });
+  desk.edits.beginStroke(stiffBrush());
+  desk.edits.dabs(circle(5));
+  desk.edits.endStroke();
+  EXPECT_TRUE(desk.edits.busy());
+  (void)desk.edits.take();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_LT(seconds, 0.05);
+  ASSERT_TRUE(desk.waitUntil([&] {
+    desk.edits.cancel();
+    return !outcome.empty();
+  }));
+  EXPECT_EQ(outcome, "cancelled");
+  ASSERT_TRUE(desk.settle());
+  EXPECT_EQ(desk.compiled->scene.field.resolution, 50);
+  EXPECT_TRUE(desk.standing.edits.empty()) << "the stroke was waiting, and so was cancelled too";
+}
+
+TEST(EditThread, SavingGivesTheSceneAFolderAndDiscardingGoesBackToIt) {
+  const Folder folder;
+  Desk desk(folder.path() / "state");
+  desk.open(oneBall());
+  desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
+  desk.edits.saveAs(folder.path() / "ws");
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.folder.has_value(); }));
+  EXPECT_FALSE(desk.standing.unsaved);
+  EXPECT_TRUE(leftBehind(folder.path() / "state").empty());
+  desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.unsaved; }));
+  bool done = false;
+  desk.edits.discard([&](const std::string& problem) { done = problem.empty(); });
+  ASSERT_TRUE(desk.waitUntil([&] { return done; }));
+  EXPECT_FALSE(desk.standing.unsaved);
+  EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
+  EXPECT_EQ(loadWorkspace(folder.path() / "ws").objects[0].name, "a");
+}
+
+TEST(EditThread, AFolderThatCannotBeMadeIsToldOfAndTheEditsStay) {
+  Desk desk;
+  desk.open(oneBall());
+  desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
+  std::string problem;
+  desk.edits.saveAs("/proc/no/ws", [&](const std::string& line) { problem = line; });
+  ASSERT_TRUE(desk.waitUntil([&] { return !problem.empty(); }));
+  EXPECT_NE(problem.find("/proc/no"), std::string::npos) << problem;
+  EXPECT_EQ(desk.standing.done, 1u);
+  EXPECT_TRUE(desk.standing.unsaved);
+}
+
+TEST(ValueEdits, TheDifferenceOfTwoScenesMakesOneOfTheOther) {
+  std::vector<Scene> scenes(8);
+  scenes[1].haptics.friction = Friction{0.5, 0.2, 0.1, Friction::SlipDirection::displacement};
+  scenes[2].haptics.offset = 1.25e-3;
+  scenes[2].haptics.damping = 2;
+  scenes[2].haptics.damping_cutoff = 80;
+  scenes[3].haptics.magnet = Magnet{1e-3, 250, true};
+  scenes[3].haptics.history = false;
+  scenes[3].haptics.contact = HapticProperties::Contact::potential;
+  scenes[4].field.voxel = 5e-4;
+  scenes[4].redistance = true;
+  scenes[5].field.resolution = 77;
+  scenes[5].device = "simulated";
+  scenes[5].device_model = DeviceModel{0.1, 0.5, 0.05, 30e-6, 2000, 1};
+  scenes[5].stabilisers = Stabilisers{true, false};
+  scenes[6].relief = {ReliefMode::baked, -0.7e-3, ForceForm::literal, 2e-4};
+  scenes[6].material_form = ForceForm::literal;
+  scenes[6].paint_size = 1024;
+  scenes[7].haptics.tip_radius = 1.0 / 3e3;
+  for (const Scene& before : scenes)
+    for (const Scene& after : scenes) {
+      const auto edit = valueEdit(before, after);
+      ASSERT_EQ(edit.has_value(), &before != &after);
+      if (!edit) continue;
+      Scene made = before;
+      setValues(made, edit->values);
+      EXPECT_EQ(values(made), values(after));
+      EXPECT_TRUE(made.haptics == after.haptics);
+      EXPECT_TRUE(made.relief == after.relief);
+      EXPECT_EQ(made.device_model, after.device_model);
+    }
+}
+
+TEST(ValueEdits, OfEachKeyTheLastValueStays) {
+  const ValueEdit both =
+      merged({{{"stiffness", "600"}, {"damping", "1"}}}, {{{"stiffness", "700"}}});
+  EXPECT_EQ(both.values, (ValueEdit{{{"damping", "1"}, {"stiffness", "700"}}}.values));
+}
+
+} // namespace
+} // namespace patina
