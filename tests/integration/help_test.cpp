@@ -46,8 +46,8 @@ std::vector<std::string> options(const std::string& command) {
 
 TEST(Help, ListsTheCommandsOfThisVersion) {
   const std::vector<std::string> expected = {
-      "info",   "scene", "field", "sample",  "feel",         "simulate", "render",
-      "export", "study", "model", "devices", "latency-test", "gui",      "man"};
+      "info",   "scene",  "field",  "sample", "feel",  "simulate", "paint",        "undo", "redo",
+      "emboss", "render", "export", "study",  "model", "devices",  "latency-test", "gui",  "man"};
   EXPECT_EQ(commands(), expected);
 }
 
