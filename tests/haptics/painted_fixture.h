@@ -63,6 +63,12 @@ inline Slab slab(double voxel, int cells = 1, double band = 8) {
   return made;
 }
 
+// One of half a millimetre's voxel, made once a program.
+inline const Slab& fineSlab() {
+  static const Slab made = slab(0.5e-3, 1, 14);
+  return made;
+}
+
 // g(u, v) at the texels' centres.
 inline std::shared_ptr<TiledImage> imageOf(int size,
                                            const std::function<double(double, double)>& g) {

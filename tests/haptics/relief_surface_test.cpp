@@ -26,7 +26,7 @@ std::int32_t topOf(const Slab& plane) {
 }
 
 TEST(ReliefSurface, HeightAndSlopeConvergeWithTheTexel) {
-  const Slab plane = slab(1e-3);
+  const Slab& plane = fineSlab();
   const double s = 2e-3;
   std::vector<double> height_error, slope_error;
   for (const int size : {64, 128, 256}) {
@@ -54,7 +54,7 @@ TEST(ReliefSurface, HeightAndSlopeConvergeWithTheTexel) {
 
 // The slope is the height's own derivative, across texels and tiles.
 TEST(ReliefSurface, TheSlopeIsTheDerivativeOfTheHeightAlsoOfNoise) {
-  const Slab plane = slab(1e-3);
+  const Slab& plane = fineSlab();
   std::mt19937 random(2);
   std::uniform_real_distribution<double> g(-1, 1), in(-0.49 * kSide, 0.49 * kSide);
   const FeltObject object =
@@ -73,7 +73,7 @@ TEST(ReliefSurface, TheSlopeIsTheDerivativeOfTheHeightAlsoOfNoise) {
 }
 
 TEST(ReliefSurface, IsFlatWhereTheImageHasNoTiles) {
-  const Slab plane = slab(1e-3);
+  const Slab& plane = fineSlab();
   const FeltObject object = feltRelief(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3);
   const ReliefAt at = reliefAt(*object.relief, Vec3(1e-3, 2e-3, 0), topOf(plane));
   EXPECT_EQ(at.height, 0);
@@ -82,7 +82,7 @@ TEST(ReliefSurface, IsFlatWhereTheImageHasNoTiles) {
 }
 
 TEST(ReliefSurface, AFaceThatIsNotThereMeansNoHeight) {
-  const Slab plane = slab(1e-3);
+  const Slab& plane = fineSlab();
   const FeltObject object =
       feltRelief(plane.faces, imageOf(64, [](double, double) { return 1; }), 1e-3);
   for (const int face : {-1, 1 << 30})

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "haptics/cross_fade.h"
 #include "haptics/painted_fixture.h"
 
 namespace patina {
@@ -20,9 +21,9 @@ std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const Fel
 // T-K21a: a constant gray of 1, s = 1 mm, on a sphere; also engraved, and with either form.
 TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
   const double R = 0.03, K = 500;
-  const TriangleMesh mesh = icosphere(R, 60);
+  const TriangleMesh mesh = icosphere(R, 50);
   FieldSpec spec;
-  spec.resolution = 120;
+  spec.resolution = 80;
   Progress progress;
   const Field sphere = withSamples(buildField(mesh, spec, progress).field);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
@@ -39,8 +40,8 @@ TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
         const double d = 1.2e-3;
         const Contact contact = touchOnce(*snapshot, (R + s - d) * n);
         ASSERT_TRUE(contact.touching);
-        // The facets of the mesh lie up to 3 um inside the sphere.
-        ASSERT_NEAR(contact.force.norm() / K, d, h * h / (4 * R) + 3.5e-6);
+        // The facets of the mesh lie up to 4 um inside the sphere.
+        ASSERT_NEAR(contact.force.norm() / K, d, h * h / (4 * R) + 5e-6);
         ASSERT_LT((contact.force.normalized() - n).norm(), 5e-3);
         ASSERT_FALSE(touchOnce(*snapshot, (R + s + 1e-5) * n).touching);
         ASSERT_TRUE(touchOnce(*snapshot, (R + s + 1e-5) * n).force.isZero(0));
@@ -50,7 +51,7 @@ TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
 
 // A zero image: bit for bit the scene without it, wherever the shell is the surface itself.
 TEST(PulledRelief, OfNoHeightChangesNoBit) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   const Scene scene = withFriction(sceneOf(500), 0.5, 0.3);
   const FeltObject black =
       feltRelief(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3, 0);
@@ -72,7 +73,7 @@ TEST(PulledRelief, OfNoHeightChangesNoBit) {
 
 // Where others are raised and the image is 0, to the ray's tolerance.
 TEST(PulledRelief, WhereTheImageIsZeroTheForceIsThatOfTheBareSurface) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   const Scene scene = sceneOf(500);
   const FeltObject part =
       feltRelief(plane.faces, imageOf(128, [](double u, double) { return u > 0.7 ? 1 : 0; }), 1e-3);
@@ -89,7 +90,7 @@ TEST(PulledRelief, WhereTheImageIsZeroTheForceIsThatOfTheBareSurface) {
 // T-K21f: on the flank of a ramp of slope a the force leans by atan(a); as in the papers it does
 // not.
 TEST(PulledRelief, TheForceIsThatOfTheTexturedSurface) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   for (const double a : {0.1, 0.5}) {
     const double s = a * kSide;
     const FeltObject ramp =
@@ -118,8 +119,8 @@ double heightFelt(const HapticSnapshot& snapshot, double x, double y, double mos
 }
 
 TEST(PulledRelief, HasItsWholeHeightAtAWavelengthOfTwoAndAHalfVoxels) {
-  const double voxel = 0.5e-3, wavelength = 2.5 * voxel, A = 0.1e-3, K = 500;
-  const Slab plane = slab(voxel);
+  const Slab& plane = fineSlab();
+  const double wavelength = 2.5 * plane.field->grid.voxel, A = 0.1e-3, K = 500;
   const int size = 736; // 23 texels a wavelength
   const double k = 2 * kPi / wavelength;
   const FeltObject object = feltRelief(
@@ -165,7 +166,7 @@ double loopWork(const HapticSnapshot& snapshot, const std::vector<Vec3>& corners
 
 // F6: pressed in by dz at a valley, released at a peak: K (h1 - h2) dz from the form of the papers.
 TEST(PulledRelief, OnlyTheLiteralFormDoesWorkRoundALoop) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   const double A = 0.25e-3, wavelength = 2e-3, K = 500, dz = 1e-3, k = 2 * kPi / wavelength;
   const FeltObject object = feltRelief(
       plane.faces, imageOf(1024, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
@@ -188,9 +189,9 @@ TEST(PulledRelief, OnlyTheLiteralFormDoesWorkRoundALoop) {
 // On a sphere the closest point moves by R / r of what the tip does: J^T, K12.
 TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
   const double R = 0.012, K = 500, s = 1.2e-3;
-  const TriangleMesh mesh = icosphere(R, 80);
+  const TriangleMesh mesh = icosphere(R, 60);
   FieldSpec spec;
-  spec.resolution = 100;
+  spec.resolution = 90;
   spec.band = 14;
   Progress progress;
   const Field sphere = withSamples(buildField(mesh, spec, progress).field);
@@ -214,9 +215,9 @@ TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
   };
   const double theory = std::abs(K * (height(0.3) - height(-0.3)) * (high - low));
   scene.relief.form = ForceForm::literal;
-  const double literal = loopWork(*compiledWith(scene, object, sphere), path, 300);
+  const double literal = loopWork(*compiledWith(scene, object, sphere), path, 150);
   scene.relief.form = ForceForm::conservative;
-  const double conservative = loopWork(*compiledWith(scene, object, sphere), path, 300);
+  const double conservative = loopWork(*compiledWith(scene, object, sphere), path, 150);
   std::printf("sphere: literal %.4g J of %.4g J, conservative %.2g of it\n", literal, theory,
               conservative / theory);
   EXPECT_NEAR(std::abs(literal), theory, 0.02 * theory);
@@ -225,7 +226,7 @@ TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
 
 // The force is continuous from texel to texel: what a bilinear surface's slope would not give.
 TEST(PulledRelief, TheForceDoesNotStepFromTexelToTexel) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   const double A = 0.2e-3, wavelength = 2e-3, k = 2 * kPi / wavelength; // 6.4 texels
   const FeltObject object = feltRelief(
       plane.faces, imageOf(128, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
@@ -246,7 +247,7 @@ TEST(PulledRelief, TheForceDoesNotStepFromTexelToTexel) {
 
 // Friction over relief: the tip sticks and slides on it, and lets go where the relief falls away.
 TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   const double mu = 0.4;
   const FeltObject flat =
       feltRelief(plane.faces, imageOf(64, [](double, double) { return 0.5; }), 1e-3);
@@ -266,7 +267,7 @@ TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
 }
 
 TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
-  const Slab plane = slab(0.5e-3, 1, 12);
+  const Slab& plane = fineSlab();
   Scene scene = sceneOf(500);
   scene.haptics.magnet = Magnet{1e-3, 300, false};
   const FeltObject flat =
@@ -281,21 +282,89 @@ TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
 }
 
 TEST(PulledRelief, HigherThanTheBandIsRefusedWithTheRemedy) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   const FeltObject object =
-      feltRelief(plane.faces, imageOf(64, [](double, double) { return 1; }), 5e-3);
+      feltRelief(plane.faces, imageOf(64, [](double, double) { return 1; }), 8e-3);
   try {
     compiledWith(sceneOf(500), object, plane.field);
     FAIL() << "accepted";
   } catch (const std::exception& error) {
     const std::string text = error.what();
     EXPECT_NE(text.find("relief"), std::string::npos) << text;
-    EXPECT_NE(text.find("set band to 13"), std::string::npos) << text;
+    EXPECT_NE(text.find("set band to 19"), std::string::npos) << text;
   }
 }
 
+// T-RAMP over relief: applied, raised and taken away under a pressed tip, at 30 Hz; every edit
+// moves the shell that contact is found with.
+TEST(PulledRelief, EditsUnderAPressedTipRamp) {
+  const Slab& plane = fineSlab();
+  const Scene scene = withFriction(sceneOf(500), 0.4, 0.3);
+  std::vector<std::shared_ptr<const HapticSnapshot>> versions{compileStages(scene, plane.field)};
+  for (const double s : {0.2e-3, 1e-3, 3e-3, -1e-3, 0.5e-3})
+    for (const double k : {30.0, 200.0})
+      versions.push_back(compiledWith(
+          scene,
+          feltRelief(
+              plane.faces,
+              imageOf(256, [=](double u, double v) { return std::sin(k * u) * std::cos(k * v); }),
+              s),
+          plane.field));
+  versions.push_back(versions.front());
+  CrossFade law;
+  law.turnTo(versions.front().get());
+  Vec3 tip(0.3e-3, 0, 1e-3);
+  for (int i = 0; i < 100; ++i) law.tick(tip += Vec3(1e-5, 0, -2.5e-5), 1e-3);
+  Vec3 last = law.tick(tip, 1e-3).force;
+  double worst = 0;
+  std::size_t next = 1;
+  for (int i = 0; next < versions.size() || law.fading(); ++i) {
+    if (i % 33 == 0 && !law.fading()) law.turnTo(versions[next++].get());
+    const Contact contact = law.tick(tip, 1e-3);
+    ASSERT_FALSE(contact.fault) << next;
+    worst = std::max(worst, (contact.force - last).norm());
+    last = contact.force;
+  }
+  EXPECT_LE(worst, 0.05);
+  EXPECT_GT(worst, 0.01);
+}
+
+// Two objects, one of them raised: each keeps what is its own.
+TEST(PulledRelief, IsThatOfTheObjectTouched) {
+  TriangleMesh left = box(Vec3(0.02, 0.02, 0.012), 1), right = left;
+  for (Vec3& p : left.positions) p += Vec3(-0.015, 0, -0.006);
+  for (Vec3& p : right.positions) p += Vec3(0.015, 0, -0.006);
+  FieldSpec spec;
+  spec.voxel = 0.5e-3;
+  Progress progress;
+  const TriangleMesh both = joined(left, right);
+  const Field field = withSamples(buildField(both, spec, progress).field);
+  const auto white = imageOf(64, [](double, double) { return 1; });
+  const Scene scene = sceneOf(500);
+  std::vector<FeltObject> objects{
+      feltRelief(reliefFaces(left, CornerUvs(left.triangles.size())), white, 0.5e-3),
+      feltRelief(reliefFaces(right, CornerUvs(right.triangles.size())), white, 1.5e-3)};
+  objects[1].first_face = static_cast<std::int32_t>(left.triangles.size());
+  objects[1].material = feltMaterial(*coveredMap(0.5e-3, cube(0.03), MaterialChannel::stiffness,
+                                                 [](const Vec3&) { return 800; }),
+                                     scene)
+                            .material;
+  const auto snapshot = compileStages(scene, field, objects);
+  ContactMemory memory;
+  for (int round = 0; round < 3; ++round)
+    for (const double x : {-0.015, 0.015}) {
+      glide(*snapshot, memory, Vec3(memory.last_tip.x(), 1e-3, 6e-3));
+      glide(*snapshot, memory, Vec3(x, 1e-3, 6e-3));
+      const double top = x < 0 ? 0.5e-3 : 1.5e-3;
+      EXPECT_FALSE(glide(*snapshot, memory, Vec3(x, 1e-3, top + 1e-5)).touching);
+      const Contact contact = glide(*snapshot, memory, Vec3(x, 1e-3, top - 1e-3));
+      EXPECT_NEAR(contact.force.z(), x < 0 ? 0.5 : 0.8, 1e-4);
+      EXPECT_EQ(contact.object, x < 0 ? 0 : 1);
+    }
+}
+
 TEST(BakedRelief, IsFeltAsAPotentialOrAsInThePaper) {
-  const Slab plane = slab(0.5e-3);
+  const Slab& plane = fineSlab();
   FeltObject baked;
   baked.highest = 1e-3;
   Scene scene = sceneOf(500);

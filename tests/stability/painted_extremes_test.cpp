@@ -181,13 +181,8 @@ Ride ride(const HapticSnapshot& snapshot, double speed, double z) {
   return result;
 }
 
-const Slab& tallSlab() {
-  static const Slab made = slab(0.5e-3, 1, 14);
-  return made;
-}
-
 FeltObject reliefOf(int size, double height, const std::function<double(double, double)>& g) {
-  return feltRelief(tallSlab().faces, imageOf(size, g), height);
+  return feltRelief(fineSlab().faces, imageOf(size, g), height);
 }
 
 // A step of 5 mm, a checkerboard at texel frequency, a line of one texel, all white.
@@ -215,7 +210,7 @@ TEST(PaintedRelief, CliffsAndCheckerboardsAreBoundedAndNoFault) {
         scene.haptics.force_limit = 3.3;
         scene.relief.form = form;
         if (coupled) scene.stabilisers = Stabilisers{true, true};
-        const auto snapshot = compiledWith(scene, c.object, tallSlab().field);
+        const auto snapshot = compiledWith(scene, c.object, fineSlab().field);
         for (const double speed : {0.01, 0.2, 1.0})
           for (const double z : {4e-3, 1e-3, -1e-3, -3e-3}) {
             const Ride result = ride(*snapshot, speed, z);
@@ -233,7 +228,7 @@ TEST(PaintedRelief, ATeleportIsStillAFault) {
   Scene scene = sceneOf(500);
   const FeltObject object =
       reliefOf(256, 0.2e-3, [](double u, double) { return std::cos(100 * u); });
-  const auto snapshot = compiledWith(scene, object, tallSlab().field);
+  const auto snapshot = compiledWith(scene, object, fineSlab().field);
   ContactMemory memory;
   glide(*snapshot, memory, Vec3(0, 0, -0.5e-3));
   EXPECT_TRUE(tick(*snapshot, memory, Vec3(1e-4, 0, -6.5e-3), 1e-3).fault);
@@ -248,11 +243,11 @@ TEST(PaintedRelief, TheMapPredictsTheBuzzOfTexture) {
   for (const double share : {0.5, 2.0}) {
     const double A = share * limit / (P * k * k);
     const FeltObject object = feltRelief(
-        tallSlab().faces,
+        fineSlab().faces,
         imageOf(1024, [&](double u, double) { return -std::cos(k * Slab::kSide * (u - 0.5)); }), A);
     Scene scene = sceneOf(K);
     const std::span<const FeltObject> objects(&object, 1);
-    const StiffnessProbe probe(scene, tallSlab().field, objects);
+    const StiffnessProbe probe(scene, fineSlab().field, objects);
     const auto at = probe.at(Vec3(0, 1e-4, 0), P / K);
     ASSERT_TRUE(at);
     EXPECT_NEAR(at->lambda_max / (P * A * k * k), 1, 0.03) << share;
@@ -264,7 +259,7 @@ TEST(PaintedRelief, TheMapPredictsTheBuzzOfTexture) {
     spec.press = P;
     spec.seconds = 12;
     Progress progress;
-    const auto run = simulate(*compiledWith(scene, object, tallSlab().field), spec, progress);
+    const auto run = simulate(*compiledWith(scene, object, fineSlab().field), spec, progress);
     EXPECT_EQ(run.stable, share < 1) << share << " " << run.rms_velocity;
   }
 }
