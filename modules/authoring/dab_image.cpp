@@ -16,6 +16,12 @@ TiledImage copyOr(const std::shared_ptr<const TiledImage>& image, const TexelMap
   return image ? *image : TiledImage(texels.width, texels.height, channels);
 }
 
+bool isEmpty(const TiledImage& image) {
+  for (std::size_t t = 0; t < image.tileCount(); ++t)
+    if (image.tile(t)) return false;
+  return true;
+}
+
 } // namespace
 
 ImageStroke::ImageStroke(std::shared_ptr<const PaintSurface> surface, std::size_t object,
@@ -130,16 +136,13 @@ std::size_t ImageStroke::smooth(const Dab& dab, const Brush& brush,
 
 std::shared_ptr<const TiledImage> ImageStroke::take() {
   changed_ = false;
-  if (!start_ && image_.bytes() == 0) return nullptr;
+  if (isEmpty(image_)) return nullptr;
   return std::make_shared<const TiledImage>(image_);
 }
 
 void ImageStroke::dropEmpty() {
   image_.dropEmptyTiles();
   changed_ = true;
-  for (std::size_t t = 0; t < image_.tileCount(); ++t)
-    if (image_.tile(t)) return;
-  start_.reset();
 }
 
 std::vector<std::size_t> ImageStroke::takeTiles() {

@@ -25,8 +25,8 @@ MaterialStroke::MaterialStroke(std::shared_ptr<const PaintSurface> surface, std:
                                std::shared_ptr<const MaterialMap> start, const Material& base,
                                std::vector<MaterialChannel> channels)
     : surface_(std::move(surface)), world_from_object_(surface_->objects[object].world_from_object),
-      had_map_(start != nullptr), start_(mapOr(start, *surface_, world_from_object_)), map_(start_),
-      base_(base), channels_(std::move(channels)) {}
+      start_(mapOr(start, *surface_, world_from_object_)), map_(start_), base_(base),
+      channels_(std::move(channels)) {}
 
 std::size_t MaterialStroke::paint(const Dab& dab, const Brush& brush) {
   const Dab local = dab.in(world_from_object_.inverse()); // but its front
@@ -75,10 +75,10 @@ bool MaterialStroke::isNearSurface(const Index& block) const {
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
     const double side = field.grid.voxel * kBlockSide, last = field.blocks[a] - 1;
-    const double slack = 1e-6; // rounding must not lose the block that is the field's own
-    const double from = (box.min()[axis] - field.grid.origin[axis]) / side - slack;
-    const double to = (box.max()[axis] - field.grid.origin[axis]) / side + slack;
-    if (!(to >= 0 && from <= last + 1)) return false;
+    const double slack = 1e-6; // of rounding: a block is not near for touching its neighbour
+    const double from = (box.min()[axis] - field.grid.origin[axis]) / side + slack;
+    const double to = (box.max()[axis] - field.grid.origin[axis]) / side - slack;
+    if (!(to >= 0 && from < last + 1)) return false;
     low[a] = static_cast<int>(std::clamp(std::floor(from), 0.0, last));
     high[a] = static_cast<int>(std::clamp(std::floor(to), 0.0, last));
   }
@@ -199,13 +199,12 @@ void MaterialStroke::set(const Index& block, std::size_t node, MaterialChannel c
 
 std::shared_ptr<const MaterialMap> MaterialStroke::take() {
   changed_ = false;
-  if (!had_map_ && map_.blocks().empty()) return nullptr;
+  if (map_.blocks().empty()) return nullptr;
   return std::make_shared<const MaterialMap>(map_);
 }
 
 void MaterialStroke::dropEmpty() {
   map_.dropEmptyLayers();
-  had_map_ = !map_.blocks().empty();
   changed_ = true;
 }
 

@@ -49,7 +49,6 @@ class MaterialStroke {
 
   std::shared_ptr<const PaintSurface> surface_;
   Pose world_from_object_;
-  bool had_map_;
   MaterialMap start_, map_;
   Material base_;
   std::vector<MaterialChannel> channels_;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kRadiusSeconds = 0.05;
 constexpr double kMostDabsAVoxel = 64;
+constexpr double kFarthest = 1e9;       // voxels: beyond it steps are lost in rounding
 constexpr double kMostDabsARadius = 32; // of the wider end, where the radius falls to nothing
 
 struct Interval {
@@ -38,8 +39,9 @@ Interval within(const FieldGrid& grid, const Vec3& a, const Vec3& b) {
 
 std::vector<PathStep> StrokePath::to(const StrokeSample& sample) {
   reached_ = false;
-  if (!sample.position.allFinite() || !std::isfinite(sample.force) || !std::isfinite(sample.t))
-    return {};
+  const bool finite =
+      sample.position.allFinite() && std::isfinite(sample.force) && std::isfinite(sample.t);
+  if (!finite || grid_.toGrid(sample.position).cwiseAbs().maxCoeff() > kFarthest) return {};
   const double target = brushRadius(brush_, sample.force);
   if (!last_) {
     last_ = sample;

@@ -22,7 +22,8 @@ class StrokePath {
   // The steps from the last sample to this one, which comes last unless the field does not reach
   // it: a quarter of the radius apart, or a 64th of a voxel, so that a needle of a brush comes to
   // an end. The radius follows the force through a low-pass of 50 ms of the samples' own time, so
-  // that its noise leaves no notches. Samples that are not finite are as if they had not been.
+  // that its noise leaves no notches. Samples that are not finite, or absurdly
+  // far away, are as if they had not been.
   std::vector<PathStep> to(const StrokeSample& sample);
   bool reached() const { return reached_; } // whether the last step is at the last sample
 

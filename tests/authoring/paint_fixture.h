@@ -5,6 +5,8 @@
 
 #include "authoring/paint_surface.h"
 #include "authoring/painter.h"
+#include "authoring/surface_values.h"
+#include "authoring/volume_fill.h"
 #include "field/build_field.h"
 #include "geometry/shapes.h"
 
@@ -67,6 +69,41 @@ inline Stroke strokeAlong(const Brush& brush, const Vec3& from, const Vec3& to, 
     stroke.samples.push_back({t, from + t * (to - from), 0});
   }
   return stroke;
+}
+
+// What is painted at the surface's point nearest to p [m, world].
+inline SurfaceValues valuesAt(const PaintSurface& surface, const Scene& scene, const Vec3& p,
+                              std::size_t object = 0) {
+  ClosestPoint best;
+  best.distance = 1e9;
+  const PaintObject& owner = surface.objects[object];
+  for (std::int32_t f = owner.first_face; f < owner.first_face + owner.faces; ++f) {
+    const auto face = static_cast<std::size_t>(f);
+    const Vec3 a = surface.mesh->corner(face, 0), b = surface.mesh->corner(face, 1),
+               c = surface.mesh->corner(face, 2);
+    const Vec3 w = closestBarycentric(p, a, b, c);
+    const double distance = (w[0] * a + w[1] * b + w[2] * c - p).norm();
+    if (distance < best.distance) best = {{f - owner.first_face, w}, p, distance};
+  }
+  return surfaceValues(scene, object, best.surface);
+}
+
+// visit(point [m, world], i, j) for all texels that show something, gutters too.
+template <typename Visit>
+void forTexels(const PaintSurface& surface, std::size_t object, const TiledImage& image,
+               const Visit& visit) {
+  const PaintObject& owner = surface.objects[object];
+  for (int j = 0; j < image.height(); ++j)
+    for (int i = 0; i < image.width(); ++i) {
+      const std::int32_t f = owner.texels->ownerAt(i, j);
+      if (f < 0) continue;
+      const auto& uv = (*owner.layout.uvs)[static_cast<std::size_t>(f)];
+      const Vec3 w = texelBarycentric(uv, (i + 0.5) / image.width(), (j + 0.5) / image.height());
+      const auto face = static_cast<std::size_t>(f + owner.first_face);
+      visit(Vec3(w[0] * surface.mesh->corner(face, 0) + w[1] * surface.mesh->corner(face, 1) +
+                 w[2] * surface.mesh->corner(face, 2)),
+            i, j);
+    }
 }
 
 } // namespace patina::test
