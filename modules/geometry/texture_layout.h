@@ -29,10 +29,10 @@ TextureLayout textureLayout(const TriangleMesh& mesh, int image_size,
 
 // Charts of connected faces, each projected onto a plane so that no two faces of it overlap and no
 // face is stretched by more than 2, scaled alike and packed with 2 kGutter texels between them at
-// image_size. Faces without area get a point. Where the image is too small for the pieces of a mesh
-// (more than one in some 50 texels), so do the faces of the smallest: one of the next chart's, so
-// that they show its colour. Deterministic. Throws invalid_argument for a size that is not in
-// 16 .. 16384.
+// image_size. Parts of one chart that come nearer than that are near in space too. Faces without
+// area get a point. Where the image is too small for the pieces of a mesh (more than one in some 50
+// texels), so do the faces of the smallest: one of the next chart's, so that they show its colour.
+// Deterministic. Throws invalid_argument for a size that is not in 16 .. 16384.
 TextureLayout madeAtlas(const TriangleMesh& mesh, int image_size);
 
 // False where a face's coordinates lie in one line or point: it has no inside in the image.

@@ -1,4 +1,6 @@
 // Charts of an atlas: apart, embedded, little stretched.
+#include <algorithm>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -24,6 +26,49 @@ TriangleMesh branchedDisc() {
     mesh.triangles.push_back({0, 1 + k, 1 + (k + 1) % (2 * n)});
   }
   return mesh;
+}
+
+// Two sheets, of radius 1 and 2, cut along one line and joined crosswise there: neither border
+// meets the other or itself, but the ends of the line are wound round twice.
+TriangleMesh crossedSheets() {
+  constexpr int kLine = 2; // quads to either side of the middle
+  TriangleMesh mesh;
+  const auto add = [&](double x, double y, double z) {
+    mesh.positions.emplace_back(x, y, z);
+    return static_cast<std::int32_t>(mesh.positions.size()) - 1;
+  };
+  std::map<std::array<int, 2>, std::int32_t> on_line; // by x and which pair of sides it joins
+  for (const int radius : {8, 16}) {
+    const int pair = radius == 8 ? 0 : 1;
+    std::map<std::array<int, 2>, std::int32_t> others;
+    const auto vertex = [&](int x, int y, bool above) {
+      if (y != 0 || std::abs(x) > kLine) {
+        const auto [at, fresh] = others.try_emplace({x, y}, 0);
+        if (fresh) at->second = add(x, y, 0.1 * pair);
+        return at->second;
+      }
+      const int joins = std::abs(x) == kLine ? 2 : above ? pair : 1 - pair;
+      const auto [at, fresh] = on_line.try_emplace({x, joins}, 0);
+      if (fresh) at->second = add(x, y, 0.05 + 0.01 * joins);
+      return at->second;
+    };
+    for (int y = -radius; y < radius; ++y)
+      for (int x = -radius; x < radius; ++x) {
+        const bool above = y >= 0;
+        const std::int32_t a = vertex(x, y, above), b = vertex(x + 1, y, above),
+                           c = vertex(x + 1, y + 1, above), d = vertex(x, y + 1, above);
+        mesh.triangles.push_back({a, b, c});
+        mesh.triangles.push_back({a, c, d});
+      }
+  }
+  return mesh;
+}
+
+// Two faces on one side of an edge that both run along it the same way.
+TriangleMesh openBook() {
+  return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.5, 1, 0), Vec3(0.5, 1, 0.3)},
+          {{0, 1, 2}, {0, 1, 3}},
+          {}};
 }
 
 // A flat wheel of needles round one vertex.
@@ -79,7 +124,10 @@ TEST(MadeAtlas, KeepsItsPromisesOnEveryKindOfMesh) {
       {"widening spiral", spiralRamp(5, 0.3, 0.2, 0.13)},
       {"narrowing spiral", spiralRamp(5, 0.6, 0.3, 0.31)},
       {"steps round an axis", spiralRamp(4, 0, 0.2, 0)},
+      {"flat spiral", spiralRamp(3, 0.3, 1e-6, 0)},
       {"branched", branchedDisc()},
+      {"crossed sheets", crossedSheets()},
+      {"open book", openBook()},
       {"junctions", junctions()},
       {"flipped faces", withFlippedFaces(icosphere(1, 5), 0.2, 3)},
       {"holes", withHoles(icosphere(1, 10), 12, 0.15, 2)},
@@ -132,16 +180,25 @@ TEST(MadeAtlas, FacesWithoutAreaGetAPointOfTheSurface) {
   const std::size_t good = mesh.triangles.size();
   mesh.positions.emplace_back(Vec3(0, 0, 5)); // in no other face
   const auto lone = static_cast<std::int32_t>(mesh.positions.size() - 1);
-  mesh.triangles.push_back({0, 0, 1});
-  mesh.triangles.push_back({0, 1, 2}); // three in a row
+  mesh.triangles.push_back({24, 24, 23}); // the sheet's last corner, which no face has first
+  mesh.triangles.push_back({0, 1, 2});    // three in a row
   mesh.triangles.push_back({lone, lone, lone});
   const TextureLayout layout = madeAtlas(mesh, 128);
   for (std::size_t f = good; f < mesh.triangles.size(); ++f) {
-    const Corners& uv = (*layout.uvs)[f];
-    EXPECT_EQ(uv[0], uv[1]);
-    EXPECT_EQ(uv[0], uv[2]);
-    const TexelMap map = texelMap(*layout.uvs, 128, 128);
-    EXPECT_GE(map.ownerAt(static_cast<int>(uv[0][0] * 128), static_cast<int>(uv[0][1] * 128)), 0);
+    const Corners& point = (*layout.uvs)[f];
+    EXPECT_EQ(point[0], point[1]);
+    EXPECT_EQ(point[0], point[2]);
+    bool own = false, any = false; // a corner of a face at one of its vertices, or of another
+    for (std::size_t other = 0; other < good; ++other)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const bool here = (*layout.uvs)[other][k] == point[0];
+        const auto& vertices = mesh.triangles[f];
+        any = any || here;
+        own = own || (here && std::find(vertices.begin(), vertices.end(),
+                                        mesh.triangles[other][k]) != vertices.end());
+      }
+    EXPECT_TRUE(any);
+    EXPECT_EQ(own, mesh.triangles[f][0] != lone);
   }
   mesh.triangles.resize(good);
   expectAtlas(mesh, madeAtlas(mesh, 128), 128);
