@@ -85,6 +85,21 @@ TEST_F(FileTest, AFullDiskLeavesTheOldFileAndNoLitter) {
   EXPECT_EQ(entries(), 1u);
 }
 
+TEST_F(FileTest, MakesFoldersOnTheWay) {
+  makeFolder(folder / "a" / "b" / "c/");
+  EXPECT_TRUE(fs::is_directory(folder / "a" / "b" / "c"));
+  makeFolder(folder / "a");
+  writeFileAtomically(folder / "file", "x");
+  EXPECT_THROW(makeFolder(folder / "file"), FileError);
+  EXPECT_THROW(makeFolder(folder / "file" / "in"), FileError);
+}
+
+TEST_F(FileTest, KnowsItsTemporaryFiles) {
+  EXPECT_TRUE(isTemporaryFor("a.bin", ".a.bin.123-4.tmp"));
+  for (const char* other : {"a.bin", ".a.bin.tmp", ".b.bin.123-4.tmp", ".a.bin.x.tmp", ".a.bin."})
+    EXPECT_FALSE(isTemporaryFor("a.bin", other)) << other;
+}
+
 TEST_F(FileTest, CannotReplaceAFolder) {
   fs::create_directories(folder / "sub" / "inner");
   EXPECT_THROW(writeFileAtomically(folder / "sub", "x"), FileError);

@@ -1,56 +1,58 @@
-// Scenes and folders for the tests of the workspace.
+// A folder, and files in it, for the tests of the workspace.
 #pragma once
 
 #include <filesystem>
+#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "geometry/shapes.h"
-#include "scene/scene.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "support/painted_scene.h"
 #include "workspace/workspace.h"
 
 namespace patina {
 
-inline Scene sceneWithObjects(double radius) {
-  Scene scene;
-  Pose pose = Pose::Identity();
-  pose.translate(Vec3(0.1, -0.2, 1.0 / 3)).rotate(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
-  scene.objects.push_back(
-      {"ball", std::make_shared<const TriangleMesh>(icosphere(radius, 4)), pose});
-  scene.objects.push_back({"crate-1",
-                           std::make_shared<const TriangleMesh>(box(Vec3(1, 2, 3) * radius)),
-                           Pose::Identity()});
-  setValues(scene, {{"friction.static", "0.5"}, {"friction.dynamic", "0.3"}, {"band", "6"}});
-  scene.haptics.stiffness = 1000 * radius;
-  return scene;
+inline void replaceIn(const std::filesystem::path& path, const std::string& from,
+                      const std::string& to) {
+  std::string text = readFile(path);
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  writeFileAtomically(path, text);
 }
 
-inline bool same(const Scene& a, const Scene& b) {
-  if (values(a) != values(b) || a.objects.size() != b.objects.size()) return false;
-  for (std::size_t i = 0; i < a.objects.size(); ++i) {
-    const SceneObject& x = a.objects[i];
-    const SceneObject& y = b.objects[i];
-    if (x.name != y.name || x.mesh->positions != y.mesh->positions ||
-        x.mesh->triangles != y.mesh->triangles ||
-        x.world_from_object.matrix() != y.world_from_object.matrix())
-      return false;
+// The line that a FileError says; "" if none is thrown.
+template <typename Work> std::string errorOf(const Work& work) {
+  try {
+    work();
+  } catch (const FileError& error) {
+    const std::string line = error.what();
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+    return line;
   }
-  return true;
+  return "";
+}
+inline bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// In memory where the system offers that: these tests flush thousands of times.
+inline std::filesystem::path fastFolder() {
+  return ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : testing::TempDir();
 }
 
 // A folder of its own for each test, gone afterwards.
 class WorkspaceTest : public testing::Test {
  protected:
-  WorkspaceTest()
-      : root(std::filesystem::path(testing::TempDir()) /
-             ("patina_workspace_" + std::to_string(getpid()))),
-        folder(root / "scene") {
+  explicit WorkspaceTest(const std::filesystem::path& base = fastFolder())
+      : root(base / ("patina_workspace_" + std::to_string(getpid()))), folder(root / "scene") {
     std::filesystem::create_directories(root);
   }
   ~WorkspaceTest() override { std::filesystem::remove_all(root); }
 
-  std::size_t meshFiles() const {
+  std::size_t filesIn(const std::string& part) const {
     return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(folder / "meshes"), {}));
+        std::distance(std::filesystem::directory_iterator(folder / part), {}));
   }
   std::filesystem::path root;
   std::filesystem::path folder;

@@ -1,5 +1,7 @@
 #include "workspace/workspace.h"
 
+#include <fstream>
+
 #include "core/error.h"
 #include "core/file.h"
 #include "workspace/workspace_support.h"
@@ -8,14 +10,6 @@ namespace patina {
 namespace {
 
 namespace fs = std::filesystem;
-
-void replaceIn(const fs::path& path, const std::string& from, const std::string& to) {
-  std::string text = readFile(path);
-  const std::size_t at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-  writeFileAtomically(path, text);
-}
 
 class BrokenWorkspace : public WorkspaceTest {
  protected:
@@ -61,7 +55,7 @@ TEST_F(WorkspaceTest, SavingAgainReplacesAndLeavesNoOldMesh) {
   saveWorkspace(sceneWithObjects(0.05), folder);
   saveWorkspace(sceneWithObjects(0.08), folder);
   EXPECT_TRUE(same(loadWorkspace(folder), sceneWithObjects(0.08)));
-  EXPECT_EQ(meshFiles(), 2u);
+  EXPECT_EQ(filesIn("meshes"), 2u);
 }
 
 TEST_F(WorkspaceTest, AFileThatAPersonPutThereStays) {
@@ -140,7 +134,7 @@ TEST_F(BrokenWorkspace, EveryTruncationIsAnError) {
   const std::string text = readFile(json);
   // The last newline and brace apart, no prefix is whole.
   for (std::size_t size = 0; size + 2 < text.size(); size += 7) {
-    writeFileAtomically(json, text.substr(0, size));
+    std::ofstream(json) << text.substr(0, size);
     EXPECT_NE(errorOfLoading(), "") << size;
   }
 }
