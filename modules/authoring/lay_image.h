@@ -9,7 +9,8 @@
 namespace patina {
 
 // mapped: through the mesh's own texture coordinates, repeated outside the unit square. Along an
-// axis: projected onto the object's box in its frame, onto faces that look either way.
+// axis: spread over the object's box in its frame, onto faces that look either way; upright and not
+// mirrored as seen from +x, -y (up is z) and +z (up is y).
 enum class Projection { mapped, x, y, z };
 enum class PictureTarget { color, relief };
 

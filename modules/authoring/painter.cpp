@@ -14,7 +14,8 @@ namespace {
 
 // Each place once: then along the path, so that no ripple is left between dabs.
 bool sweeps(const Brush& brush) {
-  return brush.mode == StrokeMode::max || brush.mode == StrokeMode::add;
+  return brush.mode == StrokeMode::max || brush.mode == StrokeMode::add ||
+         (brush.mode == StrokeMode::smooth && brush.tool == Tool::erase);
 }
 
 void check(const PaintSurface& surface, const Scene& scene) {

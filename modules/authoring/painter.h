@@ -30,10 +30,13 @@ class Painter {
   Painter(std::shared_ptr<const PaintSurface> surface, const Scene& scene);
   ~Painter();
 
-  // Throws Error if the brush makes no sense; invalid_argument if it paints images and the surface
-  // has none.
+  // Throws Error if the brush makes no sense or paints relief of no height; invalid_argument if it
+  // paints images and the surface has none.
   void begin(const Brush& brush);
-  // Paints from the last sample to this one: dabs no farther apart than a quarter of the radius.
+  // Paints from the last sample to this one: dabs no farther apart than a quarter of the radius. A
+  // sample that is not finite counts as missed: a device that loses its place for a moment does not
+  // end the stroke. Every mode but build_up and smooth gives each place its greatest weight along
+  // the path, the eraser too, so that no ripples are left and the rate of samples does not matter.
   PaintReport dab(const StrokeSample& sample);
   void end();
 
