@@ -9,6 +9,7 @@
 #include "field/field_sampler.h"
 #include "field/iso_surface.h"
 #include "visualization/export_files.h"
+#include "visualization/export_paint.h"
 #include "visualization/field_io.h"
 
 namespace patina::cli {
@@ -73,6 +74,18 @@ int runExport(const ExportOptions& options, Console& console) {
     writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->paint.field, iso));
   writeField(folder / "field.vti", *compiled->paint.field);
   writeCsv(folder / "vertices.csv", vertexTable(*compiled));
+  const std::vector<SceneObject>& objects = compiled->scene.objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const ObjectPaint* paint = objects[i].paint.get();
+    if (paint == nullptr) continue;
+    const std::string surface = "paint-" + objects[i].name + ".vtp";
+    writePaintVtp(folder / surface, compiled->scene, i);
+    blocks.emplace_back(objects[i].name + " paint", surface);
+    if (!paint->material || paint->material->blocks().empty()) continue;
+    const std::string volume = "material-" + objects[i].name + ".vti";
+    writeMaterialVti(folder / volume, compiled->scene, i);
+    blocks.emplace_back(objects[i].name + " material", volume);
+  }
   if (!samples.empty()) {
     writeToolPathVtp(folder / "path.vtp", samples);
     writeToolSamplesCsv(folder / "forces.csv", samples);

@@ -12,26 +12,15 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "visualization/surface_data.h"
+#include "visualization/xml_file.h"
 
 namespace patina {
 namespace {
-
-void writePolyData(const std::filesystem::path& path, vtkPolyData* data) {
-  const vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(data);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressionLevel(2);
-  writer->WriteToOutputStringOn();
-  if (writer->Write() == 0) throw FileError(path.string(), 0, "cannot be encoded as .vtp");
-  writeFileAtomically(path, writer->GetOutputString());
-}
 
 vtkSmartPointer<vtkDoubleArray> pointArray(vtkPolyData* data, const char* name, int components) {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();

@@ -13,11 +13,10 @@
 #include <vtkPointData.h>
 #include <vtkSignedCharArray.h>
 #include <vtkSmartPointer.h>
-#include <vtkXMLImageDataWriter.h>
 
 #include "core/error.h"
-#include "core/file.h"
 #include "visualization/volume_file.h"
+#include "visualization/xml_file.h"
 
 namespace patina {
 namespace {
@@ -173,15 +172,7 @@ void writeField(const std::filesystem::path& path, const SurfaceField& field) {
     image->GetFieldData()->AddArray(coarse);
   }
 
-  const vtkNew<vtkXMLImageDataWriter> writer;
-  writer->SetInputData(image);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(2); // a fifth larger than the default, four times as fast
-  writer->WriteToOutputStringOn();
-  if (writer->Write() == 0) throw FileError(path.string(), 0, "cannot be encoded as .vti");
-  writeFileAtomically(path, writer->GetOutputString());
+  writeImageData(path, image);
 }
 
 SurfaceField readField(const std::filesystem::path& path) {

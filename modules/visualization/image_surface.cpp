@@ -201,11 +201,9 @@ void ImageSurface::drawSlope() {
   const TiledImage* shown = fresh || height_ != slope_height_ ? nullptr : slope_image_.get();
   const ReliefSlope slopes(*mesh_, *uvs_, *texels_);
   auto* texels = static_cast<unsigned char*>(slope_->GetScalarPointer());
-  // A difference reaches one texel, and what lies beyond a chart's edge looks kGutter farther.
-  constexpr int kMargin = kGutter + 1;
   for (const std::size_t tile : changedTiles(shown, *image)) {
     if (fresh && image->tile(tile) == nullptr) continue;
-    const TexelBox box = boxOf(*image, tile, kMargin);
+    const TexelBox box = boxOf(*image, tile, kSlopeReach);
     for (int j = box.j0; j < box.j1; ++j)
       for (int i = box.i0; i < box.i1; ++i) {
         const auto bytes = encodedSlope(height_ * slopes.at(*image, i, j));

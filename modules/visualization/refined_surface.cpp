@@ -22,12 +22,13 @@ struct Extent {
   double area, longest;
 };
 
-// About how many there would be; a sliver is cut along its length alone.
+// About how many there would be. A sliver, halved in length, makes three that are as thin.
 double pieces(const std::vector<Extent>& extents, double max_edge) {
+  constexpr double kSliver = 1.585; // log2 3
   double count = 0;
   for (const Extent& face : extents)
-    count +=
-        std::max({1.0, face.area / (kPieceArea * max_edge * max_edge), face.longest / max_edge});
+    count += std::max({1.0, face.area / (kPieceArea * max_edge * max_edge),
+                       std::pow(face.longest / max_edge, kSliver)});
   return count;
 }
 

@@ -51,14 +51,16 @@ Vec3 ReliefSlope::point(const Place& place) const {
   return position(*mesh_, {place.face, place.barycentric});
 }
 
-Vec3 ReliefSlope::inside(const TiledImage& g, int i, int j, const Place& place) const {
+ReliefSlope::Slope ReliefSlope::inside(const TiledImage& g, int i, int j,
+                                       const Place& place) const {
   const auto face = static_cast<std::size_t>(place.face);
   const auto jacobian = jacobianOf(
       {mesh_->corner(face, 0), mesh_->corner(face, 1), mesh_->corner(face, 2)}, (*uvs_)[face]);
-  if (!jacobian) return Vec3::Zero();
+  if (!jacobian) return {};
   const Vec3 here = point(place);
   const double value = static_cast<double>(g.at(i, j, 0));
   Vec2 slope = Vec2::Zero(); // along u and v
+  bool whole = true;
   for (int axis = 0; axis < 2; ++axis) {
     const int side = axis == 0 ? texels_->width : texels_->height;
     const double step = jacobian->col(axis).norm() / side;
@@ -73,24 +75,26 @@ Vec3 ReliefSlope::inside(const TiledImage& g, int i, int j, const Place& place) 
       ++sides;
     }
     if (sides > 0) slope[axis] = difference / sides * side;
+    whole = whole && sides > 0;
   }
   const Eigen::Matrix2d gram = jacobian->transpose() * *jacobian;
   const Vec3 gradient = *jacobian * gram.inverse() * slope;
-  return gradient.allFinite() ? gradient : Vec3::Zero();
+  return {gradient.allFinite() ? gradient : Vec3::Zero(), whole && gradient.allFinite()};
 }
 
 Vec3 ReliefSlope::at(const TiledImage& g, int i, int j) const {
   const Place place = placeOf(i, j);
   if (place.face < 0) return Vec3::Zero();
-  if (place.covered) return inside(g, i, j, place);
-  // Beyond a chart's edge: as steep as the nearest texel of the chart.
-  int best = 0, best_i = 0, best_j = 0;
-  Place best_place;
+  Slope best;
+  if (place.covered) best = inside(g, i, j, place);
+  if (best.whole) return best.gradient;
   const Vec3 here = point(place);
-  for (int dj = -kGutter; dj <= kGutter; ++dj)
-    for (int di = -kGutter; di <= kGutter; ++di) {
+  constexpr int kFar = kSlopeReach - 1;
+  int nearest = 2 * kSlopeReach * kSlopeReach;
+  for (int dj = -kFar; dj <= kFar; ++dj)
+    for (int di = -kFar; di <= kFar; ++di) {
       const int distance = di * di + dj * dj;
-      if (best_place.covered && distance >= best) continue;
+      if (distance >= nearest) continue;
       const Place beside = placeOf(i + di, j + dj);
       if (!beside.covered) continue;
       const auto face = static_cast<std::size_t>(beside.face);
@@ -99,13 +103,15 @@ Vec3 ReliefSlope::at(const TiledImage& g, int i, int j) const {
       if (!jacobian) continue;
       const double step = std::max(jacobian->col(0).norm() / texels_->width,
                                    jacobian->col(1).norm() / texels_->height);
-      if (beside.face != place.face && (point(beside) - here).norm() > kSamePlace * step) continue;
-      best = distance;
-      best_i = i + di;
-      best_j = j + dj;
-      best_place = beside;
+      if (beside.face != place.face &&
+          (point(beside) - here).norm() > kSamePlace * std::sqrt(distance) * step)
+        continue;
+      const Slope slope = inside(g, i + di, j + dj, beside);
+      if (!slope.whole) continue;
+      nearest = distance;
+      best = slope;
     }
-  return best_place.covered ? inside(g, best_i, best_j, best_place) : Vec3::Zero();
+  return best.gradient;
 }
 
 std::array<unsigned char, 3> encodedSlope(const Vec3& slope) {

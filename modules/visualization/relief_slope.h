@@ -28,12 +28,19 @@ class ReliefSlope {
   };
   Place placeOf(int i, int j) const;
   Vec3 point(const Place& place) const;
-  Vec3 inside(const TiledImage& g, int i, int j, const Place& place) const;
+  struct Slope {
+    Vec3 gradient = Vec3::Zero();
+    bool whole = false; // along both axes of the image
+  };
+  Slope inside(const TiledImage& g, int i, int j, const Place& place) const;
 
   const TriangleMesh* mesh_;
   const CornerUvs* uvs_;
   const TexelMap* texels_;
 };
+
+// Whose texels matter to the slope at one: so far away along either axis, at most.
+inline constexpr int kSlopeReach = kGutter + 2;
 
 // Three bytes a texel, finer near zero; slopes beyond 2 count as 2. The shader's other half is
 // kSlopeShader in image_surface.cpp.

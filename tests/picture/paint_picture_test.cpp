@@ -5,7 +5,8 @@
 
 #include "field/surface_field.h"
 #include "geometry/texture_layout.h"
-#include "picture/paint_support.h"
+#include "picture/picture_support.h"
+#include "support/painted_objects.h"
 #include "visualization/picture.h"
 
 namespace patina {

@@ -5,7 +5,6 @@
 
 #include "geometry/shapes.h"
 #include "geometry/texel_map.h"
-#include "picture/picture_support.h"
 #include "scene/scene.h"
 
 namespace patina {
