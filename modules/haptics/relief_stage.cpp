@@ -18,7 +18,7 @@ void notTouching(Contact& contact, ContactMemory& memory) noexcept {
   contact.normal.setZero();
   contact.slope.setZero();
   contact.depth = 0;
-  memory.has_stuck = memory.has_stretch = memory.slipping = false;
+  memory.has_stretch = false; // friction's own stage lets go itself
 }
 
 // d -= gap, and the normal leans by `slope` more. n - slope is longer than 1: of a potential, the

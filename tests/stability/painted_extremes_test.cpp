@@ -204,9 +204,13 @@ TEST(PaintedRelief, CliffsAndCheckerboardsAreBoundedAndNoFault) {
       {"white", reliefOf(64, 3e-3, [](double, double) { return 1; })}};
   for (const Case& c : cases)
     for (const ForceForm form : {ForceForm::conservative, ForceForm::literal})
-      for (const bool coupled : {false, true}) {
-        Scene scene = withFriction(sceneOf(500), 0.4, 0.3);
-        scene.haptics.damping = 1;
+      for (const int kind : {0, 1, 2, 3}) {
+        const bool coupled = kind & 1;
+        Scene scene = sceneOf(500);
+        if (kind & 2) {
+          scene = withFriction(scene, 0.4, 0.3);
+          scene.haptics.damping = 1;
+        }
         scene.haptics.force_limit = 3.3;
         scene.relief.form = form;
         if (coupled) scene.stabilisers = Stabilisers{true, true};
@@ -221,6 +225,21 @@ TEST(PaintedRelief, CliffsAndCheckerboardsAreBoundedAndNoFault) {
                 << " mm " << (form == ForceForm::literal);
           }
       }
+}
+
+// Off the relief and within the shell about it nothing is remembered of the last contact: the
+// coupling's damper begins afresh.
+TEST(PaintedRelief, TheCouplingBeginsAfreshAfterTheShell) {
+  Scene scene = sceneOf(500);
+  scene.stabilisers = Stabilisers{true, false};
+  const FeltObject object = reliefOf(64, 4e-3, [](double u, double) { return u > 0.8 ? 1 : 0; });
+  const auto snapshot = compiledWith(scene, object, fineSlab().field);
+  ContactMemory memory;
+  glide(*snapshot, memory, Vec3(0, 0, 6e-3));
+  glide(*snapshot, memory, Vec3(0, 0, -1e-3));
+  EXPECT_FALSE(glide(*snapshot, memory, Vec3(0, 0, 1e-3)).touching);
+  const Contact again = tick(*snapshot, memory, Vec3(0, 0, -1e-4), 1e-3);
+  EXPECT_NEAR(again.force.z(), again.stiffness * 1e-4, 1e-6);
 }
 
 // A jump of the tip is a fault also over relief.
