@@ -30,8 +30,8 @@ TextureLayout textureLayout(const TriangleMesh& mesh, int image_size,
 // Charts of connected faces, each projected onto a plane so that no two faces of it overlap and no
 // face is stretched by more than 2, scaled alike and packed with 2 kGutter texels between them at
 // image_size. Parts of one chart that come nearer than that are near in space too. Faces without
-// area get a point. Where the image is too small for the pieces of a mesh (more than one in some 50
-// texels), so do the faces of the smallest: one of the next chart's, so that they show its colour.
+// area get a point. So do, where the image is too small for a mesh in very many pieces (more than
+// one in some 50 texels), the faces of the smallest: one of the next chart's, to show its colour.
 // Deterministic. Throws invalid_argument for a size that is not in 16 .. 16384.
 TextureLayout madeAtlas(const TriangleMesh& mesh, int image_size);
 
