@@ -74,7 +74,7 @@ TEST_F(FeltPaints, SmoothedReliefIsLowerAndTheImageStays) {
   Editor editor(ballScene(), progress);
   editor.apply(dabAt(Tool::relief, 5e-4, 0.004, Vec3(0, 0, kBall)), progress);
   const auto image = editor.scene().objects[0].paint->relief;
-  EXPECT_NEAR(editor.compiled()->paint.objects[0].highest, 5e-4, 1e-9);
+  EXPECT_NEAR(editor.compiled()->paint.objects[0].highest, 5e-4, 1e-6);
   editor.apply(ValueEdit{{{"relief.smoothing", "4mm"}}}, progress);
   EXPECT_EQ(editor.scene().objects[0].paint->relief, image);
   EXPECT_LT(editor.compiled()->paint.objects[0].highest, 4e-4);

@@ -76,7 +76,7 @@ TEST_F(Editors, ADabIsFeltWhenItReturnsAndTellsWhatChanged) {
   Editor editor(ballScene(), progress,
                 [&](const EditorNotice& notice) { notices.push_back(notice); });
   const auto before = editor.compiled();
-  editor.beginStroke(dabAt(Tool::stiffness, 900, 0.01, {}).brush, progress);
+  editor.beginStroke(dabAt(Tool::stiffness, 900, 0.01, Vec3::Zero()).brush, progress);
   EXPECT_TRUE(editor.inStroke());
   EXPECT_TRUE(notices.empty());
   const PaintReport report = editor.dab({0, Vec3(0, 0, kBall), 0.5});
@@ -97,7 +97,7 @@ TEST_F(Editors, ACancelledStrokeLeavesNoTrace) {
   editor.apply(dabAt(Tool::relief, 3e-4, 0.01, Vec3(0, 0, kBall)), progress);
   const Scene before = editor.scene();
   const auto snapshot = editor.compiled()->snapshot;
-  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, {}).brush, progress);
+  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, Vec3::Zero()).brush, progress);
   editor.dab({0, Vec3(0, 0, kBall), 0});
   EXPECT_FALSE(same(editor.scene(), before));
   editor.cancelStroke();
@@ -109,7 +109,7 @@ TEST_F(Editors, ACancelledStrokeLeavesNoTrace) {
 
 TEST_F(Editors, AStrokeThatTouchesNothingIsNoEdit) {
   Editor editor(ballScene(), progress);
-  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, {}).brush, progress);
+  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, Vec3::Zero()).brush, progress);
   EXPECT_EQ(editor.dab({0, Vec3(0, 0, 1), 0}).missed, 1U);
   EXPECT_FALSE(editor.endStroke());
   EXPECT_EQ(editor.history().undoable(), 0U);
@@ -117,7 +117,7 @@ TEST_F(Editors, AStrokeThatTouchesNothingIsNoEdit) {
 
 TEST_F(Editors, OtherEditsWaitForTheStrokeToEnd) {
   Editor editor(ballScene(), progress);
-  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, {}).brush, progress);
+  editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, Vec3::Zero()).brush, progress);
   EXPECT_THROW(editor.beginStroke(Brush{}, progress), std::invalid_argument);
   EXPECT_THROW(editor.apply(ValueEdit{{{"stiffness", "1"}}}, progress), std::invalid_argument);
   EXPECT_THROW(editor.undo(1, progress), std::invalid_argument);

@@ -74,7 +74,7 @@ TEST(MaterialMap, PaintLiesOverABaseThatMayChange) {
 // T-K22c: linear over one cell, continuous.
 TEST(MaterialMap, HalfPaintedPlaneIsLinearOverOneCell) {
   MaterialMap map(Vec3::Zero(), 1e-3);
-  fill(map, MaterialChannel::stiffness, -1, 1, [](const Vec3&) { return 1000.0; });
+  fill(map, MaterialChannel::stiffness, -1, 0, [](const Vec3&) { return 1000.0; });
   Material base;
   base.stiffness = 200;
   for (double x = -3; x <= 3; x += 0.125) {

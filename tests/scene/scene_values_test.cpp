@@ -26,9 +26,9 @@ List withEverything() {
           {"sampler", "kim"},
           {"merge.redistance", "on"},
           {"relief.mode", "baked"},
-          {"relief.height", "-0.0005"},
+          {"relief.height", "-5e-04"},
           {"relief.force", "literal"},
-          {"relief.smoothing", "0.0002"},
+          {"relief.smoothing", "2e-04"},
           {"material.force", "literal"},
           {"paint.size", "1024"},
           {"stabiliser", "coupling,passivity"},
@@ -110,6 +110,21 @@ TEST(SceneValues, BadValuesOfTheLoopAreRefused) {
   }
 }
 
+TEST(SceneValues, BadValuesOfPaintAreRefused) {
+  Scene scene;
+  for (const auto& [key, value] : List{{"relief.mode", "pushed"},
+                                       {"relief.height", "1"}, // m
+                                       {"relief.force", "strong"},
+                                       {"relief.smoothing", "-1mm"},
+                                       {"material.force", "paper"},
+                                       {"paint.size", "500"},
+                                       {"paint.size", "8192"},
+                                       {"paint.size", "512.5"}}) {
+    EXPECT_THROW(setValue(scene, key, value), Error) << key;
+    EXPECT_EQ(values(scene), values(Scene{})) << key;
+  }
+}
+
 TEST(SceneValues, LengthsTakeUnits) {
   Scene scene;
   setValue(scene, "tip.radius", "0.5mm");
@@ -179,7 +194,8 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
               "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
               "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
               "magnet.fades contact history tip.radius force.limit resolution voxel band sampler "
-              "merge.redistance stabiliser device.mass device.damping device.coulomb "
+              "merge.redistance relief.mode relief.height relief.force relief.smoothing "
+              "material.force paint.size stabiliser device.mass device.damping device.coulomb "
               "device.encoder device.rate device.delay device");
   }
 }
