@@ -4,6 +4,7 @@
 
 #include "app/compile_scene.h"
 #include "authoring/relief_limits.h"
+#include "haptics/painted_range.h"
 
 namespace patina {
 namespace {
@@ -30,6 +31,11 @@ double highest(const TiledImage& image) {
     if (const auto& tile = image.sharedTile(i))
       for (const float g : *tile) most = std::max(most, std::abs(g));
   return static_cast<double>(most);
+}
+
+// A pulled image is read through cubics, a baked one bilinearly.
+double overshoot(const Scene& scene) {
+  return scene.relief.mode == ReliefMode::pulled ? kReliefOvershoot : 1;
 }
 
 // One object's share of the work, with what an earlier version may lend.
@@ -187,7 +193,7 @@ std::size_t FeltPaint::bytes() const {
 }
 
 double reachOf(const Scene& scene) {
-  return reachOf(scene.haptics) + highestRelief(scene);
+  return reachOf(scene.haptics, overshoot(scene) * highestRelief(scene) + roughnessPeak(scene));
 }
 
 FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
@@ -216,7 +222,7 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
     const ObjectPaint* paint = paintOf(scene, i);
     if (relief && paint && paint->relief) {
       made.relief[i] = maker.image(i);
-      object.highest = std::abs(scene.relief.height) * highest(*made.relief[i]);
+      object.highest = overshoot(scene) * std::abs(scene.relief.height) * highest(*made.relief[i]);
       if (scene.relief.mode == ReliefMode::pulled && object.highest > 0)
         object.relief = maker.pulled(i);
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "haptics/relief_stage.h"
+
 namespace patina {
 
 bool PaintedRange::any() const {
@@ -27,6 +29,17 @@ PaintedRange paintedRange(const Material& base, std::span<const FeltObject> obje
     }
   }
   return range;
+}
+
+double roughnessPeak(const Scene& scene) {
+  float most = 0;
+  for (const SceneObject& object : scene.objects) {
+    if (!object.paint || !object.paint->material) continue;
+    for (const auto& [index, block] : object.paint->material->blocks())
+      if (const auto& layer = block.layer[static_cast<std::size_t>(MaterialChannel::roughness)])
+        most = std::max(most, *std::max_element(layer->value.begin(), layer->value.end()));
+  }
+  return kRoughnessPeak * static_cast<double>(most);
 }
 
 HapticProperties hardest(HapticProperties haptics, const PaintedRange& range) {

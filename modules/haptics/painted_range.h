@@ -5,7 +5,7 @@
 #include <span>
 
 #include "haptics/felt_object.h"
-#include "scene/haptic_properties.h"
+#include "scene/scene.h"
 
 namespace patina {
 
@@ -19,6 +19,10 @@ struct PaintedRange {
   bool any() const;
 };
 PaintedRange paintedRange(const Material& base, std::span<const FeltObject> objects);
+
+// How far roughness can raise what is felt [m]: for the band a field must have, before there are
+// any samples. Looks at every node that is painted rough.
+double roughnessPeak(const Scene& scene);
 
 // `haptics` with the stiffest surface and the least damping there is: what a loop must bear.
 HapticProperties hardest(HapticProperties haptics, const PaintedRange& range);

@@ -30,6 +30,9 @@ struct ReliefAt {
   double distance = 0;       // [m], from c to the mesh
 };
 
+// What cubics may add to the greatest |g| between texels, along both axes.
+inline constexpr double kReliefOvershoot = 1.265625; // (9/8)^2
+
 // Servo thread: no allocation. c: a point on or near the mesh [m], world; near_face: a face of the
 // object thought to be near, from which the closest one is reached across edges. Face -1 (or one
 // that the object does not have): no height.

@@ -5,6 +5,8 @@
 
 #include "haptics/cross_fade.h"
 #include "haptics/painted_fixture.h"
+#include "haptics/painted_range.h"
+#include "haptics/relief_stage.h"
 
 namespace patina {
 namespace {
@@ -50,6 +52,23 @@ TEST(Material, IsAStageOnlyWhereSomethingIsPainted) {
             (Names{"contact", "material", "friction", "spring", "limit"}));
   EXPECT_EQ(painted(MaterialChannel::damping),
             (Names{"contact", "material", "spring", "damping", "limit"}));
+}
+
+// What the band must hold is known from the scene alone.
+TEST(Material, RoughnessReachesAsFarFromTheSceneAsFromItsSamples) {
+  Scene scene = sceneOf(500);
+  const auto map = coveredMap(kVoxel, cube(2e-3), MaterialChannel::roughness,
+                              [](const Vec3& p) { return p.x() > 0 ? 0x1p-13 : 0x1p-14; });
+  EXPECT_EQ(roughnessPeak(scene), 0);
+  ObjectPaint paint;
+  paint.material = map;
+  scene.objects.emplace_back();
+  scene.objects.back().paint = std::make_shared<const ObjectPaint>(paint);
+  const FeltObject object = feltMaterial(*map, scene);
+  EXPECT_DOUBLE_EQ(roughnessPeak(scene), kRoughnessPeak * 0x1p-13);
+  EXPECT_DOUBLE_EQ(raisedBy(std::span(&object, 1)), kRoughnessPeak * 0x1p-13);
+  scene.haptics.tip_radius = 1e-3;
+  EXPECT_DOUBLE_EQ(reachOf(scene.haptics, 2e-3), 3e-3);
 }
 
 TEST(Material, AnOwnerIsLookedUpOnlyAmongSeveralObjects) {
