@@ -126,6 +126,20 @@ TEST(PaintMaterial, AddedStiffnessStaysWithinItsRange) {
   EXPECT_GE(valuesAt(*surface, now, p).material.static_friction, 0);
 }
 
+TEST(PaintMaterial, AddsToWhatIsFeltWithoutPaint) {
+  const Scene scene = plate(); // 500 N/m
+  const auto surface = surfaceOf(scene, false);
+  Brush brush = brushOf(Tool::stiffness, 0.02, -300);
+  brush.mode = StrokeMode::add;
+  brush.falloff = 1000;
+  const Vec3 p(0.001, 0.002, kTop);
+  Scene now = painted(surface, scene, strokeAt(brush, p));
+  EXPECT_NEAR(valuesAt(*surface, now, p).material.stiffness, 200, 1e-4);
+  now = painted(surface, now, strokeAt(brush, p));
+  const double least = rangeOf(MaterialChannel::stiffness).least;
+  EXPECT_NEAR(valuesAt(*surface, now, p).material.stiffness, least, 1e-4);
+}
+
 TEST(PaintMaterial, SmoothingLowersTheSteepestSlope) {
   const Scene scene = plate();
   const auto surface = surfaceOf(scene, false);

@@ -276,6 +276,33 @@ TEST(Painter, SmoothingCrossesSeams) {
   EXPECT_GT(steepest, 0.005e-3);
 }
 
+TEST(Painter, SmoothingLeavesTheFarSideOfAThinWall) {
+  const Scene scene = sceneOf(box(Vec3(0.1, 0.1, 0.0005), 4)); // thinner than a texel is wide
+  const auto surface = surfaceOf(scene);
+  Brush brush = brushOf(Tool::relief, 0.03, 1e-3);
+  brush.falloff = 1000;
+  brush.front_only = true;
+  const Vec3 p(0, 0, 0.00025);
+  const Scene ground = painted(surface, scene, strokeAt(brush, p));
+  brush.front_only = false;
+  brush.mode = StrokeMode::smooth;
+  brush.radius = 0.01;
+  const Scene after = painted(surface, ground, strokeAlong(brush, p, p + Vec3(0.001, 0, 0), 50));
+  EXPECT_NEAR(valuesAt(*surface, after, p).height, 1e-3, 1e-9);
+  EXPECT_EQ(valuesAt(*surface, after, -p).height, 0);
+}
+
+TEST(Painter, SoftEraserComesToAnEnd) {
+  const Scene scene = sceneOf(icosphere(kR, 12));
+  const auto surface = surfaceOf(scene);
+  const Scene ground = painted(surface, scene, strokeAt(brushOf(Tool::color, 0.01), kTop));
+  Brush eraser = brushOf(Tool::erase, 0.02);
+  eraser.mode = StrokeMode::build_up;
+  Stroke stroke{eraser, {}};
+  for (int k = 0; k < 60; ++k) stroke.samples.push_back({k / 60.0, kTop, 0});
+  EXPECT_EQ(painted(surface, ground, stroke).objects[0].paint, nullptr);
+}
+
 TEST(Painter, EraserLeavesNothingBehind) {
   const Scene scene = sceneOf(icosphere(kR, 12));
   const auto surface = surfaceOf(scene);
