@@ -13,8 +13,7 @@ class EditNewsBoard {
  public:
   explicit EditNewsBoard(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-  void scene(std::shared_ptr<const CompiledScene> compiled,
-             std::optional<std::vector<PaintChange>> changes, bool anew);
+  void scene(std::shared_ptr<const CompiledScene> compiled, bool anew);
   void standing(std::shared_ptr<const EditStanding> standing);
   void doing(std::optional<EditDoing> doing);
   void problem(const std::string& line);
@@ -29,8 +28,5 @@ class EditNewsBoard {
   EditNews news_;
   bool woken_ = false;
 };
-
-// Both, object by object; what is in both counts once.
-void add(std::vector<PaintChange>& changes, const std::vector<PaintChange>& more);
 
 } // namespace patina

@@ -33,12 +33,10 @@ struct EditDoing {
 struct EditNews {
   std::shared_ptr<const CompiledScene> compiled; // null: the scene is as it was
   bool anew = false;                             // it is another scene: see adopt()
-  // Where paint has changed; absent: anything may have.
-  std::optional<std::vector<PaintChange>> changes;
-  std::shared_ptr<const EditStanding> standing; // null: as it was
-  std::optional<EditDoing> doing;               // absent: nothing that takes time is under way
-  std::vector<std::string> problems;            // one line each: what could not be done, and why
-  std::vector<std::function<void()>> done;      // to be called, in this order
+  std::shared_ptr<const EditStanding> standing;  // null: as it was
+  std::optional<EditDoing> doing;                // absent: nothing that takes time is under way
+  std::vector<std::string> problems;             // one line each: what could not be done, and why
+  std::vector<std::function<void()>> done;       // to be called, in this order
 };
 
 // All calls come from one thread, the window's, and none waits but the destructor.

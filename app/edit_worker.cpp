@@ -21,14 +21,13 @@ EditWorker::EditWorker(EditNewsBoard& board, std::function<void(const CompiledSc
                        std::filesystem::path autosave_root)
     : board_(board), publish_(std::move(publish)), autosave_root_(std::move(autosave_root)) {}
 
-void EditWorker::show(std::shared_ptr<const CompiledScene> compiled,
-                      std::optional<std::vector<PaintChange>> changes, bool anew) {
+void EditWorker::show(std::shared_ptr<const CompiledScene> compiled, bool anew) {
   if (publish_) publish_(*compiled); // first: what is felt is waited for, what is seen is not
-  board_.scene(std::move(compiled), std::move(changes), anew);
+  board_.scene(std::move(compiled), anew);
 }
 
 void EditWorker::take(const EditorNotice& notice) {
-  show(notice.compiled, notice.changes, false);
+  show(notice.compiled);
 }
 
 Editor& EditWorker::editor() {
@@ -50,7 +49,7 @@ void EditWorker::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave>
   saved_at_.reset();
   if (!editor_) return;
   if (!editor_->unsaved()) saved_at_ = editor_->history().undoable();
-  show(editor_->compiled(), std::nullopt, true);
+  show(editor_->compiled(), true);
 }
 
 void EditWorker::keep() {
@@ -94,9 +93,9 @@ void EditWorker::tryValues(const std::function<void(Scene&)>& set) {
   const CompiledScene& compiled = *editor_->compiled();
   std::optional<ValueEdit> now = valueEdit(compiled.scene, wanted);
   if (!now) {
-    if (tried_) show(editor_->compiled(), std::nullopt, false);
+    if (tried_) show(editor_->compiled());
   } else if (sameField(wanted, compiled.scene)) {
-    show(retuned(compiled, std::move(wanted)), std::nullopt, false);
+    show(retuned(compiled, std::move(wanted)));
   } // else the field is built anew, which waits until the values rest
   tried_ = std::move(now);
 }
@@ -108,7 +107,7 @@ void EditWorker::settleValues(Progress& progress) {
   try {
     editor_->apply(edit, progress);
   } catch (...) {
-    show(editor_->compiled(), std::nullopt, false);
+    show(editor_->compiled());
     throw;
   }
   appended(before);

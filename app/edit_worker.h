@@ -43,8 +43,7 @@ class EditWorker {
   void close();  // ends the stroke, settles values and lets the scene go
 
  private:
-  void show(std::shared_ptr<const CompiledScene> compiled,
-            std::optional<std::vector<PaintChange>> changes, bool anew);
+  void show(std::shared_ptr<const CompiledScene> compiled, bool anew = false);
   void keep(); // a scene without a folder has one from its first edit on
   void appended(std::size_t done_before);
   bool ownsFolder() const;

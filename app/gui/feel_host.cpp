@@ -5,8 +5,7 @@
 
 namespace patina {
 
-void FeelHost::open(std::shared_ptr<const HapticSnapshot> snapshot,
-                    std::unique_ptr<MouseDevice> device, double rate) {
+void FeelHost::open(std::unique_ptr<MouseDevice> device, double rate) {
   close();
   const auto now = std::chrono::steady_clock::now();
   if (began_once_) {
@@ -17,13 +16,17 @@ void FeelHost::open(std::shared_ptr<const HapticSnapshot> snapshot,
     began_once_ = true;
   }
   mouse_ = device.get();
-  loop_ = std::make_unique<ServoLoop>(std::move(device), rate);
-  loop_->publish(std::move(snapshot));
+  auto loop = std::make_unique<ServoLoop>(std::move(device), rate);
+  const std::lock_guard lock(publishers_);
+  loop_ = std::move(loop);
+  if (newest_) loop_->publish(newest_);
   loop_->start();
 }
 
 void FeelHost::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
-  if (loop_) loop_->publish(std::move(snapshot));
+  const std::lock_guard lock(publishers_);
+  newest_ = std::move(snapshot);
+  if (loop_) loop_->publish(newest_);
 }
 
 void FeelHost::close() {
@@ -32,6 +35,7 @@ void FeelHost::close() {
   loop_->stop();
   empty(left_);
   dropped_before_ += loop_->samples().dropped();
+  const std::lock_guard lock(publishers_);
   loop_.reset();
 }
 
@@ -50,7 +54,8 @@ void FeelHost::setTarget(const Vec3& target) {
 }
 
 std::vector<ToolSample> FeelHost::drain() {
-  if (loop_) loop_->collect();
+  if (loop_)
+    if (const std::unique_lock lock(publishers_, std::try_to_lock); lock) loop_->collect();
   std::vector<ToolSample> samples = std::exchange(left_, {});
   if (loop_) empty(samples);
   return samples;

@@ -75,7 +75,7 @@ void HapticsPanel::rebuild() {
 }
 
 ValueRow* HapticsPanel::addRow(const char* name, const QString& caption, const QString& unit,
-                               const ValueRange& range, double value, const QString& tip) {
+                               const RowRange& range, double value, const QString& tip) {
   auto* row = new ValueRow(caption, unit, range, rows_);
   row->setObjectName(QString::fromUtf8(name));
   row->setValue(value);
@@ -116,7 +116,7 @@ void HapticsPanel::addModeRows() {
   modes->setMode(touchMode(haptics_));
   connect(modes, &ModeSwitch::chosen, this, &HapticsPanel::setMode);
   rows_->layout()->addWidget(modes);
-  const ValueRange lengths{0.05, mostMillimetres(), 0.05, 2};
+  const RowRange lengths{0.05, mostMillimetres(), 0.05, 2};
   const QString limited = tr("Up to what the field's band holds; a wider band: "
                              "patina scene WORKSPACE --set band=N");
   if (haptics_.offset) {
@@ -153,7 +153,7 @@ void HapticsPanel::addModeRows() {
 }
 
 void HapticsPanel::addFrictionRows() {
-  const ValueRange range{0, 2, 0.05, 2};
+  const RowRange range{0, 2, 0.05, 2};
   ValueRow* holds = addRow("friction_static", tr("Friction, static"), {}, range,
                            haptics_.friction->static_coefficient);
   ValueRow* slides = addRow("friction_dynamic", tr("Friction, dynamic"), {}, range,

@@ -29,7 +29,7 @@ class HapticsPanel : public QGroupBox {
  private:
   void rebuild();
   ValueRow* addRow(const char* name, const QString& caption, const QString& unit,
-                   const ValueRange& range, double value, const QString& tip = {});
+                   const RowRange& range, double value, const QString& tip = {});
   void addModeRows();
   void addFrictionRows();
   void addDampingRows();

@@ -29,6 +29,8 @@ LoadBar::LoadBar(QWidget* parent)
 
 void LoadBar::begin(const QString& words, const QString& name, bool later) {
   name_ = name;
+  on_ = true;
+  hide();
   words_->setText(words);
   bar_->setValue(0);
   bar_->setRange(0, 1000);
@@ -52,6 +54,7 @@ void LoadBar::showClosing() {
 }
 
 void LoadBar::end() {
+  on_ = false;
   patience_.stop();
   hide();
 }

@@ -15,6 +15,7 @@ class LoadBar : public QWidget {
   explicit LoadBar(QWidget* parent = nullptr);
   // later = seen only if it is still on after half a second.
   void begin(const QString& words, const QString& name, bool later = false);
+  bool showing(const QString& words) const { return on_ && name_ == words; }
   void report(double fraction, const QString& what);
   void showClosing();
   void end();
@@ -27,6 +28,7 @@ class LoadBar : public QWidget {
   QProgressBar* bar_;
   QPushButton* cancel_;
   QString name_;
+  bool on_ = false; // or waiting to be
   QTimer patience_;
 };
 

@@ -7,6 +7,7 @@
 #include <QFormLayout>
 #include <QLabel>
 #include <QMessageBox>
+#include <QPushButton>
 #include <QRadioButton>
 #include <QVBoxLayout>
 
@@ -106,6 +107,21 @@ QString adviceFor(const QString& message) {
     return QDialog::tr("Choose a smaller resolution or a smaller band.");
   return QDialog::tr("Repair the file at the place that is named, or export it again from the "
                      "program that made it.");
+}
+
+void askRecover(QWidget* parent, const QString& name, const QString& message,
+                std::function<void()> yes) {
+  auto* box = new QMessageBox(QMessageBox::Warning, QDialog::tr("%1 is damaged").arg(name), message,
+                              QMessageBox::Cancel, parent);
+  box->setObjectName(QStringLiteral("damaged"));
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setInformativeText(
+      QDialog::tr("What can still be read can be opened; what cannot is left out, and said."));
+  auto* recover = box->addButton(QDialog::tr("Recover"), QMessageBox::AcceptRole);
+  recover->setObjectName(QStringLiteral("recover_damaged"));
+  QObject::connect(recover, &QPushButton::clicked, parent, std::move(yes));
+  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  box->open();
 }
 
 void showProblem(QWidget* parent, const QString& title, const QString& message,

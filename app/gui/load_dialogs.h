@@ -19,6 +19,10 @@ void askUnit(QWidget* parent, const QString& name, double longest,
 void askIso(QWidget* parent, const QString& name, double low, double high,
             std::function<void(double)> answer);
 
+// Whether of a workspace that is damaged what can be read is to be opened.
+void askRecover(QWidget* parent, const QString& name, const QString& message,
+                std::function<void()> yes);
+
 // One line of what went wrong, and what to do about it where that can be said.
 void showProblem(QWidget* parent, const QString& title, const QString& message,
                  const QString& advice);

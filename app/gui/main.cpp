@@ -114,6 +114,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
     std::cout << patina::firstPictureSeconds(window, arguments.request) << '\n';
     return 0;
   }
+  window.offerRecovery();
   window.open(arguments.request);
   if (arguments.log) window.startLog();
   // Ctrl-C, kill and a lost terminal are ways to close the window: the log is still written.

@@ -8,29 +8,38 @@
 #include <QScrollArea>
 #include <QVBoxLayout>
 
+#include <utility>
+
 #include "app/gui/load_dialogs.h"
 #include "app/gui/value_focus.h"
 #include "app/gui/window_style.h"
-#include "core/error.h"
-#include "workspace/workspace.h"
 
 namespace patina {
 
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), view_(new SceneWidget), load_bar_(new LoadBar), warnings_(new QLabel),
       objects_(new ObjectList), object_(new ObjectPanel), haptics_(new HapticsPanel),
-      device_(new DevicePanel), display_(new DisplayPanel), force_plot_(new ForcePlot),
+      device_(new DevicePanel), display_(new DisplayPanel), paint_display_(new PaintDisplay),
+      brush_(new BrushPanel), relief_(new ReliefPanel), history_(new HistoryPanel),
+      tools_(new ToolBar), recover_(new RecoverBar), force_plot_(new ForcePlot),
       energy_plot_(new EnergyPlot), status_(new StatusLine(statusBar())),
-      loader_(new SceneLoader(this)), stability_(new StabilityJob(this)) {
+      stability_(new StabilityJob(this)) {
+  edits_ = std::make_unique<EditThread>(
+      EditThread::Spec{[this](const CompiledScene& compiled) { feel_.publish(compiled.snapshot); },
+                       [this] {
+                         QMetaObject::invokeMethod(
+                             this, [this] { takeNews(); }, Qt::QueuedConnection);
+                       },
+                       stateFolder()});
+  loader_ = new SceneLoader(edits_->listener(), this);
+  desk_ = new PaintDesk({*tools_, *brush_, *view_, feel_, *edits_}, this);
   setWindowTitle(tr("Patina[*]"));
   setAcceptDrops(true);
   buildLayout();
   buildMenus();
   connectLoader();
   connectPanels();
-  connect(view_, &SceneWidget::tipMoved, this,
-          [this](const Vec3& target) { feel_.setTarget(target); });
-  connect(load_bar_, &LoadBar::cancelled, loader_, &SceneLoader::cancel);
+  connectPaint();
   restore();
   // One timer draws everything; what did not change is not drawn again.
   timer_.setTimerType(Qt::PreciseTimer);
@@ -43,7 +52,19 @@ QList<QWidget*> MainWindow::cards() const {
 }
 
 MainWindow::~MainWindow() {
+  timer_.stop();
+  edits_.reset();
   feel_.close();
+}
+
+QDockWidget* MainWindow::dock(const QString& title, const char* name, QWidget* widget,
+                              Qt::DockWidgetArea area) {
+  auto* made = new QDockWidget(title, this);
+  made->setObjectName(QString::fromUtf8(name));
+  made->setWidget(widget);
+  made->setFeatures(QDockWidget::DockWidgetClosable | QDockWidget::DockWidgetMovable);
+  addDockWidget(area, made);
+  return made;
 }
 
 void MainWindow::buildLayout() {
@@ -56,17 +77,24 @@ void MainWindow::buildLayout() {
   warnings_->setStyleSheet(QStringLiteral("background: #fff4d6; color: #6b4e00;"));
   warnings_->hide();
   column->addWidget(load_bar_);
+  column->addWidget(recover_);
   column->addWidget(warnings_);
   column->addWidget(view_, 1);
   setCentralWidget(centre);
+  addToolBar(Qt::LeftToolBarArea, tools_);
 
   auto* side = new QWidget;
   side->setStyleSheet(cardStyle());
   auto* stack = new QVBoxLayout(side);
   stack->setContentsMargins(8, 0, 8, 8);
   stack->setSpacing(4);
+  stack->addWidget(brush_);
+  stack->addWidget(relief_);
   for (QWidget* card : cards()) stack->addWidget(card);
   stack->addStretch(1);
+  for (QWidget* absent : {static_cast<QWidget*>(brush_), static_cast<QWidget*>(relief_)})
+    absent->hide();
+  display_->layout()->addWidget(paint_display_);
   new ValueFocus(*side, *view_);
   auto* scroll = new QScrollArea;
   scroll->setWidget(side);
@@ -76,30 +104,26 @@ void MainWindow::buildLayout() {
   // Room for the scroll bar from the start, or it would cover the cards when it comes.
   scroll->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
   scroll->setFixedWidth(318);
-  const auto dock = [this](const QString& title, const char* name, QWidget* widget,
-                           Qt::DockWidgetArea area) {
-    auto* made = new QDockWidget(title, this);
-    made->setObjectName(QString::fromUtf8(name));
-    made->setWidget(widget);
-    made->setFeatures(QDockWidget::DockWidgetClosable | QDockWidget::DockWidgetMovable);
-    addDockWidget(area, made);
-    panels_ << made->toggleViewAction();
-    return made;
-  };
-  dock(tr("Scene"), "scene_dock", scroll, Qt::RightDockWidgetArea);
+  panels_ << dock(tr("Scene"), "scene_dock", scroll, Qt::RightDockWidgetArea)->toggleViewAction();
   QDockWidget* force =
       dock(tr("Force on the hand"), "force_dock", force_plot_, Qt::BottomDockWidgetArea);
   QDockWidget* energy = dock(tr("Energy taken by the surface"), "energy_dock", energy_plot_,
                              Qt::BottomDockWidgetArea);
   splitDockWidget(force, energy, Qt::Horizontal);
   resizeDocks({force, energy}, {1, 1}, Qt::Horizontal);
+  for (QDockWidget* plot : {force, energy}) panels_ << plot->toggleViewAction();
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+  history_dock_ = dock(tr("History"), "history_dock", history_, Qt::RightDockWidgetArea);
+  history_->setMinimumHeight(60);
+  resizeDocks({history_dock_}, {170}, Qt::Vertical);
+  history_dock_->hide();
 }
 
 void MainWindow::collect() {
   const std::vector<ToolSample> samples = feel_.drain();
   recording_.add(samples, feel_.dropped());
   log_.add(samples, feel_.dropped());
+  desk_->feed(samples);
   if (samples.empty()) return;
   last_sample_ = samples.back();
   force_plot_->addSamples(samples);
@@ -112,22 +136,23 @@ void MainWindow::closeFeel() {
 }
 
 void MainWindow::tick() {
-  if (values_edited_) applyValues();
+  if (values_edited_) tryValues();
   collect();
+  desk_->refresh();
   if (feel_.running()) view_->view().setTool(last_sample_);
   view_->refresh();
+  if (const auto shown = paint_display_->shown(); shown && *shown != PaintQuantity::color)
+    paint_display_->setRange(view_->view().paintRange(*shown));
   force_plot_->refresh();
   energy_plot_->refresh();
-  if (ticks_++ % 10 == 0) {
-    status_->showTiming(feel_.timing(), feel_.running());
-    status_->showFault(feel_.running() && last_sample_.fault);
-  }
+  if (ticks_++ % 10 != 0) return;
+  if (!std::exchange(stages_shown_, true)) status_->showScene(current_.get());
+  status_->showTiming(feel_.timing(), feel_.running());
+  status_->showFault(feel_.running() && last_sample_.fault);
 }
 
 void MainWindow::setMode(SceneWidget::Mode mode) {
-  view_->setMode(mode);
-  feel_action_->setChecked(mode == SceneWidget::Mode::feel);
-  navigate_action_->setChecked(mode == SceneWidget::Mode::navigate);
+  tools_->choose({mode == SceneWidget::Mode::navigate ? Handling::navigate : Handling::feel, {}});
 }
 
 void MainWindow::startRecording() {
@@ -152,15 +177,6 @@ Recording& MainWindow::log() {
   return log_;
 }
 
-void MainWindow::saveWorkspaceTo(const QString& folder) {
-  if (current_ == nullptr) throw Error("there is no scene to save");
-  Scene scene = current_->scene;
-  scene.haptics = haptics_->values(); // what this tick's timer has not applied yet
-  saveWorkspace(scene, folder.toStdString());
-  setWindowModified(false);
-  recent_->add(folder);
-}
-
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
   if (event->mimeData()->hasUrls() && event->mimeData()->urls().front().isLocalFile())
     event->acceptProposedAction();
@@ -172,22 +188,6 @@ void MainWindow::dropEvent(QDropEvent* event) {
   // A question must not hold up the program that the file is dragged from.
   QMetaObject::invokeMethod(
       this, [this, request] { openAsked(request); }, Qt::QueuedConnection);
-}
-
-void MainWindow::closeEvent(QCloseEvent* event) {
-  if (asks_ && !closing_ && !(settleRecording() && settleEdits())) return event->ignore();
-  closing_ = true;
-  timer_.stop();
-  loader_->cancel();
-  stability_->cancel();
-  closeFeel();
-  if (!loader_->resting()) {
-    // A reader cannot be stopped within a file: the window says so and goes when it is done.
-    load_bar_->showClosing();
-    connect(loader_, &SceneLoader::rested, this, &QWidget::close, Qt::UniqueConnection);
-    return event->ignore();
-  }
-  event->accept();
 }
 
 } // namespace patina

@@ -1,21 +1,28 @@
-// The window: puts the panels around the 3D view and passes values between them, the loader and the
-// servo. Everything that computes is elsewhere.
+// The window: puts the panels around the 3D view and passes values between them, the edit thread
+// and the servo. Everything that computes is elsewhere.
 #pragma once
 
+#include <QDockWidget>
 #include <QLabel>
 #include <QMainWindow>
 #include <QTimer>
 
+#include "app/edit_thread.h"
 #include "app/gui/device_panel.h"
 #include "app/gui/display_panel.h"
 #include "app/gui/feel_host.h"
 #include "app/gui/haptics_panel.h"
+#include "app/gui/history_panel.h"
 #include "app/gui/live_plots.h"
 #include "app/gui/load_bar.h"
 #include "app/gui/object_list.h"
 #include "app/gui/object_panel.h"
+#include "app/gui/paint_desk.h"
+#include "app/gui/paint_display.h"
 #include "app/gui/recent_files.h"
 #include "app/gui/recording.h"
+#include "app/gui/recover_bar.h"
+#include "app/gui/relief_panel.h"
 #include "app/gui/scene_loader.h"
 #include "app/gui/scene_widget.h"
 #include "app/gui/stability_job.h"
@@ -30,8 +37,10 @@ class MainWindow : public QMainWindow {
   ~MainWindow() override;
 
   void open(const LoadRequest& request);
-  void saveWorkspaceTo(const QString& folder); // throws Error
-  void startRecording();                       // what R does; the log is a recording of its own
+  // Events go on until it is there; throws Error.
+  void saveWorkspaceTo(const QString& folder);
+  void offerRecovery();  // of what a crash has left behind, if anything
+  void startRecording(); // what R does; the log is a recording of its own
   // Every tick since startRecording(), and recording ends.
   std::vector<ToolSample> takeRecording();
   const Recording& recording() const { return recording_; }
@@ -52,8 +61,16 @@ class MainWindow : public QMainWindow {
   StabilityJob& stability() { return *stability_; }
   EnergyPlot& energyPlot() { return *energy_plot_; }
   StatusLine& status() { return *status_; }
+  EditThread& edits() { return *edits_; }
+  const EditStanding& standing() const { return standing_; } // of the history
+  ToolBar& tools() { return *tools_; }
+  PaintDesk& desk() { return *desk_; }
+  BrushPanel& brushPanel() { return *brush_; }
+  ReliefPanel& relief() { return *relief_; }
+  PaintDisplay& paintDisplay() { return *paint_display_; }
+  HistoryPanel& history() { return *history_; }
   const ToolSample& lastSample() const { return last_sample_; }
-  void setMode(SceneWidget::Mode mode);
+  void setMode(SceneWidget::Mode mode); // as its tool in the tool bar does
 
  signals:
   void sceneReady();
@@ -67,25 +84,47 @@ class MainWindow : public QMainWindow {
 
  private:
   void buildLayout();
+  QDockWidget* dock(const QString& title, const char* name, QWidget* widget,
+                    Qt::DockWidgetArea area);
   void buildMenus();
+  void buildEditMenu();
+  void buildViewMenu();
+  void buildHelpMenu();
   void connectLoader();
+  void connectPanels();
+  void connectPaint();
+  QList<QWidget*> cards() const; // of the side panel that every scene has, in their order
   void tick();
+
+  void takeNews();
+  void takeStanding(const EditStanding& standing);
+  void takeScene(const EditNews& news);
+  void showDoing(const std::optional<EditDoing>& doing);
   void showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name);
-  void take(std::shared_ptr<const CompiledScene> scene, const QStringList& warnings);
+  void take(OpenedEditor& opened);
   void restore(); // what was open before a load that came to nothing
   void showCurrent();
-  void connectPanels();
-  QList<QWidget*> cards() const; // of the side panel, in their order
-  void takeRebuilt(std::shared_ptr<const CompiledScene> scene, const QStringList& warnings);
-  void showSurface();  // mesh and field of current_
-  void showValues();   // whatever depends on values of touch and device
-  void applyValues();  // of touch and device
-  void applyObjects(); // starts a rebuild, now or when the one under way has ended
+  void showSurface(); // mesh and field of current_
+  void showPaint();
+  void showValues(); // whatever depends on values of touch and device
+  void syncPanels(); // after undo and redo: as the scene is
+  void showRelief();
+  void showWarnings(const QStringList& lines);
   void openFeelAt(const Vec3& start);
   void askStability();
+
+  void tryValues();    // of touch and device, as the panels have them
+  void applyObjects(); // as the panel has them
+  void addObjects(const OpenedScene& opened);
+  void chooseTool(const ToolChoice& choice);
+  void waitFor(const std::function<void(EditThread::Done)>& ask); // throws Error; events go on
+
   void openDialog(bool adds);
-  bool saveDialog();                          // false: nothing was saved
+  void save();
+  bool saveNow();                             // false: nothing was saved
+  bool saveDialog();                          // the same, into a folder that is asked for
   void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
+  void loadProblem(const QString& message);
   void exportDialog();
   void recordDialog(bool on);
   bool saveRecordingDialog(); // false: not written, the samples are kept
@@ -102,24 +141,39 @@ class MainWindow : public QMainWindow {
   HapticsPanel* haptics_;
   DevicePanel* device_;
   DisplayPanel* display_;
+  PaintDisplay* paint_display_;
+  BrushPanel* brush_;
+  ReliefPanel* relief_;
+  HistoryPanel* history_;
+  ToolBar* tools_;
+  RecoverBar* recover_;
   ForcePlot* force_plot_;
   EnergyPlot* energy_plot_;
   StatusLine* status_;
   RecentFiles* recent_ = nullptr;
   SceneLoader* loader_;
   StabilityJob* stability_;
-  QAction* feel_action_ = nullptr;
-  QAction* navigate_action_ = nullptr;
+  PaintDesk* desk_ = nullptr;
+  QDockWidget* history_dock_ = nullptr;
   QAction* save_action_ = nullptr;
+  QAction* save_as_action_ = nullptr;
+  QAction* undo_action_ = nullptr;
+  QAction* redo_action_ = nullptr;
   QAction* record_action_ = nullptr;
+  QList<QAction*> views_;  // fit and the camera's places
   QList<QAction*> panels_; // show and hide the docks
 
   FeelHost feel_;
+  std::unique_ptr<EditThread> edits_; // goes before feel_, to which it publishes
   QTimer timer_;
   std::shared_ptr<const CompiledScene> current_;
+  EditStanding standing_;
+  QString name_; // of what is open
+  ToolChoice before_navigating_;
   bool previewing_ = false;
-  bool values_edited_ = false;  // and not yet felt
-  bool objects_edited_ = false; // and not yet on their way
+  bool values_edited_ = false;               // and not yet asked for
+  int values_asked_ = 0, objects_asked_ = 0; // and not yet answered
+  bool stages_shown_ = true;
   int ticks_ = 0;
   ToolSample last_sample_;
   Recording recording_, log_;

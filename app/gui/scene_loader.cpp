@@ -1,14 +1,15 @@
 #include "app/gui/scene_loader.h"
 
-#include <algorithm>
 #include <new>
 #include <utility>
 
 #include <QMetaObject>
 
 #include "app/compile_warnings.h"
+#include "core/error.h"
 #include "field/models.h"
 #include "visualization/field_io.h"
+#include "workspace/workspace.h"
 
 namespace patina {
 namespace {
@@ -16,17 +17,6 @@ namespace {
 // The range in which a mesh in millimetres is taken for what it is.
 bool oddSize(double metres) {
   return metres < 1e-3 || metres > 2;
-}
-
-// "cup", "cup-2", "cup-3": a name that the scene does not have.
-std::string freeName(const Scene& scene, const std::string& name) {
-  std::string free = name;
-  const auto taken = [&] {
-    return std::any_of(scene.objects.begin(), scene.objects.end(),
-                       [&](const SceneObject& object) { return object.name == free; });
-  };
-  for (int number = 2; taken(); ++number) free = name + "-" + std::to_string(number);
-  return free;
 }
 
 QStringList lines(const std::vector<std::string>& warnings) {
@@ -37,7 +27,8 @@ QStringList lines(const std::vector<std::string>& warnings) {
 
 } // namespace
 
-SceneLoader::SceneLoader(QObject* parent) : QObject(parent) {
+SceneLoader::SceneLoader(Editor::Listener listener, QObject* parent)
+    : QObject(parent), listener_(std::move(listener)) {
   connect(&jobs_, &Background::progressed, this, &SceneLoader::progressed);
   connect(&jobs_, &Background::rested, this, &SceneLoader::rested);
 }
@@ -60,37 +51,8 @@ void SceneLoader::start(const LoadRequest& request) {
   });
 }
 
-template <typename Work, typename Failed>
-void SceneLoader::guarded(const Background::Deliver& deliver, Work work, Failed failed) {
-  try {
-    work();
-  } catch (const Cancelled&) {
-    deliver(true, [this] { emit cancelled(); });
-  } catch (const std::bad_alloc&) {
-    deliver(true, [failed] {
-      failed(tr("There is not enough memory for this scene: choose a smaller resolution."));
-    });
-  } catch (const std::exception& error) {
-    const QString message = QString::fromStdString(error.what());
-    deliver(true, [failed, message] { failed(message); });
-  }
-}
-
-void SceneLoader::rebuild(std::shared_ptr<const CompiledScene> from, Scene scene) {
-  jobs_.start([this, from = std::move(from),
-               scene = std::move(scene)](Progress& progress, const Background::Deliver& deliver) {
-    guarded(
-        deliver,
-        [&] {
-          const auto compiled = recompile(*from, scene, progress);
-          deliver(true, [this, compiled] { emit rebuilt(compiled, {}); });
-        },
-        [this](const QString& message) { emit rebuildFailed(message); });
-  });
-}
-
-bool SceneLoader::read(const LoadRequest& request, const Background::Deliver& deliver,
-                       OpenedScene& opened) {
+bool SceneLoader::readFile(const LoadRequest& request, const Background::Deliver& deliver,
+                           OpenedScene& opened) {
   if (request.path.empty()) {
     opened.scene = sceneOf(dinosaur(), "dinosaur");
     return true;
@@ -114,35 +76,82 @@ bool SceneLoader::read(const LoadRequest& request, const Background::Deliver& de
   return true;
 }
 
-void SceneLoader::run(const LoadRequest& request, Progress& progress,
+void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, OpenedEditor& made,
+                             Progress& progress) const {
+  if (!std::filesystem::is_directory(request.path)) {
+    made.editor = std::make_unique<Editor>(std::move(opened.scene), progress, listener_);
+    return;
+  }
+  Editor::OpenSpec spec;
+  spec.recover = request.recover;
+  try {
+    made.editor = Editor::open(request.path, spec, progress, listener_);
+  } catch (const FileError& error) {
+    // Another program has it open, or nobody may write there: it can still be looked at.
+    spec.own = false;
+    try {
+      made.editor = Editor::open(request.path, spec, progress, listener_);
+    } catch (const FileError&) {
+      throw error;
+    }
+    made.warnings << tr("Edits are not kept in this folder: %1").arg(error.what());
+  }
+  made.warnings << lines(made.editor->notes());
+  const bool has_radius = made.editor->scene().haptics.tip_radius.value_or(0) > 0;
+  for (const auto& object : made.editor->compiled()->objects) {
+    const QString name = QString::fromStdString(object->object.name);
+    for (const std::string& line : meshWarnings(object->mesh_report))
+      made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(line));
+    const auto thin = thinSheetWarning(object->mesh_report);
+    if (thin && !has_radius)
+      made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(*thin));
+  }
+}
+
+void SceneLoader::run(const LoadRequest& asked, Progress& progress,
                       const Background::Deliver& deliver) {
-  guarded(
-      deliver,
-      [&] {
-        OpenedScene opened;
-        if (!read(request, deliver, opened)) return;
-        progress.throwIfCancelled();
-        const QStringList warnings = lines(opened.warnings);
-        if (request.onto) {
-          Scene scene = request.onto->scene;
-          for (SceneObject& object : opened.scene.objects) {
-            object.name = freeName(scene, object.name);
-            scene.objects.push_back(std::move(object));
-          }
-          const auto compiled = recompile(*request.onto, std::move(scene), progress);
-          const QStringList all = warnings + lines(compileWarnings(*compiled));
-          return deliver(true, [this, compiled, all] { emit rebuilt(compiled, all); });
-        }
-        const QString name = request.path.empty()
-                                 ? QStringLiteral("dinosaur")
-                                 : QString::fromStdString(request.path.filename().string());
-        const auto mesh = std::make_shared<const TriangleMesh>(worldMesh(opened.scene));
-        deliver(false, [this, mesh, name] { emit meshReady(mesh, name); });
-        const auto compiled = compile(std::move(opened.scene), progress);
-        const QStringList all = warnings + lines(compileWarnings(*compiled));
-        deliver(true, [this, compiled, all] { emit ready(compiled, all); });
-      },
-      [this](const QString& message) { emit failed(message); });
+  try {
+    auto made = std::make_shared<OpenedEditor>();
+    LoadRequest request = asked;
+    if (!request.place.empty()) {
+      made->autosave = Autosave::adopt(request.place);
+      request.path = made->autosave->workspace();
+      request.recover = true; // what a crash left is taken as it is
+    }
+    OpenedScene opened;
+    const bool folder = std::filesystem::is_directory(request.path);
+    if (folder && !request.adds) {
+      // To be seen at once: as it was saved, without what the journal says beyond.
+      if (!request.recover) opened.scene = loadWorkspace(request.path);
+    } else if (!readFile(request, deliver, opened)) {
+      return;
+    }
+    progress.throwIfCancelled();
+    made->warnings = lines(opened.warnings);
+    if (request.adds) {
+      auto objects = std::make_shared<OpenedScene>(std::move(opened));
+      return deliver(true, [this, objects] { emit read(objects); });
+    }
+    if (!opened.scene.objects.empty()) {
+      const QString name = request.path.empty()
+                               ? QStringLiteral("dinosaur")
+                               : QString::fromStdString(request.path.filename().string());
+      const auto mesh = std::make_shared<const TriangleMesh>(worldMesh(opened.scene));
+      deliver(false, [this, mesh, name] { emit meshReady(mesh, name); });
+    }
+    openEditor(request, std::move(opened), *made, progress);
+    made->warnings << lines(compileWarnings(*made->editor->compiled()));
+    deliver(true, [this, made] { emit ready(made); });
+  } catch (const Cancelled&) {
+    deliver(true, [this] { emit cancelled(); });
+  } catch (const std::bad_alloc&) {
+    deliver(true, [this] {
+      emit failed(tr("There is not enough memory for this scene: choose a smaller resolution."));
+    });
+  } catch (const std::exception& error) {
+    const QString message = QString::fromStdString(error.what());
+    deliver(true, [this, message] { emit failed(message); });
+  }
 }
 
 } // namespace patina

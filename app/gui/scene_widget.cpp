@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <QMouseEvent>
+#include <QTabletEvent>
 #include <QWheelEvent>
 
 #include <vtkGenericOpenGLRenderWindow.h>
@@ -20,8 +21,8 @@ SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
   view_.attachTo(*window);
   setEnableHiDPI(true);
   setMinimumSize(480,
-                 320); // without one, a docked layout may give it no pixel and nothing is drawn
-  setMouseTracking(false);
+                 320);    // without one, a docked layout may give it no pixel and nothing is drawn
+  setMouseTracking(true); // the brush is seen before it paints
   setFocusPolicy(Qt::StrongFocus);
   setMode(mode_);
 }
@@ -30,7 +31,7 @@ SceneWidget::~SceneWidget() = default;
 
 void SceneWidget::setMode(Mode mode) {
   mode_ = mode;
-  setCursor(feels() ? Qt::CrossCursor : Qt::OpenHandCursor);
+  setCursor(feels() || paints() || mode_ == Mode::pick ? Qt::CrossCursor : Qt::OpenHandCursor);
   emit modeChanged();
 }
 
@@ -81,12 +82,59 @@ void SceneWidget::moveTip(const Vec3& target) {
   emit tipMoved(target);
 }
 
+std::optional<Vec3> SceneWidget::surfaceAt(const QPoint& pixel) {
+  if (!field_) return std::nullopt;
+  const Vec2 at = fraction(pixel);
+  const Ray ray = rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
+  return firstSurfaceAlong(*field_, ray.origin, ray.direction);
+}
+
+std::optional<Vec3> SceneWidget::underPointer() {
+  const bool looks = drag_ == Drag::none || drag_ == Drag::brush;
+  return pointer_ && looks ? surfaceAt(*pointer_) : std::nullopt;
+}
+
+void SceneWidget::brush(const QPoint& pixel, bool down, double pressure) {
+  emit pointed({surfaceAt(pixel), down, pressure});
+}
+
+bool SceneWidget::pick(const QMouseEvent& event) {
+  const bool asked = mode_ == Mode::pick || (event.modifiers().testFlag(Qt::AltModifier) &&
+                                             (mode_ == Mode::paint || mode_ == Mode::feel));
+  if (!asked || event.button() != Qt::LeftButton || event.modifiers().testFlag(Qt::ShiftModifier))
+    return false;
+  if (const auto hit = surfaceAt(event.pos())) emit pickAsked(*hit);
+  drag_ = Drag::none;
+  return true;
+}
+
+bool SceneWidget::pen(QTabletEvent& event) {
+  if (!paints()) return false; // it is a mouse then
+  pointer_ = event.pos();
+  const bool down = event.type() != QEvent::TabletRelease &&
+                    (event.type() == QEvent::TabletPress || drag_ == Drag::brush);
+  if (down || drag_ == Drag::brush) brush(event.pos(), down, event.pressure());
+  drag_ = down ? Drag::brush : Drag::none;
+  event.accept();
+  return true;
+}
+
+void SceneWidget::release() {
+  if (drag_ == Drag::brush) brush(last_, false, 1);
+  drag_ = Drag::none;
+}
+
 void SceneWidget::press(QMouseEvent& event) {
   last_ = event.pos();
+  pointer_ = last_;
+  if (pick(event)) return;
   const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
   switch (event.button()) {
   case Qt::LeftButton:
-    drag_ = feels() && !shift ? Drag::tip : shift && !feels() ? Drag::pan : Drag::orbit;
+    drag_ = paints() && !shift                 ? Drag::brush
+            : feels() && !shift                ? Drag::tip
+            : shift && mode_ == Mode::navigate ? Drag::pan
+                                               : Drag::orbit;
     break;
   case Qt::MiddleButton:
     drag_ = Drag::pan;
@@ -97,7 +145,7 @@ void SceneWidget::press(QMouseEvent& event) {
   default:
     drag_ = Drag::none;
   }
-  if (drag_ == Drag::tip) drag(event);
+  if (drag_ == Drag::tip || drag_ == Drag::brush) drag(event);
 }
 
 void SceneWidget::drag(QMouseEvent& event) {
@@ -105,7 +153,11 @@ void SceneWidget::drag(QMouseEvent& event) {
   const Vec2 now = fraction(event.pos());
   const Vec2 moved = now - fraction(last_);
   last_ = event.pos();
+  pointer_ = last_;
   switch (drag_) {
+  case Drag::brush:
+    brush(last_, true, 1);
+    break;
   case Drag::tip:
     moveTip(pointInViewPlane(camera, now[0], now[1], target_));
     break;
@@ -125,9 +177,7 @@ void SceneWidget::drag(QMouseEvent& event) {
 
 void SceneWidget::doubleClick(QMouseEvent& event) {
   if (!feels() || event.button() != Qt::LeftButton) return press(event);
-  const Vec2 at = fraction(event.pos());
-  const Ray ray = rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
-  if (const auto hit = firstSurfaceAlong(*field_, ray.origin, ray.direction)) moveTip(*hit);
+  if (const auto hit = surfaceAt(event.pos())) moveTip(*hit);
   drag_ = Drag::none;
 }
 
@@ -154,7 +204,14 @@ bool SceneWidget::event(QEvent* event) {
     doubleClick(*static_cast<QMouseEvent*>(event));
     return true;
   case QEvent::MouseButtonRelease:
-    drag_ = Drag::none;
+    release();
+    return true;
+  case QEvent::TabletPress:
+  case QEvent::TabletMove:
+  case QEvent::TabletRelease:
+    return pen(*static_cast<QTabletEvent*>(event));
+  case QEvent::Leave:
+    pointer_.reset();
     return true;
   case QEvent::Wheel:
     wheel(*static_cast<QWheelEvent*>(event));

@@ -29,6 +29,11 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   stabilisers_->setStyleSheet(QStringLiteral("color: #14568c; font-weight: bold;"));
   stages_ = label("stages");
   bytes_ = label("bytes");
+  picked_ = new QLabel(bar);
+  picked_->setObjectName(QStringLiteral("picked"));
+  picked_->setStyleSheet(QStringLiteral("color: #14568c;"));
+  picked_->setToolTip(tr("What is felt and painted under the pointer"));
+  bar->addPermanentWidget(picked_);
   late_->setToolTip(
       tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
   missed_->setToolTip(tr("Ticks that came more than a period late since the servo began"));
@@ -38,6 +43,11 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
 
 void StatusLine::showFault(bool on) {
   fault_->setVisible(on);
+}
+
+void StatusLine::showPicked(const QString& words) {
+  picked_->setText(words);
+  picked_->setVisible(!words.isEmpty());
 }
 
 void StatusLine::showTiming(const ServoTiming& timing, bool running) {

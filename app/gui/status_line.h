@@ -15,7 +15,9 @@ class StatusLine : public QObject {
   explicit StatusLine(QStatusBar* bar);
   void showScene(const CompiledScene* scene); // nullptr: no scene, no stage
   void showTiming(const ServoTiming& timing, bool running);
-  void showFault(bool on); // the force jumped and was faded to zero (F13)
+  void showFault(bool on);               // the force jumped and was faded to zero (F13)
+  void showPicked(const QString& words); // what is under the pointer; empty: nothing
+  QString pickedText() const { return picked_->text(); }
   QString stabilisersText() const { return stabilisers_->text(); } // empty: none is on
   QString stagesText() const { return stages_->text(); }
 
@@ -30,6 +32,7 @@ class StatusLine : public QObject {
   QLabel* stages_;
   QLabel* stabilisers_;
   QLabel* bytes_;
+  QLabel* picked_;
 };
 
 } // namespace patina

@@ -1,40 +1,18 @@
 #include "app/gui/tour.h"
 
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <functional>
-#include <optional>
-#include <thread>
 
-#include <QApplication>
-#include <QElapsedTimer>
-#include <QEventLoop>
 #include <QImage>
 
+#include "app/gui/tour_hand.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "visualization/camera.h"
 #include "visualization/export_files.h"
-#include "visualization/surface_pick.h"
 
 namespace patina {
 namespace {
-
-// Events go on while we wait; false after the time is up.
-bool waitUntil(const std::function<bool()>& done, int milliseconds) {
-  QElapsedTimer clock;
-  clock.start();
-  while (!done()) {
-    if (clock.elapsed() > milliseconds) return false;
-    QApplication::processEvents(QEventLoop::AllEvents, 10);
-  }
-  return true;
-}
-
-void wait(int milliseconds) {
-  waitUntil([] { return false; }, milliseconds);
-}
 
 void openAndWait(MainWindow& window, const LoadRequest& request) {
   QString problem;
@@ -53,76 +31,6 @@ void openAndWait(MainWindow& window, const LoadRequest& request) {
   for (const auto& connection : {failed, done, unit, iso}) QObject::disconnect(connection);
   if (!problem.isEmpty()) throw Error(problem.toStdString());
   if (!in_time) throw Error("the scene was not ready after ten minutes");
-}
-
-// The hand of the tour: targets, one every few milliseconds. A thread of its own plays them, so
-// that the path does not depend on how fast this machine draws.
-constexpr std::chrono::milliseconds kBeat{4};
-
-void play(MainWindow& window, const std::vector<Vec3>& targets) {
-  if (targets.empty()) return;
-  std::atomic<bool> done{false};
-  std::thread hand([&] {
-    auto due = std::chrono::steady_clock::now();
-    for (const Vec3& target : targets) {
-      window.feel().setTarget(target);
-      std::this_thread::sleep_until(due += kBeat);
-    }
-    done = true;
-  });
-  waitUntil([&] { return done.load(); }, 120000);
-  hand.join();
-  window.view().setTarget(targets.back());
-}
-
-// The surface under a place of the picture, in fractions of its height from the centre.
-std::optional<Vec3> surfaceAt(MainWindow& window, double x, double y, Vec3& inward) {
-  const Ray ray = rayThrough(*window.view().view().renderer().GetActiveCamera(), x, y);
-  inward = ray.direction;
-  return firstSurfaceAlong(*window.scene()->built.field, ray.origin, ray.direction);
-}
-
-// Somewhere near the middle there is surface, whatever the mesh.
-Vec2 placeToTouch(MainWindow& window) {
-  Vec3 inward;
-  for (double radius = 0; radius < 0.5; radius += 0.02)
-    for (int step = 0; step < 24; ++step) {
-      const double angle = 2 * M_PI * step / 24;
-      const Vec2 place(radius * std::cos(angle), radius * std::sin(angle));
-      if (surfaceAt(window, place[0], place[1], inward)) return place;
-    }
-  throw Error("there is no surface in the picture to touch");
-}
-
-// One target a beat, at(0 .. 1).
-std::vector<Vec3> path(int milliseconds, const std::function<std::optional<Vec3>(double)>& at) {
-  std::vector<Vec3> targets;
-  const int beats = milliseconds / static_cast<int>(kBeat.count());
-  for (int beat = 0; beat <= beats; ++beat)
-    if (const auto target = at(static_cast<double>(beat) / beats)) targets.push_back(*target);
-  return targets;
-}
-
-// From the air onto the surface and in by `depth`.
-void press(MainWindow& window, const Vec2& place, double depth, int milliseconds) {
-  Vec3 inward;
-  const auto hit = surfaceAt(window, place[0], place[1], inward);
-  if (!hit) throw Error("the tour lost the surface");
-  const double gap = 0.05 * window.view().view().extent().diagonal().norm();
-  play(window, path(milliseconds, [&](double t) -> std::optional<Vec3> {
-         return *hit + inward * (t * (gap + depth) - gap);
-       }));
-}
-
-// Along the surface, the depth below it swaying as a stroking hand's does.
-void slide(MainWindow& window, const Vec2& from, const Vec2& to, double depth, int milliseconds) {
-  play(window, path(milliseconds, [&](double t) -> std::optional<Vec3> {
-         const Vec2 place = from + (to - from) * t;
-         Vec3 inward;
-         const auto hit = surfaceAt(window, place[0], place[1], inward);
-         if (!hit) return std::nullopt;
-         return *hit + inward * (depth * (0.7 + 0.3 * std::cos(4 * M_PI * t)));
-       }));
 }
 
 bool isBlank(const QImage& image) {
@@ -219,7 +127,7 @@ void showObjects(MainWindow& window, const LoadRequest& request,
                  const std::filesystem::path& folder) {
   const double wide = 0.8 * window.view().view().extent().sizes()[0];
   LoadRequest more = request;
-  more.onto = window.current();
+  more.adds = true;
   openAndWait(window, more);
   window.objects().moveLast(Vec3(wide, 0, 0));
   bool moved = false;
@@ -231,6 +139,43 @@ void showObjects(MainWindow& window, const LoadRequest& request,
   play(window, {window.view().restingPlace()});
   wait(400);
   grab(window, folder / "objects.png");
+}
+
+// Stripes of stiffness, a raised ring and a spot of colour, as a person lays them on.
+void showPainting(MainWindow& window, const std::filesystem::path& folder) {
+  const std::size_t before = window.standing().done;
+  window.view().view().setView(ViewPreset::iso);
+  const Vec2 middle = placeToTouch(window);
+  const auto choose = [&](Tool tool, double value, double falloff, double share) {
+    window.tools().choose({Handling::paint, tool});
+    Brush brush = window.desk().brush();
+    if (tool != Tool::color) brush.value = value;
+    brush.falloff = falloff;
+    brush.radius = share * window.desk().book().extent();
+    window.desk().setBrush(brush);
+    wait(200);
+  };
+  const auto line = [&](const Vec2& from, const Vec2& to) {
+    paintAlong(
+        window, [&](double t) { return Vec2(from + t * (to - from)); }, 900);
+  };
+  choose(Tool::color, 0, 4, 0.02);
+  line(middle + Vec2(-0.05, 0.02), middle + Vec2(0.06, 0.03));
+  choose(Tool::relief, 0.006 * window.desk().book().extent(), 2, 0.012);
+  const auto ring = [&](double t) {
+    return Vec2(middle + 0.03 * Vec2(std::cos(2 * M_PI * t), std::sin(2 * M_PI * t)));
+  };
+  paintAlong(window, ring, 1500);
+  grab(window, folder / "relief.png");
+  choose(Tool::stiffness, 2000, 4, 0.02);
+  const Vec2 from = middle + Vec2(-0.04, -0.03), to = middle + Vec2(0.03, -0.02);
+  paintAlong(
+      window, [&](double t) { return Vec2(from + t * (to - from)); }, 900,
+      [&] { grab(window, folder / "paint.png"); }); // tool, force and brush together
+  window.tools().choose({Handling::feel, {}});
+  window.edits().goTo(before);
+  if (!waitUntil([&] { return window.standing().done == before; }, 20000))
+    throw Error("what the tour painted was not undone");
 }
 
 } // namespace
@@ -274,6 +219,8 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   const std::vector<ToolSample> samples = window.takeRecording();
   checkFelt(samples);
   edit(window, [&](HapticProperties& haptics) { haptics = opened; });
+  wait(600);
+  showPainting(window, folder);
   showBands(window, folder);
   showStability(window, folder);
   showObjects(window, request, folder);

@@ -12,7 +12,7 @@ namespace {
 constexpr int kSteps = 1000;
 }
 
-ValueRow::ValueRow(const QString& caption, const QString& unit, const ValueRange& range,
+ValueRow::ValueRow(const QString& caption, const QString& unit, const RowRange& range,
                    QWidget* parent)
     : QWidget(parent), range_(range), slider_(new QSlider(Qt::Horizontal, this)),
       number_(new QDoubleSpinBox(this)), cross_(new QToolButton(this)) {

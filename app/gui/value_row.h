@@ -8,7 +8,7 @@
 
 namespace patina {
 
-struct ValueRange {
+struct RowRange {
   double low = 0, high = 1, step = 0.1;
   int decimals = 2;
   bool logarithmic = false; // low > 0 then
@@ -17,7 +17,7 @@ struct ValueRange {
 class ValueRow : public QWidget {
   Q_OBJECT
  public:
-  ValueRow(const QString& caption, const QString& unit, const ValueRange& range,
+  ValueRow(const QString& caption, const QString& unit, const RowRange& range,
            QWidget* parent = nullptr);
 
   void setValue(double value); // sends no signal
@@ -32,7 +32,7 @@ class ValueRow : public QWidget {
   int toSlider(double value) const;
   double fromSlider(int position) const;
 
-  ValueRange range_;
+  RowRange range_;
   QSlider* slider_;
   QDoubleSpinBox* number_;
   QToolButton* cross_;

@@ -86,14 +86,12 @@ class Desk {
     EditNews news = edits.take();
     if (news.compiled) compiled = news.compiled;
     if (news.standing) standing = *news.standing;
-    if (news.changes) changes.insert(changes.end(), news.changes->begin(), news.changes->end());
     problems.insert(problems.end(), news.problems.begin(), news.problems.end());
     for (const auto& then : news.done) then();
   }
 
   std::shared_ptr<const CompiledScene> compiled;
   EditStanding standing;
-  std::vector<PaintChange> changes;
   std::vector<std::string> problems;
 
  private:

@@ -30,7 +30,7 @@ class Objects : public WindowTest {
   bool add(const char* name) {
     return rebuiltAfter([&] {
       LoadRequest request = requestFor(saved(icosphere(0.02, 16), name));
-      request.onto = window_->current();
+      request.adds = true;
       window_->open(request);
     });
   }
@@ -103,7 +103,7 @@ TEST_F(Objects, AFileThatCannotBeAddedLeavesTheSceneAsItWas) {
   bool failed = false;
   QObject::connect(window_.get(), &MainWindow::loadFailed, [&] { failed = true; });
   LoadRequest request = requestFor(folder_ / "none.obj");
-  request.onto = window_->current();
+  request.adds = true;
   window_->open(request);
   ASSERT_TRUE(waitUntil([&] { return failed; }));
   EXPECT_EQ(objects().size(), 1U);

@@ -71,7 +71,7 @@ TEST_F(Program, TheTourLeavesPicturesAndALog) {
   const Outcome outcome = run("--tour" + quoted(folder_ / "tour") + quoted(folder_ / "sphere.obj"));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* name : {"window.png", "feel.png", "slice.png", "nodes.png", "offset.png",
-                           "magnet.png", "stability.png", "objects.png"})
+                           "magnet.png", "stability.png", "objects.png", "relief.png", "paint.png"})
     EXPECT_GT(fs::file_size(folder_ / "tour" / name), 10000U) << name;
   const CsvTable table =
       readCsv(folder_ / "tour" / "feel.csv",

@@ -46,6 +46,8 @@ class WindowTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,
                        QString::fromStdString(folder_.string()));
+    // Scenes that a window keeps against a crash are this test's, too.
+    setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 0);
     application();
     window_ = std::make_unique<MainWindow>();
     window_->resize(1100, 760);
@@ -54,6 +56,7 @@ class WindowTest : public ::testing::Test {
   }
   void TearDown() override {
     window_.reset();
+    if (std::getenv("XDG_STATE_HOME") == (folder_ / "state").string()) unsetenv("XDG_STATE_HOME");
     std::filesystem::remove_all(folder_);
   }
 

@@ -1,0 +1,39 @@
+// Where a tool that feels also paints: its ticks as strokes (K19, K20).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scene/stroke.h"
+#include "scene/tool_sample.h"
+
+namespace patina {
+
+// One turn of a stroke, in this order: it begins, paints, ends.
+struct StrokePiece {
+  bool begins = false, ends = false;
+  std::vector<StrokeSample> samples;
+};
+
+class StrokeTracker {
+ public:
+  struct Hand {
+    bool down = false; // the button, or a device that paints wherever it touches
+    // A stroke begins only near there: a tip on its way to the place must not paint the way.
+    Vec3 aim = Vec3::Zero();
+    double near = 0; // [m]
+  };
+  // Ticks in their order. A contact that is lost for kLost ends the stroke; it may begin again.
+  std::vector<StrokePiece> feed(std::span<const ToolSample> ticks, const Hand& hand);
+  bool painting() const { return painting_; }
+
+  static constexpr double kSpacing = 1.0 / 120; // [s], between samples at least
+  static constexpr double kLost = 0.03;         // [s]
+
+ private:
+  bool painting_ = false;
+  double began_ = 0, taken_ = 0, touched_ = 0; // [s], servo's time
+};
+
+} // namespace patina

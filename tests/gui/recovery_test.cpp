@@ -1,0 +1,115 @@
+// What a window had painted is offered by the next one, and a damaged workspace says what it has.
+#include <cstdlib>
+#include <fstream>
+
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <QAbstractButton>
+#include <QMessageBox>
+
+#include "geometry/shapes.h"
+#include "gui/window_fixture.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Recovery : public WindowTest {
+ protected:
+  void paintOne() {
+    window_->tools().choose({Handling::paint, Tool::color});
+    wait(200);
+    send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
+    wait(200);
+    send(QEvent::MouseButtonPress, middle(), Qt::LeftButton, Qt::LeftButton);
+    wait(200);
+    send(QEvent::MouseButtonRelease, middle(), Qt::LeftButton, Qt::NoButton);
+  }
+  bool edits(std::size_t count) {
+    return waitUntil([&] { return window_->standing().edits.size() == count; }, 20000);
+  }
+  QWidget* bar() { return window_->findChild<QWidget*>(QStringLiteral("recover_bar")); }
+};
+
+// Runs in a program of its own, that kills itself when its stroke is done.
+TEST_F(Recovery, DISABLED_PaintsAndIsKilled) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+  paintOne();
+  ASSERT_TRUE(edits(1));
+  fs::remove_all(folder_);
+  kill(getpid(), SIGKILL);
+}
+
+TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/proc/self/exe", "gui_tests", "--gtest_also_run_disabled_tests",
+          "--gtest_filter=Recovery.DISABLED_PaintsAndIsKilled", nullptr);
+    _exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "it was to be killed";
+
+  EXPECT_FALSE(bar()->isVisible());
+  window_->offerRecovery();
+  ASSERT_TRUE(bar()->isVisible());
+  bool ready = false;
+  QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  window_->findChild<QAbstractButton*>(QStringLiteral("recover"))->click();
+  EXPECT_FALSE(bar()->isVisible());
+  ASSERT_TRUE(waitUntil([&] { return ready && window_->standing().edits.size() == 1; }));
+  const auto& paint = window_->scene()->scene.objects[0].paint;
+  EXPECT_TRUE(paint && paint->color);
+  EXPECT_TRUE(window_->isWindowModified()) << "it is in no folder of its own";
+  EXPECT_FALSE(window_->standing().folder.has_value());
+  window_->saveWorkspaceTo(QString::fromStdString((folder_ / "ws").string()));
+  EXPECT_FALSE(window_->isWindowModified());
+  EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
+}
+
+TEST_F(Recovery, ACleanEndLeavesNothingToOffer) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+  paintOne();
+  ASSERT_TRUE(edits(1));
+  EXPECT_FALSE(fs::is_empty(folder_ / "state" / "patina"));
+  window_.reset();
+  EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
+}
+
+TEST_F(Recovery, ADamagedWorkspaceIsOfferedWhatCanBeRead) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+  const fs::path ws = folder_ / "ws";
+  window_->saveWorkspaceTo(QString::fromStdString(ws.string()));
+  paintOne();
+  ASSERT_TRUE(edits(1));
+  paintOne();
+  ASSERT_TRUE(edits(2));
+  window_ = std::make_unique<MainWindow>();
+  window_->setAsks(false);
+  window_->show();
+  for (const auto& entry : fs::directory_iterator(ws)) { // in the middle of the first record
+    if (entry.path().extension() != ".jsonl") continue;
+    std::fstream file(entry.path(), std::ios::in | std::ios::out);
+    std::string line;
+    std::getline(file, line);
+    file.seekp(static_cast<std::streamoff>(line.size() + 40));
+    file << "#####";
+  }
+  QString message;
+  QObject::connect(window_.get(), &MainWindow::loadFailed, [&](const QString& m) { message = m; });
+  window_->open(requestFor(ws));
+  ASSERT_TRUE(waitUntil([&] { return !message.isEmpty(); }));
+  auto* recover = window_->findChild<QAbstractButton*>(QStringLiteral("recover_damaged"));
+  ASSERT_NE(recover, nullptr) << message.toStdString();
+  bool ready = false;
+  QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  recover->click();
+  ASSERT_TRUE(waitUntil([&] { return ready; }));
+  EXPECT_EQ(window_->scene()->scene.objects.size(), 1U);
+}
+
+} // namespace
+} // namespace patina
