@@ -100,7 +100,7 @@ WorkPrecisionTable coverage(const std::vector<int>& sizes, int dabs, Progress& p
 
 struct Felt {
   double height_rms = 0, height_max = 0; // of the amplitude
-  double crest = 0;                      // height lost at the crests, of the amplitude
+  double crest = 0;                      // height lost at the crests, of the amplitude: the worst
   double slope_rms = 0;                  // of the steepest slope
   double ns = 0;
 };
@@ -122,7 +122,6 @@ Felt felt(const HapticSnapshot& snapshot, double amplitude, double wavelength, i
   std::uniform_real_distribution<double> place(-0.3 * kSide, 0.3 * kSide);
   Felt result;
   std::vector<Vec3> tips;
-  int crests = 0;
   for (int i = 0; i < points; ++i) {
     // Every fourth one on a crest.
     double x = place(random);
@@ -135,8 +134,7 @@ Felt felt(const HapticSnapshot& snapshot, double amplitude, double wavelength, i
     result.height_rms += error * error / points;
     result.height_max = std::max(result.height_max, error);
     if (crest) {
-      result.crest += 1 - z / amplitude;
-      ++crests;
+      result.crest = std::max(result.crest, 1 - z / amplitude);
     }
     const Vec3 tip(x, y, z - 0.02 * amplitude);
     ContactMemory memory;
@@ -148,7 +146,6 @@ Felt felt(const HapticSnapshot& snapshot, double amplitude, double wavelength, i
   }
   result.height_rms = std::sqrt(result.height_rms);
   result.slope_rms = std::sqrt(result.slope_rms);
-  result.crest /= crests;
   result.ns = nsPerQuery(tips, [&](const Vec3& tip) {
     ContactMemory memory;
     return tick(snapshot, memory, tip, kPeriod).depth;
@@ -167,44 +164,55 @@ WorkPrecisionRow reliefRow(const Felt& result, const CompiledScene& compiled) {
   return row;
 }
 
-// Baked against pulled by the wavelength, 24 texels to each.
-WorkPrecisionTable wavelengths(bool baked, const std::vector<double>& voxels, int resolution,
-                               int points, Progress& progress) {
+struct Reading {
+  const char* name;
+  ReliefMode mode;
+  Sampler sampler;
+  int texels; // at least so many a wavelength
+};
+
+// A cosine by its wavelength. Texels of the baked image are so fine that only the grid's error is
+// left.
+WorkPrecisionTable wavelengths(const Reading& reading, const std::vector<double>& voxels,
+                               int resolution, int points, Progress& progress) {
+  const bool kim = reading.mode == ReliefMode::baked && reading.sampler == Sampler::kim;
   WorkPrecisionTable table =
-      tableOf(baked ? "Baked relief: a cosine by its wavelength; lost 1 - cos(pi h / lambda) (F8), "
-                      "order 2"
-                    : "Pulled relief: a cosine by its wavelength, 24 texels to each",
+      tableOf(std::string("Relief ") + reading.name + ": a cosine by its wavelength" +
+                  (kim ? "; at most 1 - cos(pi h / lambda) is lost (F8), order 2" : ""),
               "%");
   OrderFit order;
   for (const double count : voxels) {
     progress.throwIfCancelled();
     Scene scene = slabScene(kSide, kThickness, resolution);
+    scene.sampler = reading.sampler;
     scene.field.voxel = kSide / (resolution - 2 * scene.field.band);
     const double wavelength = count * *scene.field.voxel;
     const double amplitude = 0.02 * wavelength;
     int size = 64;
-    while (size < 24 * kSide / wavelength && size < kMostImage) size *= 2;
+    while (size < reading.texels * kSide / wavelength && size < kMostImage) size *= 2;
     layRelief(scene, kSide, size,
               [&](double x, double) { return std::cos(2 * kPi * x / wavelength); });
     scene.relief.height = amplitude;
-    scene.relief.mode = baked ? ReliefMode::baked : ReliefMode::pulled;
+    scene.relief.mode = reading.mode;
     const auto compiled = compile(scene, progress);
     WorkPrecisionRow row =
         reliefRow(felt(*compiled->snapshot, amplitude, wavelength, points), *compiled);
-    row.knobs = {{"relief", baked ? "baked" : "pulled"},
+    row.knobs = {{"relief", reading.name},
                  {"voxels a wavelength", count},
                  {"texels a wavelength", size * wavelength / kSide}};
-    row.more.emplace_back("lost by theory [%]", baked ? 100 * (1 - std::cos(kPi / count)) : 0.0);
-    if (baked && count >= 8) order.add(1 / count, row.error);
+    if (kim) {
+      row.more.emplace_back("lost by theory [%]", 100 * (1 - std::cos(kPi / count)));
+      if (count >= 8) order.add(1 / count, row.error);
+    }
     table.rows.push_back(std::move(row));
   }
-  if (baked) order.into(table, 2);
+  if (kim) order.into(table, 2);
   return table;
 }
 
 WorkPrecisionTable texels(const std::vector<int>& sizes, int points, Progress& progress) {
   WorkPrecisionTable table =
-      tableOf("Pulled relief by the image: bilinear, order 2, whatever the voxel", "%");
+      tableOf("Relief pulled, by its image: cubics, order 3, whatever the voxel", "%");
   OrderFit order;
   const double wavelength = kSide / 10, amplitude = 0.02 * wavelength;
   for (const int size : sizes) {
@@ -220,7 +228,7 @@ WorkPrecisionTable texels(const std::vector<int>& sizes, int points, Progress& p
     order.add(1.0 / size, row.error);
     table.rows.push_back(std::move(row));
   }
-  order.into(table, 2);
+  order.into(table, 3);
   return table;
 }
 
@@ -284,17 +292,19 @@ std::vector<WorkPrecisionTable> paintStudy(const StudyOptions& options, Progress
   const int points = quick ? 400 : 2000, resolution = quick ? 80 : 150;
   std::vector<WorkPrecisionTable> tables;
   progress.report(0, "coverage");
-  tables.push_back(coverage(quick ? std::vector{128, 512} : std::vector{128, 256, 512, 1024},
-                            quick ? 12 : 40, progress));
+  tables.push_back(
+      coverage(quick ? std::vector{128, 512} : std::vector{128, 256, 512, 1024}, 40, progress));
   const std::vector<double> waves =
-      quick ? std::vector<double>{2.5, 8, 16} : std::vector<double>{2.5, 4, 6, 8, 12, 16};
-  for (const bool baked : {true, false}) {
-    progress.report(baked ? 0.3 : 0.5, baked ? "baked relief" : "pulled relief");
-    tables.push_back(wavelengths(baked, waves, resolution, points, progress));
+      quick ? std::vector<double>{2.5, 8, 12, 16} : std::vector<double>{2.5, 4, 6, 8, 12, 16};
+  for (const Reading& reading : {Reading{"baked (kim)", ReliefMode::baked, Sampler::kim, 96},
+                                 Reading{"baked (high)", ReliefMode::baked, Sampler::high, 96},
+                                 Reading{"pulled", ReliefMode::pulled, Sampler::high, 22}}) {
+    progress.report(0.15 * static_cast<double>(1 + tables.size()), reading.name);
+    tables.push_back(wavelengths(reading, waves, resolution, points, progress));
   }
   progress.report(0.7, "relief by texels");
   tables.push_back(
-      texels(quick ? std::vector{64, 256} : std::vector{64, 128, 256, 512}, points, progress));
+      texels(quick ? std::vector{128, 256} : std::vector{64, 128, 256, 512}, points, progress));
   progress.report(0.8, "raised sphere");
   tables.push_back(
       raised(quick ? std::vector{64} : std::vector{64, 100, 150}, points / 4, progress));
