@@ -158,8 +158,8 @@ void describeHistory(const StoredHistory& history, Json& json, TextRows& rows) {
   entry.set("undo", history.undoable);
   entry.set("redo", history.redoable);
   json.set("history", std::move(entry));
-  rows.emplace_back("history", formatCount(history.undoable) + " edits can be undone, " +
-                                   formatCount(history.redoable) + " redone");
+  rows.emplace_back("history", formatCount(history.undoable) + " to undo, " +
+                                   formatCount(history.redoable) + " to redo");
 }
 
 int runInfo(const InfoOptions& options, Console& console) {

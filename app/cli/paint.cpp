@@ -148,7 +148,7 @@ int report(const PaintOptions& options, const Editor& editor, std::size_t stroke
                {"painted in", rounded(run.seconds) + " s"},
                {"a sample", rounded(dab.p50) + " ms (p50), " + rounded(dab.p99) + " (p99), " +
                                 rounded(dab.max) + " (max), until it is felt"},
-               {"history", formatCount(editor.history().undoable()) + " edits can be undone"}}));
+               {"history", formatCount(editor.history().undoable()) + " to undo"}}));
   return kDone;
 }
 
@@ -194,7 +194,8 @@ Command paintCommand() {
   command.summary = "replay strokes: colour, relief, stiffness, friction, damping, roughness";
   command.description =
       "Strokes come from files of version 1 (docs/file_formats.md) or from the journal of a "
-      "workspace, journal.jsonl, whose strokes that are not undone are painted again. The same "
+      "workspace (its journal-1.jsonl or the like), whose strokes that are not undone are painted "
+      "again. The same "
       "strokes on the same scene give the same bits.\n"
       "With an output of its own the input stays as it is, byte for byte, and the output gets the "
       "whole history. With the input itself as output every stroke is on disk as soon as it is "
@@ -207,7 +208,7 @@ Command paintCommand() {
       "(touched, summed over dabs), blocks (of material, each once), seconds, dab_ms (p50, p99, "
       "p999, max: of a sample, until it is felt), history (edits that can be undone).";
   command.examples = {"patina paint cup --strokes glaze.json -o painted",
-                      "patina paint cup --strokes painted/journal.jsonl -o cup",
+                      "patina paint cup --strokes painted/journal-1.jsonl -o cup",
                       "patina paint cup.ply --strokes glaze.json --strokes grip.json -o painted"};
   command.input("WORKSPACE", "Workspace, mesh (.obj .ply .stl) or volume (.vti).", options->input);
   command.arguments.push_back({"--strokes", "STROKES.json", "What to paint.", "", true, true,

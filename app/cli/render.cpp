@@ -170,8 +170,8 @@ int runRender(const RenderOptions& options, Console& console) {
     ends.push(range.low);
     ends.push(range.high);
     json.set("range", ends);
-    rows.emplace_back("range", arrayName(*quantity) + " from " + rounded(range.low) + " to " +
-                                   rounded(range.high));
+    rows.emplace_back("range", arrayName(*quantity) + " from " + formatNumber(range.low) + " to " +
+                                   formatNumber(range.high));
   }
   rows.insert(rows.begin() + 1, {"layers", layer_text});
   console.report(json, aligned(rows));

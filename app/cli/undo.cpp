@@ -89,8 +89,8 @@ int runHistory(const HistoryOptions& options, Way way, Console& console) {
                                                   formatCount(counts.moved)};
   std::vector<std::pair<std::string, std::string>> rows;
   if (!options.list) rows.push_back(moved);
-  rows.emplace_back("history", formatCount(counts.undoable) + " edits can be undone, " +
-                                   formatCount(counts.redoable) + " redone");
+  rows.emplace_back("history", formatCount(counts.undoable) + " to undo, " +
+                                   formatCount(counts.redoable) + " to redo");
   console.report(json, text + aligned(rows));
   return kDone;
 }

@@ -106,6 +106,29 @@ TEST_F(History, GoesWithTheOutputOfPaint) {
   EXPECT_TRUE(same(loadWorkspace(folder / "a"), painted));
 }
 
+// Version 1 knew no history: it begins with the first edit.
+TEST_F(History, AWorkspaceOfTheFirstVersionGetsOne) {
+  const std::string old = folder / "old";
+  std::filesystem::create_directories(old + "/meshes");
+  std::filesystem::copy(box, old + "/meshes/box.ply");
+  folder.write("old/workspace.json",
+               R"({"version": 1, "units": "SI", "objects": [{"name": "box", "mesh": )"
+               R"("meshes/box.ply", "sha256": ")" +
+                   sha256(readFile(box)) +
+                   R"(", "world_from_object": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], )"
+                   R"([0, 0, 0, 1]]}], "values": {"stiffness": 650}})");
+  const Scene start = loadWorkspace(old);
+  EXPECT_EQ(start.haptics.stiffness, 650);
+  const std::string before = fingerprint(old);
+  EXPECT_EQ(run({"undo", old}).exit, 0);
+  EXPECT_EQ(run({"scene", "-o", old}).exit, 0);
+  EXPECT_EQ(fingerprint(old), before);
+  ASSERT_EQ(run({"scene", "-o", old, "--set", "stiffness=700"}).exit, 0);
+  EXPECT_EQ(loadWorkspace(old).haptics.stiffness, 700);
+  ASSERT_EQ(run({"undo", old}).exit, 0);
+  EXPECT_TRUE(same(loadWorkspace(old), start));
+}
+
 TEST_F(History, WhatIsNoWorkspaceIsNamed) {
   expectOneLineError(run({"undo", box}), {"box.ply", "not a workspace"});
   expectOneLineError(run({"redo", folder / "none"}), {"none"});

@@ -93,6 +93,7 @@ TEST_F(Paint, ReplayedFromAJournalGivesTheSameBits) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", folder / "b"}).exit, 0);
   const Scene a = loadWorkspace(folder / "a");
   EXPECT_TRUE(same(a, loadWorkspace(folder / "b")));
+  EXPECT_EQ(fingerprint(folder / "a"), fingerprint(folder / "b")); // no clock is in it
   // An undone stroke is no part of it.
   ASSERT_EQ(run({"paint", folder / "b", "--strokes",
                  script("more.json", {stroke(Tool::damping, 2, 0.006, {{0, 0, kTop}})}), "-o",
@@ -220,6 +221,38 @@ TEST_F(Paint, StrokesThatWereNeverSavedAreThereInTheNextCommand) {
   EXPECT_EQ(undone.at("history").asInteger(), 4);
   ASSERT_EQ(run({"redo", torn}).exit, 0);
   EXPECT_TRUE(same(loadWorkspace(torn), expected));
+}
+
+TEST_F(Paint, InterruptedLeavesTheOutputAloneAndInPlaceWhatWasDone) {
+  std::vector<Stroke> strokes;
+  for (int i = 0; i < 400; ++i)
+    strokes.push_back(stroke(Tool::stiffness, 600 + i, 0.008, {{-0.02, 0, kTop}, {0.02, 0, kTop}}));
+  const std::string many = script("many.json", strokes);
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
+  const std::string before = fingerprint(workspace);
+  {
+    Running painting({"paint", workspace, "--strokes", many, "-o", folder / "out"}, programPath());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    painting.signal(SIGINT);
+    const Outcome outcome = painting.wait();
+    if (outcome.exit == 130) {
+      EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+    }
+  }
+  EXPECT_EQ(fingerprint(workspace), before);
+  const std::string journal = openWorkspace(workspace).journal_file.string();
+  const auto size = std::filesystem::file_size(journal);
+  Running painting({"paint", workspace, "--strokes", many, "-o", workspace}, programPath());
+  while (!painting.finished() && std::filesystem::file_size(journal) < size + 2000)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  painting.signal(SIGINT);
+  const Outcome outcome = painting.wait();
+  ASSERT_EQ(outcome.exit, 130) << outcome.err;
+  const auto edits = runJson({"undo", workspace, "--list"}).at("history").asInteger();
+  EXPECT_GT(edits, 3);
+  EXPECT_LT(edits, 403);
+  EXPECT_NE(outcome.err.find("--steps " + std::to_string(edits - 3)), std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(Paint, KilledAtAnyMomentLosesNoFinishedStroke) {
