@@ -16,7 +16,7 @@
 namespace patina {
 
 // Objects that have nothing painted of what is shown are not drawn here and cost nothing. UI
-// thread. Images become textures; material becomes values at the points of a surface that is as
+// thread. Images become textures; material becomes values at the points of a surface about as
 // fine as the material's grid, so that a plate of two triangles shows it too, and a change of range
 // costs nothing.
 class PaintLayer {
