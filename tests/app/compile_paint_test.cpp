@@ -74,10 +74,12 @@ TEST_F(FeltPaints, SmoothedReliefIsLowerAndTheImageStays) {
   Editor editor(ballScene(), progress);
   editor.apply(dabAt(Tool::relief, 5e-4, 0.004, Vec3(0, 0, kBall)), progress);
   const auto image = editor.scene().objects[0].paint->relief;
-  EXPECT_NEAR(editor.compiled()->paint.objects[0].highest, 5e-4, 1e-6);
+  const double highest = editor.compiled()->paint.objects[0].highest;
+  EXPECT_GE(highest, 4.99e-4);
+  EXPECT_LE(highest, 6.4e-4); // what lies between texels may be higher by 1/8 along either axis
   editor.apply(ValueEdit{{{"relief.smoothing", "4mm"}}}, progress);
   EXPECT_EQ(editor.scene().objects[0].paint->relief, image);
-  EXPECT_LT(editor.compiled()->paint.objects[0].highest, 4e-4);
+  EXPECT_LT(editor.compiled()->paint.objects[0].highest, 0.8 * highest);
   EXPECT_GT(editor.compiled()->paint.objects[0].highest, 1e-5);
   editor.apply(ValueEdit{{{"relief.smoothing", "none"}}}, progress);
   EXPECT_EQ(editor.compiled()->paint.relief[0], image);
@@ -110,7 +112,7 @@ TEST_F(FeltPaints, HighReliefWidensTheBand) {
   Editor editor(scene, progress);
   editor.apply(dabAt(Tool::relief, 8e-3, 0.01, Vec3(0, 0, kBall)), progress);
   const auto compiled = compile(editor.scene(), progress);
-  EXPECT_NEAR(reachOf(editor.scene()), 8e-3, 1e-6);
+  EXPECT_GE(reachOf(editor.scene()), 7.99e-3);
   EXPECT_GE(compiled->band * compiled->built.field->grid.voxel, 8e-3);
   EXPECT_GT(compiled->band, flat->band);
 }
