@@ -61,7 +61,7 @@ TEST_F(Editors, WhatWasSetMeanwhileDoesNotMoveTheGrid) {
   Editor plain(ballScene(), progress);
   Editor eventful(ballScene(), progress);
   for (std::size_t i = 0; i < strokes.size(); ++i) {
-    if (i == 3) eventful.apply(ValueEdit{{{"offset", "7mm"}}}, progress);
+    if (i == 0) eventful.apply(ValueEdit{{{"offset", "9mm"}}}, progress); // a wider band
     if (i == 9) eventful.apply(ValueEdit{{{"offset", "none"}}}, progress);
     if (i == 12) eventful.apply(ValueEdit{{{"voxel", "0.5mm"}}}, progress);
     if (i == 12) eventful.apply(ValueEdit{{{"resolution", "60"}}}, progress);
