@@ -137,7 +137,7 @@ std::size_t ImageStroke::smooth(const Dab& dab, const Brush& brush,
 std::shared_ptr<const TiledImage> ImageStroke::take() {
   changed_ = false;
   if (isEmpty(image_)) return nullptr;
-  return std::make_shared<const TiledImage>(image_);
+  return std::make_shared<const TiledImage>(image_.published());
 }
 
 void ImageStroke::dropEmpty() {

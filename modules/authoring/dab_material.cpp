@@ -200,7 +200,7 @@ void MaterialStroke::set(const Index& block, std::size_t node, MaterialChannel c
 std::shared_ptr<const MaterialMap> MaterialStroke::take() {
   changed_ = false;
   if (map_.blocks().empty()) return nullptr;
-  return std::make_shared<const MaterialMap>(map_);
+  return std::make_shared<const MaterialMap>(map_.published());
 }
 
 void MaterialStroke::dropEmpty() {

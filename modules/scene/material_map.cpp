@@ -87,9 +87,15 @@ MaterialLayer& MaterialMap::writable(const Index& block, MaterialChannel channel
   std::shared_ptr<MaterialLayer>& layer = blocks_[block].layer[static_cast<std::size_t>(channel)];
   if (!layer)
     layer = std::make_shared<MaterialLayer>();
-  else if (layer.use_count() > 1)
+  else if (!own_.set.contains(layer.get()) || layer.use_count() > 1) // a plain copy shares it, too
     layer = std::make_shared<MaterialLayer>(*layer);
+  own_.set.insert(layer.get());
   return *layer;
+}
+
+MaterialMap MaterialMap::published() {
+  own_.set.clear();
+  return *this;
 }
 
 bool MaterialMap::has(MaterialChannel channel) const {
@@ -102,7 +108,10 @@ void MaterialMap::dropEmptyLayers() {
   for (auto item = blocks_.begin(); item != blocks_.end();) {
     bool any = false;
     for (std::shared_ptr<MaterialLayer>& layer : item->second.layer) {
-      if (layer && isEmpty(*layer)) layer.reset();
+      if (layer && isEmpty(*layer)) {
+        own_.set.erase(layer.get());
+        layer.reset();
+      }
       any = any || layer;
     }
     item = any ? std::next(item) : blocks_.erase(item);
@@ -120,13 +129,12 @@ std::size_t MaterialMap::bytes() const {
   return bytes;
 }
 
-Material MaterialMap::at(const Vec3& p, const Material& base) const {
-  Material result = base;
+// Calls visit(block, node, share) for the corners of p's cell that lie in painted blocks.
+template <typename Visit> void MaterialMap::forCorners(const Vec3& p, const Visit& visit) const {
   const Vec3 q = (p - origin_) / voxel_;
-  if (!q.allFinite() || q.cwiseAbs().maxCoeff() > 1e9) return result;
+  if (!q.allFinite() || q.cwiseAbs().maxCoeff() > 1e9) return;
   const Vec3 low = q.array().floor();
   const Vec3 part = q - low;
-  std::array<double, kMaterialChannels> value{}, weight{};
   for (int corner = 0; corner < 8; ++corner) {
     std::array<std::int64_t, 3> node{};
     double share = 1;
@@ -136,22 +144,44 @@ Material MaterialMap::at(const Vec3& p, const Material& base) const {
       share *= high ? part[axis] : 1 - part[axis];
     }
     const auto block = blocks_.find({blockOf(node[0]), blockOf(node[1]), blockOf(node[2])});
-    if (block == blocks_.end() || share == 0) continue;
-    const std::size_t n = nodeIn(node);
-    for (std::size_t c = 0; c < kMaterialChannels; ++c) {
-      const MaterialLayer* layer = block->second.layer[c].get();
-      if (!layer) continue;
-      value[c] += share * static_cast<double>(layer->value[n]);
-      weight[c] += share * static_cast<double>(layer->weight[n]);
+    if (block != blocks_.end() && share != 0) visit(block->second, nodeIn(node), share);
+  }
+}
+
+double feltAt(const MaterialLayer& layer, std::size_t node, double own,
+              const MaterialRange& range) {
+  const auto value = static_cast<double>(layer.value[node]);
+  const auto weight = static_cast<double>(layer.weight[node]);
+  // Untouched values stay themselves, bit for bit.
+  if (value == 0 && weight == 0) return own;
+  return std::clamp(value + (1 - weight) * own, range.least, range.most);
+}
+
+Material MaterialMap::at(const Vec3& p, const Material& base) const {
+  std::array<double, kMaterialChannels> change{};
+  forCorners(p, [&](const MaterialBlock& block, std::size_t node, double share) {
+    for (const MaterialChannel channel : kAllMaterialChannels) {
+      const auto c = static_cast<std::size_t>(channel);
+      const double own = valueOf(base, channel);
+      if (const MaterialLayer* layer = block.layer[c].get())
+        change[c] += share * (feltAt(*layer, node, own, rangeOf(channel)) - own);
     }
-  }
-  for (const MaterialChannel channel : kAllMaterialChannels) {
-    const auto c = static_cast<std::size_t>(channel);
-    // Untouched values stay themselves, bit for bit.
-    if (value[c] == 0 && weight[c] == 0) continue;
-    valueOf(result, channel) = value[c] + (1 - weight[c]) * valueOf(base, channel);
-  }
+  });
+  Material result = base;
+  for (const MaterialChannel channel : kAllMaterialChannels)
+    valueOf(result, channel) += change[static_cast<std::size_t>(channel)];
   return result;
+}
+
+MaterialMap::Paint MaterialMap::paintAt(const Vec3& p, MaterialChannel channel) const {
+  Paint paint;
+  forCorners(p, [&](const MaterialBlock& block, std::size_t node, double share) {
+    const MaterialLayer* layer = block.layer[static_cast<std::size_t>(channel)].get();
+    if (!layer) return;
+    paint.value += share * static_cast<double>(layer->value[node]);
+    paint.weight += share * static_cast<double>(layer->weight[node]);
+  });
+  return paint;
 }
 
 bool same(const MaterialMap& a, const MaterialMap& b) {

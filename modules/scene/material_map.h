@@ -7,9 +7,11 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "core/types.h"
+#include "scene/own_parts.h"
 
 namespace patina {
 
@@ -39,7 +41,7 @@ std::string_view name(MaterialChannel channel); // "stiffness", "friction.static
 std::string_view unit(MaterialChannel channel); // "N/m", "" ...
 double& valueOf(Material& material, MaterialChannel channel);
 double valueOf(const Material& material, MaterialChannel channel);
-// What a scene allows for it, as validate() of scene.h: stiffness > 0, the others >= 0.
+// What a scene allows for it, as validate() of scene.h: 0 or more.
 struct MaterialRange {
   double least, most;
 };
@@ -53,6 +55,10 @@ inline constexpr std::size_t kMaterialNodes = 512;
 struct MaterialLayer {
   std::array<float, kMaterialNodes> value{}, weight{}; // x fastest
 };
+// What is felt at a node over the base `own`. Held within the channel's range: what was added to a
+// base that has become smaller since must not lead below it (a stiffness below 0 drives the hand).
+double feltAt(const MaterialLayer& layer, std::size_t node, double own, const MaterialRange& range);
+
 struct MaterialBlock {
   std::array<std::shared_ptr<MaterialLayer>, kMaterialChannels> layer; // absent = nothing painted
 };
@@ -70,17 +76,26 @@ class MaterialMap {
   const std::map<Index, MaterialBlock>& blocks() const { return blocks_; }
   const MaterialLayer* layer(const Index& block, MaterialChannel channel) const;
   MaterialLayer& writable(const Index& block, MaterialChannel channel);
+  MaterialMap published();                 // a copy for others
   bool has(MaterialChannel channel) const; // anywhere
   void dropEmptyLayers();                  // those that are 0 everywhere
   std::size_t bytes() const;
 
-  // Trilinear in value and weight at p [m, object frame] (K23).
+  // Trilinear in what is felt at the nodes, at p [m, object frame] (K23).
   Material at(const Vec3& p, const Material& base) const;
+  // The paint itself there, trilinear; 0, 0 where nothing is painted.
+  struct Paint {
+    double value = 0, weight = 0;
+  };
+  Paint paintAt(const Vec3& p, MaterialChannel channel) const;
 
  private:
+  template <typename Visit> void forCorners(const Vec3& p, const Visit& visit) const;
+
   Vec3 origin_;
   double voxel_;
   std::map<Index, MaterialBlock> blocks_;
+  OwnParts<std::set<const MaterialLayer*>> own_;
 };
 
 bool same(const MaterialMap& a, const MaterialMap& b); // bitwise; absent equals zeros

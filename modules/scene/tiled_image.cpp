@@ -26,11 +26,19 @@ TiledImage::TiledImage(int width, int height, int channels)
 
 float* TiledImage::writable(std::size_t index) {
   std::shared_ptr<Tile>& tile = tiles_[index];
+  std::vector<bool>& own = own_.set;
+  if (own.empty()) own.resize(tiles_.size());
   if (!tile)
     tile = std::make_shared<Tile>(static_cast<std::size_t>(kTileSide * kTileSide * channels_));
-  else if (tile.use_count() > 1)
+  else if (!own[index] || tile.use_count() > 1) // a plain copy of this image shares it, too
     tile = std::make_shared<Tile>(*tile);
+  own[index] = true;
   return tile->data();
+}
+
+TiledImage TiledImage::published() {
+  own_.set.clear();
+  return *this;
 }
 
 void TiledImage::dropEmptyTiles() {

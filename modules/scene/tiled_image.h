@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "scene/own_parts.h"
+
 namespace patina {
 
 inline constexpr int kTileSide = 32;   // texels
@@ -41,8 +43,10 @@ class TiledImage {
     const float* values = tile(tileOf(i, j));
     return values ? values[offsetOf(i, j) + static_cast<std::size_t>(channel)] : 0.0f;
   }
-  // The texels of a tile for writing: allocated or copied first where absent or shared.
+  // The texels of a tile for writing: allocated, or copied first unless they are its own.
   float* writable(std::size_t index);
+  // A copy for others; what is written from now on is not in it.
+  TiledImage published();
   // Drops tiles that are 0 everywhere.
   void dropEmptyTiles();
   std::size_t bytes() const; // of all its tiles, shared or not
@@ -53,6 +57,7 @@ class TiledImage {
  private:
   int width_, height_, channels_, across_;
   std::vector<std::shared_ptr<Tile>> tiles_;
+  OwnParts<std::vector<bool>> own_; // by tile; empty = none
 };
 
 // Bitwise, tile by tile; an absent tile equals one of zeros.

@@ -164,6 +164,16 @@ TEST_F(Histories, ThinningKeepsMemoryBelowTheBudgetAndTheStartBitwise) {
   EXPECT_TRUE(same(history.scene(), some[0]));
 }
 
+TEST_F(Histories, StepsBackStayWithinTheBudgetToo) {
+  EditHistory history(startScene(), counted(replays), 100 * kTileBytes);
+  for (int i = 0; i < 300; ++i) paint(history, i);
+  while (history.undoable() > 0) {
+    const std::size_t to = history.undoable() - 1;
+    history.place(to, history.sceneAt(to));
+    ASSERT_LE(history.bytes(), 100 * kTileBytes) << to;
+  }
+}
+
 // Undo is for what one has just done: near the present nearly every scene is there.
 TEST_F(Histories, RecentScenesAreKeptLongest) {
   EditHistory history(startScene(), counted(replays), 100 * kTileBytes);

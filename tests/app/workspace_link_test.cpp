@@ -111,6 +111,49 @@ TEST_F(Links, AWholeHistoryIsWrittenIntoAnotherFolder) {
   EXPECT_FALSE(copy->folder()); // it only reads
 }
 
+// As when a scene that was recovered is saved: the place that it came from is removed.
+TEST_F(Links, ScenesOfThePastAreThoseOfTheNewFolder) {
+  Scene moved = ballScene();
+  moved.objects[0].world_from_object.translation() = Vec3(0.01, 0, 0);
+  {
+    const auto editor = open();
+    editor->apply(SceneEdit{"move ball", std::make_shared<const Scene>(moved)}, progress);
+    editor->apply(dabAt(Tool::stiffness, 300, 0.008, Vec3(0.01, 0, kBall)), progress);
+  }
+  const auto editor = open();
+  editor->saveAs(root / "other");
+  fs::remove_all(folder);
+  EXPECT_EQ(editor->undo(1, progress), 1U);
+  EXPECT_TRUE(same(editor->scene(), moved));
+}
+
+// The landmarks move with the present, and saving removes the files of the old ones.
+TEST_F(Links, AStateThatSavingDroppedIsReplayed) {
+  const auto paint = [&](Editor& editor, double stiffness) {
+    Stroke stroke = dabAt(Tool::stiffness, stiffness, 0.006, Vec3(0, 0, kBall));
+    stroke.samples.resize(300, stroke.samples[0]);
+    editor.apply(stroke, progress);
+  };
+  Scene first;
+  {
+    const auto editor = open();
+    paint(*editor, 600);
+    first = editor->scene();
+    paint(*editor, 700);
+    editor->save();
+  }
+  ASSERT_EQ(openWorkspace(folder).states.back().event, 1U);
+  const auto editor = open();
+  paint(*editor, 800);
+  paint(*editor, 900);
+  editor->save();
+  ASSERT_EQ(openWorkspace(folder).states.size(), 2U);
+  ASSERT_EQ(openWorkspace(folder).states.back().event, 3U);
+  EXPECT_EQ(editor->undo(3, progress), 3U);
+  EXPECT_TRUE(same(editor->scene(), first));
+  editor->save();
+}
+
 TEST_F(Links, AJournalHasOneWriter) {
   const auto first = open();
   first->apply(ValueEdit{{{"stiffness", "640"}}}, progress);

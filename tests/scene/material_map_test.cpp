@@ -138,5 +138,19 @@ TEST(MaterialChannels, NamesUnitsAndValuesBelongTogether) {
   EXPECT_EQ(unit(MaterialChannel::dynamic_friction), "");
 }
 
+TEST(MaterialMap, APublishedLayerIsCopiedThoughNobodyHoldsItAnyMore) {
+  MaterialMap map(Vec3::Zero(), 1e-3);
+  const MaterialMap::Index at{0, 0, 0};
+  map.writable(at, MaterialChannel::stiffness).value[0] = 1;
+  const MaterialLayer* const own = map.layer(at, MaterialChannel::stiffness);
+  map.writable(at, MaterialChannel::stiffness).value[1] = 1;
+  EXPECT_EQ(map.layer(at, MaterialChannel::stiffness), own);
+  std::weak_ptr<MaterialLayer> layer =
+      map.blocks().at(at).layer[static_cast<std::size_t>(MaterialChannel::stiffness)];
+  { const MaterialMap seen = map.published(); }
+  map.writable(at, MaterialChannel::stiffness).value[2] = 1;
+  EXPECT_TRUE(layer.expired());
+}
+
 } // namespace
 } // namespace patina

@@ -47,6 +47,31 @@ TEST(TiledImage, TexelsReadBackWhereTheyWereWritten) {
       for (int c = 0; c < 3; ++c) ASSERT_EQ(image.at(i, j, c), value(i, j, c)) << i << " " << j;
 }
 
+// Even where the copy is gone already: its last reader may be on another thread.
+TEST(TiledImage, WhatWasPublishedIsNeverWrittenAgain) {
+  TiledImage image(64, 64, 1);
+  set(image, 5, 5, 0, 1);
+  const float* const own = image.tile(0);
+  set(image, 6, 5, 0, 2);
+  EXPECT_EQ(image.tile(0), own); // nobody has seen it
+  auto seen = std::make_unique<const TiledImage>(image.published());
+  std::weak_ptr<TiledImage::Tile> tile = seen->sharedTile(0);
+  const auto kept = tile.lock();
+  seen.reset();
+  set(image, 7, 5, 0, 3);
+  EXPECT_NE(image.tile(0), kept->data());
+  EXPECT_EQ((*kept)[image.offsetOf(7, 5)], 0);
+}
+
+TEST(TiledImage, APublishedTileIsCopiedThoughNobodyHoldsItAnyMore) {
+  TiledImage image(64, 64, 1);
+  set(image, 5, 5, 0, 1);
+  std::weak_ptr<TiledImage::Tile> tile = image.sharedTile(0);
+  { const TiledImage seen = image.published(); }
+  set(image, 6, 5, 0, 2);
+  EXPECT_TRUE(tile.expired()); // replaced, not written
+}
+
 TEST(TiledImage, CopiesShareTilesUntilOneIsWritten) {
   TiledImage image(64, 64, 1);
   set(image, 5, 5, 0, 1.5f);
