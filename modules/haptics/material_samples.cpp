@@ -134,6 +134,7 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
   std::size_t slot = 0;
   for (std::size_t c = 0; c < kMaterialChannels; ++c) {
     const double own = valueOf(base, kAllMaterialChannels[c]);
+    const MaterialRange range = rangeOf(kAllMaterialChannels[c]);
     extremes.least[c] = extremes.most[c] = own;
     if (!painted[c]) continue;
     double* value = block->values.data() + slot++;
@@ -146,10 +147,7 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
           *value = own;
           if (!layer) continue;
           const auto node = static_cast<std::size_t>((z & 7) * 64 + (y & 7) * 8 + (x & 7));
-          const double weight = static_cast<double>(layer->weight[node]);
-          const double paint = static_cast<double>(layer->value[node]);
-          if (paint == 0 && weight == 0) continue;
-          *value = paint + (1 - weight) * own;
+          *value = feltAt(*layer, node, own, range);
           extremes.least[c] = std::min(extremes.least[c], *value);
           extremes.most[c] = std::max(extremes.most[c], *value);
         }

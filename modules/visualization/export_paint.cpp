@@ -203,10 +203,8 @@ void writeMaterialVti(const std::filesystem::path& path, const Scene& scene, std
         std::array<vtkIdType, 3> node{};
         for (std::size_t axis = 0; axis < 3; ++axis)
           node[axis] = kMaterialSide * (vtkIdType{index[axis]} - low[axis]) + in[axis];
-        const auto value = static_cast<double>(layer->value[n]);
-        const auto weight = static_cast<double>(layer->weight[n]);
         array->SetValue((node[2] * nodes[1] + node[1]) * nodes[0] + node[0],
-                        value + (1 - weight) * own);
+                        feltAt(*layer, n, own, rangeOf(channel)));
       }
     }
     image->GetPointData()->AddArray(array);

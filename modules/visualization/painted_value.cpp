@@ -33,14 +33,12 @@ PaintedValue paintedValue(const Scene& scene, MaterialChannel channel, const Vec
     const MaterialMap& map = *object.paint->material;
     const Vec3 p = object.world_from_object.inverse() * world;
     if (!nearPaint(map, p)) continue;
-    // value + (1 - weight) * base at two bases tells the weight.
-    Material none = base, one = base;
-    valueOf(none, channel) = 0;
-    valueOf(one, channel) = 1;
-    const double value = valueOf(map.at(p, none), channel);
-    const double weight = 1 - (valueOf(map.at(p, one), channel) - value);
-    if (std::abs(weight) > std::abs(best.weight))
-      best = {weight, value + (1 - weight) * valueOf(base, channel)};
+    const MaterialMap::Paint paint = map.paintAt(p, channel);
+    const double own = valueOf(base, channel);
+    // What was added covers nothing: its share of the sum stands for that.
+    const double size = std::abs(paint.value);
+    const double weight = paint.weight == 0 && size > 0 ? size / (size + own) : paint.weight;
+    if (weight > best.weight) best = {weight, valueOf(map.at(p, base), channel)};
   }
   return best;
 }

@@ -80,6 +80,37 @@ TEST(MaterialSamples, HoldTheExtremesOfEveryChannelAndTheBase) {
   EXPECT_FALSE(samples->painted[4]);
 }
 
+// What was added to a base that has become smaller since is held within the channel's range: a
+// negative stiffness or damping would drive the hand.
+TEST(MaterialSamples, NothingAddedLeadsOutOfTheRange) {
+  auto map = std::make_shared<MaterialMap>(Vec3::Zero(), kVoxel);
+  const std::pair<MaterialChannel, float> kAdded[] = {{MaterialChannel::stiffness, -900.0F},
+                                                      {MaterialChannel::static_friction, 9.9F},
+                                                      {MaterialChannel::damping, -2.0F}};
+  for (const auto& [channel, added] : kAdded)
+    for (std::size_t n = 0; n < kMaterialNodes; n += 3)
+      map->writable({0, 0, 0}, channel).value[n] = added;
+  Material base; // they were 1000 N/m, 0.1 and 3 N s/m
+  base.stiffness = 500;
+  base.static_friction = 0.5;
+  base.damping = 1;
+  const auto samples = materialSamples(*map, base, nullptr, nullptr);
+  EXPECT_EQ(samples->least.stiffness, 0);
+  EXPECT_EQ(samples->most.static_friction, rangeOf(MaterialChannel::static_friction).most);
+  EXPECT_EQ(samples->least.damping, 0);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> in(-1 * kVoxel, 8 * kVoxel);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(in(random), in(random), in(random));
+    const Material felt = materialAt(*samples, p).material, told = map->at(p, base);
+    for (const MaterialChannel channel : kAllMaterialChannels) {
+      ASSERT_GE(valueOf(felt, channel), 0) << name(channel);
+      ASSERT_LE(valueOf(felt, channel), rangeOf(channel).most) << name(channel);
+      ASSERT_NEAR(valueOf(felt, channel), valueOf(told, channel), 1e-10) << name(channel);
+    }
+  }
+}
+
 TEST(MaterialSamples, OfAnEmptyMapAreNothing) {
   EXPECT_EQ(materialSamples(MaterialMap(Vec3::Zero(), kVoxel), Material{}, nullptr, nullptr),
             nullptr);

@@ -285,6 +285,20 @@ TEST(PaintedValue, IsWhatIsFeltAndHowMuchOfItIsPaint) { // K23
   EXPECT_GT(painted, 100);
 }
 
+TEST(PaintedValue, WhatWasAddedIsPaintThoughItCoversNothing) {
+  Scene scene;
+  scene.objects.push_back(objectOf(sheet(1, 1, 1)));
+  MaterialMap map(Vec3::Zero(), 1e-3);
+  map.writable({0, 0, 0}, MaterialChannel::stiffness).value.fill(300);
+  ObjectPaint paint;
+  paint.material = std::make_shared<const MaterialMap>(std::move(map));
+  scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
+  const PaintedValue value =
+      paintedValue(scene, MaterialChannel::stiffness, Vec3::Constant(3.5e-3));
+  EXPECT_NEAR(value.felt, 800, 1e-9);
+  EXPECT_GT(value.weight, 0.1);
+}
+
 TEST(SurfacePick, AFaceOfTheJointMeshIsAFaceOfOneObject) {
   Scene scene;
   scene.objects = {objectOf(sheet(1, 1, 1)), objectOf(sheet(1, 1, 3))};
