@@ -68,6 +68,7 @@ void EditHistory::place(std::size_t position, Scene present) {
   if (!entry.after) {
     entry.after = present_;
     count(*entry.after);
+    thin(); // steps back through a long history would keep every scene of it
   }
 }
 
@@ -174,7 +175,7 @@ void EditHistory::thin() {
       double ahead = 0; // to the next kept scene
       for (std::size_t k = i + 1; k < entries_.size() && !entries_[k].after; ++k)
         ahead += replayCost(entries_[k].edit);
-      const bool droppable = i + 1 != position_ && !sceneOf(entry.edit) && !entry.load;
+      const bool droppable = i + 1 != position_ && !sceneOf(entry.edit);
       const double score = (gap + ahead) / (1 + std::abs(to_here - from_start));
       if (droppable && score < least_score) {
         least_score = score;

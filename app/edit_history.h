@@ -38,6 +38,9 @@ class EditHistory {
   // the edit can be replayed. place() then sets where the history stands.
   void appendStored(Edit edit, Load load);
   void place(std::size_t position, Scene present);
+  // Where the scene after edit `index` is stored now; null = nowhere, where the edit can be
+  // replayed.
+  void store(std::size_t index, Load load) { entries_[index].load = std::move(load); }
   // Slow where a scene must be replayed. False and nothing changed if there is no such step; so too
   // if replaying throws.
   bool undo(std::size_t steps = 1);

@@ -32,6 +32,21 @@ Edit editOf(const JournalEvent& event) {
 
 WorkspaceLink::WorkspaceLink(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+EditHistory::Load WorkspaceLink::loader(const std::string& state) const {
+  return [folder = folder_, state] { return loadState(folder, state); };
+}
+
+// Of edits that are replayed; saving removes the files of all other states.
+void WorkspaceLink::tieStates(EditHistory& history) const {
+  for (std::size_t i = 0; i + 1 < event_of_.size(); ++i) {
+    if (std::holds_alternative<SceneEdit>(history.edit(i))) continue;
+    const auto stored = std::find_if(states_.begin(), states_.end(), [&](const StoredState& s) {
+      return s.event == event_of_[i + 1];
+    });
+    history.store(i, stored == states_.end() ? EditHistory::Load() : loader(stored->file));
+  }
+}
+
 WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
                                           EditHistory::Replay replay, std::size_t budget,
                                           bool keep_journal, bool recover) {
@@ -45,18 +60,16 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
     const std::size_t position = fold.position_at[state.event];
     if (stillThere(fold, state.event, position)) state_at[position] = state.file;
   }
-  const auto loader = [&](const std::string& file) {
-    return [folder, file] { return loadState(folder, file); };
-  };
+  const WorkspaceLink place(folder);
   const auto first = state_at.find(0);
   Scene start = first == state_at.end() ? found.scene : loadState(folder, first->second);
   opened.history = std::make_unique<EditHistory>(std::move(start), std::move(replay), budget);
   for (std::size_t i = 0; i < fold.steps.size(); ++i) {
     EditHistory::Load load;
     if (const auto* scene = std::get_if<StoredSceneEdit>(fold.steps[i].event))
-      load = loader(scene->state);
+      load = place.loader(scene->state);
     else if (const auto state = state_at.find(i + 1); state != state_at.end())
-      load = loader(state->second);
+      load = place.loader(state->second);
     opened.history->appendStored(editOf(*fold.steps[i].event), std::move(load));
   }
   // The saved scene, where the history still has it; what the journal says beyond is replayed.
@@ -81,8 +94,9 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
 }
 
 std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path& folder,
-                                                     const EditHistory& history) {
+                                                     EditHistory& history) {
   auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
+  std::map<std::size_t, std::string> scenes; // of the SceneEdits, by index
   std::vector<JournalEvent> journal;
   link->states_.push_back({0, storeState(history.start(), 0, folder)});
   link->event_of_.push_back(0);
@@ -95,8 +109,9 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path
     else if (const auto* values = std::get_if<ValueEdit>(&edit))
       journal.emplace_back(*values);
     else
-      journal.emplace_back(StoredSceneEdit{std::get<SceneEdit>(edit).what,
-                                           storeState(history.sceneAt(event), event, folder)});
+      journal.emplace_back(
+          StoredSceneEdit{std::get<SceneEdit>(edit).what,
+                          scenes[i] = storeState(history.sceneAt(event), event, folder)});
     link->event_of_.push_back(event);
   }
   for (const std::size_t position : history.landmarks(kLandmarkCost))
@@ -105,6 +120,8 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path
   saveWorkspace(history.scene(), journal.size(), link->states_, journal, folder);
   link->journal_ =
       std::make_unique<JournalWriter>(openWorkspace(folder).journal_file, journal.size());
+  for (const auto& [index, state] : scenes) history.store(index, link->loader(state));
+  link->tieStates(history);
   return link;
 }
 
@@ -130,7 +147,7 @@ void WorkspaceLink::recordRedo(std::size_t steps) {
   journal_->append(RedoEvent{static_cast<int>(steps)});
 }
 
-void WorkspaceLink::save(const EditHistory& history) {
+void WorkspaceLink::save(EditHistory& history) {
   std::vector<StoredState> states;
   if (!states_.empty() && states_.front().event == 0) states.push_back(states_.front());
   for (const std::size_t position : history.landmarks(kLandmarkCost)) {
@@ -144,6 +161,7 @@ void WorkspaceLink::save(const EditHistory& history) {
   }
   saveWorkspace(history.scene(), journal_->events(), states, folder_);
   states_ = std::move(states);
+  tieStates(history);
 }
 
 } // namespace patina

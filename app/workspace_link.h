@@ -27,18 +27,20 @@ class WorkspaceLink {
   static Opened open(const std::filesystem::path& folder, EditHistory::Replay replay,
                      std::size_t budget, bool keep_journal, bool recover);
   // Writes the whole history into another folder, taking the place of a workspace there, and ties
-  // to it.
+  // to it: scenes of the past are loaded from there from now on.
   static std::unique_ptr<WorkspaceLink> create(const std::filesystem::path& folder,
-                                               const EditHistory& history);
+                                               EditHistory& history);
 
   const std::filesystem::path& folder() const { return folder_; }
   void recordEdit(const Edit& edit, std::size_t position_after);
   void recordUndo(std::size_t steps);
   void recordRedo(std::size_t steps);
-  void save(const EditHistory& history);
+  void save(EditHistory& history); // states that are dropped are not loaded any more
 
  private:
   explicit WorkspaceLink(std::filesystem::path folder);
+  EditHistory::Load loader(const std::string& state) const;
+  void tieStates(EditHistory& history) const;
 
   std::filesystem::path folder_;
   std::unique_ptr<JournalWriter> journal_;

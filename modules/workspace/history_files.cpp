@@ -48,6 +48,8 @@ void removeUnusedIn(const fs::path& folder, const std::string& part,
                     const std::set<std::string>& used) {
   std::vector<fs::path> unused;
   std::error_code code;
+  // Behind a link lie files of others.
+  if (!part.empty() && fs::is_symlink(folder / part, code)) return;
   for (fs::directory_iterator item(folder / part, code), end; !code && item != end;
        item.increment(code)) {
     const std::string name = item->path().filename();

@@ -224,6 +224,18 @@ TEST_F(HistoryTest, NoPathLeavesTheFolder) {
                    "leaves the workspace's folder"));
 }
 
+TEST_F(HistoryTest, NothingBehindALinkIsRemoved) {
+  const fs::path others = root / "others", file = others / "cup-0123456789abcdef.ply",
+                 bare = root / "bare";
+  fs::create_directories(others);
+  writeFileAtomically(file, "another workspace's");
+  saveWorkspace(sceneWithObjects(0.01), bare);
+  fs::remove_all(bare / "paint");
+  fs::create_directory_symlink(others, bare / "paint");
+  saveWorkspace(sceneWithObjects(0.02), bare);
+  EXPECT_TRUE(fs::exists(file));
+}
+
 TEST_F(HistoryTest, AnotherProgramsHistoryIsNotReplaced) {
   const OpenedWorkspace found = openWorkspace(folder);
   JournalWriter held(found.journal_file, 3);
