@@ -22,22 +22,22 @@ TiledImage::TiledImage(int width, int height, int channels)
       throw std::invalid_argument("TiledImage: bad size");
   if (channels < 1 || channels > 4) throw std::invalid_argument("TiledImage: bad channels");
   tiles_.resize(static_cast<std::size_t>(across_) * static_cast<std::size_t>(height / kTileSide));
+  own_.set.resize(tiles_.size());
 }
 
 float* TiledImage::writable(std::size_t index) {
   std::shared_ptr<Tile>& tile = tiles_[index];
-  std::vector<bool>& own = own_.set;
-  if (own.empty()) own.resize(tiles_.size());
+  char& own = own_.set[index];
   if (!tile)
     tile = std::make_shared<Tile>(static_cast<std::size_t>(kTileSide * kTileSide * channels_));
-  else if (!own[index] || tile.use_count() > 1) // a plain copy of this image shares it, too
+  else if (!own || tile.use_count() > 1) // a plain copy of this image shares it, too
     tile = std::make_shared<Tile>(*tile);
-  own[index] = true;
+  own = true;
   return tile->data();
 }
 
 TiledImage TiledImage::published() {
-  own_.set.clear();
+  own_.set = noneOf(own_.set);
   return *this;
 }
 

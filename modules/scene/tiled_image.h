@@ -43,7 +43,8 @@ class TiledImage {
     const float* values = tile(tileOf(i, j));
     return values ? values[offsetOf(i, j) + static_cast<std::size_t>(channel)] : 0.0f;
   }
-  // The texels of a tile for writing: allocated, or copied first unless they are its own.
+  // The texels of a tile for writing: allocated, or copied first unless they are its own. Threads
+  // may write different tiles at once.
   float* writable(std::size_t index);
   // A copy for others; what is written from now on is not in it.
   TiledImage published();
@@ -57,7 +58,7 @@ class TiledImage {
  private:
   int width_, height_, channels_, across_;
   std::vector<std::shared_ptr<Tile>> tiles_;
-  OwnParts<std::vector<bool>> own_; // by tile; empty = none
+  OwnParts<std::vector<char>> own_; // by tile; not bits, which neighbours would share
 };
 
 // Bitwise, tile by tile; an absent tile equals one of zeros.

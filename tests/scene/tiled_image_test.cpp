@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 namespace patina {
 namespace {
@@ -70,6 +72,24 @@ TEST(TiledImage, APublishedTileIsCopiedThoughNobodyHoldsItAnyMore) {
   { const TiledImage seen = image.published(); }
   set(image, 6, 5, 0, 2);
   EXPECT_TRUE(tile.expired()); // replaced, not written
+}
+
+// As a picture is laid on: for the thread sanitizer.
+TEST(TiledImage, ThreadsWriteDifferentTilesAtOnce) {
+  TiledImage before(256, 256, 1);
+  set(before, 0, 0, 0, 7);
+  TiledImage image = before;
+  std::vector<std::thread> threads;
+  for (std::size_t part = 0; part < 4; ++part)
+    threads.emplace_back([&, part] {
+      for (std::size_t t = part; t < image.tileCount(); t += 4)
+        image.writable(t)[1] = static_cast<float>(t);
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t t = 0; t < image.tileCount(); ++t)
+    ASSERT_EQ(image.tile(t)[1], static_cast<float>(t));
+  EXPECT_EQ(image.at(0, 0, 0), 7);
+  EXPECT_EQ(before.at(1, 0, 0), 0);
 }
 
 TEST(TiledImage, CopiesShareTilesUntilOneIsWritten) {
