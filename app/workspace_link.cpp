@@ -80,6 +80,10 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   if (opened.unsaved || opened.history->undoable() != fold.position)
     opened.history->place(fold.position, opened.history->sceneAt(fold.position));
   if (!keep_journal) return opened;
+  if (found.states.empty() && recover) { // what could not be read may still be mended by hand
+    opened.notes.push_back(folder.string() + ": stays as it is; save the scene to another folder");
+    return opened;
+  }
   if (found.states.empty()) { // of a version without history: it begins here
     opened.link = create(folder, *opened.history);
     return opened;

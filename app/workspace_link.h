@@ -17,7 +17,8 @@ namespace patina {
 class WorkspaceLink {
  public:
   // What openWorkspace() found, folded into a history; edits beyond the saved scene are replayed.
-  // `keep_journal`: lock the journal and write to it, else only read.
+  // `keep_journal`: lock the journal and write to it, else only read; so, too, where `recover`
+  // found no history, which writing would replace.
   struct Opened {
     std::unique_ptr<EditHistory> history;
     std::unique_ptr<WorkspaceLink> link; // null unless keep_journal

@@ -10,6 +10,7 @@
 #include "app/painted_scenes.h"
 #include "app/session.h"
 #include "core/error.h"
+#include "core/file.h"
 
 namespace patina {
 namespace {
@@ -152,6 +153,25 @@ TEST_F(Links, AStateThatSavingDroppedIsReplayed) {
   EXPECT_EQ(editor->undo(3, progress), 3U);
   EXPECT_TRUE(same(editor->scene(), first));
   editor->save();
+}
+
+TEST_F(Links, AFolderWhoseHistoryCannotBeReadIsNotWritten) {
+  {
+    const auto editor = open();
+    editor->apply(ValueEdit{{{"stiffness", "640"}}}, progress);
+    editor->save();
+  }
+  const fs::path journal = openWorkspace(folder).journal_file;
+  const std::string damaged = "#" + readFile(journal);
+  writeFileAtomically(journal, damaged);
+  Editor::OpenSpec spec;
+  spec.recover = true;
+  const auto editor = Editor::open(folder, spec, progress);
+  EXPECT_EQ(editor->scene().haptics.stiffness, 640);
+  EXPECT_FALSE(editor->folder());
+  EXPECT_EQ(readFile(journal), damaged);
+  editor->saveAs(root / "other");
+  EXPECT_EQ(read(root / "other").haptics.stiffness, 640);
 }
 
 TEST_F(Links, AJournalHasOneWriter) {
