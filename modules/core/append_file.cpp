@@ -58,6 +58,10 @@ void AppendFile::truncate(std::uint64_t size) {
 }
 
 void AppendFile::append(std::string_view bytes) {
+  struct stat info {};
+  // What is written to a file that no folder names is gone with this program.
+  if (::fstat(file_.get(), &info) == 0 && info.st_nlink == 0)
+    throw FileError(name_, 0, "was removed or replaced by another program; save to another folder");
   if (longer_) truncate(size_);
   bool done = writeAllAt(file_.get(), bytes, static_cast<std::int64_t>(size_));
   const char* what = "cannot be written: ";

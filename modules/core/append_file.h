@@ -21,7 +21,8 @@ class AppendFile {
   std::uint64_t size() const { return size_; }
   void truncate(std::uint64_t size); // on disk when it returns; throws FileError
   // On disk when it returns. On failure throws FileError, and the file ends where it ended before;
-  // if even that is refused, the next append() tries it again first.
+  // if even that is refused, the next append() tries it again first. A file that was removed or
+  // replaced meanwhile is a failure.
   void append(std::string_view bytes);
 
  private:

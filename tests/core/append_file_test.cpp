@@ -37,6 +37,16 @@ TEST_F(AppendFileTest, PiecesFollowOneAnother) {
   EXPECT_EQ(readFile(path), "begin\ntwo\n");
 }
 
+TEST_F(AppendFileTest, AFileThatWasReplacedIsNotWritten) {
+  AppendFile file(path);
+  file.append("one\n");
+  writeFileAtomically(path, "theirs\n");
+  EXPECT_THROW(file.append("two\n"), FileError);
+  fs::remove(path);
+  EXPECT_THROW(file.append("two\n"), FileError);
+  EXPECT_EQ(file.size(), 10u);
+}
+
 TEST_F(AppendFileTest, OneWriterAtATime) {
   {
     const AppendFile first(path);
