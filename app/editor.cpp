@@ -1,6 +1,8 @@
 #include "app/editor.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +15,17 @@ namespace {
 
 bool needsImages(Tool tool) {
   return tool == Tool::color || tool == Tool::relief || tool == Tool::erase;
+}
+
+bool isFinite(const StrokeSample& sample) {
+  return sample.position.allFinite() && std::isfinite(sample.t) && std::isfinite(sample.force);
+}
+
+// As a stroke may hold it: a device that was started anew begins its time again.
+StrokeSample recordable(StrokeSample sample, const Stroke& stroke) {
+  sample.force = std::abs(sample.force);
+  if (!stroke.samples.empty()) sample.t = std::max(sample.t, stroke.samples.back().t);
+  return sample;
 }
 
 Scene withPaint(const Scene& scene, const std::vector<std::shared_ptr<const ObjectPaint>>& paint) {
@@ -145,13 +158,19 @@ void Editor::beginStroke(const Brush& brush, Progress& progress) {
 PaintReport Editor::dab(const StrokeSample& sample) {
   Impl& at = *impl_;
   at.require(at.painter != nullptr, "no stroke was begun");
-  const PaintReport report = at.painter->dab(sample);
-  at.stroke.samples.push_back(sample);
+  const StrokeSample kept = recordable(sample, at.stroke);
+  const PaintReport report = at.painter->dab(kept);
+  if (isFinite(kept)) at.stroke.samples.push_back(kept); // others paint nothing
   std::vector<PaintChange> changes = at.painter->takeChanges();
   if (changes.empty()) return report;
   at.touched = true;
   Progress progress;
-  at.compiled = at.compiledFor(withPaint(at.compiled->scene, at.painter->paint()), progress);
+  try {
+    at.compiled = at.compiledFor(withPaint(at.compiled->scene, at.painter->paint()), progress);
+  } catch (...) {
+    cancelStroke(); // what cannot be felt must not be journaled: no one could open it again
+    throw;
+  }
   at.tell(std::move(changes));
   return report;
 }

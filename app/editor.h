@@ -52,7 +52,10 @@ class Editor {
   // what the first stroke with a tool would have to wait for.
   void prepare(Tool tool, Progress& progress);
   void beginStroke(const Brush& brush, Progress& progress);
-  PaintReport dab(const StrokeSample& sample); // felt when it returns
+  // Felt when it returns. A sample that is not finite paints nothing and is not recorded; a time
+  // before the last one's counts as that. Throws Error, and takes the whole stroke back, if what
+  // would be felt does not fit into a field.
+  PaintReport dab(const StrokeSample& sample);
   // Journaled when it returns; false = it touched nothing and is no edit. If it cannot be journaled
   // the stroke is taken back and FileError thrown.
   bool endStroke();

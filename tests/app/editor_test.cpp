@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "app/painted_scenes.h"
@@ -112,6 +113,38 @@ TEST_F(Editors, AStrokeThatTouchesNothingIsNoEdit) {
   editor.beginStroke(dabAt(Tool::relief, 5e-4, 0.01, Vec3::Zero()).brush, progress);
   EXPECT_EQ(editor.dab({0, Vec3(0, 0, 1), 0}).missed, 1U);
   EXPECT_FALSE(editor.endStroke());
+  EXPECT_EQ(editor.history().undoable(), 0U);
+}
+
+// A device that loses its place for a moment, or is started anew, does not cost the stroke.
+TEST_F(Editors, WhatIsRecordedOfAStrokeCanBeReplayed) {
+  Editor editor(ballScene(), progress);
+  const Scene before = editor.scene();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  editor.beginStroke(dabAt(Tool::stiffness, 900, 0.005, Vec3::Zero()).brush, progress);
+  editor.dab({5, Vec3(0, 0, kBall), 0.5});
+  EXPECT_EQ(editor.dab({5.1, Vec3(nan, 0, 0), 0.5}).missed, 1U);
+  editor.dab({nan, Vec3(0, 0, kBall), 0.5});
+  editor.dab({0, Vec3(0.002, 0, kBall), 0.5}); // its clock began again
+  editor.dab({0.1, Vec3(0.004, 0, kBall), -0.5});
+  ASSERT_TRUE(editor.endStroke());
+  const auto& stroke = std::get<Stroke>(editor.history().edit(0));
+  EXPECT_EQ(stroke.samples.size(), 3U);
+  Editor again(before, progress);
+  again.apply(stroke, progress); // throws if it makes no sense
+  EXPECT_TRUE(same(again.scene(), editor.scene()));
+}
+
+// Relief that no field can hold: nothing of it may reach the history.
+TEST_F(Editors, AStrokeThatCannotBeFeltIsTakenBack) {
+  Scene scene = ballScene();
+  scene.objects[0].mesh = std::make_shared<const TriangleMesh>(icosphere(3e-3, 12));
+  scene.field.voxel = 0.06e-3; // 0.1 m of relief beyond it are more nodes than a grid may have
+  Editor editor(scene, progress);
+  editor.beginStroke(dabAt(Tool::relief, 0.1, 1e-3, Vec3::Zero()).brush, progress);
+  EXPECT_THROW(editor.dab({0, Vec3(0, 0, 3e-3), 0}), Error);
+  EXPECT_FALSE(editor.inStroke());
+  EXPECT_TRUE(same(editor.scene(), scene));
   EXPECT_EQ(editor.history().undoable(), 0U);
 }
 
