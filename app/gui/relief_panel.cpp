@@ -17,6 +17,7 @@ namespace {
 
 bool sameRelief(const CompiledScene& a, const CompiledScene& b) {
   if (a.scene.relief.height != b.scene.relief.height ||
+      a.scene.relief.smoothing != b.scene.relief.smoothing ||
       a.scene.device_model != b.scene.device_model ||
       a.scene.objects.size() != b.scene.objects.size())
     return false;
@@ -38,12 +39,14 @@ std::optional<ReliefLimit> worstLimit(const CompiledScene& compiled, const Progr
   const auto severity = [](const ReliefLimit& limit) {
     return limit.admissible ? limit.highest / std::max(*limit.admissible, 1e-12) : limit.highest;
   };
-  for (const SceneObject& object : compiled.scene.objects) {
+  const auto& felt = compiled.paint.relief; // smoothed if asked for: what a hand has to bear
+  for (std::size_t i = 0; i < felt.size(); ++i) {
     progress.throwIfCancelled();
-    if (!object.paint || !object.paint->relief) continue;
+    if (!felt[i]) continue;
+    const SceneObject& object = compiled.scene.objects[i];
     const ReliefLimit limit =
-        reliefLimit(*object.mesh, object.paint->layout, *object.paint->relief,
-                    compiled.scene.relief.height, compiled.scene.device_model);
+        reliefLimit(*object.mesh, object.paint->layout, *felt[i], compiled.scene.relief.height,
+                    compiled.scene.device_model);
     if (limit.highest > 0 && (!worst || severity(limit) > severity(*worst))) worst = limit;
   }
   return worst;
