@@ -5,6 +5,7 @@
 #include "app/compile_scene.h"
 #include "authoring/relief_limits.h"
 #include "haptics/painted_range.h"
+#include "haptics/relief_stage.h"
 
 namespace patina {
 namespace {
@@ -25,12 +26,36 @@ bool isPainted(const Scene& scene) {
                      [](const SceneObject& o) { return o.paint && o.paint->material; });
 }
 
-double highest(const TiledImage& image) {
+float highestIn(const TiledImage& image, std::size_t tile) {
   float most = 0;
+  if (const auto& values = image.sharedTile(tile))
+    for (const float g : *values) most = std::max(most, std::abs(g));
+  return most;
+}
+
+// Greatest |g|; of an image that shares tiles with `before`, whose own is known, only the others
+// are looked at.
+float highest(const TiledImage& image, const TiledImage* before, float highest_before) {
+  const bool shares = before && before->tileCount() == image.tileCount();
+  float most = shares ? highest_before : 0;
   for (std::size_t i = 0; i < image.tileCount(); ++i)
-    if (const auto& tile = image.sharedTile(i))
-      for (const float g : *tile) most = std::max(most, std::abs(g));
-  return static_cast<double>(most);
+    if (!shares || image.sharedTile(i) != before->sharedTile(i))
+      most = std::max(most, highestIn(image, i));
+  return most;
+}
+
+// By object.
+std::vector<float> highestOf(const Scene& scene, const CompiledScene* before) {
+  std::vector<float> result(scene.objects.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const ObjectPaint* paint = paintOf(scene, i);
+    if (!paint || !paint->relief) continue;
+    const bool known = before && i < before->paint.highest.size();
+    const ObjectPaint* old = known ? paintOf(before->scene, i) : nullptr;
+    result[i] = highest(*paint->relief, old ? old->relief.get() : nullptr,
+                        known ? before->paint.highest[i] : 0);
+  }
+  return result;
 }
 
 // A pulled image is read through cubics, a baked one bilinearly.
@@ -192,8 +217,22 @@ std::size_t FeltPaint::bytes() const {
   return bytes;
 }
 
-double reachOf(const Scene& scene) {
-  return reachOf(scene.haptics, overshoot(scene) * highestRelief(scene) + roughnessPeak(scene));
+double reachOf(const Scene& scene, const CompiledScene* before) {
+  const std::vector<float> all = highestOf(scene, before);
+  const float most = all.empty() ? 0 : *std::max_element(all.begin(), all.end());
+  const double relief = std::abs(scene.relief.height) * static_cast<double>(most);
+  return reachOf(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
+}
+
+double reachAfter(const CompiledScene& compiled, const Brush& brush) {
+  const Scene& scene = compiled.scene;
+  const double now = reachOf(scene, &compiled);
+  if (brush.mode == StrokeMode::smooth) return now;
+  double value = 0;
+  if (brush.tool == Tool::relief) value = overshoot(scene) * std::abs(brush.value);
+  if (brush.tool == Tool::roughness) value = kRoughnessPeak * std::abs(brush.value);
+  const double bare = reachOf(scene.haptics);
+  return brush.mode == StrokeMode::add ? now + value : std::max(now, bare + value);
 }
 
 FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
@@ -209,6 +248,7 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
   Maker maker{compiled, before, made};
   const bool relief = hasRelief(scene);
   if (relief) {
+    made.highest = highestOf(scene, before);
     made.relief.resize(scene.objects.size());
     made.texels.resize(scene.objects.size());
   }
@@ -222,7 +262,9 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
     const ObjectPaint* paint = paintOf(scene, i);
     if (relief && paint && paint->relief) {
       made.relief[i] = maker.image(i);
-      object.highest = overshoot(scene) * std::abs(scene.relief.height) * highest(*made.relief[i]);
+      const float most =
+          made.relief[i] == paint->relief ? made.highest[i] : highest(*made.relief[i], nullptr, 0);
+      object.highest = overshoot(scene) * std::abs(scene.relief.height) * static_cast<double>(most);
       if (scene.relief.mode == ReliefMode::pulled && object.highest > 0)
         object.relief = maker.pulled(i);
     }

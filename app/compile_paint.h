@@ -20,14 +20,18 @@ struct FeltPaint {
   // By object, only where relief is felt: what the servo reads is the image, smoothed if asked for.
   std::vector<std::shared_ptr<const TiledImage>> relief;
   std::vector<std::shared_ptr<const TexelMap>> texels; // only where it is smoothed
+  std::vector<float> highest; // of |g| of each object's own image; at least, after an erasure
   // What is felt: compiled.built.field, or that with relief in it.
   std::shared_ptr<const SurfaceField> field;
 
   std::size_t bytes() const; // beyond the scene's own images and maps
 };
 
-// How far from the surface its properties reach [m], relief included.
-double reachOf(const Scene& scene);
+// How far from the surface its properties reach [m], relief included. `before` may be null: only
+// tiles that differ from its are looked at, and what was higher there may still count.
+double reachOf(const Scene& scene, const CompiledScene* before = nullptr);
+// The same once a stroke with this brush has been painted, whatever its samples.
+double reachAfter(const CompiledScene& compiled, const Brush& brush);
 
 // `compiled` has objects, mesh and field; its scene may have changed in paint and values since
 // `before` (null: nothing is kept).

@@ -11,10 +11,13 @@
 #include <tbb/task_arena.h>
 
 #include "core/error.h"
+#include "core/numbers.h"
 #include "field/redistance.h"
 
 namespace patina {
 namespace {
+
+constexpr double kMostBand = 64; // voxels, as a scene may set
 
 using Objects = std::vector<std::shared_ptr<const CompiledObject>>;
 
@@ -87,9 +90,25 @@ void build(CompiledObject& object, const BlockLattice& lattice, double band, Pro
   }
 }
 
+// The voxel is that of the scene without paint: only the band grows with relief, so that raising
+// something does not coarsen all the rest.
+FieldSpec bandFor(const Scene& scene, const Box3& box, double reach) {
+  FieldSpec spec = widened(scene.field, box, reachOf(scene.haptics), kBandBeyondReach);
+  if (!(reach > reachOf(scene.haptics))) return spec;
+  spec.voxel = gridAround(box, spec).voxel;
+  spec = widened(spec, box, reach, kBandBeyondReach);
+  if (spec.band > kMostBand)
+    throw Error("relief that reaches " + formatLength(reach - reachOf(scene.haptics)) + " needs " +
+                formatNumber(spec.band) + " voxels of " + formatLength(*spec.voxel) +
+                " on each side of the surface; the most is " + formatNumber(kMostBand) +
+                ": make it lower, or choose a larger voxel");
+  return spec;
+}
+
 // The objects of compiled.scene, on compiled.lattice: kept from `old` where they can be. Sets
 // lattice and band.
-Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, Progress& progress) {
+Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, double room,
+                        Progress& progress) {
   const Scene& scene = compiled.scene;
   BlockLattice& lattice = compiled.lattice;
   Objects objects(scene.objects.size());
@@ -103,11 +122,11 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, Progr
     box.extend(fieldBounds(*objects[i]->mesh));
     progress.throwIfCancelled();
   }
-  const double reach = reachOf(scene);
+  const double reach = std::max(reachOf(scene), room);
   const bool keep = old && same(old->scene.field, scene.field) &&
                     suits(old->lattice.voxel, scene.field, box) &&
                     reach / old->lattice.voxel + kBandBeyondReach <= old->band;
-  const FieldSpec spec = widened(scene.field, box, reach, kBandBeyondReach);
+  const FieldSpec spec = bandFor(scene, box, reach);
   if (keep) {
     lattice = old->lattice;
     compiled.band = old->band;
@@ -176,7 +195,7 @@ BuiltField united(const CompiledScene& compiled, Progress& progress) {
   return built;
 }
 
-std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene scene,
+std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene scene, double room,
                                                  Progress& progress) {
   validate(scene);
   if (scene.objects.empty()) throw Error("the scene has no object: add a mesh to it");
@@ -184,7 +203,7 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
   const Stopwatch watch;
   auto compiled = std::make_shared<CompiledScene>();
   compiled->scene = std::move(scene);
-  compiled->objects = compiledObjects(old, *compiled, progress);
+  compiled->objects = compiledObjects(old, *compiled, room, progress);
   progress.throwIfCancelled();
   if (compiled->objects.size() == 1) {
     const CompiledObject& only = *compiled->objects[0];
@@ -254,12 +273,16 @@ MeshReport sumOf(const std::vector<MeshReport>& reports) {
 }
 
 std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress) {
-  return compileFrom(nullptr, std::move(scene), progress);
+  return compileFrom(nullptr, std::move(scene), 0, progress);
 }
 
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
-                                               Progress& progress) {
-  return compileFrom(&old, std::move(scene), progress);
+                                               Progress& progress, double room) {
+  return compileFrom(&old, std::move(scene), room, progress);
+}
+
+bool fits(const CompiledScene& compiled, double reach) {
+  return reach / compiled.built.field->grid.voxel + kBandBeyondReach <= compiled.band;
 }
 
 bool canRetune(const CompiledScene& old, const Scene& scene) {
@@ -267,7 +290,7 @@ bool canRetune(const CompiledScene& old, const Scene& scene) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (!same(old.objects[i]->object, scene.objects[i])) return false;
   return same(old.scene.field, scene.field) && old.scene.redistance == scene.redistance &&
-         reachOf(scene) / old.built.field->grid.voxel + kBandBeyondReach <= old.band;
+         fits(old, reachOf(scene, &old));
 }
 
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {

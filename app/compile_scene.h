@@ -53,8 +53,11 @@ std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress);
 // mesh and pose are kept, so that only the others are built and the union is made anew. The lattice
 // and its voxel stay, too, until field values change or the scene has outgrown them (more than
 // twice or less than half the cells that `resolution` asks for); then all is built as by compile().
+// `room` [m]: at least so far from the surface shall be felt, for what is painted next.
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
-                                               Progress& progress);
+                                               Progress& progress, double room = 0);
+// Whether what reaches so far from the surface [m] lies in the band.
+bool fits(const CompiledScene& compiled, double reach);
 // Whether retuned() can make `scene` from `old`: the same objects in the same places and the same
 // field values, and what is felt fits into the band.
 bool canRetune(const CompiledScene& old, const Scene& scene);

@@ -149,9 +149,15 @@ void Editor::beginStroke(const Brush& brush, Progress& progress) {
       paintSurfaceOf(*at.compiled, at.compiled->scene, at.surface, needsImages(brush), progress);
   auto painter = std::make_unique<Painter>(at.surface, at.compiled->scene);
   painter->begin(brush);
+  at.before_stroke = at.compiled;
+  // A field that must grow for the stroke is built now, not under its dabs.
+  const double reach = reachAfter(*at.compiled, brush);
+  if (!fits(*at.compiled, reach)) {
+    at.compiled = recompile(*at.compiled, at.compiled->scene, progress, reach);
+    at.tell(std::nullopt);
+  }
   at.painter = std::move(painter);
   at.stroke = {brush, {}};
-  at.before_stroke = at.compiled;
   at.touched = false;
 }
 

@@ -136,16 +136,30 @@ TEST_F(Editors, WhatIsRecordedOfAStrokeCanBeReplayed) {
 }
 
 // Relief that no field can hold: nothing of it may reach the history.
-TEST_F(Editors, AStrokeThatCannotBeFeltIsTakenBack) {
+TEST_F(Editors, AStrokeThatCannotBeFeltIsNotBegun) {
   Scene scene = ballScene();
   scene.objects[0].mesh = std::make_shared<const TriangleMesh>(icosphere(3e-3, 12));
   scene.field.voxel = 0.06e-3; // 0.1 m of relief beyond it are more nodes than a grid may have
   Editor editor(scene, progress);
-  editor.beginStroke(dabAt(Tool::relief, 0.1, 1e-3, Vec3::Zero()).brush, progress);
-  EXPECT_THROW(editor.dab({0, Vec3(0, 0, 3e-3), 0}), Error);
+  EXPECT_THROW(editor.beginStroke(dabAt(Tool::relief, 0.1, 1e-3, Vec3::Zero()).brush, progress),
+               Error);
   EXPECT_FALSE(editor.inStroke());
   EXPECT_TRUE(same(editor.scene(), scene));
   EXPECT_EQ(editor.history().undoable(), 0U);
+}
+
+// A field that must grow for it is built before the first dab, and its voxel stays.
+TEST_F(Editors, TallReliefFindsRoomBeforeItsFirstDab) {
+  Editor editor(ballScene(), progress);
+  const double voxel = editor.compiled()->built.field->grid.voxel;
+  const Stroke tall = dabAt(Tool::relief, 6e-3, 0.004, Vec3(0, 0, kBall));
+  editor.beginStroke(tall.brush, progress);
+  const auto field = editor.compiled()->built.field;
+  EXPECT_DOUBLE_EQ(field->grid.voxel, voxel);
+  (void)editor.dab(tall.samples[0]);
+  EXPECT_EQ(editor.compiled()->built.field, field);
+  (void)editor.endStroke();
+  EXPECT_EQ(editor.compiled()->built.field, field);
 }
 
 TEST_F(Editors, OtherEditsWaitForTheStrokeToEnd) {
