@@ -102,23 +102,28 @@ void PaintDesk::moveTip(const Vec3& target) {
 
 void PaintDesk::press(const Vec3& surface, double newtons) {
   const HapticProperties& haptics = scene_->scene.haptics;
+  // By the scene's own stiffness: what is painted harder or softer is felt as another force. Relief
+  // is followed, or an engraved place would be out of reach.
   const auto values = valuesAt(surface);
-  const double stiffness = values ? values->material.stiffness : haptics.stiffness;
-  double depth = newtons / std::max(stiffness, 1.0);
+  double depth = newtons / haptics.stiffness;
   // The simulated hand is a spring itself: it must reach deeper for the same force.
   if (scene_->scene.device == "simulated") depth += newtons / HandSpec{}.stiffness;
   const SurfaceField& field = *scene_->built.field;
   depth = std::min(depth, 0.5 * field.band * field.grid.voxel);
   const double skin = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
   aim_ = surface;
+  newtons_ = newtons;
   moveTip(surface + (skin + (values ? values->height : 0) - depth) * normalAt(surface));
 }
 
 void PaintDesk::lift() {
+  newtons_ = 0;
   const HapticProperties& haptics = scene_->scene.haptics;
   const double skin = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0) +
                       (haptics.magnet ? haptics.magnet->range : 0);
-  moveTip(aim_ + (skin + 0.02 * book_.extent()) * normalAt(aim_));
+  const auto values = valuesAt(aim_);
+  const double raised = values ? std::max(0.0, values->height) : 0;
+  moveTip(aim_ + (skin + raised + 0.02 * book_.extent()) * normalAt(aim_));
 }
 
 void PaintDesk::follow(const Pointed& where) {
@@ -153,6 +158,7 @@ void PaintDesk::send(const std::vector<StrokePiece>& pieces) {
 void PaintDesk::feed(const std::vector<ToolSample>& ticks) {
   if (!ticks.empty()) last_ = ticks.back();
   if (!scene_) return;
+  if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
   const double near = std::max(brush().radius, 0.02 * book_.extent());
   send(tracker_.feed(ticks, {down_ || lingers_, aim_, near}));
   if (!lingers_ || !(arrived(ticks) || released_.elapsed() > kLinger)) return;

@@ -66,6 +66,7 @@ class PaintDesk : public QObject {
   Tool tool_ = Tool::color; // of the brush, also while something else is chosen
   StrokeTracker tracker_;
   Vec3 aim_ = Vec3::Zero(); // on the surface
+  double newtons_ = 0;      // with which it is pressed there; 0: it is not
   bool down_ = false, lingers_ = false;
   QElapsedTimer released_;
   ToolSample last_;

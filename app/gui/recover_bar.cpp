@@ -44,12 +44,15 @@ RecoverBar::RecoverBar(QWidget* parent) : QWidget(parent), words_(new QLabel(thi
 
 void RecoverBar::offer(std::vector<std::filesystem::path> places) {
   places_ = std::move(places);
-  places_.insert(places_.begin(), {});
-  next();
+  showFirst();
 }
 
 void RecoverBar::next() {
   places_.erase(places_.begin());
+  showFirst();
+}
+
+void RecoverBar::showFirst() {
   setVisible(!places_.empty());
   if (places_.empty()) return;
   const QFileInfo info(QString::fromStdString((places_.front() / "scene.patina").string()));

@@ -20,6 +20,7 @@ class RecoverBar : public QWidget {
 
  private:
   void next();
+  void showFirst();
 
   std::vector<std::filesystem::path> places_; // what is offered comes first
   QLabel* words_;

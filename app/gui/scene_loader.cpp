@@ -97,6 +97,9 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
     made.warnings << tr("Edits are not kept in this folder: %1").arg(error.what());
   }
   made.warnings << lines(made.editor->notes());
+  if (made.editor->unsaved() && !made.autosave)
+    made.warnings << tr("Edits that were made after the last save are here again; they are not "
+                        "saved yet.");
   const bool has_radius = made.editor->scene().haptics.tip_radius.value_or(0) > 0;
   for (const auto& object : made.editor->compiled()->objects) {
     const QString name = QString::fromStdString(object->object.name);

@@ -70,6 +70,8 @@ std::string freeName(const Scene& scene, const std::string& name) {
 } // namespace
 
 void MainWindow::connectPanels() {
+  connect(view_, &SceneWidget::tipMoved, this,
+          [this](const Vec3& target) { feel_.setTarget(target); });
   connect(display_, &DisplayPanel::layerToggled, this, [this](Layer layer, bool on) {
     view_->view().show(layer, on);
     if (layer == Layer::stability) askStability();

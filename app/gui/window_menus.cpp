@@ -104,9 +104,9 @@ void MainWindow::buildEditMenu() {
   // On keyboards where Shift makes a brace of a bracket the key is the brace.
   add(tr("Smaller brush"), {Qt::Key_BracketLeft}, [this] { desk_->resizeBrush(1 / 1.15); });
   add(tr("Larger brush"), {Qt::Key_BracketRight}, [this] { desk_->resizeBrush(1.15); });
-  add(tr("Softer brush"), {Qt::Key_BraceLeft, QKeySequence("Shift+[")},
+  add(tr("Softer brush"), {QKeySequence("Shift+["), Qt::Key_BraceLeft},
       [this] { desk_->softenBrush(1 / 1.15); });
-  add(tr("Harder brush"), {Qt::Key_BraceRight, QKeySequence("Shift+]")},
+  add(tr("Harder brush"), {QKeySequence("Shift+]"), Qt::Key_BraceRight},
       [this] { desk_->softenBrush(1.15); });
 }
 

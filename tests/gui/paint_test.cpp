@@ -10,6 +10,7 @@
 
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
+#include "support/busy_machine.h"
 
 namespace patina {
 namespace {
@@ -122,8 +123,6 @@ TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
   }
   EXPECT_GT(most, 0.3);
   EXPECT_GT(stiffest, 2 * base);
-  const Vec3 painted = felt.back().surface;
-  (void)painted;
   ASSERT_TRUE(paint() && paint()->material);
   EXPECT_TRUE(paint()->material->has(MaterialChannel::stiffness));
 }
@@ -325,8 +324,9 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   std::printf("edit %.0f ms, longest gap of the window %.0f ms, frame %.0f ms\n", 1000 * took,
               longest, 1000 * view().frameSeconds());
-  EXPECT_GT(1000 * took, 2 * longest);
-  EXPECT_LT(longest, 250) << "a frame of software OpenGL on a busy machine, and no more";
+  EXPECT_GT(1000 * took, 5 * longest);
+  // A frame of software OpenGL, and no more.
+  EXPECT_LT(longest, test::machineIsCrowded() ? 1000 : 150);
 }
 
 TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
@@ -348,6 +348,11 @@ TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
   EXPECT_EQ(window_->standing().done, 2u);
   EXPECT_TRUE(window_->standing().unsaved);
   EXPECT_TRUE(paint() && paint()->color);
+  bool said = false;
+  for (const QLabel* label : window_->findChildren<QLabel*>())
+    said = said ||
+           (label->isVisible() && label->text().contains(QStringLiteral("after the last save")));
+  EXPECT_TRUE(said);
 }
 
 } // namespace
