@@ -46,10 +46,20 @@ EditHistory::EditHistory(Scene start, Replay replay, std::size_t budget_bytes)
   count(start_);
 }
 
-void EditHistory::append(Edit edit, Scene after) {
+void EditHistory::append(Edit edit, Scene after, const Record& record) {
+  Scene present = after;
+  Entry entry{std::move(edit), std::move(after), {}};
+  if (entries_.capacity() <= position_) entries_.reserve(2 * position_ + 1);
+  count(*entry.after);
+  try {
+    if (record) record(entry.edit);
+  } catch (...) {
+    discount(*entry.after);
+    throw;
+  }
   truncate();
-  push(std::move(edit), std::move(after), {});
-  present_ = *entries_.back().after;
+  entries_.push_back(std::move(entry));
+  present_ = std::move(present);
   position_ = entries_.size();
   thin();
 }

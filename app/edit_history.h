@@ -32,8 +32,10 @@ class EditHistory {
   std::vector<std::string> descriptions() const; // of all edits, oldest first
   const Edit& edit(std::size_t index) const { return entries_[index].edit; }
 
-  // Drops what could be redone.
-  void append(Edit edit, Scene after);
+  // Drops what could be redone. `record`, if any, is called when nothing after it can fail; nothing
+  // changes if it throws.
+  using Record = std::function<void(const Edit& edit)>;
+  void append(Edit edit, Scene after, const Record& record = {});
   // For a history that was stored: `load` is called if the scene is needed and may be null where
   // the edit can be replayed. place() then sets where the history stands.
   void appendStored(Edit edit, Load load);

@@ -65,10 +65,11 @@ struct Editor::Impl {
     return recompile(*compiled, std::move(scene), progress);
   }
 
-  // Journal first: if that fails nothing has happened.
+  // Once the journal holds it nothing can fail: if that is refused nothing has happened.
   void commit(Edit edit, std::shared_ptr<const CompiledScene> after) {
-    if (link) link->recordEdit(edit, history->undoable() + 1);
-    history->append(std::move(edit), after->scene);
+    history->append(std::move(edit), after->scene, [this](const Edit& made) {
+      if (link) link->recordEdit(made, history->undoable() + 1);
+    });
     compiled = std::move(after);
     unsaved = true;
   }
@@ -184,15 +185,14 @@ PaintReport Editor::dab(const StrokeSample& sample) {
 bool Editor::endStroke() {
   Impl& at = *impl_;
   at.require(at.painter != nullptr, "no stroke was begun");
-  at.painter->end();
-  if (!at.touched) {
-    cancelStroke();
-    return false;
-  }
-  Scene scene = withPaint(at.compiled->scene, at.painter->paint());
-  auto after = std::make_shared<CompiledScene>(*at.compiled);
-  after->scene = std::move(scene);
   try {
+    at.painter->end();
+    if (!at.touched) {
+      cancelStroke();
+      return false;
+    }
+    auto after = std::make_shared<CompiledScene>(*at.compiled);
+    after->scene = withPaint(at.compiled->scene, at.painter->paint());
     at.commit(std::move(at.stroke), std::move(after));
   } catch (...) {
     cancelStroke();

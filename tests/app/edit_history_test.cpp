@@ -128,6 +128,24 @@ TEST_F(Histories, AnEditAfterUndoDropsWhatCouldBeRedone) {
 }
 
 // What scenes share counts once, and what no scene holds any more does not count.
+TEST_F(Histories, AnEditThatCannotBeRecordedChangesNothing) {
+  EditHistory history(startScene(), counted(replays), kAmple);
+  paint(history, 1);
+  const Scene first = history.scene();
+  paint(history, 2);
+  const Scene second = history.scene();
+  history.undo();
+  const std::size_t bytes = history.bytes();
+  const auto refuse = [](const Edit&) { throw std::runtime_error("disk full"); };
+  EXPECT_THROW(history.append(stroke(3), painted(first, stroke(3)), refuse), std::runtime_error);
+  EXPECT_EQ(history.undoable(), 1U);
+  EXPECT_EQ(history.redoable(), 1U);
+  EXPECT_EQ(history.bytes(), bytes);
+  EXPECT_TRUE(same(history.scene(), first));
+  EXPECT_TRUE(history.redo());
+  EXPECT_TRUE(same(history.scene(), second));
+}
+
 TEST_F(Histories, BytesAreThoseOfAllTilesTogether) {
   EditHistory history(startScene(), counted(replays), kAmple);
   paint(history, 0);
