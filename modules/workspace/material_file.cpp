@@ -15,7 +15,26 @@ namespace {
 constexpr std::int64_t kVersion = 1;
 // Nodes of a block farther out would not be whole numbers of 32 bits.
 constexpr std::int32_t kFarthest = (1 << 28) - 1;
+// In the box around all blocks, of which a dense table is made to feel them.
+constexpr double kMostBlocks = 1 << 24;
 constexpr std::size_t kMostHeader = 65536;
+
+struct BlockBox {
+  MaterialMap::Index least{kFarthest, kFarthest, kFarthest};
+  MaterialMap::Index most{-kFarthest, -kFarthest, -kFarthest};
+  void add(const MaterialMap::Index& index) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      least[axis] = std::min(least[axis], index[axis]);
+      most[axis] = std::max(most[axis], index[axis]);
+    }
+  }
+  bool isTooLarge() const {
+    double blocks = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      blocks *= std::max(0.0, 1.0 + double(most[axis]) - double(least[axis]));
+    return blocks > kMostBlocks;
+  }
+};
 
 bool isFinite(const MaterialLayer& layer) {
   const auto finite = [](float v) { return std::isfinite(v); };
@@ -43,11 +62,14 @@ class Reader {
       throw FileError(name_, 1, error.what());
     }
     std::optional<MaterialMap::Index> last;
+    BlockBox box;
     for (std::uint64_t i = 0; i < count_; ++i) {
       const auto index = take<MaterialMap::Index>();
       for (const std::int32_t at : index)
         if (at < -kFarthest || at > kFarthest) fail("a block lies farther out than any surface");
       if (last && !(*last < index)) fail("blocks are out of order");
+      box.add(index);
+      if (box.isTooLarge()) fail("blocks lie farther apart than on any surface");
       last = index;
       readBlock(*map, index);
     }
@@ -125,6 +147,9 @@ class Reader {
 } // namespace
 
 std::string materialBytes(const MaterialMap& map) {
+  BlockBox box;
+  for (const auto& [index, block] : map.blocks()) box.add(index);
+  if (box.isTooLarge()) throw Error("painted material reaches too far for its grid");
   Json channels = Json::array();
   for (const MaterialChannel channel : kAllMaterialChannels) {
     Json json = Json::object();

@@ -66,6 +66,23 @@ TEST(MaterialFile, BadBlocksAreRefused) {
   EXPECT_TRUE(says(with(16, 0x7f800000), "not a finite number")); // infinity
 }
 
+// Two blocks in opposite corners of the world: a dense table of all between would fill any memory.
+TEST(MaterialFile, BlocksTooFarApartAreRefused) {
+  MaterialMap map(Vec3::Zero(), 0.002);
+  map.writable({0, 0, 0}, MaterialChannel::damping);
+  map.writable({255, 255, 255}, MaterialChannel::damping);
+  const std::string bytes = materialBytes(map);
+  EXPECT_TRUE(same(parseMaterial(bytes, "m"), map)); // 2^24, the most
+  const std::size_t last = bytes.size() - sizeof(MaterialLayer) - 16;
+  for (const std::int32_t far : {256, (1 << 28) - 1}) {
+    std::string changed = bytes;
+    std::memcpy(changed.data() + last, &far, sizeof far);
+    EXPECT_TRUE(says(errorOfParsing(changed), "farther apart"));
+  }
+  map.writable({0, 0, 256}, MaterialChannel::damping);
+  EXPECT_THROW(materialBytes(map), Error);
+}
+
 TEST(MaterialFile, WhatCouldNotBeReadAgainIsNotWritten) {
   MaterialMap map = paintedMaterial(1);
   map.writable({0, 0, 0}, MaterialChannel::damping).value[7] = std::nanf("");
