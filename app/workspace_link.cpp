@@ -6,6 +6,8 @@
 
 #include "app/journal_fold.h"
 #include "core/error.h"
+#include "core/file.h"
+#include "core/folder_lock.h"
 
 namespace patina {
 namespace {
@@ -30,6 +32,13 @@ Edit editOf(const JournalEvent& event) {
 
 } // namespace
 
+void requireWorkspacePlace(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(folder) || isWorkspace(folder)) return;
+  if (!fs::is_directory(folder) || !fs::is_empty(folder))
+    throw FileError(folder.string(), 0, "exists and is not a workspace; choose another folder");
+}
+
 WorkspaceLink::WorkspaceLink(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
 EditHistory::Load WorkspaceLink::loader(const std::string& state) const {
@@ -53,6 +62,7 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   OpenedWorkspace found = openWorkspace(folder, recover);
   Opened opened;
   opened.notes = std::move(found.notes);
+  opened.events = found.journal.size();
   const FoldedJournal fold = folded(found.journal, found.journal_file.string());
   std::map<std::size_t, std::string> state_at; // by position
   for (const StoredState& state : found.states) {
@@ -99,6 +109,21 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
 
 std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path& folder,
                                                      EditHistory& history) {
+  makeFolder(folder);
+  const FolderLock alone(folder);
+  requireWorkspacePlace(folder);
+  return write(folder, history);
+}
+
+std::unique_ptr<WorkspaceLink> WorkspaceLink::createOver(const std::filesystem::path& folder,
+                                                         EditHistory& history) {
+  makeFolder(folder);
+  const FolderLock alone(folder);
+  return write(folder, history);
+}
+
+std::unique_ptr<WorkspaceLink> WorkspaceLink::write(const std::filesystem::path& folder,
+                                                    EditHistory& history) {
   auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
   std::map<std::size_t, std::string> scenes; // of the SceneEdits, by index
   std::vector<JournalEvent> journal;
@@ -130,6 +155,8 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path
 }
 
 void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after) {
+  // What is on disk must be known here: no memory is taken after that.
+  if (event_of_.capacity() <= position_after) event_of_.reserve(2 * position_after + 1);
   if (const auto* stroke = std::get_if<Stroke>(&edit)) {
     journal_->append(*stroke);
   } else if (const auto* values = std::get_if<ValueEdit>(&edit)) {

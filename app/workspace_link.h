@@ -12,6 +12,9 @@
 
 namespace patina {
 
+// FileError unless a workspace may be written there: nothing, an empty folder or a workspace.
+void requireWorkspacePlace(const std::filesystem::path& folder);
+
 // Belongs to the editor's thread. Every call returns when what it did is on disk; on failure it
 // throws FileError and has done nothing.
 class WorkspaceLink {
@@ -23,14 +26,18 @@ class WorkspaceLink {
     std::unique_ptr<EditHistory> history;
     std::unique_ptr<WorkspaceLink> link; // null unless keep_journal
     std::vector<std::string> notes;
-    bool unsaved = false; // the journal holds more than the saved scene
+    std::uint64_t events = 0; // of the journal, undos too: they only ever become more
+    bool unsaved = false;     // the journal holds more than the saved scene
   };
   static Opened open(const std::filesystem::path& folder, EditHistory::Replay replay,
                      std::size_t budget, bool keep_journal, bool recover);
   // Writes the whole history into another folder, taking the place of a workspace there, and ties
-  // to it: scenes of the past are loaded from there from now on.
+  // to it: scenes of the past are loaded from there from now on. requireWorkspacePlace() first.
   static std::unique_ptr<WorkspaceLink> create(const std::filesystem::path& folder,
                                                EditHistory& history);
+  // The same over whatever stands there: what is left of a damaged workspace.
+  static std::unique_ptr<WorkspaceLink> createOver(const std::filesystem::path& folder,
+                                                   EditHistory& history);
 
   const std::filesystem::path& folder() const { return folder_; }
   void recordEdit(const Edit& edit, std::size_t position_after);
@@ -40,6 +47,9 @@ class WorkspaceLink {
 
  private:
   explicit WorkspaceLink(std::filesystem::path folder);
+  // The folder is there and locked.
+  static std::unique_ptr<WorkspaceLink> write(const std::filesystem::path& folder,
+                                              EditHistory& history);
   EditHistory::Load loader(const std::string& state) const;
   void tieStates(EditHistory& history) const;
 

@@ -10,6 +10,7 @@
 #include "app/cli/workspace_place.h"
 #include "app/compile_warnings.h"
 #include "app/editor.h"
+#include "app/workspace_link.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"

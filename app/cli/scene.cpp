@@ -63,12 +63,11 @@ Scene changed(const std::filesystem::path& folder, const SceneCommandOptions& op
               Console& console) {
   const auto read = opened(folder, false, false, console);
   if (options.edits.empty()) return read.history->scene();
-  const std::size_t edits = read.history->undoable() + read.history->redoable();
   Scene after = edited(read.history->scene(), options.edits, options.open, console);
   console.progress().throwIfCancelled();
   const auto own = opened(folder, true, false, console);
   EditHistory& history = *own.history;
-  if (history.undoable() + history.redoable() != edits)
+  if (own.events != read.events)
     throw FileError(folder.string(), 0, "another program has just changed it; try again");
   const Edit edit = editOf(options.edits, after);
   own.link->recordEdit(edit, history.undoable() + 1);
@@ -96,7 +95,7 @@ Scene recovered(const SceneCommandOptions& options, Console& console) {
     throw FileError(to.string(), 0, "exists; what is recovered goes into a new folder");
   const auto found = opened(from, false, true, console);
   try {
-    WorkspaceLink::create(to, *found.history);
+    WorkspaceLink::createOver(to, *found.history);
   } catch (const Error& error) {
     console.warn(std::string(error.what()) + ": recovered without its history");
     saveWorkspace(found.history->scene(), to);

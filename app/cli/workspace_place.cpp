@@ -16,12 +16,6 @@ fs::path workspaceFolder(const fs::path& input) {
   return folder;
 }
 
-void requireWorkspacePlace(const fs::path& folder) {
-  if (!fs::exists(folder) || isWorkspace(folder)) return;
-  if (!fs::is_directory(folder) || !fs::is_empty(folder))
-    throw FileError(folder.string(), 0, "exists and is not a workspace; choose another folder");
-}
-
 bool sameFolder(const fs::path& a, const fs::path& b) {
   std::error_code unknown; // of one that is not there
   return fs::equivalent(a, b, unknown);

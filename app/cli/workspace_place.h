@@ -7,8 +7,6 @@ namespace patina::cli {
 
 // The folder of a workspace that is there, also by its workspace.json; FileError otherwise.
 std::filesystem::path workspaceFolder(const std::filesystem::path& input);
-// FileError unless a workspace may be written there: nothing, an empty folder or a workspace.
-void requireWorkspacePlace(const std::filesystem::path& folder);
 // Whether both are there and one folder.
 bool sameFolder(const std::filesystem::path& a, const std::filesystem::path& b);
 

@@ -1,4 +1,4 @@
-// System calls on files, with what signals interrupt done again. Internal to file and append_file.
+// System calls on files, with what signals interrupt done again. Internal to core's files.
 #pragma once
 
 #include <cstdint>

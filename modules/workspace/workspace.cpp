@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "core/append_file.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/folder_lock.h"
 #include "workspace/content_files.h"
 #include "workspace/history_files.h"
 #include "workspace/stored_objects.h"
@@ -116,11 +118,24 @@ void commit(Manifest manifest, const std::string& journal, std::string_view jour
   if (manifest.journal->check.empty())
     throw std::invalid_argument("saveWorkspace: the journal has fewer events");
   writeFileAtomically(folder / kManifestName, toJson(manifest).dump() + "\n");
+// Of scenes that were stored before: a history without one of them could not be opened.
+void requireStates(const fs::path& folder, const std::vector<JournalEvent>& events) {
+  std::set<std::string> read;
+  for (const JournalEvent& event : events) {
+    const auto* edit = std::get_if<StoredSceneEdit>(&event);
+    if (!edit || !read.insert(edit->state).second) continue;
+    const Manifest state = parseManifest(loadNamed(folder, edit->state), edit->state);
+    for (const ContentFile& file : filesOf(state.objects))
+      if (read.insert(file.path).second) loadContent(folder, file);
+  }
+}
+
   removeUnused(folder, manifest, lines);
 }
 
 void replace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
              const std::vector<JournalEvent>& events, const fs::path& folder) {
+  requireStates(folder, events);
   Manifest manifest = storeObjects(scene, folder);
   manifest.event = event;
   manifest.states = manifestStates(states, folder);
@@ -163,6 +178,7 @@ std::string storeState(const Scene& scene, std::uint64_t event, const fs::path& 
       .path;
 }
 
+  const FolderLock alone(folder);
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const fs::path& folder) {
   validate(scene);
@@ -184,6 +200,7 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
   replace(scene, event, states, journal, folder);
 }
 
+  const FolderLock alone(folder);
 void saveWorkspace(const Scene& scene, const fs::path& folder) {
   validate(scene);
   makeFolder(folder);

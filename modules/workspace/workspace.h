@@ -58,7 +58,8 @@ void saveWorkspace(const Scene& scene, const std::filesystem::path& folder);
 
 // The same with a journal of its own that holds `journal`, in place of any that is there: what a
 // history is written with into another folder. Its StoredSceneEdits name states that storeState()
-// has put there. One atomic step, too.
+// has put there. One atomic step, too. The caller holds a FolderLock from before it stores the first
+// of them (the other two take it): another program's saving would remove what nothing names yet.
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const std::vector<JournalEvent>& journal, const std::filesystem::path& folder);
 

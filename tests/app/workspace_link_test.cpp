@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "app/editor.h"
 #include "app/journal_fold.h"
 #include "app/painted_scenes.h"
+#include "app/replay.h"
 #include "app/session.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -110,6 +112,72 @@ TEST_F(Links, AWholeHistoryIsWrittenIntoAnotherFolder) {
   EXPECT_EQ(copy->undo(100, progress), edits);
   EXPECT_TRUE(same(copy->scene(), ballScene()));
   EXPECT_FALSE(copy->folder()); // it only reads
+}
+
+TEST_F(Links, AFolderOfOtherThingsIsNotWritten) {
+  const fs::path other = root / "other";
+  fs::create_directories(other);
+  writeFileAtomically(other / "thesis.txt", "mine");
+  const auto editor = open();
+  EXPECT_THROW(editor->saveAs(other), FileError);
+  EXPECT_EQ(std::distance(fs::directory_iterator(other), {}), 1);
+  EXPECT_EQ(editor->folder(), folder); // and goes on where it was
+  editor->apply(ValueEdit{{{"stiffness", "640"}}}, progress);
+  EXPECT_EQ(read(folder).haptics.stiffness, 640);
+  fs::remove(other / "thesis.txt");
+  editor->saveAs(other);
+  EXPECT_EQ(read(other).haptics.stiffness, 640);
+}
+
+// Each stores scenes of its history before anything names them.
+TEST_F(Links, TwoHistoriesWrittenIntoOneFolderLeaveTheOneOrTheOther) {
+  const fs::path other = root / "other";
+  const auto write = [&](double stiffness) {
+    const auto none = [](const Scene& before, const Edit&) { return before; };
+    EditHistory history(ballScene(), none, kHistoryBudget);
+    for (int i = 0; i < 4; ++i) {
+      auto scene = std::make_shared<Scene>(ballScene());
+      scene->haptics.stiffness = stiffness + i;
+      history.append(SceneEdit{"change", scene}, *scene);
+    }
+    WorkspaceLink::createOver(other, history);
+  };
+  for (int i = 0; i < 20; ++i) {
+    fs::remove_all(other);
+    std::vector<pid_t> children;
+    for (const double stiffness : {300.0, 700.0}) {
+      const pid_t child = ::fork();
+      if (child == 0) {
+        try {
+          write(stiffness);
+        } catch (const FileError&) {
+        }
+        ::_exit(0);
+      }
+      children.push_back(child);
+    }
+    for (const pid_t child : children) ::waitpid(child, nullptr, 0);
+    OpenedWorkspace found;
+    ASSERT_NO_THROW(found = openWorkspace(other)) << i;
+    ASSERT_EQ(found.journal.size(), 4U);
+    for (const JournalEvent& event : found.journal)
+      ASSERT_NO_THROW(loadState(other, std::get<StoredSceneEdit>(event).state)) << i;
+  }
+}
+
+// What tells whether another program has been there: an undo leaves as many edits as there were.
+TEST_F(Links, EveryEventOfTheJournalCounts) {
+  const auto read_only = [&] {
+    return WorkspaceLink::open(folder, Replayer(), kHistoryBudget, false, false);
+  };
+  const auto editor = open();
+  editor->apply(ValueEdit{{{"stiffness", "640"}}}, progress);
+  const auto before = read_only();
+  editor->undo(1, progress);
+  const auto after = read_only();
+  EXPECT_EQ(before.events, 1U);
+  EXPECT_EQ(after.events, 2U);
+  EXPECT_EQ(after.history->undoable() + after.history->redoable(), 1U);
 }
 
 // As when a scene that was recovered is saved: the place that it came from is removed.
