@@ -76,23 +76,39 @@ fs::path insidePath(const fs::path& folder, const std::string& relative) {
   return full;
 }
 
+// Behind a link lie files of others.
+void refuseLinks(const fs::path& folder) {
+  for (const char* part : kStoredFolders) insidePath(folder, part);
+}
+
+// Nothing where a link is, or a file that cannot be read or has another size: it is not ours.
+std::optional<std::string> storedBytes(const fs::path& path, std::size_t size) {
+  std::error_code code;
+  if (fs::symlink_status(path, code).type() != fs::file_type::regular ||
+      fs::file_size(path, code) != size || code)
+    return std::nullopt;
+  try {
+    return readFile(path);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
+}
+
 std::optional<ContentFile> findStored(const fs::path& folder, const std::string& prefix,
                                       const std::string& extension, const known::Digest& digest) {
+  refuseLinks(folder);
   ContentFile file{pathFor(prefix, extension, digest.sha256), digest.sha256};
-  std::error_code code;
-  // A link or a file of another size there is not ours.
-  const bool there =
-      fs::symlink_status(folder / file.path, code).type() == fs::file_type::regular &&
-      fs::file_size(folder / file.path, code) == digest.size && !code;
-  return there ? std::optional(std::move(file)) : std::nullopt;
+  const auto bytes = storedBytes(folder / file.path, digest.size);
+  return bytes && sha256(*bytes) == digest.sha256 ? std::optional(std::move(file)) : std::nullopt;
 }
 
 ContentFile storeContent(const fs::path& folder, const std::string& prefix,
                          const std::string& extension, std::string_view bytes) {
+  refuseLinks(folder);
   const std::string digest = sha256(bytes);
-  if (auto there = findStored(folder, prefix, extension, {digest, bytes.size()})) return *there;
   ContentFile file{pathFor(prefix, extension, digest), digest};
   const fs::path path = folder / file.path;
+  if (storedBytes(path, bytes.size()) == bytes) return file;
   makeFolder(path.parent_path());
   writeFileAtomically(path, bytes);
   return file;

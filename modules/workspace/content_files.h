@@ -12,7 +12,8 @@
 
 namespace patina {
 
-// folder/prefix-HASH.extension, on disk when it returns; one that is there already is kept.
+// folder/prefix-HASH.extension, on disk when it returns; one that is there already, whole, is kept.
+// FileError, and nothing written, where a folder of the workspace's is a link that leads out of it.
 ContentFile storeContent(const std::filesystem::path& folder, const std::string& prefix,
                          const std::string& extension, std::string_view bytes);
 // Throws FileError: missing, leaves the folder (through a link, too), not the bytes that were
@@ -60,7 +61,7 @@ std::shared_ptr<const T> loadValue(const std::filesystem::path& folder, const Co
   return value;
 }
 
-// Whether the file is there, with that size.
+// Whether the file is there, whole.
 std::optional<ContentFile> findStored(const std::filesystem::path& folder,
                                       const std::string& prefix, const std::string& extension,
                                       const known::Digest& digest);

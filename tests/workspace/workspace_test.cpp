@@ -65,6 +65,32 @@ TEST_F(WorkspaceTest, AFileThatAPersonPutThereStays) {
   EXPECT_EQ(readFile(folder / "meshes" / "original.ply"), "mine");
 }
 
+TEST_F(WorkspaceTest, SavingWritesADamagedFileAgain) {
+  const Scene scene = paintedScene(0.05, 1, With::material);
+  saveWorkspace(scene, folder);
+  for (const char* part : {"meshes", "paint", "states"})
+    for (const auto& item : fs::directory_iterator(folder / part)) {
+      std::string bytes = readFile(item.path());
+      bytes[bytes.size() / 2] ^= 1;
+      writeFileAtomically(item.path(), bytes);
+    }
+  saveWorkspace(scene, folder);
+  EXPECT_TRUE(same(openWorkspace(folder).scene, scene));
+}
+
+TEST_F(WorkspaceTest, NothingIsWrittenThroughALink) {
+  for (const char* part : {"meshes", "paint", "states"}) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    fs::create_directories(root / "theirs");
+    fs::create_directory_symlink(root / "theirs", folder / part);
+    EXPECT_TRUE(says(errorOf([&] { saveWorkspace(paintedScene(0.05, 1, With::material), folder); }),
+                     "leaves the workspace's folder"));
+    EXPECT_TRUE(fs::is_empty(root / "theirs")) << part;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << part;
+  }
+}
+
 TEST_F(WorkspaceTest, MovesWithItsFolder) {
   saveWorkspace(sceneWithObjects(0.05), folder);
   fs::rename(folder, root / "elsewhere");
