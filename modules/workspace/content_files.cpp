@@ -119,7 +119,7 @@ std::string loadContent(const fs::path& folder, const ContentFile& file) {
   std::string bytes = readFile(path);
   if (sha256(bytes) != file.sha256) {
     throw FileError(path.string(), 0,
-                    "is not the file that was saved (its SHA-256 differs from workspace.json)");
+                    std::string("is not the file that was saved (its SHA-256 differs)") + kAdvice);
   }
   return bytes;
 }
@@ -131,7 +131,8 @@ std::string loadNamed(const fs::path& folder, const std::string& relative, Conte
   const std::string_view wanted = hashIn(relative);
   if (wanted.empty() || !digest.starts_with(wanted))
     throw FileError(path.string(), 0,
-                    "is not the file that was saved (its name says another hash)");
+                    std::string("is not the file that was saved (its name says another hash)") +
+                        kAdvice);
   if (found) *found = {relative, digest};
   return bytes;
 }

@@ -12,6 +12,10 @@
 
 namespace patina {
 
+// What to do about a file that is not what was saved; follows a message.
+inline constexpr const char* kAdvice =
+    "; put it back from a copy, or keep what is whole with patina scene --recover";
+
 // folder/prefix-HASH.extension, on disk when it returns; one that is there already, whole, is kept.
 // FileError, and nothing written, where a folder of the workspace's is a link that leads out of it.
 ContentFile storeContent(const std::filesystem::path& folder, const std::string& prefix,

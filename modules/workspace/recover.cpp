@@ -92,11 +92,12 @@ std::optional<Scene> newestState(const fs::path& folder, std::vector<std::string
       found.emplace_back(event, "states/" + name);
   }
   std::sort(found.rbegin(), found.rend());
-  for (const auto& [event, file] : found)
-    if (auto scene = attempt(notes, [&] { return loadState(folder, file); })) {
-      notes.push_back("the scene is that of " + file);
-      return scene;
-    }
+  for (const auto& state : found) {
+    auto scene = attempt(notes, [&] { return loadState(folder, state.second); });
+    if (!scene) continue;
+    notes.push_back("the scene is that of " + state.second);
+    return scene;
+  }
   return std::nullopt;
 }
 

@@ -18,9 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kAdvice =
-    "; put it back from a copy, or recover the workspace: the scene as saved is whole";
-
 // Saving over a workspace that a newer program wrote would lose what this one cannot read.
 void refuseNewer(const fs::path& folder) {
   const fs::path path = folder / kManifestName;
@@ -118,6 +115,9 @@ void commit(Manifest manifest, const std::string& journal, std::string_view jour
   if (manifest.journal->check.empty())
     throw std::invalid_argument("saveWorkspace: the journal has fewer events");
   writeFileAtomically(folder / kManifestName, toJson(manifest).dump() + "\n");
+  removeUnused(folder, manifest, lines);
+}
+
 // Of scenes that were stored before: a history without one of them could not be opened.
 void requireStates(const fs::path& folder, const std::vector<JournalEvent>& events) {
   std::set<std::string> read;
@@ -130,15 +130,12 @@ void requireStates(const fs::path& folder, const std::vector<JournalEvent>& even
   }
 }
 
-  removeUnused(folder, manifest, lines);
-}
-
 void replace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
              const std::vector<JournalEvent>& events, const fs::path& folder) {
-  requireStates(folder, events);
   Manifest manifest = storeObjects(scene, folder);
   manifest.event = event;
   manifest.states = manifestStates(states, folder);
+  requireStates(folder, events);
   std::string text = journalHeading(states.front().file);
   std::uint64_t number = 0;
   for (const JournalEvent& item : events) text += journalLine(++number, item);
@@ -178,10 +175,10 @@ std::string storeState(const Scene& scene, std::uint64_t event, const fs::path& 
       .path;
 }
 
-  const FolderLock alone(folder);
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const fs::path& folder) {
   validate(scene);
+  const FolderLock alone(folder);
   refuseNewer(folder);
   Manifest manifest = storeObjects(scene, folder);
   manifest.event = event;
@@ -200,10 +197,10 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
   replace(scene, event, states, journal, folder);
 }
 
-  const FolderLock alone(folder);
 void saveWorkspace(const Scene& scene, const fs::path& folder) {
   validate(scene);
   makeFolder(folder);
+  const FolderLock alone(folder);
   refuseNewer(folder);
   const auto lock = lockOld(folder);
   replace(scene, 0, {{0, storeState(scene, 0, folder)}}, {}, folder);
