@@ -167,8 +167,8 @@ void showPainting(MainWindow& window, const std::filesystem::path& folder) {
   };
   paintAlong(window, ring, 1500);
   grab(window, folder / "relief.png");
-  choose(Tool::stiffness, 2000, 4, 0.02);
-  const Vec2 from = middle + Vec2(-0.04, -0.03), to = middle + Vec2(0.03, -0.02);
+  choose(Tool::stiffness, 1100, 4, 0.03);
+  const Vec2 from = middle + Vec2(-0.07, -0.05), to = middle + Vec2(0.08, -0.05);
   paintAlong(
       window, [&](double t) { return Vec2(from + t * (to - from)); }, 900,
       [&] { grab(window, folder / "paint.png"); }); // tool, force and brush together

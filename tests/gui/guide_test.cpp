@@ -48,7 +48,7 @@ TEST_F(GuideOfTheWindow, NamesEveryKeyOfTheMenus) {
     const QString key = action->shortcut().toString();
     if (key.size() != 1 || key[0].isDigit()) continue;
     ++keys;
-    EXPECT_TRUE(text.contains(QRegExp(QStringLiteral("[| ]%1[ ,|]").arg(key))))
+    EXPECT_TRUE(text.contains(QRegExp(QStringLiteral("[| ]%1[ ,|]").arg(QRegExp::escape(key)))))
         << key.toStdString() << " (" << action->text().toStdString() << ")";
   }
   EXPECT_GE(keys, 9);
