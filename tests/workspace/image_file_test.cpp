@@ -151,6 +151,20 @@ TEST_F(ImageFileTest, OtherNamesAreRefusedForWriting) {
                    "must end in .png or .exr"));
 }
 
+// A program away from its libraries says which it misses and where it should be.
+TEST_F(ImageFileTest, AMissingLibraryIsNamed) {
+  writePicture(root / "p.png", somePicture(3, 2, 1));
+  std::filesystem::create_directories(root / "bin");
+  const std::string alone = root / "bin" / "program", err = root / "err";
+  std::filesystem::copy_file(PATINA_BINARY_DIR "/workspace_child", alone);
+  const std::string words = alone + " picture " + (root / "p.png").string() + " 2>" + err;
+  EXPECT_EQ(WEXITSTATUS(std::system(words.c_str())), 2);
+  const std::string line = readFile(err);
+  EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1);
+  EXPECT_TRUE(says(line, "p.png: needs Patina's library of pictures"));
+  EXPECT_TRUE(says(line, (root / "bin" / "patina_images.so").string()));
+}
+
 // In a process of its own: the others here have loaded it.
 TEST_F(ImageFileTest, TheLibraryIsLoadedWithTheFirstPictureOnly) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
