@@ -36,7 +36,9 @@ std::filesystem::path stateFolder() {
   return std::filesystem::path(home && *home ? home : "/tmp") / ".local" / "state" / "patina";
 }
 
-Autosave::Autosave(const std::filesystem::path& root) : Autosave(Existing{}, newPlace(root)) {}
+Autosave::Autosave(const std::filesystem::path& root) : Autosave(Existing{}, newPlace(root)) {
+  removes_ = true;
+}
 
 Autosave::Autosave(Existing, const std::filesystem::path& place)
     : place_(place), lock_(std::make_unique<AppendFile>(place / kLock)) {}
@@ -46,6 +48,7 @@ std::unique_ptr<Autosave> Autosave::adopt(const std::filesystem::path& place) {
 }
 
 Autosave::~Autosave() {
+  if (!removes_) return;
   std::error_code code;
   std::filesystem::remove_all(place_, code);
 }

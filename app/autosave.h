@@ -12,16 +12,19 @@ namespace patina {
 // $XDG_STATE_HOME/patina, or ~/.local/state/patina.
 std::filesystem::path stateFolder();
 
-// One scene's place: a folder locked for as long as this lives, removed with it. Throws FileError.
+// One scene's place: a folder locked for as long as this lives. Throws FileError.
 class Autosave {
  public:
-  // A new place below `root`, which is made.
+  // A new place below `root`, which is made; removed with this.
   explicit Autosave(const std::filesystem::path& root);
-  // What another program left behind; from now on this one's.
+  // What another program left behind. It stays when this ends, for the next start to offer it
+  // again, unless own() said that somebody has its scene.
   static std::unique_ptr<Autosave> adopt(const std::filesystem::path& place);
   ~Autosave();
   Autosave(const Autosave&) = delete;
   Autosave& operator=(const Autosave&) = delete;
+
+  void own() { removes_ = true; }
 
   std::filesystem::path workspace() const; // the folder for the scene; made by whoever saves it
 
@@ -29,6 +32,7 @@ class Autosave {
   struct Existing {};
   Autosave(Existing, const std::filesystem::path& place);
   std::filesystem::path place_;
+  bool removes_ = false;
   std::unique_ptr<AppendFile> lock_;
 };
 

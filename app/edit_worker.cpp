@@ -42,6 +42,7 @@ bool EditWorker::ownsFolder() const {
 void EditWorker::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave) {
   editor_.reset();
   autosave_ = std::move(autosave);
+  if (autosave_) autosave_->own();
   editor_ = std::move(editor);
   recovered_ = autosave_ != nullptr;
   keeps_ = true;

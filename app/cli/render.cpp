@@ -67,14 +67,22 @@ ValueRange parseRange(const std::string& text) {
 // The paint that is read against a scale, at most one; it must be there.
 std::optional<PaintQuantity> readPaint(const std::set<Layer>& layers, const Scene& scene) {
   std::optional<PaintQuantity> found;
+  bool colored = false;
   for (const Layer layer : layers) {
     const auto quantity = paintOf(layer);
-    if (!quantity || quantity == PaintQuantity::color) continue;
+    if (!quantity) continue;
+    if (quantity == PaintQuantity::color) {
+      colored = true;
+      continue;
+    }
     if (found)
       throw Error("--show: of the layers " + std::string(name(layerOf(*found))) + " and " +
                   std::string(name(layer)) + " the surface can have the colours of one");
     found = quantity;
   }
+  if (found && colored)
+    throw Error("--show: of the layers color and " + std::string(name(layerOf(*found))) +
+                " the surface can have the colours of one");
   if (found && !hasPaint(scene, *found))
     throw Error("--show: the layer " + std::string(name(layerOf(*found))) +
                 " needs a workspace where it was painted");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -123,7 +124,7 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
           closest.z(),
           in_band ? 1.0 : 0.0,
           material.stiffness,
-          material.static_friction};
+          std::max(material.static_friction, material.dynamic_friction)};
 }
 
 int runSample(const SampleOptions& options, Console& console) {
@@ -171,7 +172,7 @@ Command sampleCommand() {
       "Points come with the columns x [m],y [m],z [m]; further columns are ignored. Out go phi [m] "
       "(negative inside), the unit direction nx,ny,nz, the nearest face, the closest point "
       "cx,cy,cz "
-      "[m], in_band (1 or 0), stiffness [N/m] and static friction: as painted at the closest "
+      "[m], in_band (1 or 0), stiffness [N/m] and friction that holds: as painted at the closest "
       "point, "
       "the scene's own elsewhere.\n"
       "With a mesh or workspace the face and closest point are exact, and so are phi and the "

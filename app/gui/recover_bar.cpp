@@ -33,8 +33,8 @@ RecoverBar::RecoverBar(QWidget* parent) : QWidget(parent), words_(new QLabel(thi
   });
   button("forget", tr("Delete"), tr("Remove it for good"), [this] {
     try {
-      Autosave::adopt(places_.front()); // and let it go
-    } catch (const Error&) {            // another program has taken it meanwhile
+      Autosave::adopt(places_.front())->own(); // and let it go
+    } catch (const Error&) {                   // another program has taken it meanwhile
     }
     next();
   });

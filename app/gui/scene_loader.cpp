@@ -84,6 +84,7 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
   }
   Editor::OpenSpec spec;
   spec.recover = request.recover;
+  spec.own = request.own;
   try {
     made.editor = Editor::open(request.path, spec, progress, listener_);
   } catch (const FileError& error) {

@@ -20,6 +20,7 @@ struct LoadRequest {
   bool unit_chosen = false; // by a person: no question about the size
   bool adds = false;        // its objects come to those that are open
   bool recover = false;     // of a workspace that is damaged what can be read
+  bool own = true;          // edits go into the folder; false: it is only read
   std::filesystem::path
       place{}; // of a scene that a crash left behind, see autosave.h; no path then
 };

@@ -26,7 +26,9 @@ void openAndWait(MainWindow& window, const LoadRequest& request) {
   const auto iso = QObject::connect(&window.loader(), &SceneLoader::needsIso, [&] {
     problem = QStringLiteral("a volume needs the value of its surface: say --iso VALUE");
   });
-  window.open(request);
+  LoadRequest only_read = request; // what the tour shows is nobody's edit
+  only_read.own = false;
+  window.open(only_read);
   const bool in_time = waitUntil([&] { return ready || !problem.isEmpty(); }, 10 * 60 * 1000);
   for (const auto& connection : {failed, done, unit, iso}) QObject::disconnect(connection);
   if (!problem.isEmpty()) throw Error(problem.toStdString());

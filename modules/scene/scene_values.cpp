@@ -287,7 +287,9 @@ const std::vector<Entry>& entries() {
        },
        [](const Scene& s) { return s.relief.mode == ReliefMode::pulled ? Text() : Text("baked"); }},
       {"relief.height",
-       [](Scene& s, const std::string& t) { s.relief.height = lengthFor("relief.height", t); },
+       [](Scene& s, const std::string& t) {
+         s.relief.height = isNone(t) ? ReliefSettings{}.height : lengthFor("relief.height", t);
+       },
        [](const Scene& s) {
          return s.relief.height == ReliefSettings{}.height ? Text() : text(s.relief.height);
        }},
@@ -303,7 +305,9 @@ const std::vector<Entry>& entries() {
        [](Scene& s, const std::string& t) { s.material_form = formFor("material.force", t); },
        [](const Scene& s) { return nameOf(s.material_form); }},
       {"paint.size",
-       [](Scene& s, const std::string& t) { s.paint_size = wholeFor("paint.size", t, "texels"); },
+       [](Scene& s, const std::string& t) {
+         s.paint_size = isNone(t) ? Scene{}.paint_size : wholeFor("paint.size", t, "texels");
+       },
        [](const Scene& s) {
          return s.paint_size == Scene{}.paint_size ? Text() : Text(std::to_string(s.paint_size));
        }},

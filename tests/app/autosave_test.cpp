@@ -60,6 +60,8 @@ TEST(Autosave, EveryStrokeThatWasDoneIsThereAfterAKill) {
 
   const auto places = leftBehind(folder.path());
   ASSERT_EQ(places.size(), 1u);
+  Autosave::adopt(places[0]); // a recovery that fails or is cancelled
+  ASSERT_EQ(leftBehind(folder.path()), places) << "nobody had the scene, and it is gone";
   auto autosave = Autosave::adopt(places[0]);
   EXPECT_TRUE(leftBehind(folder.path()).empty()) << "it is taken";
   Progress progress;
