@@ -79,6 +79,39 @@ TEST_F(Recovery, ACleanEndLeavesNothingToOffer) {
   EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
 }
 
+TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+  const fs::path ws = folder_ / "ws";
+  paintOne();
+  ASSERT_TRUE(edits(1));
+  window_->saveWorkspaceTo(QString::fromStdString(ws.string()));
+  paintOne();
+  ASSERT_TRUE(edits(2));
+  int asked = 0;
+  const auto answer = [&](QMessageBox::StandardButton button) {
+    QTimer::singleShot(300, window_.get(), [this, button, &asked] {
+      auto* box = window_->findChild<QMessageBox*>(QStringLiteral("unsaved_edits"));
+      if (box == nullptr) return;
+      ++asked;
+      box->button(button)->click();
+    });
+  };
+  answer(QMessageBox::Cancel);
+  EXPECT_FALSE(window_->close());
+  EXPECT_TRUE(window_->isVisible());
+  EXPECT_EQ(window_->standing().done, 2u);
+  answer(QMessageBox::Discard);
+  EXPECT_TRUE(window_->close());
+  EXPECT_EQ(asked, 2);
+  window_ = std::make_unique<MainWindow>();
+  window_->show();
+  ASSERT_TRUE(open(ws));
+  EXPECT_EQ(window_->standing().done, 1u);
+  EXPECT_EQ(window_->standing().edits.size(), 2u) << "and could be done again";
+  EXPECT_FALSE(window_->isWindowModified());
+  EXPECT_TRUE(window_->close()) << "nothing to ask about";
+}
+
 TEST_F(Recovery, ADamagedWorkspaceIsOfferedWhatCanBeRead) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   const fs::path ws = folder_ / "ws";
