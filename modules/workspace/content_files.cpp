@@ -118,8 +118,11 @@ std::string loadContent(const fs::path& folder, const ContentFile& file) {
   const fs::path path = insidePath(folder, file.path);
   std::string bytes = readFile(path);
   if (sha256(bytes) != file.sha256) {
-    throw FileError(path.string(), 0,
-                    std::string("is not the file that was saved (its SHA-256 differs)") + kAdvice);
+    throw FileError(
+        path.string(), 0,
+        std::string(
+            "is not the file that was saved (its SHA-256 differs from that in workspace.json)") +
+            kAdvice);
   }
   return bytes;
 }

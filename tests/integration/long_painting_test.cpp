@@ -16,7 +16,7 @@ constexpr double kRadius = 0.03;
 constexpr double kRate = 30;  // [Hz] of dabs
 constexpr int kStrokes = 120; // of 5 s each
 constexpr int kDabs = 5 * 30; // a stroke
-constexpr std::size_t kBudget = 48u << 20;
+constexpr std::size_t kBudget = 10u << 20;
 
 std::size_t residentBytes() {
   std::ifstream file("/proc/self/statm");
