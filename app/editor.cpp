@@ -226,11 +226,7 @@ PaintReport Editor::apply(const Stroke& stroke, Progress& progress,
       const PaintReport report = dab(sample);
       const double seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      sum.dabs += report.dabs;
-      sum.faces += report.faces;
-      sum.texels += report.texels;
-      sum.nodes += report.nodes;
-      sum.missed += report.missed;
+      sum += report;
       if (dab_seconds) dab_seconds->push_back(seconds);
     }
   } catch (...) {

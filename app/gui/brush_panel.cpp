@@ -94,12 +94,7 @@ QComboBox* BrushPanel::addCombo(const char* name, const QString& caption, const 
 }
 
 void BrushPanel::rebuild(const BrushBook& book) {
-  // The old rows may be the senders of the signal that brought us here.
-  if (rows_ != nullptr) {
-    rows_->hide();
-    rows_->setParent(nullptr);
-    rows_->deleteLater();
-  }
+  takeAway(rows_);
   rows_ = new QWidget(this);
   auto* column = new QVBoxLayout(rows_);
   column->setContentsMargins(0, 0, 0, 0);

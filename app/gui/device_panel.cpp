@@ -5,6 +5,8 @@
 #include <QDoubleSpinBox>
 #include <QSignalBlocker>
 
+#include "app/gui/value_row.h"
+
 namespace patina {
 namespace {
 
@@ -111,13 +113,7 @@ void DevicePanel::setNote(const QString& words) {
 }
 
 void DevicePanel::rebuild() {
-  // The old rows may be the senders of the signal that brought us here.
-  if (numbers_ != nullptr) {
-    numbers_->hide();
-    numbers_->setParent(nullptr);
-    numbers_->deleteLater();
-    numbers_ = nullptr;
-  }
+  takeAway(numbers_);
   if (!choice_.model && choice_.device == kDevices[0]) return;
   numbers_ = new QWidget(this);
   auto* column = new QVBoxLayout(numbers_);

@@ -77,12 +77,7 @@ void ReliefPanel::show(std::shared_ptr<const CompiledScene> scene) {
 }
 
 void ReliefPanel::rebuild(double height) {
-  // The old rows may be the senders of the signal that brought us here.
-  if (rows_ != nullptr) {
-    rows_->hide();
-    rows_->setParent(nullptr);
-    rows_->deleteLater();
-  }
+  takeAway(rows_);
   rows_ = new QWidget(this);
   auto* column = new QGridLayout(rows_);
   column->setContentsMargins(0, 0, 0, 0);

@@ -191,20 +191,22 @@ void Painter::Impl::publish() {
     if (strokes[i]) paint[i] = strokes[i]->paint();
 }
 
+PaintReport& PaintReport::operator+=(const PaintReport& other) {
+  dabs += other.dabs;
+  faces += other.faces;
+  texels += other.texels;
+  nodes += other.nodes;
+  missed += other.missed;
+  return *this;
+}
+
 Scene painted(std::shared_ptr<const PaintSurface> surface, const Scene& scene, const Stroke& stroke,
               PaintReport* report) {
   validate(stroke);
   Painter painter(std::move(surface), scene);
   painter.begin(stroke.brush);
   PaintReport sum;
-  for (const StrokeSample& sample : stroke.samples) {
-    const PaintReport one = painter.dab(sample);
-    sum.dabs += one.dabs;
-    sum.faces += one.faces;
-    sum.texels += one.texels;
-    sum.nodes += one.nodes;
-    sum.missed += one.missed;
-  }
+  for (const StrokeSample& sample : stroke.samples) sum += painter.dab(sample);
   painter.end();
   Scene result = scene;
   for (std::size_t i = 0; i < result.objects.size(); ++i)

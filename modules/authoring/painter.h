@@ -12,6 +12,8 @@ namespace patina {
 struct PaintReport {
   std::size_t dabs = 0, faces = 0, texels = 0, nodes = 0; // touched, summed over dabs
   std::size_t missed = 0; // samples with no surface within the brush
+
+  PaintReport& operator+=(const PaintReport& other);
 };
 
 // What to refresh of one object after some dabs.

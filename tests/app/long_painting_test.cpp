@@ -52,6 +52,11 @@ TEST(LongPainting, TenMinutesStayWithinTheBudgetAndUndoToTheStart) {
     if (i == strokes / 4) settled = residentBytes();
   }
   EXPECT_EQ(editor.history().undoable(), static_cast<std::size_t>(strokes));
+  if (!kSanitized) {
+    EXPECT_LT(editor.history().scenes(), static_cast<std::size_t>(strokes))
+        << "nothing was thinned";
+  }
+  const Scene end = editor.scene();
   // What grows after that is the history, which has its bound, and the strokes themselves.
   EXPECT_LE(residentBytes(), settled + 3 * kBudget);
   for (const auto& [position, scene] : some)
@@ -59,6 +64,8 @@ TEST(LongPainting, TenMinutesStayWithinTheBudgetAndUndoToTheStart) {
   EXPECT_EQ(editor.undo(100000, progress), static_cast<std::size_t>(strokes));
   EXPECT_TRUE(same(editor.scene(), start));
   EXPECT_FALSE(editor.scene().objects[0].paint);
+  EXPECT_EQ(editor.redo(100000, progress), static_cast<std::size_t>(strokes));
+  EXPECT_TRUE(same(editor.scene(), end));
 }
 
 } // namespace

@@ -9,22 +9,9 @@
 #include "authoring/relief_bake.h"
 #include "field/build_field.h"
 #include "geometry/shapes.h"
+#include "support/relief_image.h"
 
 namespace patina::test {
-
-using Height = std::function<double(double u, double v)>;
-
-// g at texel centres.
-inline std::shared_ptr<TiledImage> reliefImage(int size, const Height& g) {
-  auto image = std::make_shared<TiledImage>(size, size, 1);
-  for (int j = 0; j < size; ++j)
-    for (int i = 0; i < size; ++i) {
-      const double value = g((i + 0.5) / size, (j + 0.5) / size);
-      if (value != 0)
-        image->writable(image->tileOf(i, j))[image->offsetOf(i, j)] = static_cast<float>(value);
-    }
-  return image;
-}
 
 // Each corner's coordinates by its position: `uv` must be continuous on every face.
 inline std::shared_ptr<const CornerUvs> uvsBy(const TriangleMesh& mesh,

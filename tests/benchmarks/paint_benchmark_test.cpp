@@ -65,11 +65,7 @@ std::vector<double> secondsOfDabs(const Prepared& on, const Brush& brush, PaintR
     (void)painter.takeChanges();
     seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    sum.dabs += one.dabs;
-    sum.faces += one.faces;
-    sum.texels += one.texels;
-    sum.nodes += one.nodes;
-    sum.missed += one.missed;
+    sum += one;
   }
   return seconds;
 }

@@ -124,27 +124,6 @@ TEST(Material, StiffnessIsLinearOverTheCellBetweenTwoPaints) {
   }
 }
 
-// Work of press at x1, slide to x2, release, return, by the trapezium rule on a fine path [J, given
-// to the hand].
-double loopWork(const HapticSnapshot& snapshot, const std::vector<Vec3>& corners,
-                int steps = 4000) {
-  ContactMemory memory;
-  double work = 0;
-  Vec3 last_force = tick(snapshot, memory, corners.back(), 1e-3).force, last_tip = corners.back();
-  for (const Vec3& corner : corners) {
-    const Vec3 from = last_tip;
-    for (int i = 1; i <= steps; ++i) {
-      const Vec3 tip = from + static_cast<double>(i) / steps * (corner - from);
-      const Contact contact = tick(snapshot, memory, tip, 1e-3);
-      EXPECT_FALSE(contact.fault);
-      work += 0.5 * (contact.force + last_force).dot(tip - last_tip);
-      last_force = contact.force;
-      last_tip = tip;
-    }
-  }
-  return work;
-}
-
 // T-K22d, F6: 1/2 (K2 - K1) d^2 a loop in the paper's form; nothing in the conservative one.
 TEST(Material, OnlyTheLiteralFormDoesWorkRoundALoop) {
   Scene scene = sceneOf(500);

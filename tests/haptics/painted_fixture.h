@@ -4,8 +4,11 @@
 #include "field/build_field.h"
 #include "geometry/shapes.h"
 #include "haptics/contact_fixture.h"
+#include "support/relief_image.h"
 
 namespace patina {
+
+using test::reliefImage;
 
 // A map whose nodes within `box` [m] hold value(p) with weight 1 (paint that covers).
 inline std::shared_ptr<MaterialMap> coveredMap(double voxel, const Box3& box,
@@ -69,17 +72,25 @@ inline const Slab& fineSlab() {
   return made;
 }
 
-// g(u, v) at the texels' centres.
-inline std::shared_ptr<TiledImage> imageOf(int size,
-                                           const std::function<double(double, double)>& g) {
-  auto image = std::make_shared<TiledImage>(size, size, 1);
-  for (int j = 0; j < size; ++j)
-    for (int i = 0; i < size; ++i) {
-      const double value = g((i + 0.5) / size, (j + 0.5) / size);
-      if (value != 0)
-        image->writable(image->tileOf(i, j))[image->offsetOf(i, j)] = static_cast<float>(value);
+// Work of a closed path over these corners, from the last of them, by the trapezium rule [J, given
+// to the hand].
+inline double loopWork(const HapticSnapshot& snapshot, const std::vector<Vec3>& corners,
+                       int steps = 4000) {
+  ContactMemory memory;
+  double work = 0;
+  Vec3 last_force = tick(snapshot, memory, corners.back(), 1e-3).force, last_tip = corners.back();
+  for (const Vec3& corner : corners) {
+    const Vec3 from = last_tip;
+    for (int i = 1; i <= steps; ++i) {
+      const Vec3 tip = from + static_cast<double>(i) / steps * (corner - from);
+      const Contact contact = tick(snapshot, memory, tip, 1e-3);
+      EXPECT_FALSE(contact.fault);
+      work += 0.5 * (contact.force + last_force).dot(tip - last_tip);
+      last_force = contact.force;
+      last_tip = tip;
     }
-  return image;
+  }
+  return work;
 }
 
 inline FeltObject feltRelief(std::shared_ptr<const ReliefFaces> faces,

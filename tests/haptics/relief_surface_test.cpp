@@ -30,7 +30,7 @@ TEST(ReliefSurface, HeightAndSlopeConvergeWithTheTexel) {
   const double s = 2e-3;
   std::vector<double> height_error, slope_error;
   for (const int size : {64, 128, 256}) {
-    const FeltObject object = feltRelief(plane.faces, imageOf(size, wave), s);
+    const FeltObject object = feltRelief(plane.faces, reliefImage(size, wave), s);
     double worst = 0, worst_slope = 0;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> in(-0.45 * kSide, 0.45 * kSide);
@@ -58,7 +58,7 @@ TEST(ReliefSurface, TheSlopeIsTheDerivativeOfTheHeightAlsoOfNoise) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> g(-1, 1), in(-0.49 * kSide, 0.49 * kSide);
   const FeltObject object =
-      feltRelief(plane.faces, imageOf(96, [&](double, double) { return g(random); }), 1e-3);
+      feltRelief(plane.faces, reliefImage(96, [&](double, double) { return g(random); }), 1e-3);
   const double e = 1e-8;
   for (int i = 0; i < 4000; ++i) {
     const Vec3 c(in(random), in(random), 0);
@@ -84,7 +84,7 @@ TEST(ReliefSurface, IsFlatWhereTheImageHasNoTiles) {
 TEST(ReliefSurface, AFaceThatIsNotThereMeansNoHeight) {
   const Slab& plane = fineSlab();
   const FeltObject object =
-      feltRelief(plane.faces, imageOf(64, [](double, double) { return 1; }), 1e-3);
+      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 1; }), 1e-3);
   for (const int face : {-1, 1 << 30})
     EXPECT_EQ(reliefAt(*object.relief, Vec3::Zero(), face).face, -1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -97,7 +97,8 @@ TEST(ReliefSurface, TheWalkFindsTheClosestFace) {
   const TriangleMesh mesh = vase();
   const TriangleTree tree(mesh);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
-  const FeltObject object = feltRelief(faces, imageOf(64, [](double, double) { return 1; }), 1e-3);
+  const FeltObject object =
+      feltRelief(faces, reliefImage(64, [](double, double) { return 1; }), 1e-3);
   std::mt19937 random(3);
   std::uniform_int_distribution<std::size_t> any(0, mesh.triangles.size() - 1);
   std::uniform_real_distribution<double> share(0, 1), off(-2e-4, 2e-4);
@@ -131,7 +132,8 @@ TEST(ReliefSurface, AWalkAlongAPathNeverLosesTheSurface) {
   const TriangleMesh mesh = icosphere(0.03, 40);
   const TriangleTree tree(mesh);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
-  const FeltObject object = feltRelief(faces, imageOf(64, [](double, double) { return 1; }), 1e-3);
+  const FeltObject object =
+      feltRelief(faces, reliefImage(64, [](double, double) { return 1; }), 1e-3);
   std::int32_t face = tree.closestPoint(Vec3(0, 0, 0.03)).surface.face;
   for (int i = 0; i < 20000; ++i) { // 0.3 mm a step, over every vertex there is
     const double a = 0.01 * i, b = 0.0007 * i;

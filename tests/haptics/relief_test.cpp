@@ -27,7 +27,7 @@ TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
   Progress progress;
   const Field sphere = withSamples(buildField(mesh, spec, progress).field);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
-  const auto white = imageOf(64, [](double, double) { return 1; });
+  const auto white = reliefImage(64, [](double, double) { return 1; });
   const double h = sphere->grid.voxel;
   for (const double s : {1e-3, -1e-3})
     for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
@@ -75,8 +75,8 @@ TEST(PulledRelief, OfNoHeightChangesNoBit) {
 TEST(PulledRelief, WhereTheImageIsZeroTheForceIsThatOfTheBareSurface) {
   const Slab& plane = fineSlab();
   const Scene scene = sceneOf(500);
-  const FeltObject part =
-      feltRelief(plane.faces, imageOf(128, [](double u, double) { return u > 0.7 ? 1 : 0; }), 1e-3);
+  const FeltObject part = feltRelief(
+      plane.faces, reliefImage(128, [](double u, double) { return u > 0.7 ? 1 : 0; }), 1e-3);
   const auto without = compileStages(scene, plane.field);
   const auto with = compiledWith(scene, part, plane.field);
   for (double x = -8e-3; x < 6e-3; x += 0.37e-3)
@@ -94,7 +94,7 @@ TEST(PulledRelief, TheForceIsThatOfTheTexturedSurface) {
   for (const double a : {0.1, 0.5}) {
     const double s = a * kSide;
     const FeltObject ramp =
-        feltRelief(plane.faces, imageOf(64, [](double u, double) { return u - 0.5; }), s, 0.1);
+        feltRelief(plane.faces, reliefImage(64, [](double u, double) { return u - 0.5; }), s, 0.1);
     for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
       Scene scene = sceneOf(500);
       scene.relief.form = form;
@@ -124,8 +124,8 @@ TEST(PulledRelief, HasItsWholeHeightAtAWavelengthOfTwoAndAHalfVoxels) {
   const int size = 736; // 23 texels a wavelength
   const double k = 2 * kPi / wavelength;
   const FeltObject object = feltRelief(
-      plane.faces, imageOf(size, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
-      A);
+      plane.faces,
+      reliefImage(size, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
   const auto snapshot = compiledWith(sceneOf(K), object, plane.field);
   // Amplitude by projection onto the wave, and the extremes.
   const int count = 2000;
@@ -146,31 +146,13 @@ TEST(PulledRelief, HasItsWholeHeightAtAWavelengthOfTwoAndAHalfVoxels) {
   EXPECT_NEAR(slope, A * k, 0.01 * A * k);
 }
 
-double loopWork(const HapticSnapshot& snapshot, const std::vector<Vec3>& corners, int steps) {
-  ContactMemory memory;
-  double work = 0;
-  Vec3 last_force = tick(snapshot, memory, corners.back(), 1e-3).force, last_tip = corners.back();
-  for (const Vec3& corner : corners) {
-    const Vec3 from = last_tip;
-    for (int i = 1; i <= steps; ++i) {
-      const Vec3 tip = from + static_cast<double>(i) / steps * (corner - from);
-      const Contact contact = tick(snapshot, memory, tip, 1e-3);
-      EXPECT_FALSE(contact.fault);
-      work += 0.5 * (contact.force + last_force).dot(tip - last_tip);
-      last_force = contact.force;
-      last_tip = tip;
-    }
-  }
-  return work;
-}
-
 // F6: pressed in by dz at a valley, released at a peak: K (h1 - h2) dz from the form of the papers.
 TEST(PulledRelief, OnlyTheLiteralFormDoesWorkRoundALoop) {
   const Slab& plane = fineSlab();
   const double A = 0.25e-3, wavelength = 2e-3, K = 500, dz = 1e-3, k = 2 * kPi / wavelength;
   const FeltObject object = feltRelief(
-      plane.faces, imageOf(1024, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
-      A);
+      plane.faces,
+      reliefImage(1024, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
   const double valley = 0.5 * wavelength, peak = 0;
   const std::vector<Vec3> path{Vec3(valley, 1e-4, -1e-3 - dz), Vec3(peak, 1e-4, -1e-3 - dz),
                                Vec3(peak, 1e-4, -1e-3), Vec3(valley, 1e-4, -1e-3)};
@@ -201,7 +183,7 @@ TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
       uvs[f][static_cast<std::size_t>(c)] = Vec2(mesh.corner(f, c).x() / (2.2 * R) + 0.5, 0.5);
   const auto faces = reliefFaces(mesh, uvs);
   const FeltObject object =
-      feltRelief(faces, imageOf(256, [](double u, double) { return std::sin(12 * u); }), s);
+      feltRelief(faces, reliefImage(256, [](double u, double) { return std::sin(12 * u); }), s);
   const auto at = [&](double angle, double r) {
     return Vec3(r * std::sin(angle), 2e-4, r * std::cos(angle));
   };
@@ -229,8 +211,8 @@ TEST(PulledRelief, TheForceDoesNotStepFromTexelToTexel) {
   const Slab& plane = fineSlab();
   const double A = 0.2e-3, wavelength = 2e-3, k = 2 * kPi / wavelength; // 6.4 texels
   const FeltObject object = feltRelief(
-      plane.faces, imageOf(128, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }),
-      A);
+      plane.faces,
+      reliefImage(128, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
   const auto snapshot = compiledWith(sceneOf(500), object, plane.field);
   ContactMemory memory;
   const double d = 1e-3, step = 1e-6;
@@ -250,7 +232,7 @@ TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
   const Slab& plane = fineSlab();
   const double mu = 0.4;
   const FeltObject flat =
-      feltRelief(plane.faces, imageOf(64, [](double, double) { return 0.5; }), 1e-3);
+      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 1e-3);
   const auto snapshot = compiledWith(withFriction(sceneOf(500), mu, mu), flat, plane.field);
   ContactMemory memory;
   const double d = 0.8e-3;
@@ -271,7 +253,7 @@ TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
   Scene scene = sceneOf(500);
   scene.haptics.magnet = Magnet{1e-3, 300, false};
   const FeltObject flat =
-      feltRelief(plane.faces, imageOf(64, [](double, double) { return 0.5; }), 2e-3);
+      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 2e-3);
   const auto snapshot = compiledWith(scene, flat, plane.field);
   for (const double above : {0.2e-3, 0.7e-3}) {
     const Contact contact = touchOnce(*snapshot, Vec3(1e-3, 0, 1e-3 + above));
@@ -284,7 +266,7 @@ TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
 TEST(PulledRelief, HigherThanTheBandIsRefusedWithTheRemedy) {
   const Slab& plane = fineSlab();
   const FeltObject object =
-      feltRelief(plane.faces, imageOf(64, [](double, double) { return 1; }), 8e-3);
+      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 1; }), 8e-3);
   try {
     compiledWith(sceneOf(500), object, plane.field);
     FAIL() << "accepted";
@@ -305,10 +287,10 @@ TEST(PulledRelief, EditsUnderAPressedTipRamp) {
     for (const double k : {30.0, 200.0})
       versions.push_back(compiledWith(
           scene,
-          feltRelief(
-              plane.faces,
-              imageOf(256, [=](double u, double v) { return std::sin(k * u) * std::cos(k * v); }),
-              s),
+          feltRelief(plane.faces,
+                     reliefImage(256, [=](double u,
+                                          double v) { return std::sin(k * u) * std::cos(k * v); }),
+                     s),
           plane.field));
   versions.push_back(versions.front());
   CrossFade law;
@@ -339,7 +321,7 @@ TEST(PulledRelief, IsThatOfTheObjectTouched) {
   Progress progress;
   const TriangleMesh both = joined(left, right);
   const Field field = withSamples(buildField(both, spec, progress).field);
-  const auto white = imageOf(64, [](double, double) { return 1; });
+  const auto white = reliefImage(64, [](double, double) { return 1; });
   const Scene scene = sceneOf(500);
   std::vector<FeltObject> objects{
       feltRelief(reliefFaces(left, CornerUvs(left.triangles.size())), white, 0.5e-3),

@@ -119,21 +119,9 @@ TEST(PaintedStiffness, TheConservativeFormDoesNoWorkAtAnyRatio) {
     wide.haptics.force_limit = std::numeric_limits<double>::infinity();
     const auto snapshot = compiledWith(wide, halves(scene, 1, k2), plane);
     const double d = 1e-3, theory = 0.5 * k2 * d * d;
-    ContactMemory memory;
-    double work = 0;
     const std::vector<Vec3> corners{Vec3(1e-3, 0, -d), Vec3(1e-3, 0, 1e-4), Vec3(-1e-3, 0, 1e-4),
                                     Vec3(-1e-3, 0, -d)};
-    Vec3 last_tip = corners.back(), last = tick(*snapshot, memory, last_tip, 1e-3).force;
-    for (const Vec3& corner : corners) {
-      const Vec3 from = last_tip;
-      for (int i = 1; i <= 5000; ++i) {
-        const Vec3 tip = from + i / 5000.0 * (corner - from);
-        const Vec3 force = tick(*snapshot, memory, tip, 1e-3).force;
-        work += 0.5 * (force + last).dot(tip - last_tip);
-        last = force;
-        last_tip = tip;
-      }
-    }
+    const double work = loopWork(*snapshot, corners, 5000);
     EXPECT_LT(std::abs(work), 0.01 * theory) << k2;
   }
 }
@@ -182,7 +170,7 @@ Ride ride(const HapticSnapshot& snapshot, double speed, double z) {
 }
 
 FeltObject reliefOf(int size, double height, const std::function<double(double, double)>& g) {
-  return feltRelief(fineSlab().faces, imageOf(size, g), height);
+  return feltRelief(fineSlab().faces, reliefImage(size, g), height);
 }
 
 // A step of 5 mm, a checkerboard at texel frequency, a line of one texel, all white.
@@ -263,7 +251,8 @@ TEST(PaintedRelief, TheMapPredictsTheBuzzOfTexture) {
     const double A = share * limit / (P * k * k);
     const FeltObject object = feltRelief(
         fineSlab().faces,
-        imageOf(1024, [&](double u, double) { return -std::cos(k * Slab::kSide * (u - 0.5)); }), A);
+        reliefImage(1024, [&](double u, double) { return -std::cos(k * Slab::kSide * (u - 0.5)); }),
+        A);
     Scene scene = sceneOf(K);
     const std::span<const FeltObject> objects(&object, 1);
     const StiffnessProbe probe(scene, fineSlab().field, objects);
@@ -318,21 +307,9 @@ TEST(PaintedRoughness, DoesNoWorkRoundALoopAlsoWhereItBegins) {
   for (const ForceForm form : {ForceForm::literal, ForceForm::conservative}) {
     scene.relief.form = form;
     const auto snapshot = compiledWith(scene, object, planeField(kVoxel));
-    ContactMemory memory;
-    double sum = 0;
     const std::vector<Vec3> corners{Vec3(3.1e-3, 2e-3, -2e-3), Vec3(3.1e-3, 2e-3, -1e-3),
                                     Vec3(-1e-3, 1e-4, -1e-3), Vec3(-1e-3, 1e-4, -2e-3)};
-    Vec3 last_tip = corners.back(), last = tick(*snapshot, memory, last_tip, 1e-3).force;
-    for (const Vec3& corner : corners) {
-      const Vec3 from = last_tip;
-      for (int i = 1; i <= 5000; ++i) {
-        const Vec3 tip = from + i / 5000.0 * (corner - from);
-        const Vec3 force = tick(*snapshot, memory, tip, 1e-3).force;
-        sum += 0.5 * (force + last).dot(tip - last_tip);
-        last = force;
-        last_tip = tip;
-      }
-    }
+    const double sum = loopWork(*snapshot, corners, 5000);
     work[form == ForceForm::conservative] = sum;
   }
   std::printf("roughness: literal %.3g J, conservative %.3g J a loop\n", work[0], work[1]);
