@@ -83,11 +83,10 @@ void addHapticOptions(Command& command, SceneOptions& options) {
              "Pull of the magnet for each metre of distance [N/m].", "");
   addSetting(command, options, "--magnet-fades", "magnet.fades", "on|off",
              "The pull falls to zero over the last quarter of its range.", "off");
-  addSetting(command, options, "--contact", "contact", "ray|potential",
-             "ray: the paper's contact point; potential: no closed path does work.", "ray");
-  addSetting(command, options, "--history", "history", "on|off",
-             "Whether the tip stays on the side where it entered a thin part; off as in the paper.",
-             "on");
+  addSetting(command, options, "--contact", "contact", "proxy|ray",
+             "proxy: the nearest point that the tip's proxy reaches over the surface; ray: the "
+             "paper's, from the tip alone.",
+             "proxy");
   addSetting(command, options, "--tip-radius", "tip.radius", "LENGTH",
              "Radius of the tip [m]; its centre feels the surface that far out.", "");
   addSetting(command, options, "--force-limit", "force.limit", "N", "Largest force [N].",

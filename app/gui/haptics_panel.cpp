@@ -64,7 +64,7 @@ void HapticsPanel::rebuild() {
     haptics_.force_limit = value;
     change();
   });
-  addHistoryRow();
+  addContactRow();
   addMenu();
   layout_->insertWidget(0, rows_);
 }
@@ -209,18 +209,20 @@ void HapticsPanel::addTipRow() {
                 [](HapticProperties& h) { h.tip_radius.reset(); });
 }
 
-void HapticsPanel::addHistoryRow() {
-  auto* history = new QCheckBox(tr("Stays on the side it entered"), rows_);
-  history->setObjectName(QStringLiteral("contact_history"));
-  history->setToolTip(tr("Contact history: a tip that was pushed through a thin part is held on "
-                         "the side it came from. Without, the force turns round past the middle, "
-                         "as in the paper."));
-  history->setChecked(haptics_.history);
-  connect(history, &QCheckBox::toggled, this, [this](bool on) {
-    haptics_.history = on;
+void HapticsPanel::addContactRow() {
+  using Contact = HapticProperties::Contact;
+  auto* proxy = new QCheckBox(tr("Stays on the side it entered"), rows_);
+  proxy->setObjectName(QStringLiteral("contact_proxy"));
+  proxy->setToolTip(tr("The contact point is followed over the surface, round corners and edges, "
+                       "and stays on the side where the tip came in. Without, it is found from the "
+                       "tip alone, as in the paper: past the middle of a part the force turns "
+                       "round."));
+  proxy->setChecked(haptics_.contact == Contact::proxy);
+  connect(proxy, &QCheckBox::toggled, this, [this](bool on) {
+    haptics_.contact = on ? Contact::proxy : Contact::ray;
     change();
   });
-  rows_->layout()->addWidget(history);
+  rows_->layout()->addWidget(proxy);
 }
 
 void HapticsPanel::addMenu() {

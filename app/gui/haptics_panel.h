@@ -34,7 +34,7 @@ class HapticsPanel : public QGroupBox {
   void addFrictionRows();
   void addDampingRows();
   void addTipRow();
-  void addHistoryRow();
+  void addContactRow();
   void addMenu();
   void setMode(TouchMode mode);
   template <typename Remove> void makeRemovable(ValueRow* row, const QString& tip, Remove remove);

@@ -38,6 +38,10 @@ constexpr double kHandOverEnd = 1.75, kHandOverWidth = 1;
 // However narrow the band, values at the surface stay those of the nodes.
 constexpr double kShallowestHandOver = -0.25;
 
+// Spread of the nodes' directions up to which they are one, and from there on until the derivative
+// alone is taken.
+constexpr double kOneDirection = 0.005, kCreaseWidth = 0.015;
+
 struct Blend {
   Float4 sum;        // trilinear phi and gradient
   float taylor_half; // 1/2 sum w_i g_i . (x - x_i), F15; zero if not asked for
@@ -113,32 +117,55 @@ GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
   return sample;
 }
 
-GridSample FieldSampler::potentialAtGrid(const Vec3& q) const noexcept {
+SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q) const noexcept {
+  SurfaceSample sample;
   Cell cell;
-  if (!findCell(q, cell)) return beyondBand(q);
+  if (!findCell(q, cell)) [[unlikely]] {
+    const GridSample beyond = beyondBand(q);
+    return {beyond.phi, beyond.gradient, 0, beyond.region};
+  }
+  const Blend value = sampler_ == Sampler::high
+                          ? blend<true>(cell.node, cell.fx, cell.fy, cell.fz)
+                          : blend<false>(cell.node, cell.fx, cell.fy, cell.fz);
+  sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
+  sample.region = FieldRegion::band;
+  const float squared =
+      value.sum[1] * value.sum[1] + value.sum[2] * value.sum[2] + value.sum[3] * value.sum[3];
+  sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
+  if (std::abs(squared - 1) > kOneDirection) [[unlikely]]
+    followCrease(cell, sample);
+  return sample;
+}
+
+// The gradient's length alone does not tell: in a field with relief baked in it is not 1 on either
+// side.
+void FieldSampler::followCrease(const Cell& cell, SurfaceSample& sample) const noexcept {
   const std::array<std::array<double, 2>, 3> weight = {{{1.0 - cell.fx, 1.0 * cell.fx},
                                                         {1.0 - cell.fy, 1.0 * cell.fy},
                                                         {1.0 - cell.fz, 1.0 * cell.fz}}};
-  GridSample sample;
+  Vec3 derivative = Vec3::Zero();
+  double squares = 0;
   for (std::size_t corner = 0; corner < 8; ++corner) {
     const std::size_t i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
     const SampleNode& node = cell.node[k * kLayer + j * kRow + i];
     double value = node.phi;
     const double w = weight[0][i] * weight[1][j] * weight[2][k];
+    const Vec3 g(node.gx, node.gy, node.gz);
+    squares += w * g.squaredNorm();
     if (sampler_ == Sampler::high) {
-      const Vec3 g(node.gx, node.gy, node.gz);
       const Vec3 away(weight[0][1] - static_cast<double>(i), weight[1][1] - static_cast<double>(j),
                       weight[2][1] - static_cast<double>(k));
       value += 0.5 * g.dot(away);
-      sample.gradient += 0.5 * w * g;
+      derivative += 0.5 * w * g;
     }
-    sample.phi += w * value;
-    sample.gradient += value * Vec3((i ? 1 : -1) * weight[1][j] * weight[2][k],
-                                    (j ? 1 : -1) * weight[0][i] * weight[2][k],
-                                    (k ? 1 : -1) * weight[0][i] * weight[1][j]);
+    derivative += value * Vec3((i ? 1 : -1) * weight[1][j] * weight[2][k],
+                               (j ? 1 : -1) * weight[0][i] * weight[2][k],
+                               (k ? 1 : -1) * weight[0][i] * weight[1][j]);
   }
-  sample.region = sample.phi < hand_over_ ? FieldRegion::deep : FieldRegion::band;
-  return sample;
+  if (!(squares > 0)) return;
+  sample.spread = 1 - sample.gradient.squaredNorm() / squares;
+  const double share = std::clamp((sample.spread - kOneDirection) / kCreaseWidth, 0.0, 1.0);
+  sample.gradient += share * (derivative - sample.gradient);
 }
 
 double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {

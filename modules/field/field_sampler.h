@@ -31,6 +31,16 @@ struct GridSample {
   FieldRegion region = FieldRegion::outside;
 };
 
+// As GridSample, for what follows the surface itself (P02). Where the eight nodes agree about the
+// direction the gradient is their blend; across a crease, where a blend is the direction of neither
+// side, it is the derivative of the sampler's own value.
+struct SurfaceSample {
+  double phi = 0;
+  Vec3 gradient = Vec3::Zero();
+  double spread = 0; // of the nodes' directions: 0 = one, 1 = opposite ones; 0 where they agree
+  FieldRegion region = FieldRegion::outside;
+};
+
 // A view: the field must outlive it and must have its sample layer. Any thread.
 //
 // From band to deep the value passes over one voxel of depth to the coarse one, which is held at
@@ -42,10 +52,7 @@ class FieldSampler {
   FieldSampler(const SurfaceField& field, Sampler sampler); // invalid_argument without samples
 
   GridSample atGrid(const Vec3& q) const noexcept; // q in grid coordinates
-  // The sampler's value with its own derivative, not the blend of nodal gradients: continuous from
-  // cell to cell only in value, but the gradient of a potential (kim: direction O(h), F1; high:
-  // O(h^2)). In the band; elsewhere as atGrid(), which `region` tells.
-  GridSample potentialAtGrid(const Vec3& q) const noexcept;
+  SurfaceSample surfaceAtGrid(const Vec3& q) const noexcept;
   // Only the value, for root finding along a ray.
   double phiAtGrid(const Vec3& q) const noexcept;
   // In metres: phi [m].
@@ -71,6 +78,7 @@ class FieldSampler {
  private:
   struct Cell;
   bool findCell(const Vec3& q, Cell& cell) const noexcept;
+  void followCrease(const Cell& cell, SurfaceSample& sample) const noexcept;
   GridSample beyondBand(const Vec3& q) const noexcept;
   GridSample deepSample(const Vec3& q) const noexcept;
   GridSample handOver(const Vec3& q, const GridSample& sample) const noexcept;

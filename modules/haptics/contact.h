@@ -1,50 +1,40 @@
 // The record one servo tick fills in, and what survives it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 
 #include "core/types.h"
+#include "haptics/proxy.h"
 #include "scene/device_model.h"
 #include "scene/material_map.h"
 
 namespace patina {
 
-// How the virtual contact point (VCP) was found this tick.
-enum class ContactMode : std::uint8_t {
-  ray,    // K06: first intersection of the ray along the direction with the surface
-  held,   // tracked on the near side of a part that the tip has passed through or half through
-  ahead,  // a ray along the last direction, about the middle of a deep part (F9)
-  newton, // the ray found no surface (F9): one Newton step
-};
-
 // Survives from tick to tick; owned by the servo thread. reset() = the first tick again.
 struct ContactMemory {
   Vec3 last_tip = Vec3::Zero();
   bool has_last_tip = false;
-  Vec3 velocity = Vec3::Zero();    // [m/s], of the filter stage, where there is one
-  double gap = 0;                  // [s] since last_tip, spent on ticks without a finite tip
-  std::uint64_t bad_tips = 0;      // NaN or infinite
-  std::uint64_t outside_ticks = 0; // tip out of the field's grid
+  Vec3 velocity = Vec3::Zero(); // [m/s], of the filter stage, where there is one
+  double gap = 0;               // [s] since last_tip, spent on ticks without a finite tip
+  std::uint64_t bad_tips = 0;   // NaN or infinite
 
   bool in_contact = false;
-  ContactMode mode = ContactMode::ray;
-  Vec3 last_normal = Vec3::Zero(); // last valid direction (K05 edge case)
-  Vec3 last_candidate = Vec3::Zero();
-  // phi - iso at last_tip [voxels] while out of contact: the surface cannot be crossed by a step
-  // shorter than this and its successor together. Infinite = unknown, do not look.
+  Vec3 last_candidate = Vec3::Zero(); // [m]
+  Proxy proxy;                        // of the proxy stage: its walls; c is last_candidate
+  Vec3 last_normal = Vec3::Zero();    // of the ray stage: last valid direction (K05 edge case)
+  // What phi - iso at last_tip is at least [voxels], out of contact; 0 in contact. Infinite =
+  // nobody has looked.
   double clearance = std::numeric_limits<double>::infinity();
-  Vec3 handover = Vec3::Zero(); // [m], added to the VCP after a change of mode, decaying
-  bool has_handover = false;
 
   Vec3 stuck = Vec3::Zero(); // p_s of K09, world
   bool has_stuck = false;
-  Vec3 last_stretch = Vec3::Zero(); // p - x a tick ago, of the coupling stage
-  bool has_stretch = false;
 
-  bool slipping = false;          // until |p_s - c| < mu_d d
-  Vec3 trail = Vec3::Zero();      // trails the tip closely over the surface: where it comes from
-  Vec3 last_slide = Vec3::Zero(); // from tip to trail, a tick ago
+  bool slipping = false;            // until |p_s - c| < mu_d d
+  Vec3 last_slipped = Vec3::Zero(); // c, a tick ago
+  Vec3 trail = Vec3::Zero();        // trails c closely over the surface: where it comes from
+  Vec3 last_slide = Vec3::Zero();   // from c to trail, a tick ago
 
   bool attracted = false; // a magnet pulled
 
@@ -62,7 +52,8 @@ struct ContactMemory {
   Vec3 last_raw = Vec3::Zero();    // [N], before limit and fade
   bool has_last_raw = false;       // there is a force that the next one can be compared with
   Vec3 fault_force = Vec3::Zero(); // [N], what is being faded
-  double fade = 1;                 // 1 = whole force, 0 = faded by a fault
+  double last_stiffness = 0;       // [N/m], of the place where it was
+  double since_fault = 0;          // [s]
   bool faulted = false;
 
   // Of the passivity stage; `applied` is kept by tick().
@@ -73,13 +64,10 @@ struct ContactMemory {
       Eigen::Matrix<double, 3, kMaxDelay + 1>::Zero(); // [N], forces on their way, a ring
   int newest_in_flight = 0;
 
-  bool held() const noexcept { return in_contact && mode == ContactMode::held; }
   void leaveContact() noexcept {
     in_contact = false;
-    mode = ContactMode::ray;
-    has_handover = false;
+    proxy.walls.count = 0;
     has_stuck = false;
-    has_stretch = false;
     slipping = false;
   }
   void reset() noexcept { *this = ContactMemory{}; }
@@ -93,17 +81,23 @@ struct Contact {
   Material material;            // the snapshot's base, until a stage knows better
 
   bool touching = false;
-  bool deep = false; // deeper than the band: the direction is the coarse nodes'
-  bool held = false; // see ContactMode
+  bool deep = false; // where contact is was found from inside, not by the way in
+  bool snap = false; // the contact point runs by itself: no friction, no work of the hand
   bool fault = false;
   bool attracted = false;        // out of contact, pulled by a magnet
   double attraction = 0;         // 1 where the magnet pulls, less where its band fades out
-  bool approximate = false;      // see ContactMode::newton
   int samples = 0;               // field evaluations of the contact stage (T-K06d)
   Vec3 normal = Vec3::Zero();    // unit, outward; zero if there is no direction (K05)
   Vec3 candidate = Vec3::Zero(); // frictionless VCP c
   Vec3 vcp = Vec3::Zero();       // p, after friction; the tip if not touching
-  double depth = 0;              // d = (c - x).n [m]
+  double depth = 0;              // d = |c - x| [m]
+  // What holds c, the one that bears most first: c - x is the sum of load times normal.
+  struct WallLoad {
+    Vec3 normal = Vec3::Zero(); // unit, outward
+    double load = 0;            // [m]
+  };
+  std::array<WallLoad, 3> wall{};
+  int walls = 0;
   // The nearest point of the original surface: where contact is seen and where an edit acts.
   // Differs from the candidate by the tip's radius and the offset. The tip where nothing is near.
   Vec3 surface = Vec3::Zero();

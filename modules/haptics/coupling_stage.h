@@ -9,12 +9,9 @@ namespace patina {
 double inSeries(double stiffness, double coupling) noexcept;
 
 // Takes the place of spring, velocity filter and damping. The tip is tied to the virtual contact
-// point by a spring k_c in series with the surface's own and by a damper on the vector s = p - x
-// between them (B is the plan's, or the material's where that damps more, up to most_damping):
-//   F = k s + B ds/dt,  k = K k_c / (K + k_c),  then F.n >= 0 unless the surface is magnetic.
-// ds/dt is the backward difference while contact lasts; the first tick of a contact has none. Along
-// the surface the damper acts only while the VCP sticks (the tip slides freely otherwise), and with
-// the spring it pulls no harder than sticking can bear. Behind a magnet stage its pull is damped.
+// point by a spring k_c in series with the surface's own, and damped (dampWalls; B is the plan's,
+// or the material's where that damps more, up to most_damping):
+//   F = k (p - x) - B v across the walls,  k = K k_c / (K + k_c).
 class CouplingStage final : public ForceStage {
  public:
   CouplingStage(double coupling, double damping, double most_damping, bool magnetic = false)

@@ -18,8 +18,9 @@ class CrossFade {
   // What is felt, or, while fading, what was. Null: nothing, no force; that, too, fades.
   const HapticSnapshot* felt() const noexcept { return felt_; }
   bool fading() const noexcept { return fading_; }
-  // Not while fading. `next` and felt() must live until the fade has ended. Contact goes on where
-  // the field is the same; in another field it begins afresh.
+  // Not while fading. `next` and felt() must live until the fade has ended. Contact goes on from
+  // where it is: the contact point stays, or is brought onto the new surface on the side where it
+  // was.
   void turnTo(const HapticSnapshot* next) noexcept;
   // As tick() of snapshot.h. The record is the new law's, its force the mixture.
   Contact tick(const Vec3& tip, double dt) noexcept;

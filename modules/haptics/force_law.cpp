@@ -36,7 +36,7 @@ void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
     add(magnet(softened), says("magnet.range", softened.range));
   };
 
-  LimitSpec limit{haptics.force_limit, soft(stiffestLaw(hardest(haptics, range))),
+  LimitSpec limit{haptics.force_limit, haptics.magnet ? soft(haptics.magnet->strength) : 0.0,
                   range.most.damping, max_speed};
   if (plan.coupling) {
     const CouplingPlan& coupling = *plan.coupling;

@@ -19,8 +19,11 @@ FrictionStage::FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler 
 
 void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const double gain = 1 + depth_gain_ * contact.depth / kFrictionDepthReference;
-  const double slip = contact.material.dynamic_friction * gain * contact.depth;
-  const double stick = std::max(contact.material.static_friction * gain * contact.depth, slip);
+  // Friction follows what the walls bear, which in a groove is more than what they bear together.
+  double borne = 0;
+  for (int i = 0; i < contact.walls; ++i) borne += contact.wall[static_cast<std::size_t>(i)].load;
+  const double slip = contact.material.dynamic_friction * gain * borne;
+  const double stick = std::max(contact.material.static_friction * gain * borne, slip);
   if (!contact.touching || !(stick > 0)) {
     memory.has_stuck = false;
     memory.slipping = false;
@@ -28,12 +31,17 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   }
   const Vec3& c = contact.candidate;
   if (!memory.has_stuck) {
-    memory.stuck = c;
-    memory.trail = contact.tip;
+    memory.stuck = memory.trail = memory.last_slipped = c;
     memory.last_slide.setZero();
     memory.has_stuck = true;
     memory.slipping = false;
   }
+  // What runs by itself does not slip: the stuck point goes with it.
+  if (contact.snap) {
+    memory.stuck += c - memory.last_slipped;
+    memory.trail += c - memory.last_slipped;
+  }
+  memory.last_slipped = c;
   const Vec3 against = slip_ == Friction::SlipDirection::displacement
                            ? againstMotion(contact, memory)
                            : Vec3::Zero();
@@ -51,10 +59,7 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   if (slip > 0) {
     const Vec3 offset =
         slip * (against.isZero(0) ? Vec3(dragged / std::sqrt(dragged_squared)) : against);
-    // Where c itself is not on the surface there is nothing to project to.
-    const bool on_surface =
-        !raised_ && !contact.held && !contact.approximate && !memory.has_handover;
-    p = c + (on_surface ? ontoSurface(contact, offset, slip) : offset);
+    p = c + (raised_ ? offset : ontoSurface(contact, offset, slip));
   }
   if (!memory.slipping) contact.slip_step += (p - memory.stuck).norm();
   memory.slipping = true;
@@ -67,12 +72,12 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
 // while the trail is too short to say.
 Vec3 FrictionStage::againstMotion(const Contact& contact, ContactMemory& memory) const noexcept {
   const auto tangential = [&n = contact.normal](const Vec3& v) { return Vec3(v - v.dot(n) * n); };
-  const Vec3 behind = tangential(memory.trail - contact.tip);
+  const Vec3 behind = tangential(memory.trail - contact.candidate);
   const double length = behind.norm();
-  memory.trail = contact.tip + behind;
+  memory.trail = contact.candidate + behind;
   if (!(length > 0.5 * trail_)) return Vec3::Zero();
   const Vec3 direction = 1 / length * behind;
-  if (length > trail_) memory.trail = contact.tip + trail_ * direction;
+  if (length > trail_) memory.trail = contact.candidate + trail_ * direction;
 
   const Vec3 before = tangential(memory.last_slide);
   memory.last_slide = behind;

@@ -25,8 +25,7 @@ void OwnerStage::apply(Contact& contact, ContactMemory&) const noexcept {
 
 MaterialStage::MaterialStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
                              std::span<const FeltObject> objects, bool gradients)
-    : field_(std::move(field)), sampler_(*field_, sampler), per_voxel_(1 / field_->grid.voxel),
-      gradients_(gradients) {
+    : field_(std::move(field)), sampler_(*field_, sampler), gradients_(gradients) {
   for (const FeltObject& object : objects)
     objects_.push_back({object.material, object.object_from_world});
 }
@@ -42,11 +41,7 @@ void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
   };
   if (!at.roughness_gradient.isZero(0)) contact.roughness_gradient = inWorld(at.roughness_gradient);
   if (!gradients_ || at.stiffness_gradient.isZero(0)) return;
-  const Vec3& n = contact.normal;
-  const double phi = (contact.tip - contact.surface).dot(n);
-  contact.stiffness_gradient =
-      pulledBack(sampler_, per_voxel_ * (contact.tip - sampler_.grid().origin), n, per_voxel_ * phi,
-                 inWorld(at.stiffness_gradient));
+  contact.stiffness_gradient = pulledBack(sampler_, contact, inWorld(at.stiffness_gradient));
 }
 
 void StiffnessSlopeStage::apply(Contact& contact, ContactMemory& memory) const noexcept {

@@ -43,7 +43,6 @@ class MaterialStage final : public ForceStage {
   std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   std::vector<Painted> objects_;
-  double per_voxel_; // [1/m]
   bool gradients_;
 };
 

@@ -2,16 +2,20 @@
 #pragma once
 
 #include "field/field_sampler.h"
+#include "haptics/contact.h"
 
 namespace patina {
 
-// `along`: the gradient at the closest point c(x) of a quantity on the surface; the result is that
-// of the quantity read at c(x), by the tip: J^T along with J = I - n n^T - phi Hess phi. Lies in
-// the plane across the unit normal n. q: the tip in grid coordinates; phi [voxel] there. The
-// curvature is the difference of the sampler's directions a voxel apart: O(h^2) of itself, times
-// phi over its radius. Beyond the band, and where it would more than double the gradient (near a
-// medial axis), the surface counts as flat.
+// `along`: the gradient over the surface of a quantity that is read at the point s closest to the
+// tip; the result is its gradient by the tip, J^T along with J = (I + phi H)^-1 (I - n n^T), H the
+// curvature of the surface at s, where tip = s + phi n. q: s in grid coordinates; n: unit, outward
+// there; phi [voxel]. The curvature is the difference of the sampler's directions a voxel apart:
+// O(h^2) of itself. Towards a medial axis J grows beyond bounds; it is held at 4.
 Vec3 pulledBack(const FieldSampler& sampler, const Vec3& q, const Vec3& n, double phi,
                 const Vec3& along) noexcept;
+
+// The same at contact.surface for a contact held by one wall. Two leave J only the line they have
+// in common, three nothing.
+Vec3 pulledBack(const FieldSampler& sampler, const Contact& contact, const Vec3& along) noexcept;
 
 } // namespace patina

@@ -12,31 +12,33 @@ namespace {
 
 constexpr double kLostVoxels = 0.25;
 
-void notTouching(Contact& contact, ContactMemory& memory) noexcept {
-  contact.touching = contact.held = contact.deep = contact.approximate = false;
+void notTouching(Contact& contact) noexcept {
+  contact.touching = contact.deep = contact.snap = false;
   contact.candidate = contact.vcp = contact.surface = contact.tip;
   contact.normal.setZero();
   contact.slope.setZero();
   contact.depth = 0;
-  memory.has_stretch = false; // friction's own stage lets go itself
 }
 
 // d -= gap, and the normal leans by `slope` more. n - slope is longer than 1: of a potential, the
 // depth along the leaning normal is not the distance.
-void lower(Contact& contact, ContactMemory& memory, double gap, const Vec3& slope) noexcept {
+void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
   const bool leans = !slope.isZero(0);
   if (gap == 0 && !leans) return;
   const double steep = std::sqrt(1 + contact.slope.squaredNorm());
   const double depth = contact.depth / steep - gap;
   if (!(depth > 0)) {
-    notTouching(contact, memory);
+    notTouching(contact);
     return;
   }
   const Vec3 outward = steep * contact.normal - slope; // n - all slopes
   contact.slope += slope;
   const double length = std::sqrt(1 + contact.slope.squaredNorm());
+  for (int i = 0; i < contact.walls; ++i)
+    contact.wall[static_cast<std::size_t>(i)].load *= depth * length / contact.depth;
   contact.depth = depth * length;
   contact.normal = outward / length;
+  if (contact.walls == 1) contact.wall[0].normal = contact.normal;
   contact.candidate = contact.tip + depth * outward;
   contact.vcp = contact.candidate;
 }
@@ -50,15 +52,6 @@ void announceStep(Contact& contact, ContactMemory::Leaning& last, double height)
             std::sqrt(1 + std::max(now.slope.squaredNorm(), last.slope.squaredNorm())) +
         std::max(now.depth, last.depth) * (now.slope - last.slope).norm();
   last = now;
-}
-
-Vec3 byTheTip(const FieldSampler& sampler, const Contact& contact, const Vec3& slope) noexcept {
-  if (slope.isZero(0)) return slope;
-  const double per_voxel = 1 / sampler.grid().voxel;
-  const Vec3 n = (std::sqrt(1 + contact.slope.squaredNorm()) * contact.normal + contact.slope);
-  const double phi = (contact.tip - contact.surface).dot(n);
-  return pulledBack(sampler, per_voxel * (contact.tip - sampler.grid().origin), n, per_voxel * phi,
-                    slope);
 }
 
 } // namespace
@@ -101,13 +94,14 @@ std::size_t Reliefs::bytes() const {
 void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (!contact.touching || contact.normal.isZero(0)) {
     memory.relief.known = false;
-    if (contact.touching) lower(contact, memory, shell_, Vec3::Zero());
+    if (contact.touching) lower(contact, shell_, Vec3::Zero());
     return;
   }
   const ReliefAt at = reliefs_->at(contact.object, contact.surface, memory);
-  const Vec3 slope =
-      form_ == ForceForm::literal ? Vec3::Zero() : byTheTip(reliefs_->sampler(), contact, at.slope);
-  lower(contact, memory, shell_ - at.height, slope);
+  const Vec3 slope = form_ == ForceForm::literal
+                         ? Vec3::Zero()
+                         : pulledBack(reliefs_->sampler(), contact, at.slope);
+  lower(contact, shell_ - at.height, slope);
   announceStep(contact, memory.relief, at.height);
 }
 
@@ -153,11 +147,11 @@ void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexce
     const RoughPattern pattern = roughPattern(object_from_world * contact.surface);
     height = roughness * pattern.height;
     if (form_ == ForceForm::conservative)
-      slope = byTheTip(sampler_, contact,
-                       roughness * (object_from_world.linear().transpose() * pattern.slope) +
-                           pattern.height * contact.roughness_gradient);
+      slope = pulledBack(sampler_, contact,
+                         roughness * (object_from_world.linear().transpose() * pattern.slope) +
+                             pattern.height * contact.roughness_gradient);
   }
-  lower(contact, memory, shell_ - height, slope);
+  lower(contact, shell_ - height, slope);
   announceStep(contact, memory.roughness, height);
 }
 

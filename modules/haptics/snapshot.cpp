@@ -6,21 +6,23 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
-#include "haptics/contact_stage.h"
 #include "haptics/force_law.h"
 #include "haptics/friction_stage.h"
 #include "haptics/limit_stage.h"
 #include "haptics/magnet_stage.h"
 #include "haptics/material_stage.h"
 #include "haptics/offset_stage.h"
-#include "haptics/potential_stage.h"
+#include "haptics/proxy_stage.h"
+#include "haptics/ray_stage.h"
 #include "haptics/relief_stage.h"
 
 namespace patina {
 namespace {
 
 constexpr double kMinVelocityPeriod = 1e-6; // [s]; less measures nothing
-constexpr double kMaxVelocity = 1e6;        // [m/s]; beyond it the tip was set, not moved
+// Of baked relief; what is steeper is not crossed unseen but for parts thinner than a voxel.
+constexpr double kBakedSteepness = 4;
+constexpr double kMaxVelocity = 1e6; // [m/s]; beyond it the tip was set, not moved
 
 void checkField(const SurfaceField* field, const HapticProperties& haptics, double relief,
                 double roughness) {
@@ -103,13 +105,12 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
   };
   const double radius = haptics.tip_radius.value_or(0);
   const double iso = radius + haptics.offset.value_or(0) + shell.relief + shell.roughness;
-  add(std::make_unique<ContactStage>(field, scene.sampler, iso, haptics.history),
-      haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always", bytesRead(*field));
-  const bool baked = range.baked && scene.relief.form == ForceForm::conservative;
-  const bool potential = haptics.contact == HapticProperties::Contact::potential;
-  if (potential || baked)
-    add(std::make_unique<PotentialStage>(field, scene.sampler, iso),
-        potential ? "contact = potential" : "relief.force = conservative");
+  const std::string why = haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always";
+  if (haptics.contact == HapticProperties::Contact::ray)
+    add(std::make_unique<RayStage>(field, scene.sampler, iso), why, bytesRead(*field));
+  else
+    add(std::make_unique<ProxyStage>(field, scene.sampler, iso, range.baked ? kBakedSteepness : 1),
+        why, bytesRead(*field));
   if (haptics.offset) {
     add(std::make_unique<OffsetStage>(field, scene.sampler),
         "offset = " + formatNumber(*haptics.offset));

@@ -1,6 +1,9 @@
 #include "haptics/spring_stage.h"
 
+#include <algorithm>
 #include <numbers>
+
+#include <Eigen/LU>
 
 namespace patina {
 
@@ -31,17 +34,41 @@ void dampSticking(Contact& contact, const Vec3& damper) noexcept {
   if (magnitude > bearable) contact.force -= (1 - bearable / magnitude) * tangential;
 }
 
-void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
-  if (!contact.touching && !contact.attracted) return;
-  const Vec3& n = contact.normal;
-  const double v_n = contact.velocity.dot(n);
-  const double damping = contact.material.damping;
-  const double share = contact.touching ? 1 : contact.attraction;
-  contact.force -= share * damping * v_n * n;
-  const double f_n = contact.force.dot(n);
-  if (f_n < 0 && !magnetic_) contact.force -= f_n * n;
+void dampWalls(Contact& contact, double damping, bool magnetic) noexcept {
+  if (contact.attracted)
+    contact.force -=
+        contact.attraction * damping * contact.velocity.dot(contact.normal) * contact.normal;
+  if (!contact.touching) return;
+  // The velocity's part across the walls, told apart by wall.
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+  Vec3 across = Vec3::Zero();
+  const auto press = [&](const Contact::WallLoad& wall, double speed) {
+    across += speed * wall.normal;
+    const double push = -damping * speed;
+    contact.force +=
+        (magnetic ? push : std::max(push, -contact.stiffness * wall.load)) * wall.normal;
+  };
+  if (contact.walls == 1) {
+    press(contact.wall[0], contact.velocity.dot(contact.wall[0].normal));
+  } else if (contact.walls > 1) {
+    const int n = contact.walls;
+    Matrix gram(n, n);
+    Vector speed(n);
+    for (int i = 0; i < n; ++i) {
+      const Vec3& normal = contact.wall[static_cast<std::size_t>(i)].normal;
+      speed[i] = normal.dot(contact.velocity);
+      for (int j = 0; j < n; ++j)
+        gram(i, j) = normal.dot(contact.wall[static_cast<std::size_t>(j)].normal);
+    }
+    speed = gram.inverse() * speed;
+    for (int i = 0; i < n; ++i) press(contact.wall[static_cast<std::size_t>(i)], speed[i]);
+  }
+  dampSticking(contact, -damping * (contact.velocity - across));
+}
 
-  dampSticking(contact, -damping * (contact.velocity - v_n * n));
+void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {
+  dampWalls(contact, contact.material.damping, magnetic_);
 }
 
 } // namespace patina

@@ -33,12 +33,10 @@ struct HapticProperties {
   std::optional<double> tip_radius; // [m]: the tip's centre feels the iso-surface at this value
   std::optional<double> offset;     // delta [m], K12; excludes a magnet
   std::optional<Magnet> magnet;
-  // ray: the paper's contact point, on the surface along the interpolated gradient (K05, K06).
-  // potential: the force is the gradient of a potential, so that no loop does work (T-ENER).
-  enum class Contact { ray, potential } contact = Contact::ray;
-  // Whether the tip stays on the side where it entered a thin part (swept test, K03, and memory of
-  // the contact). false = as in the paper: past the middle the force turns round.
-  bool history = true;
+  // proxy: the nearest point that the tip's proxy can reach over the surface (P01).
+  // ray: as in the paper, on the surface along the interpolated gradient, from the tip alone (K05,
+  // K06): past the middle of a part the force turns round.
+  enum class Contact { proxy, ray } contact = Contact::proxy;
   double force_limit = 3.3; // [N], the magnitude; never left out
   bool operator==(const HapticProperties&) const = default;
 };

@@ -232,16 +232,14 @@ const std::vector<Entry>& entries() {
        }},
       {"contact",
        [](Scene& s, const std::string& t) {
-         if (t != "ray" && t != "potential")
-           throw Error("contact = '" + t + "': it must be ray or potential");
+         if (t != "proxy" && t != "ray")
+           throw Error("contact = '" + t + "': it must be proxy or ray");
          s.haptics.contact =
-             t == "ray" ? HapticProperties::Contact::ray : HapticProperties::Contact::potential;
+             t == "ray" ? HapticProperties::Contact::ray : HapticProperties::Contact::proxy;
        },
        [](const Scene& s) {
-         return s.haptics.contact == HapticProperties::Contact::ray ? Text() : Text("potential");
+         return s.haptics.contact == HapticProperties::Contact::proxy ? Text() : Text("ray");
        }},
-      {"history", [](Scene& s, const std::string& t) { s.haptics.history = yesOrNo("history", t); },
-       [](const Scene& s) { return s.haptics.history ? Text() : onOff(false); }},
       optionalEntry("tip.radius", &HapticProperties::tip_radius, lengthFor),
       {"force.limit",
        [](Scene& s, const std::string& t) {

@@ -1,0 +1,306 @@
+#include "haptics/proxy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+namespace {
+
+// Lengths in voxels, cosines, and slopes of phi, which is about 1.
+constexpr double kOnSurface = 1e-5;
+constexpr double kAtRest = 3e-3;    // a step that is the last one
+constexpr double kRestError = 3e-4; // what a step may leave undone where the surface is smooth
+constexpr double kSmoothStep = 0.1;
+constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
+constexpr double kFlat = 0.2, kLeastSlope = 0.3;
+constexpr double kTrust = 1; // how far a wall is believed from where the VCP is feasible
+constexpr double kSameWall = 0.97;
+constexpr double kRefuted = 0.02;
+constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
+constexpr double kStaleTrust = 0.25;
+constexpr double kForget = 2;
+constexpr int kMostLooks = 8, kMostTightenings = 3, kMostShortenings = 4;
+constexpr double kLeastStep = 1.0 / 16;
+constexpr double kSeated = 1e-4;
+constexpr int kMostMarch = 128, kMostSeek = 24;
+
+} // namespace
+
+struct ProxySearch::Seen {
+  double height = 0; // phi - iso
+  double slope = 0;
+  Vec3 normal = Vec3::Zero();
+  bool smooth = false; // no crease here
+  bool known = false;  // in the band
+};
+
+struct ProxySearch::Aim {
+  Projection to;
+  bool by_ball = false, by_trust = false;
+};
+
+ProxySearch::Seen ProxySearch::look(const Vec3& q) const noexcept {
+  const SurfaceSample sample = sampler_->surfaceAtGrid(q);
+  Seen seen;
+  seen.height = sample.phi - iso_;
+  seen.known = sample.region == FieldRegion::band;
+  seen.slope = sample.gradient.norm();
+  if (seen.slope > 0) seen.normal = 1 / seen.slope * sample.gradient;
+  seen.smooth = sample.spread == 0;
+  return seen;
+}
+
+namespace {
+
+// A bounded move is the projection of a point nearer to the middle: cutting the way short instead
+// would leave the walls.
+bool shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
+             Projection& to) noexcept {
+  const Vec3 whole = target - middle;
+  double share = 1;
+  bool shortened = false;
+  for (int k = 0; k < kMostShortenings; ++k) {
+    const double squared = (to.z - middle).squaredNorm();
+    if (squared <= radius * radius * (1 + 1e-6)) break;
+    shortened = true;
+    share *= radius / std::sqrt(squared);
+    target = middle + share * whole;
+    to = projectOntoWalls(walls, target);
+  }
+  return shortened;
+}
+
+// Drops or mends what a look at z refutes (P08). Of a convex obstacle a wall seen elsewhere claims
+// too much; of a concave one it stays true.
+void reviewWalls(Walls& walls, const Vec3& z, double height, const Vec3& normal,
+                 bool smooth) noexcept {
+  for (int i = walls.count - 1; i >= 0; --i) {
+    Wall& wall = walls[i];
+    const double excess = wall.height(z) - height;
+    const bool same = wall.normal.dot(normal) > kSameWall;
+    bool drop = false;
+    if (excess < -kOnSurface) {
+      drop = excess < -kRefuted || same;
+      if (!drop) wall.offset += excess;
+    } else if (same) {
+      const double turn = (wall.normal - normal).norm();
+      drop = smooth || turn < 1e-5 || excess < 0.2 * turn * (wall.seen - z).norm();
+    }
+    if (drop) walls.remove(i);
+  }
+}
+
+} // namespace
+
+ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec3& start,
+                                    double ball, const Vec3& anchor, double trust) const noexcept {
+  Aim aim;
+  Vec3 target = x;
+  aim.to = projectOntoWalls(walls, target);
+  aim.by_ball = shorten(walls, start, ball, target, aim.to);
+  aim.by_trust = shorten(walls, anchor, trust, target, aim.to);
+  return aim;
+}
+
+ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const noexcept {
+  ProxyMove move;
+  Walls& walls = proxy.walls;
+  Vec3 start = proxy.c, anchor = proxy.c;
+  double anchor_height = 0, trust = kTrust;
+  if (walls.count == 0) {
+    const Seen seen = look(start);
+    ++move.samples;
+    anchor_height = std::max(seen.height, 0.0);
+    if (seen.slope > kFlat)
+      walls.add({seen.normal,
+                 seen.normal.dot(start) - seen.height / std::max(seen.slope, kLeastSlope), start});
+  }
+
+  bool x_inside = false, converged = false;
+  Vec3 c = start;
+  double height = 0;
+  Aim aim = aimAt(x, walls, start, ball, anchor, trust);
+  for (int looks = 0; looks < kMostLooks && !converged; ++looks) {
+    if (!x_inside && projectOntoWalls(walls, x).count == 0) {
+      // Beyond every wall: contact has ended, unless another one stands there or between.
+      const double at_x = heightAt(x);
+      ++move.samples;
+      x_inside = at_x < 0;
+      if (!x_inside) {
+        const double way = (x - anchor).norm();
+        std::optional<Vec3> crossing;
+        if (way > kTrust && per_steepness_ * (at_x + anchor_height) < way)
+          crossing = firstCrossing(anchor, anchor_height, x, at_x, move.samples);
+        if (!crossing) {
+          move.clearance = at_x;
+          return move;
+        }
+        start = anchor = *crossing;
+        anchor_height = 0;
+        walls.count = 0;
+        x_inside = true; // behind what was crossed
+        aim.to.z = *crossing;
+      }
+    }
+    const Vec3 z = aim.to.z;
+    const Seen seen = look(z);
+    ++move.samples;
+    height = seen.height;
+    c = z;
+    if (height < -kDeep || (seen.slope < kFlat && height < 0)) {
+      const double share = std::clamp(anchor_height / (anchor_height - height), 0.1, 0.5);
+      aim.to.z = anchor + share * (z - anchor);
+      trust = (aim.to.z - anchor).norm();
+      if (trust < 1e-9) break;
+      continue;
+    }
+    double turned = 0, since = 1;
+    const bool lone = walls.count == 1;
+    if (lone) {
+      turned = (walls[0].normal - seen.normal).norm();
+      since = (walls[0].seen - z).norm();
+    }
+    reviewWalls(walls, z, height, seen.normal, seen.smooth);
+    if (seen.slope >= kFlat && seen.known)
+      walls.add({seen.normal, seen.normal.dot(z) - height / std::max(seen.slope, kLeastSlope), z});
+    if (height >= -kOnSurface) {
+      anchor = z;
+      anchor_height = std::max(height, 0.0);
+      trust = std::min(kTrust, std::max(2 * trust, kStaleTrust));
+    }
+    const Aim next = aimAt(x, walls, start, ball, anchor, trust);
+    const double step = (next.to.z - z).norm();
+    const bool bounded = next.by_ball || next.by_trust;
+    if (seen.smooth && walls.count == 1 && next.to.count == 1 && !bounded && step < kSmoothStep) {
+      // What the step leaves undone is the share of it by which the surface turns under the depth.
+      const double share = std::min(1.0, next.to.load[0] * turned / std::max(since, 1e-2));
+      if (step < kRestError || (lone && share * step < kRestError)) {
+        c = next.to.z;
+        converged = true;
+      }
+    } else if (std::abs(height) < kOnSurface &&
+               step < (next.by_ball ? std::max(kAtRest, 0.1 * ball) : kAtRest) && !next.by_trust) {
+      int stale = -1;
+      for (int k = 0; k < next.to.count; ++k) {
+        const int i = next.to.active[static_cast<std::size_t>(k)];
+        if ((walls[i].seen - z).squaredNorm() > kStale * kStale) stale = i;
+      }
+      if (stale < 0) {
+        c = z;
+        converged = true;
+      } else {
+        walls.remove(stale);
+        trust = kStaleTrust;
+        aim = aimAt(x, walls, start, ball, anchor, trust);
+        continue;
+      }
+    }
+    aim = next;
+  }
+
+  if (!converged) {
+    // The feasible end of the last step.
+    for (int k = 0; height < -kOnSurface && k < kMostTightenings; ++k) {
+      const double share = std::clamp(anchor_height / (anchor_height - height), 0.05, 0.95);
+      const Vec3 z = anchor + share * (c - anchor);
+      const double at = heightAt(z);
+      ++move.samples;
+      if (at >= -kOnSurface) {
+        anchor = z;
+        anchor_height = std::max(at, 0.0);
+        if (at < kOnSurface) break;
+      } else {
+        c = z;
+        height = at;
+      }
+    }
+    c = height >= -kOnSurface ? c : anchor;
+  }
+  const double from_start = (start - x).squaredNorm();
+  if ((c - x).squaredNorm() > from_start)
+    c = (anchor - x).squaredNorm() <= from_start ? anchor : start;
+
+  for (int i = walls.count - 1; i >= 0; --i)
+    if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);
+  proxy.c = c;
+  move.touching = true;
+  move.snap = aim.by_ball;
+  move.held = projectOntoWalls(walls, x);
+  return move;
+}
+
+std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_from, const Vec3& to,
+                                               std::optional<double> height_to,
+                                               int& samples) const noexcept {
+  const double length = (to - from).norm();
+  if (!(length > 0)) return std::nullopt;
+  const Vec3 along = 1 / length * (to - from);
+  double outside = 0, inside = -1, above = std::max(height_from, 0.0), below = 0;
+  // Where a step is no longer than what the field resolves the far end alone tells.
+  if (height_to && *height_to < 0 && length < 1) {
+    inside = length;
+    below = *height_to;
+  }
+  for (int i = 0; inside < 0 && i < kMostMarch; ++i) {
+    if (outside >= length) return std::nullopt;
+    const double s = std::min(length, outside + std::max(per_steepness_ * above, kLeastStep));
+    const double height = heightAt(from + s * along);
+    ++samples;
+    if (height < 0) {
+      inside = s;
+      below = height;
+    } else {
+      outside = s;
+      above = height;
+    }
+  }
+  if (inside < 0) return std::nullopt;
+  for (int k = 0; k < 24 && above > kOnSurface; ++k) {
+    // False position, kept off the ends so that a kink cannot hold it up.
+    const double share = std::clamp(above / (above - below), 0.05, 0.95);
+    const double s = outside + share * (inside - outside);
+    const double height = heightAt(from + s * along);
+    ++samples;
+    if (height < 0) {
+      inside = s;
+      below = height;
+    } else {
+      outside = s;
+      above = height;
+    }
+  }
+  return from + outside * along;
+}
+
+bool ProxySearch::seat(const Vec3& x, Vec3& c, int& samples) const noexcept {
+  const double height = heightAt(c);
+  ++samples;
+  if (std::abs(height) < kSeated) return true;
+  const std::optional<Vec3> at =
+      height > 0 ? firstCrossing(c, height, x, std::nullopt, samples) : seekSurface(c, samples);
+  if (at) c = *at;
+  return at.has_value();
+}
+
+std::optional<Vec3> ProxySearch::seekSurface(const Vec3& x, int& samples) const noexcept {
+  Vec3 q = x;
+  for (int i = 0; i < kMostSeek; ++i) {
+    const GridSample sample = sampler_->atGrid(q);
+    ++samples;
+    const double height = sample.phi - iso_;
+    if (sample.region == FieldRegion::band && std::abs(height) < kOnSurface) return q;
+    if (sample.region == FieldRegion::deep) {
+      // A blend of opposite directions is none of them; then the nearest point that a node knows.
+      if (const auto feet = sampler_->deepFeet(q)) {
+        q = feet->nearest;
+        continue;
+      }
+    }
+    const double squared = sample.gradient.squaredNorm();
+    if (!(squared > kFlat * kFlat)) return std::nullopt;
+    q -= std::clamp(height, -4.0, 4.0) / squared * sample.gradient;
+  }
+  return std::nullopt;
+}
+
+} // namespace patina

@@ -1,0 +1,33 @@
+// The contact point as in the paper: where a ray along the field's direction leaves (K03, K05,
+// K06).
+#pragma once
+
+#include <memory>
+
+#include "field/field_sampler.h"
+#include "haptics/stage.h"
+
+namespace patina {
+
+// Sets touching, normal, candidate, vcp (= candidate), depth and surface from the tip alone. Past
+// the middle of a part the force turns round (T-K12b); across creases the ray may miss the surface,
+// and loops may do work: ProxyStage does neither. Where the direction has no length the last one
+// holds; a ray that finds no surface takes one Newton step (F9). Deeper than the band the direction
+// is that of the coarse nodes.
+class RayStage final : public ForceStage {
+ public:
+  // iso [m]: the tip's radius plus the offset (K12). Throws std::invalid_argument without a sample
+  // layer.
+  RayStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double iso);
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "contact"; }
+
+ private:
+  std::shared_ptr<const SurfaceField> field_;
+  FieldSampler sampler_;
+  double voxel_;
+  double per_voxel_; // [1/m]
+  double iso_;       // voxels
+};
+
+} // namespace patina
