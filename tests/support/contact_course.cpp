@@ -1,0 +1,146 @@
+#include "support/contact_course.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "support/contact_scenes.h"
+
+namespace patina::test {
+namespace {
+
+// Whether the method says that its force steps by a rule of its own this tick.
+template <class AnyContact> bool snapped(const AnyContact& contact) {
+  if constexpr (requires { contact.snap; })
+    return contact.snap;
+  else
+    return false;
+}
+
+void append(std::vector<double>& to, const std::vector<double>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+} // namespace
+
+void CourseReport::add(const CourseReport& other) {
+  ticks += other.ticks;
+  contacts += other.contacts;
+  lost += other.lost;
+  pulls += other.pulls;
+  faults += other.faults;
+  snaps += other.snaps;
+  unjudged += other.unjudged;
+  excesses += other.excesses;
+  worst_excess = std::max(worst_excess, other.worst_excess);
+  append(error, other.error);
+  append(free_error, other.free_error);
+  append(samples, other.samples);
+  append(ns, other.ns);
+}
+
+ContactJudge::ContactJudge(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso)
+    : snapshot_(snapshot), surface_(surface), iso_(iso), voxel_(snapshot.field->grid.voxel) {}
+
+void ContactJudge::restart() {
+  memory_.reset();
+  has_last_ = false;
+}
+
+Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Contact now = tick(snapshot_, memory_, tip, dt);
+  const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - begin;
+  ++report.ticks;
+  if (now.fault || !now.force.allFinite()) ++report.faults;
+  if (!has_last_) {
+    has_last_ = true;
+    own_ = tip;
+    last_ = now;
+    return now;
+  }
+  const double step = (tip - last_.tip).norm(), ball = step + kOwnSpeed * dt;
+  const double excess =
+      (now.force - last_.force).norm() - kJudgeStiffness * (2 * step + kOwnSpeed * dt);
+  if (!snapped(now)) {
+    // Not a number is worse than any.
+    if (!(excess <= report.worst_excess)) report.worst_excess = excess;
+    report.excesses += !(excess <= 0.05);
+  }
+
+  Vec3 seed = own_;
+  if (last_.touching) {
+    if (surface_.distance(last_.candidate) > iso_ - voxel_) seed = last_.candidate;
+  } else if (surface_.distance(last_.tip) > iso_ - 0.75 * voxel_) {
+    seed = last_.tip;
+  }
+  const ProxyAnswer answer = proxyOracle(surface_, iso_, tip, seed, ball);
+  const ProxyAnswer own = proxyOracle(surface_, iso_, tip, own_, ball);
+  own_ = own.point;
+  last_ = now;
+  const bool in_contact = (answer.found && (answer.point - tip).norm() > 0.5 * voxel_) ||
+                          surelyInside(surface_, iso_, 0.75 * voxel_, tip);
+  if (!answer.found) ++report.unjudged;
+  if (in_contact) {
+    ++report.contacts;
+    report.snaps += snapped(now);
+    report.lost += now.force.squaredNorm() == 0;
+    report.pulls += answer.found && now.force.dot(answer.point - tip) < 0;
+    report.samples.push_back(now.samples);
+    report.ns.push_back(time.count());
+  }
+  if (answer.found && (in_contact || now.touching)) {
+    report.error.push_back((now.force - kJudgeStiffness * (answer.point - tip)).norm());
+    report.free_error.push_back((now.force - kJudgeStiffness * (own_ - tip)).norm());
+  }
+  return now;
+}
+
+CourseReport runCourse(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
+                       long contacts, unsigned seed) {
+  CourseReport report;
+  TouchPaths paths(surface, iso, seed);
+  ContactJudge judge(snapshot, surface, iso);
+  while (report.contacts < contacts && report.ticks < 4 * contacts) {
+    const TouchPaths::Touch touch = paths.touch();
+    if (touch.fresh) judge.restart();
+    for (const Vec3& tip : touch.tips) judge.feel(tip, report);
+  }
+  return report;
+}
+
+CourseReport runPath(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
+                     const std::vector<Vec3>& tips) {
+  CourseReport report;
+  ContactJudge judge(snapshot, surface, iso);
+  for (const Vec3& tip : tips) judge.feel(tip, report);
+  return report;
+}
+
+LoopReport runLoops(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
+                    int loops, unsigned seed) {
+  LoopReport report;
+  TouchPaths paths(surface, iso, seed);
+  for (int tried = 0; report.loops < loops && tried < 20 * loops; ++tried) {
+    const TouchPaths::Place place = tried % 2 ? paths.placeByACrease() : paths.place();
+    if (!paths.reachable(place)) continue;
+    ++report.loops;
+    ContactMemory memory;
+    Vec3 last_tip = Vec3::Zero(), last_force = Vec3::Zero();
+    double work = 0; // given to the hand
+    bool first = true;
+    for (const Vec3& tip : paths.loop(place)) {
+      const Vec3 force = tick(snapshot, memory, tip, kTick).force;
+      if (!first) work += 0.5 * (force + last_force).dot(tip - last_tip);
+      first = false;
+      last_tip = tip;
+      last_force = force;
+    }
+    report.created = std::max(report.created, work);
+  }
+  return report;
+}
+
+} // namespace patina::test
