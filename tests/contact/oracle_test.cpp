@@ -196,7 +196,8 @@ TEST(ProxyOracle, IsALocalMinimumOnEveryScene) {
         const double ball = 5e-3;
         const ProxyAnswer c = proxyOracle(surface, iso, tip, seed, ball);
         if (!c.found || c.at_ball) continue;
-        EXPECT_LT(c.steps, 1500) << scene.name << ' ' << iso;
+        EXPECT_LT(c.steps, 1500) << scene.name << ' ' << iso << " tip " << tip.transpose()
+                                 << " seed " << seed.transpose();
         EXPECT_GE(surface.distance(c.point), iso - 2e-9) << scene.name << ' ' << iso;
         const double depth = (c.point - tip).norm();
         if (depth < 1e-4) continue;

@@ -11,6 +11,8 @@
 namespace patina::test {
 namespace {
 
+constexpr double kDeepest = 8e-3; // [m]
+
 // Whether the method says that its force steps by a rule of its own this tick.
 template <class AnyContact> bool snapped(const AnyContact& contact) {
   if constexpr (requires { contact.snap; })
@@ -47,6 +49,7 @@ ContactJudge::ContactJudge(const HapticSnapshot& snapshot, const ExactSurface& s
 void ContactJudge::restart() {
   memory_.reset();
   has_last_ = false;
+  depth_ = 0;
 }
 
 Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
@@ -80,6 +83,7 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
   const ProxyAnswer own = proxyOracle(surface_, iso_, tip, own_, ball);
   own_ = own.point;
   last_ = now;
+  depth_ = std::max((answer.point - tip).norm(), (own_ - tip).norm());
   const bool in_contact = (answer.found && (answer.point - tip).norm() > 0.5 * voxel_) ||
                           surelyInside(surface_, iso_, 0.75 * voxel_, tip);
   if (!answer.found) ++report.unjudged;
@@ -106,7 +110,11 @@ CourseReport runCourse(const HapticSnapshot& snapshot, const ExactSurface& surfa
   while (report.contacts < contacts && report.ticks < 4 * contacts) {
     const TouchPaths::Touch touch = paths.touch();
     if (touch.fresh) judge.restart();
-    for (const Vec3& tip : touch.tips) judge.feel(tip, report);
+    for (const Vec3& tip : touch.tips) {
+      judge.feel(tip, report);
+      if (judge.depth() > kDeepest) break;
+    }
+    if (judge.depth() > 0) paths.forget();
   }
   return report;
 }

@@ -45,6 +45,8 @@ class ContactJudge {
   // Forgets what was, as at the beginning: the next tip has no way from the last.
   void restart();
   Contact feel(const Vec3& tip, CourseReport& report, double dt = kTick);
+  // [m], from the tip to c, the longer of the two that the errors are told by.
+  double depth() const { return depth_; }
 
  private:
   const HapticSnapshot& snapshot_;
@@ -54,6 +56,7 @@ class ContactJudge {
   bool has_last_ = false;
   Contact last_;
   Vec3 own_ = Vec3::Zero(); // the oracle's
+  double depth_ = 0;
 };
 
 // Tip paths of one touch after another, from the exact distance alone. The same seed, the same
@@ -69,13 +72,16 @@ class TouchPaths {
   // Down from 3 mm above a random place, pressed by up to 6 mm (3 N) and slid at 10 .. 500 mm/s
   // while the depth varies, up and on to the next place where the way there is free.
   Touch touch();
+  // The next touch begins afresh.
+  void forget() { has_last_ = false; }
 
   struct Place {
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero(); // on the triangles
   };
   // Uniform over the area.
   Place place();
-  // Within 2 mm of an edge whose faces differ by more than 20 degrees; place() without such.
+  // Within 2 mm of an edge whose faces differ by more than 20 degrees, or of where two meshes meet;
+  // place() without such.
   Place placeByACrease();
   // Free from 3 mm above the place down to it.
   bool reachable(const Place& place) const;
@@ -86,6 +92,7 @@ class TouchPaths {
  private:
   double uniform(double low, double high);
   Vec3 direction();
+  void findMeetings();
   bool isFree(const Vec3& from, const Vec3& to, double room) const;
 
   struct Crease {
@@ -102,7 +109,9 @@ class TouchPaths {
   Vec3 last_ = Vec3::Zero();
 };
 
-// Touches until the oracle has seen `contacts` ticks in contact, or four times as many in all.
+// Touches until the oracle has seen `contacts` ticks in contact, or four times as many in all. A
+// touch ends early where the tip gets more than 8 mm (4 N) from its contact point, and the next one
+// begins afresh where the tip has not come back to the side where it entered: no hand gets there.
 CourseReport runCourse(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
                        long contacts, unsigned seed);
 // One path from free to free, judged.

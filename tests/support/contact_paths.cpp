@@ -52,6 +52,24 @@ TouchPaths::TouchPaths(const ExactSurface& surface, double iso, unsigned seed)
       }
     }
   }
+  if (surface.meshes().size() > 1) findMeetings();
+}
+
+// Where two of the meshes meet: faces outside another one and no farther than 2 mm from it.
+void TouchPaths::findMeetings() {
+  std::vector<ExactSurface> parts;
+  for (const TriangleMesh& mesh : surface_.meshes()) parts.emplace_back(std::vector{mesh});
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (std::size_t f = 0; f < parts[i].meshes()[0].triangles.size(); ++f) {
+      const TriangleMesh& mesh = parts[i].meshes()[0];
+      const Vec3 at = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
+      for (std::size_t j = 0; j < parts.size(); ++j) {
+        if (j == i) continue;
+        const ExactSurface::Nearest other = parts[j].nearest(at);
+        if (other.distance > 0 && other.distance < 2e-3)
+          creases_.push_back({at, at, faceNormal(mesh, f), other.outward});
+      }
+    }
 }
 
 double TouchPaths::uniform(double low, double high) {
@@ -141,7 +159,7 @@ TouchPaths::Touch TouchPaths::touch() {
   Vec3 heading = direction();
   const double turn = uniform(-60, 60), waves = uniform(5, 60); // [rad/m] of way
   const double length = uniform(0.01, 0.06);
-  const int ticks = static_cast<int>(std::clamp(length / (speed * kTick), 100.0, 1500.0));
+  const int ticks = static_cast<int>(std::clamp(length / (speed * kTick), 100.0, 500.0));
   for (int i = 0; i < ticks; ++i) {
     const double way = speed * kTick * i;
     const ExactSurface::Nearest near = surface_.nearest(guide);

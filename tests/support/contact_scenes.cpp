@@ -65,7 +65,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
         {"room", [] { return one(roomSolid()); }},
         {"wedge",
          [] {
-           return one(prism({{-0.05, -0.015}, {0.05, -0.015}, {0.05, 0.015}}, 0.08));
+           return one(prism({{-0.05, -0.03}, {0.05, -0.03}, {0.05, 0.04}}, 0.08));
          }},
         {"plate1", [] { return one(plateSolid(0.001)); }},
         {"plate2", [] { return one(plateSolid(0.002)); }},
@@ -257,6 +257,11 @@ std::vector<ContactScene> contactScenes() {
   std::vector<ContactScene> scenes;
   for (const std::string& name : contactSceneNames()) scenes.push_back(contactScene(name));
   return scenes;
+}
+
+unsigned courseSeed(const ContactScene& scene, double iso, unsigned seed) {
+  for (const char letter : scene.name) seed = 31 * seed + static_cast<unsigned char>(letter);
+  return 31 * seed + static_cast<unsigned>(std::lround(1e6 * iso));
 }
 
 std::shared_ptr<const SurfaceField> contactField(const ContactScene& scene, double iso,

@@ -40,6 +40,9 @@ TriangleMesh lSolid();                         // inner edge along y at x = z = 
 TriangleMesh roomSolid();                      // inner corner at 0, free where x, y, z > 0
 TriangleMesh roughSolid(unsigned seed);        // as a scan leaves it: noise, uneven triangles
 
+// Differs from scene to scene and iso to iso, so that no two of them walk the same paths.
+unsigned courseSeed(const ContactScene& scene, double iso, unsigned seed);
+
 // Stiffness of all judgements [N/m].
 inline constexpr double kJudgeStiffness = 500;
 

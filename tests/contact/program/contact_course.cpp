@@ -75,11 +75,11 @@ void run(const Options& options) {
     const ExactSurface surface(scene.meshes);
     for (const double iso : scene.isos) {
       if (options.iso >= 0 && std::abs(iso - options.iso) > 1e-9) continue;
+      const unsigned seed = courseSeed(scene, iso, options.seed);
       const auto snapshot =
           contactSnapshot(contactField(scene, iso, options.resolution), iso, options.contact);
-      const CourseReport report = runCourse(*snapshot, surface, iso, options.ticks, options.seed);
-      const LoopReport loops =
-          runLoops(*snapshot, surface, iso, options.loops, options.seed + 1000);
+      const CourseReport report = runCourse(*snapshot, surface, iso, options.ticks, seed);
+      const LoopReport loops = runLoops(*snapshot, surface, iso, options.loops, seed + 1000);
       printRow(name, iso, report, loops.created);
       total.add(report);
       created = std::max(created, loops.created);
