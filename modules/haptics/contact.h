@@ -23,6 +23,7 @@ struct ContactMemory {
   bool in_contact = false;
   Vec3 last_candidate = Vec3::Zero(); // [m]
   Proxy proxy;                        // of the proxy stage: its walls; c is last_candidate
+  bool reseat = false;                // the surface may be another one than a tick ago
   Vec3 last_normal = Vec3::Zero();    // of the ray stage: last valid direction (K05 edge case)
   // What phi - iso at last_tip is at least [voxels], out of contact; 0 in contact. Infinite =
   // nobody has looked.

@@ -21,8 +21,7 @@ void CrossFade::turnTo(const HapticSnapshot* next) noexcept {
   next_memory_ = memory_;
   if (!felt_ || !next) next_memory_.leaveContact();
   if (!felt_) next_memory_.has_last_tip = false; // nobody has followed the tip
-  // The walls are looked at again; where the surface is the same nothing changes (P03).
-  next_memory_.proxy.walls.count = 0;
+  next_memory_.reseat = true;
   // What the old law measured is not the new one's: neither its force nor its clearance.
   next_memory_.has_last_raw = false;
   next_memory_.clearance = std::numeric_limits<double>::infinity();

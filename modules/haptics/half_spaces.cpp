@@ -87,11 +87,11 @@ class Search {
     return false;
   }
 
-  const Projection& best() const noexcept { return best_; }
+  const WallProjection& best() const noexcept { return best_; }
 
  private:
   const Problem& p_;
-  Projection best_;
+  WallProjection best_;
   double least_ = std::numeric_limits<double>::infinity();
 };
 
@@ -117,8 +117,8 @@ void Walls::add(const Wall& newest) noexcept {
   (*this)[count++] = newest;
 }
 
-Projection projectOntoWalls(const Walls& walls, const Vec3& x) noexcept {
-  Projection result;
+WallProjection projectOntoWalls(const Walls& walls, const Vec3& x) noexcept {
+  WallProjection result;
   result.z = x;
   if (walls.count == 1) {
     const double violated = -walls[0].height(x);

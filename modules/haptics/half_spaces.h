@@ -30,7 +30,7 @@ struct Walls {
 };
 
 // z = argmin |y - x|^2 subject to L_i(y) >= 0 = x + sum of load_i n_i over the active walls.
-struct Projection {
+struct WallProjection {
   Vec3 z = Vec3::Zero();
   std::array<int, 3> active{};
   std::array<double, 3> load{}; // multipliers, >= 0
@@ -38,6 +38,6 @@ struct Projection {
 };
 
 // Where the half-spaces have no point in common, the candidate that violates them least.
-Projection projectOntoWalls(const Walls& walls, const Vec3& x) noexcept;
+WallProjection projectOntoWalls(const Walls& walls, const Vec3& x) noexcept;
 
 } // namespace patina

@@ -35,7 +35,7 @@ struct ProxySearch::Seen {
 };
 
 struct ProxySearch::Aim {
-  Projection to;
+  WallProjection to;
   bool by_ball = false, by_trust = false;
 };
 
@@ -55,7 +55,7 @@ namespace {
 // A bounded move is the projection of a point nearer to the middle: cutting the way short instead
 // would leave the walls.
 bool shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
-             Projection& to) noexcept {
+             WallProjection& to) noexcept {
   const Vec3 whole = target - middle;
   double share = 1;
   bool shortened = false;
@@ -116,31 +116,20 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
                  seen.normal.dot(start) - seen.height / std::max(seen.slope, kLeastSlope), start});
   }
 
-  bool x_inside = false, converged = false;
+  bool may_end = true, converged = false;
   Vec3 c = start;
   double height = 0;
   Aim aim = aimAt(x, walls, start, ball, anchor, trust);
   for (int looks = 0; looks < kMostLooks && !converged; ++looks) {
-    if (!x_inside && projectOntoWalls(walls, x).count == 0) {
-      // Beyond every wall: contact has ended, unless another one stands there or between.
+    // Beyond every wall and near enough: contact has ended, unless there is another wall.
+    if (may_end && aim.to.count == 0 && !aim.by_ball) {
       const double at_x = heightAt(x);
       ++move.samples;
-      x_inside = at_x < 0;
-      if (!x_inside) {
-        const double way = (x - anchor).norm();
-        std::optional<Vec3> crossing;
-        if (way > kTrust && per_steepness_ * (at_x + anchor_height) < way)
-          crossing = firstCrossing(anchor, anchor_height, x, at_x, move.samples);
-        if (!crossing) {
-          move.clearance = at_x;
-          return move;
-        }
-        start = anchor = *crossing;
-        anchor_height = 0;
-        walls.count = 0;
-        x_inside = true; // behind what was crossed
-        aim.to.z = *crossing;
+      if (at_x >= 0 && isFree(anchor, anchor_height, x, at_x, move.samples)) {
+        move.clearance = at_x;
+        return move;
       }
+      may_end = false;
     }
     const Vec3 z = aim.to.z;
     const Seen seen = look(z);
@@ -171,7 +160,11 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
     const Aim next = aimAt(x, walls, start, ball, anchor, trust);
     const double step = (next.to.z - z).norm();
     const bool bounded = next.by_ball || next.by_trust;
-    if (seen.smooth && walls.count == 1 && next.to.count == 1 && !bounded && step < kSmoothStep) {
+    if (next.to.count == 0 && next.by_ball && !next.by_trust && height >= 0 && step < kAtRest) {
+      c = z; // on its way through free space
+      converged = true;
+    } else if (seen.smooth && walls.count == 1 && next.to.count == 1 && !bounded &&
+               step < kSmoothStep) {
       // What the step leaves undone is the share of it by which the surface turns under the depth.
       const double share = std::min(1.0, next.to.load[0] * turned / std::max(since, 1e-2));
       if (step < kRestError || (lone && share * step < kRestError)) {
@@ -227,6 +220,13 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
   move.snap = aim.by_ball;
   move.held = projectOntoWalls(walls, x);
   return move;
+}
+
+bool ProxySearch::isFree(const Vec3& from, double height_from, const Vec3& to, double height_to,
+                         int& samples) const noexcept {
+  const double way = (to - from).norm();
+  return way < kTrust || per_steepness_ * (height_from + height_to) >= way ||
+         !firstCrossing(from, height_from, to, height_to, samples);
 }
 
 std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_from, const Vec3& to,

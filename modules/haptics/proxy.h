@@ -21,7 +21,7 @@ struct ProxyMove {
   bool snap = false; // the VCP ran by itself, as far as it may in a tick: past the axis of a limb
   int samples = 0;
   double clearance = 0; // phi - iso at x, out of contact
-  Projection held;      // by which of the proxy's walls, and how hard
+  WallProjection held;  // by which of the proxy's walls, and how hard
 };
 
 // c(t) = local argmin |y - x|^2 subject to phi(y) >= iso, continued from where it was. Only the
@@ -58,6 +58,8 @@ class ProxySearch {
   struct Aim;
   struct Seen;
   Seen look(const Vec3& q) const noexcept;
+  bool isFree(const Vec3& from, double height_from, const Vec3& to, double height_to,
+              int& samples) const noexcept;
   Aim aimAt(const Vec3& x, const Walls& walls, const Vec3& start, double ball, const Vec3& anchor,
             double trust) const noexcept;
 

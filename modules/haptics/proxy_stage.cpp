@@ -11,7 +11,7 @@ constexpr double kLongestTick = 0.05; // [s], of those that a proxy may run on i
 constexpr double kUnlooked = 0.1;     // voxels of clearance that nobody needs to look at
 constexpr double kNoDepth = 1e-9;     // voxels
 
-void takeWalls(const Walls& walls, const Projection& held, double voxel, Contact& contact) {
+void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Contact& contact) {
   contact.walls = held.count;
   for (int i = 0; i < held.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -38,7 +38,8 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
       (x - from).norm() + kSnapSpeed * per_voxel_ * std::clamp(contact.dt, 0.0, kLongestTick);
   if (memory.in_contact) {
     proxy.c = toGrid(memory.last_candidate);
-    if (proxy.walls.count == 0 && !search_.seat(x, proxy.c, contact.samples)) {
+    if (memory.reseat) proxy.walls.count = 0;
+    if (memory.reseat && !search_.seat(x, proxy.c, contact.samples)) {
       memory.leaveContact();
       memory.clearance = std::numeric_limits<double>::infinity();
       return;
@@ -48,6 +49,7 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
     proxy.walls.count = 0;
     ball += (x - proxy.c).norm();
   }
+  memory.reseat = false;
   const ProxyMove move = search_.follow(x, ball, proxy);
   contact.samples += move.samples;
   if (!move.touching) {
