@@ -77,20 +77,56 @@ Int4 isStored(Float4 phi) {
 }
 
 // K04: central where both neighbours are stored, one-sided where one is, zero where none is.
-Float4 difference(const float* node, int step, Float4 here) {
+struct Differences {
+  Float4 central, before, after;
+};
+Differences differences(const float* node, int step, Float4 here) {
   const Float4 before = load(node - step), after = load(node + step);
   const Int4 has_before = isStored(before), has_after = isStored(after);
   const Float4 low = has_before ? before : here, high = has_after ? after : here;
   const Float4 half = {0.5F, 0.5F, 0.5F, 0.5F}, one = {1, 1, 1, 1};
-  return (high - low) * (has_before & has_after ? half : one);
+  Differences d;
+  d.central = (high - low) * (has_before & has_after ? half : one);
+  d.before = has_before ? here - low : d.central;
+  d.after = has_after ? high - here : d.central;
+  return d;
+}
+
+// Beside a crease a central difference is the slope of neither side. Of the eight ways to take one
+// difference an axis those count that have a distance's slope, 1: they lie on the node's own side.
+// Where the surface is smooth all do, and their mean is the central difference.
+void takeOwnSide(Differences& x, Differences& y, Differences& z) {
+  const Float4 one = {1, 1, 1, 1}, none = {};
+  const Float4 off = x.central * x.central + y.central * y.central + z.central * z.central - one;
+  const Float4 noticed = {0.005F, 0.005F, 0.005F, 0.005F};
+  const Int4 beside = (off > noticed) | (off < -noticed);
+  if (!(beside[0] | beside[1] | beside[2] | beside[3])) return;
+  const Float4 least = {4e-4F, 4e-4F, 4e-4F, 4e-4F};
+  Float4 gx = none, gy = none, gz = none, sum = none;
+  for (int choice = 0; choice < 8; ++choice) {
+    const Float4 cx = choice & 1 ? x.after : x.before, cy = choice & 2 ? y.after : y.before,
+                 cz = choice & 4 ? z.after : z.before;
+    const Float4 error = cx * cx + cy * cy + cz * cz - one;
+    const Float4 weight = one / (error * error + least);
+    gx += weight * cx;
+    gy += weight * cy;
+    gz += weight * cz;
+    sum += weight;
+  }
+  x.central = beside ? gx / sum : x.central;
+  y.central = beside ? gy / sum : y.central;
+  z.central = beside ? gz / sum : z.central;
 }
 
 void fillFour(const float* node, SampleNode* out) {
   const Float4 phi = load(node), none = {};
   const Int4 stored = isStored(phi);
-  const Float4 gx = stored ? difference(node, 1, phi) : none;
-  const Float4 gy = stored ? difference(node, kPadded, phi) : none;
-  const Float4 gz = stored ? difference(node, kPadded * kPadded, phi) : none;
+  Differences x = differences(node, 1, phi), y = differences(node, kPadded, phi),
+              z = differences(node, kPadded * kPadded, phi);
+  takeOwnSide(x, y, z);
+  const Float4 gx = stored ? x.central : none;
+  const Float4 gy = stored ? y.central : none;
+  const Float4 gz = stored ? z.central : none;
   const Float4 a = __builtin_shufflevector(phi, gx, 0, 4, 1, 5);
   const Float4 b = __builtin_shufflevector(gy, gz, 0, 4, 1, 5);
   const Float4 c = __builtin_shufflevector(phi, gx, 2, 6, 3, 7);

@@ -54,7 +54,6 @@ void ContactJudge::restart() {
 
 Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
   const auto begin = std::chrono::steady_clock::now();
-  const ContactMemory before = memory_; // DBG
   const Contact now = tick(snapshot_, memory_, tip, dt);
   const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - begin;
   ++report.ticks;
@@ -83,33 +82,6 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
   const ProxyAnswer answer = proxyOracle(surface_, iso_, tip, seed, ball);
   const ProxyAnswer own = proxyOracle(surface_, iso_, tip, own_, ball);
   own_ = own.point;
-  if (std::getenv("DBG")) {                                                          // DBG
-    const bool contact = answer.found && (answer.point - tip).norm() > 0.5 * voxel_; // DBG
-    const double err = (now.force - kJudgeStiffness * (answer.point - tip)).norm();  // DBG
-    const char* what = contact && now.force.squaredNorm() == 0            ? "LOST"
-                       : contact && now.force.dot(answer.point - tip) < 0 ? "PULL"
-                       : !snapped(now) && excess > .05                    ? "STEP"
-                       : now.fault && !last_.fault                        ? "FAULT"
-                       : answer.found && contact && err > std::atof(std::getenv("DBG"))
-                           ? "ERR"
-                           : nullptr; // DBG
-    if (what)
-      std::printf("%s tip %.5f %.5f %.5f mm sd %.4f last tip %.5f %.5f %.5f sd %.4f | before "
-                  "contact %d clear %.3f walls %d c %.5f %.5f %.5f | now touch %d F %.3f %.3f %.3f "
-                  "c %.5f %.5f %.5f sd %.4f | oracle %.5f %.5f %.5f err %.3f step %.4f ball %.4f "
-                  "excess %.3f samples %d snap %d fault %d voxel %.4f\n",
-                  what, 1e3 * tip.x(), 1e3 * tip.y(), 1e3 * tip.z(),
-                  1e3 * (surface_.distance(tip) - iso_), 1e3 * last_.tip.x(), 1e3 * last_.tip.y(),
-                  1e3 * last_.tip.z(), 1e3 * (surface_.distance(last_.tip) - iso_),
-                  before.in_contact, before.clearance, before.proxy.walls.count,
-                  1e3 * before.last_candidate.x(), 1e3 * before.last_candidate.y(),
-                  1e3 * before.last_candidate.z(), now.touching, now.force.x(), now.force.y(),
-                  now.force.z(), 1e3 * now.candidate.x(), 1e3 * now.candidate.y(),
-                  1e3 * now.candidate.z(), 1e3 * (surface_.distance(now.candidate) - iso_),
-                  1e3 * answer.point.x(), 1e3 * answer.point.y(), 1e3 * answer.point.z(), err,
-                  1e3 * step, 1e3 * ball, excess, now.samples, snapped(now), now.fault,
-                  1e3 * voxel_); // DBG
-  }                              // DBG
   last_ = now;
   depth_ = std::max((answer.point - tip).norm(), (own_ - tip).norm());
   const bool in_contact = (answer.found && (answer.point - tip).norm() > 0.5 * voxel_) ||
