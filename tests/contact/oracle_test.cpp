@@ -85,7 +85,7 @@ TEST(ProxyOracle, IsTheProjectionOnThreeHalfSpaces) {
     for (int i = 0; i < 1000; ++i) {
       const Vec3 tip = randomIn(random, Vec3::Constant(-8e-3), Vec3::Constant(12e-3));
       const Vec3 seed = randomIn(random, Vec3::Constant(iso), Vec3::Constant(15e-3));
-      const ProxyAnswer answer = proxyOracle(room, iso, tip, seed, 1);
+      const ProxyAnswer answer = proxyOracle(room, iso, tip, seed, 0.05);
       ASSERT_TRUE(answer.found);
       EXPECT_LE((answer.point - tip.cwiseMax(iso)).norm(), kTiny) << tip.transpose();
     }
@@ -101,7 +101,7 @@ TEST(ProxyOracle, IsTheProjectionOnTwoHalfSpaces) {
       for (int i = 0; i < 1000; ++i) {
         const Vec3 tip = randomIn(random, Vec3(-12e-3, -20e-3, -8e-3), Vec3(8e-3, 20e-3, 12e-3));
         const Vec3 seed = randomIn(random, Vec3(-15e-3, -20e-3, iso), Vec3(-iso, 20e-3, 15e-3));
-        const ProxyAnswer answer = proxyOracle(solid, iso, pose * tip, pose * seed, 1);
+        const ProxyAnswer answer = proxyOracle(solid, iso, pose * tip, pose * seed, 0.05);
         const Vec3 expected(std::min(tip.x(), -iso), tip.y(), std::max(tip.z(), iso));
         EXPECT_LE((pose.inverse() * answer.point - expected).norm(), kTiny) << tip.transpose();
       }

@@ -16,7 +16,7 @@ namespace patina::test {
 namespace {
 
 constexpr double kOnFeature = 1e-10; // barycentric coordinate that counts as zero
-constexpr double kSlack = 1e-10;     // [m], to which half-spaces are kept
+constexpr double kSlack = 1e-12;     // [m], to which half-spaces are kept
 constexpr double kSame = 1e-9;       // [m], a step that is none
 constexpr int kMostSteps = 2000;     // a few, unless it goes round a deep tip facet by facet
 
@@ -112,7 +112,7 @@ bool ontoPlanes(std::span<const HalfSpace* const> planes, const Vec3& x, Vec3& z
   }
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram =
       normals.transpose() * normals;
-  if (gram.determinant() < 1e-13) return false;
+  if (gram.determinant() < 1e-10) return false;
   const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> force = gram.inverse() * gap;
   if (force.minCoeff() < 0) return false;
   z = x + normals * force;
@@ -262,7 +262,7 @@ Vec3 nudged(const Obstacles& obstacles, double iso, const Vec3& c, const Vec3& t
         if (i == 0 && j == 0 && k == 0) continue;
         const Vec3 y = c + reach * Vec3(i, j, k).normalized();
         if ((y - tip).squaredNorm() >= least || (y - centre).norm() > ball) continue;
-        if (obstacles.clearance(y) < -kSlack) continue;
+        if (obstacles.clearance(y) < -1e-10) continue;
         best = y;
         least = (y - tip).squaredNorm();
       }
@@ -348,7 +348,9 @@ ProxyAnswer proxyOracle(const ExactSurface& surface, double iso, const Vec3& tip
     for (const auto prefer : {Obstacles::Prefer::faces, Obstacles::Prefer::ways}) {
       next = projectedInBall(obstacles.halfSpaces(answer.point, prefer), tip, centre, ball,
                              answer.at_ball);
-      if ((next - answer.point).norm() >= kSame) break;
+      // Where nothing is gained but slack the two kinds would take turns for ever.
+      const double gain = (answer.point - tip).norm() - (next - tip).norm();
+      if ((next - answer.point).norm() >= kSame && (gain > 1e-13 || answer.steps == 0)) break;
       next = answer.point;
     }
     if (next == answer.point) next = nudged(obstacles, iso, answer.point, tip, centre, ball);
