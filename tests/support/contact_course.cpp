@@ -4,7 +4,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <numbers>
+#include <memory>
+#include <utility>
 
 #include "support/contact_scenes.h"
 
@@ -43,18 +44,48 @@ void CourseReport::add(const CourseReport& other) {
   append(ns, other.ns);
 }
 
-ContactJudge::ContactJudge(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso)
-    : snapshot_(snapshot), surface_(surface), iso_(iso), voxel_(snapshot.field->grid.voxel) {}
+ContactMethod methodOf(const HapticSnapshot& snapshot) {
+  const auto memory = std::make_shared<ContactMemory>();
+  return {[memory, &snapshot](const Vec3& tip, double dt) {
+            return patina::tick(snapshot, *memory, tip, dt);
+          },
+          [memory] { memory->reset(); }, snapshot.field->grid.voxel};
+}
+
+ContactMethod exactProxy(const ExactSurface& surface, double iso, double voxel) {
+  struct Memory {
+    bool known = false;
+    Vec3 tip = Vec3::Zero(), c = Vec3::Zero();
+  };
+  const auto memory = std::make_shared<Memory>();
+  return {[memory, iso, &surface](const Vec3& tip, double dt) {
+            if (!memory->known) *memory = {true, tip, tip};
+            const double ball = (tip - memory->tip).norm() + kOwnSpeed * dt;
+            *memory = {true, tip, proxyOracle(surface, iso, tip, memory->c, ball).point};
+            Contact contact;
+            contact.tip = tip;
+            contact.dt = dt;
+            contact.candidate = contact.vcp = memory->c;
+            contact.depth = (memory->c - tip).norm();
+            contact.touching = contact.depth > 0;
+            contact.force = kJudgeStiffness * (memory->c - tip);
+            return contact;
+          },
+          [memory] { memory->known = false; }, voxel};
+}
+
+ContactJudge::ContactJudge(ContactMethod method, const ExactSurface& surface, double iso)
+    : method_(std::move(method)), surface_(surface), iso_(iso), voxel_(method_.voxel) {}
 
 void ContactJudge::restart() {
-  memory_.reset();
+  method_.forget();
   has_last_ = false;
   depth_ = 0;
 }
 
 Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
   const auto begin = std::chrono::steady_clock::now();
-  const Contact now = tick(snapshot_, memory_, tip, dt);
+  const Contact now = method_.tick(tip, dt);
   const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - begin;
   ++report.ticks;
   if (now.fault || !now.force.allFinite()) ++report.faults;
@@ -69,7 +100,7 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
       (now.force - last_.force).norm() - kJudgeStiffness * (2 * step + kOwnSpeed * dt);
   if (!snapped(now)) {
     // Not a number is worse than any.
-    if (!(excess <= report.worst_excess)) report.worst_excess = excess;
+    report.worst_excess = std::max(report.worst_excess, std::isfinite(excess) ? excess : 1e9);
     report.excesses += !(excess <= 0.05);
   }
 
@@ -102,11 +133,12 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
   return now;
 }
 
-CourseReport runCourse(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
+CourseReport runCourse(const ContactMethod& method, const ExactSurface& surface, double iso,
                        long contacts, unsigned seed) {
   CourseReport report;
   TouchPaths paths(surface, iso, seed);
-  ContactJudge judge(snapshot, surface, iso);
+  ContactJudge judge(method, surface, iso);
+  judge.restart();
   while (report.contacts < contacts && report.ticks < 4 * contacts) {
     const TouchPaths::Touch touch = paths.touch();
     if (touch.fresh) judge.restart();
@@ -119,28 +151,29 @@ CourseReport runCourse(const HapticSnapshot& snapshot, const ExactSurface& surfa
   return report;
 }
 
-CourseReport runPath(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
+CourseReport runPath(const ContactMethod& method, const ExactSurface& surface, double iso,
                      const std::vector<Vec3>& tips) {
   CourseReport report;
-  ContactJudge judge(snapshot, surface, iso);
+  ContactJudge judge(method, surface, iso);
+  judge.restart();
   for (const Vec3& tip : tips) judge.feel(tip, report);
   return report;
 }
 
-LoopReport runLoops(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
-                    int loops, unsigned seed) {
+LoopReport runLoops(const ContactMethod& method, const ExactSurface& surface, double iso, int loops,
+                    unsigned seed) {
   LoopReport report;
   TouchPaths paths(surface, iso, seed);
   for (int tried = 0; report.loops < loops && tried < 20 * loops; ++tried) {
     const TouchPaths::Place place = tried % 2 ? paths.placeByACrease() : paths.place();
     if (!paths.reachable(place)) continue;
     ++report.loops;
-    ContactMemory memory;
+    method.forget();
     Vec3 last_tip = Vec3::Zero(), last_force = Vec3::Zero();
     double work = 0; // given to the hand
     bool first = true;
     for (const Vec3& tip : paths.loop(place)) {
-      const Vec3 force = tick(snapshot, memory, tip, kTick).force;
+      const Vec3 force = method.tick(tip, kTick).force;
       if (!first) work += 0.5 * (force + last_force).dot(tip - last_tip);
       first = false;
       last_tip = tip;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <functional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -34,25 +34,33 @@ struct CourseReport {
   void add(const CourseReport& other);
 };
 
-// Feels tips one after another and judges each. Keeps references.
+// What is judged. `forget`: as at the beginning, the next tip has no way from the last.
+struct ContactMethod {
+  std::function<Contact(const Vec3& tip, double dt)> tick;
+  std::function<void()> forget;
+  double voxel = 0; // [m], in which what counts as contact is told
+};
+ContactMethod methodOf(const HapticSnapshot& snapshot); // keeps a reference
+// The oracle itself, which nothing can be held against. Keeps a reference.
+ContactMethod exactProxy(const ExactSurface& surface, double iso, double voxel);
+
+// Feels tips one after another and judges each. Keeps a reference to the surface.
 //
 // c is continued from the method's last candidate where that is one (no more than a voxel inside),
 // from its last tip where it was free, and else from the oracle's own last c. In contact: the tip
 // is more than 0.5 voxel from c, or more than 0.75 voxel deep, whatever came before.
 class ContactJudge {
  public:
-  ContactJudge(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso);
-  // Forgets what was, as at the beginning: the next tip has no way from the last.
-  void restart();
+  ContactJudge(ContactMethod method, const ExactSurface& surface, double iso);
+  void restart(); // forgets what was
   Contact feel(const Vec3& tip, CourseReport& report, double dt = kTick);
   // [m], from the tip to c, the longer of the two that the errors are told by.
   double depth() const { return depth_; }
 
  private:
-  const HapticSnapshot& snapshot_;
+  ContactMethod method_;
   const ExactSurface& surface_;
   double iso_, voxel_;
-  ContactMemory memory_;
   bool has_last_ = false;
   Contact last_;
   Vec3 own_ = Vec3::Zero(); // the oracle's
@@ -112,10 +120,10 @@ class TouchPaths {
 // Touches until the oracle has seen `contacts` ticks in contact, or four times as many in all. A
 // touch ends early where the tip gets more than 8 mm (4 N) from its contact point, and the next one
 // begins afresh where the tip has not come back to the side where it entered: no hand gets there.
-CourseReport runCourse(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
+CourseReport runCourse(const ContactMethod& method, const ExactSurface& surface, double iso,
                        long contacts, unsigned seed);
 // One path from free to free, judged.
-CourseReport runPath(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
+CourseReport runPath(const ContactMethod& method, const ExactSurface& surface, double iso,
                      const std::vector<Vec3>& tips);
 
 struct LoopReport {
@@ -123,7 +131,7 @@ struct LoopReport {
   double created = 0; // [J], the most that one loop gave to the hand, free to free
 };
 // Half of them by a crease. Work by the trapezium rule.
-LoopReport runLoops(const HapticSnapshot& snapshot, const ExactSurface& surface, double iso,
-                    int loops, unsigned seed);
+LoopReport runLoops(const ContactMethod& method, const ExactSurface& surface, double iso, int loops,
+                    unsigned seed);
 
 } // namespace patina::test

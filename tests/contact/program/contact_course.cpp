@@ -78,8 +78,9 @@ void run(const Options& options) {
       const unsigned seed = courseSeed(scene, iso, options.seed);
       const auto snapshot =
           contactSnapshot(contactField(scene, iso, options.resolution), iso, options.contact);
-      const CourseReport report = runCourse(*snapshot, surface, iso, options.ticks, seed);
-      const LoopReport loops = runLoops(*snapshot, surface, iso, options.loops, seed + 1000);
+      const CourseReport report = runCourse(methodOf(*snapshot), surface, iso, options.ticks, seed);
+      const LoopReport loops =
+          runLoops(methodOf(*snapshot), surface, iso, options.loops, seed + 1000);
       printRow(name, iso, report, loops.created);
       total.add(report);
       created = std::max(created, loops.created);
