@@ -1,0 +1,215 @@
+// What a contact method must do on any shape (T-P1 .. T-P6): never without force, never pulling,
+// no step of its own, near to the proxy on the exact distance, no energy out of closed loops.
+// PATINA_LONG=1 in the environment: ten times as many ticks and loops (docs/contributing.md).
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "core/csv.h"
+#include "core/percentiles.h"
+#include "field/models.h"
+#include "geometry/mesh_io.h"
+#include "geometry/mesh_unit.h"
+#include "geometry/shapes.h"
+#include "support/contact_course.h"
+#include "support/contact_scenes.h"
+#include "support/shared_data.h"
+
+namespace patina::test {
+namespace {
+
+constexpr double kWorstStep = 0.05;   // [N] beyond 2 K |dx| + K v_s dt
+constexpr double kMostCreated = 5e-6; // [J] a loop
+constexpr double kMostOf = 1e-6;      // of the ticks in contact
+
+long longer(long count) {
+  return std::getenv("PATINA_LONG") ? 10 * count : count;
+}
+
+void expectFaultless(const CourseReport& report, const std::string& what) {
+  const double most = kMostOf * static_cast<double>(report.contacts);
+  EXPECT_LE(static_cast<double>(report.lost), most) << what << ": of " << report.contacts;
+  EXPECT_LE(static_cast<double>(report.pulls), most) << what << ": of " << report.contacts;
+  EXPECT_EQ(report.faults, 0) << what;
+  EXPECT_LE(report.worst_excess, kWorstStep) << what;
+  EXPECT_EQ(report.unjudged, 0) << what;
+}
+
+CourseReport courseOn(const ContactScene& scene, int resolution, long contacts) {
+  CourseReport all;
+  const ExactSurface surface(scene.meshes);
+  for (const double iso : scene.isos) {
+    const auto snapshot = contactSnapshot(contactField(scene, iso, resolution), iso, "");
+    all.add(runCourse(methodOf(*snapshot), surface, iso, contacts, courseSeed(scene, iso, 1)));
+  }
+  return all;
+}
+
+TEST(ContactCourse, IsPassedOnEveryShape) {
+  CourseReport all;
+  for (const ContactScene& scene : contactScenes()) {
+    const CourseReport report = courseOn(scene, 150, longer(2000));
+    expectFaultless(report, scene.name);
+    all.add(report);
+  }
+  ASSERT_GE(all.contacts, longer(100000));
+  const Percentiles error = percentiles(all.error);
+  std::printf("%ld ticks in contact: %ld lost, %ld pulls, step %.3f N, error p50 %.4f p99 %.3f "
+              "p99.9 %.3f N\n",
+              all.contacts, all.lost, all.pulls, all.worst_excess, error.p50, error.p99,
+              error.p999);
+  EXPECT_LE(error.p50, 0.01);
+  EXPECT_LE(error.p99, 0.10);
+  EXPECT_LE(error.p999, 0.40);
+}
+
+TEST(ContactCourse, ErrorFallsWithTheVoxel) {
+  std::vector<double> log_voxel, log_error;
+  for (const int resolution : {75, 150, 300}) {
+    CourseReport all;
+    for (const char* name : {"L", "room", "groove", "torus"})
+      all.add(courseOn(contactScene(name), resolution, longer(2000)));
+    const double voxel = contactField(contactScene("box"), 0, resolution)->grid.voxel;
+    const double error = percentiles(all.error).p99;
+    std::printf("voxel %.3f mm: p99 %.4f N\n", 1e3 * voxel, error);
+    log_voxel.push_back(std::log(voxel));
+    log_error.push_back(std::log(error));
+  }
+  const Eigen::Map<const Vec3> x(log_voxel.data()), y(log_error.data());
+  const Vec3 dx = x.array() - x.mean(), dy = y.array() - y.mean();
+  EXPECT_GE(dx.dot(dy) / dx.squaredNorm(), 0.9);
+}
+
+TEST(ContactCourse, NoLoopGivesEnergy) {
+  for (const ContactScene& scene : contactScenes()) {
+    const ExactSurface surface(scene.meshes);
+    for (const double iso : scene.isos) {
+      const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");
+      const int loops = static_cast<int>(longer(10));
+      const LoopReport report =
+          runLoops(methodOf(*snapshot), surface, iso, loops, courseSeed(scene, iso, 2));
+      EXPECT_EQ(report.loops, loops) << scene.name;
+      EXPECT_LE(report.created, kMostCreated) << scene.name << " at " << iso;
+    }
+  }
+}
+
+// Pressed through their middle to 3 N the tip comes out on the other side, and is still pushed
+// back.
+TEST(ThinPlate, NeverTurnsTheForceRound) {
+  for (const double thickness : {1e-3, 2e-3, 3e-3, 4e-3})
+    for (const bool turned : {false, true}) {
+      ContactScene scene{"plate", {plateSolid(thickness)}};
+      if (turned) scene.meshes[0] = tilted(scene.meshes[0]);
+      const ExactSurface surface(scene.meshes);
+      Vec3 across = Vec3::UnitZ();
+      if (turned) across = tilted({{across}, {}, {}}).positions[0];
+      for (const double iso : {0.0, 1e-3}) {
+        const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");
+        for (const double speed : {0.02, 0.1}) {
+          std::vector<Vec3> tips;
+          const double top = 0.5 * thickness + iso, step = speed * kTick;
+          const Vec3 foot = across.unitOrthogonal() * 0.3e-3;
+          for (double z = top + 3e-3; z > top - 6e-3; z -= step) tips.push_back(foot + z * across);
+          ContactJudge judge(methodOf(*snapshot), surface, iso);
+          CourseReport report;
+          double last = 0;
+          for (const Vec3& tip : tips) {
+            const double push = judge.feel(tip, report).force.dot(across);
+            EXPECT_GE(push, last - kWorstStep) << thickness << ' ' << turned << ' ' << iso;
+            if (push < last - kWorstStep) break;
+            last = push;
+          }
+          EXPECT_NEAR(last, 3, 0.1);
+          expectFaultless(report, "plate");
+        }
+      }
+    }
+}
+
+CourseReport along(const ContactScene& scene, const std::vector<Vec3>& tips, double iso,
+                   const std::string& key) {
+  const ExactSurface surface(scene.meshes);
+  Scene values;
+  values.haptics.stiffness = kJudgeStiffness;
+  values.haptics.force_limit = 1e3;
+  if (iso > 0) setValue(values, key, std::to_string(iso));
+  const auto snapshot = compileStages(values, contactField(scene, iso, 150));
+  return runPath(methodOf(*snapshot), surface, iso, tips);
+}
+
+std::vector<Vec3> recorded(const std::filesystem::path& path) {
+  std::vector<Vec3> tips;
+  for (const auto& row : readCsv(path, {"t [s]", "x [m]", "y [m]", "z [m]"}).rows)
+    tips.emplace_back(row[1], row[2], row[3]);
+  return tips;
+}
+
+TEST(RecordedPath, IntoTheCornerOfAnL) {
+  const auto mesh = sharedData("contact_paths/L.obj"), path = sharedData("contact_paths/Lpath.csv");
+  PATINA_SKIP_WITHOUT(mesh);
+  const ContactScene scene{"L", {inMetres(readMesh(mesh), MeshUnit::mm).mesh}};
+  for (const char* key : {"offset", "tip.radius"}) {
+    const CourseReport report = along(scene, recorded(path), 2e-3, key);
+    EXPECT_GT(report.contacts, 100);
+    expectFaultless(report, key);
+  }
+}
+
+TEST(RecordedPath, AcrossTheGalleon) {
+  const auto path = sharedData("contact_paths/galleon_path.csv");
+  PATINA_SKIP_WITHOUT(path);
+  const CourseReport report = along(contactScene("galleon"), recorded(path), 1e-3, "tip.radius");
+  EXPECT_GT(report.contacts, 500);
+  expectFaultless(report, "galleon");
+}
+
+TEST(RecordedPath, OverTheDinosaur) {
+  const auto path = sharedData("contact_paths/dinosaur_path.csv");
+  PATINA_SKIP_WITHOUT(path);
+  const CourseReport report =
+      along({"dinosaur", {patina::dinosaur()}}, recorded(path), 0, "tip.radius");
+  EXPECT_GT(report.contacts, 100);
+  expectFaultless(report, "dinosaur");
+}
+
+// Down to the floor of an L, along it into the corner and up its wall, each pressed into by 1.5 mm.
+TEST(OwnPath, IntoTheCornerOfAnL) {
+  std::vector<Vec3> tips = {Vec3(-0.012, 0.3e-3, 0.005)};
+  for (const auto& [to, speed] :
+       std::vector<std::pair<Vec3, double>>{{Vec3(-0.012, 0.3e-3, 0.5e-3), 0.02},
+                                            {Vec3(-0.5e-3, 0.3e-3, 0.5e-3), 0.04},
+                                            {Vec3(-0.5e-3, 2e-3, 8e-3), 0.04},
+                                            {Vec3(0.3e-3, 0.3e-3, -0.3e-3), 0.03},
+                                            {Vec3(-6e-3, 0, 6e-3), 0.1}}) {
+    const Vec3 from = tips.back();
+    const int count = static_cast<int>(std::ceil((to - from).norm() / (speed * kTick)));
+    for (int i = 1; i <= count; ++i)
+      tips.push_back(from + static_cast<double>(i) / count * (to - from));
+  }
+  for (const char* key : {"offset", "tip.radius"}) {
+    const CourseReport report = along(contactScene("L"), tips, 2e-3, key);
+    EXPECT_GT(report.contacts, 500);
+    expectFaultless(report, key);
+  }
+}
+
+// Touches one after another, as the course has them, with another seed.
+CourseReport ownTouches(const ContactScene& scene, double iso) {
+  const ExactSurface surface(scene.meshes);
+  const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");
+  return runCourse(methodOf(*snapshot), surface, iso, 5000, 77);
+}
+
+TEST(OwnPath, AcrossTheGalleon) {
+  expectFaultless(ownTouches(contactScene("galleon"), 1e-3), "galleon");
+}
+
+TEST(OwnPath, OverTheDinosaur) {
+  expectFaultless(ownTouches({"dinosaur", {patina::dinosaur()}}, 0), "dinosaur");
+}
+
+} // namespace
+} // namespace patina::test
