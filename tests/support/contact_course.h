@@ -4,10 +4,12 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "geometry/winding_number.h"
 #include "haptics/snapshot.h"
 #include "support/contact_oracle.h"
 
@@ -112,7 +114,9 @@ class TouchPaths {
   std::vector<std::pair<double, Place>> faces_; // cumulative area; normal of the face
   std::vector<std::array<Vec3, 3>> corners_;
   std::vector<Crease> creases_;
-  bool closed_ = true;
+  // Where sheets shut a room in, a field counts it as solid: no path begins there. Absent if all
+  // meshes are closed.
+  std::shared_ptr<const WindingNumber> sheets_;
   bool has_last_ = false;
   Vec3 last_ = Vec3::Zero();
 };

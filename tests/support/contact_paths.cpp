@@ -12,6 +12,7 @@ namespace patina::test {
 namespace {
 
 constexpr double kAbove = 3e-3; // [m], where a touch begins
+constexpr double kShutIn = 0.2; // winding number, well below what counts as inside
 
 // Steps of at most `step` from the last point of the path.
 void walk(std::vector<Vec3>& path, const Vec3& to, double step) {
@@ -31,8 +32,11 @@ Vec3 outOf(const ExactSurface::Nearest& near, const Vec3& p) {
 TouchPaths::TouchPaths(const ExactSurface& surface, double iso, unsigned seed)
     : surface_(surface), iso_(iso), random_(seed) {
   double area = 0;
+  bool closed = true;
+  TriangleMesh all;
   for (const TriangleMesh& mesh : surface.meshes()) {
-    closed_ = closed_ && inspect(mesh).watertight;
+    closed = closed && inspect(mesh).watertight;
+    all = joined(all, mesh);
     // Edge -> the face on its left, until the one on its right comes.
     std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> left;
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -52,6 +56,7 @@ TouchPaths::TouchPaths(const ExactSurface& surface, double iso, unsigned seed)
       }
     }
   }
+  if (!closed) sheets_ = std::make_shared<const WindingNumber>(all);
   if (surface.meshes().size() > 1) findMeetings();
 }
 
@@ -94,7 +99,7 @@ TouchPaths::Place TouchPaths::place() {
     v = 1 - v;
   }
   const auto& [a, b, c] = corners_[face];
-  const double side = closed_ || uniform(0, 1) < 0.5 ? 1 : -1;
+  const double side = !sheets_ || uniform(0, 1) < 0.5 ? 1 : -1;
   return {a + u * (b - a) + v * (c - a), side * faces_[face].second.normal};
 }
 
@@ -102,7 +107,7 @@ TouchPaths::Place TouchPaths::placeByACrease() {
   if (creases_.empty()) return place();
   const Crease& crease = creases_[random_() % creases_.size()];
   const double along = uniform(0, 1);
-  const double which = uniform(0, 1), side = closed_ || uniform(0, 1) < 0.5 ? 1 : -1;
+  const double which = uniform(0, 1), side = !sheets_ || uniform(0, 1) < 0.5 ? 1 : -1;
   const Vec3 normal = which < 0.4   ? crease.left
                       : which < 0.8 ? crease.right
                                     : Vec3((crease.left + crease.right).normalized());
@@ -124,6 +129,7 @@ bool TouchPaths::isFree(const Vec3& from, const Vec3& to, double room) const {
 bool TouchPaths::reachable(const Place& place) const {
   if (!(place.normal.norm() > 0.5)) return false;
   const double above = iso_ + kAbove, end = iso_ + 0.3e-3;
+  if (sheets_ && std::abs(sheets_->at(place.point + above * place.normal)) > kShutIn) return false;
   return isFree(place.point + above * place.normal, place.point + end * place.normal, 0.05e-3);
 }
 
