@@ -39,6 +39,7 @@ void CourseReport::add(const CourseReport& other) {
   excesses += other.excesses;
   worst_excess = std::max(worst_excess, other.worst_excess);
   append(error, other.error);
+  append(snap_error, other.snap_error);
   append(free_error, other.free_error);
   append(samples, other.samples);
   append(ns, other.ns);
@@ -127,7 +128,9 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
     report.ns.push_back(time.count());
   }
   if (answer.found && (in_contact || now.touching)) {
-    report.error.push_back((now.force - kJudgeStiffness * (answer.point - tip)).norm());
+    const bool ran = snapped(now) || answer.at_ball;
+    (ran ? report.snap_error : report.error)
+        .push_back((now.force - kJudgeStiffness * (answer.point - tip)).norm());
     report.free_error.push_back((now.force - kJudgeStiffness * (own_ - tip)).norm());
   }
   return now;

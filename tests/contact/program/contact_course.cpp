@@ -50,7 +50,7 @@ Options parse(int argc, char** argv) {
 }
 
 void printRow(const std::string& name, double iso, const CourseReport& r, double created) {
-  const Percentiles e = percentiles(r.error), f = percentiles(r.free_error), ns = percentiles(r.ns);
+  const Percentiles e = percentiles(r.error), f = percentiles(std::getenv("SNAP") ? r.snap_error : r.free_error), ns = percentiles(r.ns);
   const double samples = std::accumulate(r.samples.begin(), r.samples.end(), 0.0) /
                          std::max<double>(1, static_cast<double>(r.samples.size()));
   std::printf("%-9s %3.1f %8ld %7ld %7ld %6ld %7.2f %7ld %5.1f%% %5.3f %5.3f %5.3f | %5.3f %5.3f "
