@@ -367,7 +367,7 @@ TEST(FieldSampler, APotentialIsTheDerivativeOfTheValue) {
       const Vec3 corner(std::floor(cell(random)), std::floor(cell(random)),
                         std::floor(cell(random)));
       const Vec3 q = corner + Vec3(inside(random), inside(random), inside(random));
-      const GridSample at = reader.potentialAtGrid(q);
+      const SurfaceSample at = reader.surfaceAtGrid(q);
       if (at.region != FieldRegion::band) continue;
       EXPECT_NEAR(at.phi, reader.phiAtGrid(q), 2e-6);
       for (int axis = 0; axis < 3; ++axis) {
