@@ -98,10 +98,10 @@ Differences differences(const float* node, int step, Float4 here) {
 void takeOwnSide(Differences& x, Differences& y, Differences& z) {
   const Float4 one = {1, 1, 1, 1}, none = {};
   const Float4 off = x.central * x.central + y.central * y.central + z.central * z.central - one;
-  const Float4 noticed = {0.001F, 0.001F, 0.001F, 0.001F};
+  const Float4 noticed = {0.002F, 0.002F, 0.002F, 0.002F};
   const Int4 beside = (off > noticed) | (off < -noticed);
   if (!(beside[0] | beside[1] | beside[2] | beside[3])) return;
-  const Float4 least = {1e-6F, 1e-6F, 1e-6F, 1e-6F};
+  const Float4 least = {1e-5F, 1e-5F, 1e-5F, 1e-5F};
   Float4 gx = none, gy = none, gz = none, sum = none;
   for (int choice = 0; choice < 8; ++choice) {
     const Float4 cx = choice & 1 ? x.after : x.before, cy = choice & 2 ? y.after : y.before,

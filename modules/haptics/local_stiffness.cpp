@@ -15,6 +15,8 @@ constexpr double kForce = 1;         // [N]
 constexpr double kStep = 0.02;       // voxels
 constexpr double kMinGradient = 0.1; // K05
 constexpr double kStart = 0.5;       // voxels outside, where the way in begins
+// Ticks in which the contact point settles, to an error of (depth / radius of curvature)^3.
+constexpr int kSettle = 4;
 // Ticks so far apart that no velocity is left over from the way in, and no ramp half done.
 constexpr double kRest = 1e5; // [s]
 
@@ -47,7 +49,14 @@ StiffnessProbe::StiffnessProbe(const Scene& scene, std::shared_ptr<const Surface
 // slid nor, with kRest, a velocity.
 Contact StiffnessProbe::contactAt(const WayIn& way, const Vec3& tip) const {
   ContactMemory memory = way.memory;
-  return tick(*wall_, memory, tip, kRest);
+  Contact contact = tick(*wall_, memory, tip, kRest);
+  bool ran = contact.snap;
+  for (int i = 1; i < kSettle; ++i) {
+    contact = tick(*wall_, memory, tip, kRest);
+    ran = ran || contact.snap;
+  }
+  contact.snap = ran;
+  return contact;
 }
 
 Vec3 StiffnessProbe::forceAt(const WayIn& way, const Vec3& tip) const {
@@ -96,6 +105,7 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
   result.tip = way.surface - result.depth * way.outward;
   const Contact contact = contactAt(way, result.tip);
   result.material = contact.material;
+  result.slips = contact.snap;
   const Vec3& force = contact.force;
   result.force = force.norm();
   if (!(result.force > 0)) return std::nullopt;

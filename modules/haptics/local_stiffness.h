@@ -21,6 +21,9 @@ struct LocalStiffness {
   // Extreme eigenvalues of its symmetric part [N/m]: no direction is stiffer or less stiff.
   double lambda_max = 0;
   double lambda_min = 0; // negative: the tip slips off, as from a ridge
+  // The contact point ran off while the tip stood still, as from a ridge: what is told is where it
+  // came to rest.
+  bool slips = false;
   // Largest change of an entry of `matrix` [N/m] when the step is halved: what the number is good
   // for. At a crease the stiffness itself varies within a voxel, and this says so.
   double uncertainty = 0;
@@ -32,9 +35,8 @@ struct LocalStiffness {
 // stabilisers and force limit; stability_map.h adds what they contribute.
 //
 // The step is 1/50 voxel to either side. Field values carry the rounding of a float, 2e-7 voxels,
-// so that K is good to 1e-5 of itself; at 1/1000 voxel it would be 3e-4. A crease, whose normal
-// turns within one cell, is met to 0.3 %; steps of 1/4 voxel lose a fifth of its stiffness, steps
-// of a voxel two thirds (edge of a box). Nearer to the surface than two steps it is half the depth.
+// so that K is good to 1e-5 of itself; at 1/1000 voxel it would be 3e-4. Nearer to the surface than
+// two steps it is half the depth.
 class StiffnessProbe {
  public:
   // Throws as compileStages(). `coupling` [N/m]: of the loop that the wall will stand in; the same

@@ -20,6 +20,8 @@ void PlaneStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   contact.depth = depth;
   contact.candidate = Vec3(contact.tip.x(), contact.tip.y(), 0);
   contact.vcp = contact.candidate;
+  contact.wall[0] = {contact.normal, depth};
+  contact.walls = 1;
   memory.in_contact = true;
   memory.last_normal = contact.normal;
   memory.last_candidate = contact.candidate;

@@ -116,7 +116,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
                  seen.normal.dot(start) - seen.height / std::max(seen.slope, kLeastSlope), start});
   }
 
-  bool may_end = true, converged = false;
+  bool may_end = true, converged = false, smooth = false;
   Vec3 c = start;
   double height = 0;
   Aim aim = aimAt(x, walls, start, ball, anchor, trust);
@@ -155,7 +155,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
     if (height >= -kOnSurface) {
       anchor = z;
       anchor_height = std::max(height, 0.0);
-      trust = std::min(kTrust, std::max(2 * trust, kStaleTrust));
+      trust = std::max({std::min(kTrust, 2 * trust), kStaleTrust, per_steepness_ * height});
     }
     const Aim next = aimAt(x, walls, start, ball, anchor, trust);
     const double step = (next.to.z - z).norm();
@@ -169,7 +169,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
       const double share = std::min(1.0, next.to.load[0] * turned / std::max(since, 1e-2));
       if (step < kRestError || (lone && share * step < kRestError)) {
         c = next.to.z;
-        converged = true;
+        converged = smooth = true;
       }
     } else if (std::abs(height) < kOnSurface &&
                step < (next.by_ball ? std::max(kAtRest, 0.1 * ball) : kAtRest) && !next.by_trust) {
@@ -209,9 +209,12 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
     }
     c = height >= -kOnSurface ? c : anchor;
   }
-  const double from_start = (start - x).squaredNorm();
-  if ((c - x).squaredNorm() > from_start)
-    c = (anchor - x).squaredNorm() <= from_start ? anchor : start;
+  // Where the surface is smooth c is that of x, whatever came before, and nothing adds up.
+  if (!smooth) {
+    const double from_start = (start - x).squaredNorm();
+    if ((c - x).squaredNorm() > from_start)
+      c = (anchor - x).squaredNorm() <= from_start ? anchor : start;
+  }
 
   for (int i = walls.count - 1; i >= 0; --i)
     if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);

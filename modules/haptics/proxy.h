@@ -27,7 +27,8 @@ struct ProxyMove {
 // c(t) = local argmin |y - x|^2 subject to phi(y) >= iso, continued from where it was. Only the
 // surface's neighbourhood is read, whatever the depth of x.
 //
-// |c - x| never grows by a move for which x stands still, so that no shape creates energy (P11).
+// About creases, where c depends on the way, |c - x| never grows by a move for which x stands
+// still, so that no shape creates energy (P11).
 class ProxySearch {
  public:
   // steepness: how much faster than the distance to the surface phi may fall, >= 1.

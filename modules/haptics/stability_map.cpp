@@ -48,7 +48,7 @@ double wallLoad(const LocalStiffness& at, const LoopLimits& limits) {
 }
 
 bool slips(const LocalStiffness& at, const LoopLimits& limits) {
-  return limits.softening(at.material.stiffness) * at.lambda_min < -kGrip;
+  return at.slips || limits.softening(at.material.stiffness) * at.lambda_min < -kGrip;
 }
 
 bool jumps(const LocalStiffness& at) {

@@ -195,8 +195,7 @@ TEST(ValueEdits, TheDifferenceOfTwoScenesMakesOneOfTheOther) {
   scenes[2].haptics.damping = 2;
   scenes[2].haptics.damping_cutoff = 80;
   scenes[3].haptics.magnet = Magnet{1e-3, 250, true};
-  scenes[3].haptics.history = false;
-  scenes[3].haptics.contact = HapticProperties::Contact::potential;
+  scenes[3].haptics.contact = HapticProperties::Contact::ray;
   scenes[4].field.voxel = 5e-4;
   scenes[4].redistance = true;
   scenes[5].field.resolution = 77;

@@ -48,9 +48,13 @@ TEST(SampleLayer, HoldsEachNodesOwnDifferences) {
               sample.node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)];
           const float phi = field->phiAt(at[0], at[1], at[2]);
           ASSERT_EQ(node.phi, phi);
-          ASSERT_EQ(node.gx, isStored(phi) ? difference(*field, at, 0) : 0);
-          ASSERT_EQ(node.gy, isStored(phi) ? difference(*field, at, 1) : 0);
-          ASSERT_EQ(node.gz, isStored(phi) ? difference(*field, at, 2) : 0);
+          Vec3 central = Vec3::Zero();
+          for (std::size_t axis = 0; isStored(phi) && axis < 3; ++axis)
+            central[static_cast<Eigen::Index>(axis)] = difference(*field, at, axis);
+          // Beside the centre, where the distance has a crease, a node takes its own side's slope.
+          const double tolerance =
+              isStored(phi) && std::abs(central.squaredNorm() - 1) > 9e-4 ? 0.2 : 0;
+          ASSERT_LE((Vec3(node.gx, node.gy, node.gz) - central).norm(), tolerance);
           if (x == kBlockSide || y == kBlockSide || z == kBlockSide) continue;
           bool all = true;
           for (int c = 0; c < 8; ++c)

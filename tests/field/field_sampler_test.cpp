@@ -116,7 +116,8 @@ TEST(FieldSampler, OrdersOnASphereAreThoseOfTheTheory) {
   for (int level = 0; level < 2; ++level) {
     EXPECT_GE(slope(kim[level].angle, kim[level + 1].angle), 1.9);
     EXPECT_NEAR(slope(kim[level].value, kim[level + 1].value), 2, 0.1);
-    EXPECT_NEAR(slope(high[level].value, high[level + 1].value), 3, 0.2);
+    // At 48 cells a diameter some nodes deep inside count as creased, which halves no error.
+    EXPECT_GE(slope(high[level].value, high[level + 1].value), 2.8);
     EXPECT_EQ(high[level].angle, kim[level].angle);
   }
   // The voxel of a 150^3 grid lies between the last two levels.
@@ -152,7 +153,8 @@ TEST(FieldSampler, MeetsTheForceAccuracyOnASphere) {
 }
 
 // T-K01c and T-K05c: at a box's edges value and direction lose their order in the largest error;
-// the rms direction keeps 1/2, because the wrong strip narrows like h.
+// the rms direction keeps 1/2, because the wrong strip narrows like h. Nodes hold the slope of
+// their own side, so that the strip is one cell wide, and within it any direction may come out.
 TEST(FieldSampler, BoxEdgesLimitTheOrder) {
   const Vec3 half(0.04, 0.033, 0.027);
   Errors coarse = errorsOn(boxDistance(half), 0.04, 48 + 16, Sampler::kim, 0.001);
@@ -160,7 +162,8 @@ TEST(FieldSampler, BoxEdgesLimitTheOrder) {
   EXPECT_NEAR(slope(coarse.value_max, fine.value_max) / 2, 1, 0.25);
   EXPECT_NEAR(slope(coarse.value, fine.value) / 2, 1.5, 0.3);
   EXPECT_NEAR(slope(coarse.angle, fine.angle) / 2, 0.5, 0.15);
-  EXPECT_NEAR(fine.angle_max / kDegree, 45, 10);
+  EXPECT_GT(fine.angle_max / kDegree, 40);
+  EXPECT_LT(fine.angle_max / kDegree, 90);
 }
 
 // T-K05b: direction and value do not jump across a cell's face.
@@ -345,9 +348,9 @@ TEST(FieldSampler, NeedsTheSampleLayerAndAKnownName) {
   EXPECT_THROW(parseSampler("cubic"), Error);
 }
 
-// Its value is the sampler's, its gradient that of the value itself, by central differences within
-// a cell; the blend of nodal gradients is another one beside a crease.
-TEST(FieldSampler, APotentialIsTheDerivativeOfTheValue) {
+// P02. Across a crease the gradient is the derivative of the value, by central differences within a
+// cell; elsewhere it is the blend of nodal gradients, bit for bit.
+TEST(FieldSampler, FollowsACreaseByTheDerivativeOfTheValue) {
   FieldGrid grid;
   grid.voxel = 1e-3;
   grid.origin = Vec3::Constant(-0.016);
@@ -363,13 +366,20 @@ TEST(FieldSampler, APotentialIsTheDerivativeOfTheValue) {
   for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
     const FieldSampler reader(*field, sampler);
     double apart = 0;
-    for (int i = 0; i < 500; ++i) {
+    int smooth = 0, creased = 0;
+    for (int i = 0; i < 4000; ++i) {
       const Vec3 corner(std::floor(cell(random)), std::floor(cell(random)),
                         std::floor(cell(random)));
       const Vec3 q = corner + Vec3(inside(random), inside(random), inside(random));
       const SurfaceSample at = reader.surfaceAtGrid(q);
       if (at.region != FieldRegion::band) continue;
       EXPECT_NEAR(at.phi, reader.phiAtGrid(q), 2e-6);
+      if (at.spread == 0) {
+        EXPECT_EQ(at.gradient, reader.atGrid(q).gradient);
+        ++smooth;
+      }
+      if (at.spread < 0.02) continue;
+      ++creased;
       for (int axis = 0; axis < 3; ++axis) {
         const Vec3 step = 0.05 * Vec3::Unit(axis);
         const double slope = (reader.phiAtGrid(q + step) - reader.phiAtGrid(q - step)) / (2 * 0.05);
@@ -378,6 +388,8 @@ TEST(FieldSampler, APotentialIsTheDerivativeOfTheValue) {
       apart = std::max(apart, (at.gradient - reader.atGrid(q).gradient).norm());
     }
     EXPECT_GT(apart, 0.1);
+    EXPECT_GT(smooth, 500);
+    EXPECT_GT(creased, 500);
   }
 }
 

@@ -82,7 +82,7 @@ TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
     if (low && high) return (after - before) / 2;
     return high ? after - here : low ? here - before : 0.0F;
   };
-  std::size_t one_sided = 0;
+  std::size_t one_sided = 0, central_ones = 0;
   for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
     const auto& at = field->block_at[slot];
     for (int z = 0; z < kSampleSide; ++z)
@@ -98,13 +98,53 @@ TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
             ASSERT_EQ(node.gx, 0);
             continue;
           }
-          ASSERT_EQ(node.gx, difference(i, j, k, 0));
-          ASSERT_EQ(node.gy, difference(i, j, k, 1));
-          ASSERT_EQ(node.gz, difference(i, j, k, 2));
+          const Vec3 central(difference(i, j, k, 0), difference(i, j, k, 1),
+                             difference(i, j, k, 2));
           one_sided += std::abs(field->phiAt(i + 1, j, k)) >= kBeyondBand;
+          ASSERT_LT((Vec3(node.gx, node.gy, node.gz) - central).norm(), 0.2);
+          if (std::abs(central.squaredNorm() - 1) > 9e-4) continue; // as beside a crease
+          ++central_ones;
+          ASSERT_EQ(node.gx, static_cast<float>(central.x()));
+          ASSERT_EQ(node.gy, static_cast<float>(central.y()));
+          ASSERT_EQ(node.gz, static_cast<float>(central.z()));
         }
   }
   EXPECT_GT(one_sided, 100U);
+  EXPECT_GT(central_ones, 4000U);
+}
+
+// Beside a crease a central difference is the slope of neither side; a node holds that of its own.
+// About an inner corner of three planes distance is the least of theirs.
+TEST(SampleLayer, BesideACreaseANodeHoldsTheSlopeOfItsOwnSide) {
+  const Eigen::Matrix3d normals =
+      Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const auto corner = [&](const Vec3& p) { return (normals.transpose() * p).minCoeff(); };
+  const auto field = sampledField(corner, cubeGrid(kRadius, 50, 4), 6);
+  std::size_t own = 0, beside = 0;
+  double worst = 0;
+  for (std::size_t slot = 0; slot < field->blockCount(); ++slot)
+    for (int n = 0; n < kBlockSide * kBlockSide * kBlockSide; ++n) {
+      const int x = n % 8, y = n / 8 % 8, z = n / 64;
+      const auto& at = field->block_at[slot];
+      const Vec3 q(8 * at[0] + x, 8 * at[1] + y, 8 * at[2] + z);
+      const SampleNode& node =
+          field->sample[slot]
+              ->node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)];
+      if (!(std::abs(node.phi) < 4)) continue;
+      Vec3 heights = normals.transpose() * field->grid.toWorld(q) / field->grid.voxel;
+      Eigen::Index least = 0;
+      heights.minCoeff(&least);
+      std::sort(heights.begin(), heights.end());
+      if (heights[1] - heights[0] > 1.5) continue; // its central difference is right
+      ++beside;
+      const double error = (Vec3(node.gx, node.gy, node.gz) - normals.col(least)).norm();
+      own += error < 0.02;
+      worst = std::max(worst, error);
+    }
+  ASSERT_GT(beside, 500U);
+  // The rest lies so near the crease that either side has as good a claim.
+  EXPECT_GT(static_cast<double>(own), 0.9 * static_cast<double>(beside));
+  EXPECT_LT(worst, 1.5);
 }
 
 TEST(SampleLayer, FlagsExactlyTheCellsWhoseEightNodesAreStored) {

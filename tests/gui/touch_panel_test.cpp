@@ -97,15 +97,15 @@ TEST_F(TouchPanels, AMagnetPullsFromOutside) { // K13
   EXPECT_LT(sample.force.dot(sample.tip), 0);
 }
 
-TEST_F(TouchPanels, ContactHistoryAndCutOffReachTheScene) {
-  find<QCheckBox>("contact_history")->setChecked(false);
+TEST_F(TouchPanels, ContactAndCutOffReachTheScene) {
+  find<QCheckBox>("contact_proxy")->setChecked(false);
   HapticProperties haptics = window_->haptics().values();
   haptics.damping = 2;
   haptics.damping_cutoff = 80;
   window_->haptics().setValues(haptics);
   emit find<ValueRow>("damping_cutoff")->edited(120);
   wait(150);
-  EXPECT_FALSE(scene().haptics.history);
+  EXPECT_EQ(scene().haptics.contact, HapticProperties::Contact::ray);
   EXPECT_EQ(scene().haptics.damping_cutoff, 120);
   emit find<ValueRow>("damping")->removed();
   wait(150);

@@ -5,9 +5,8 @@
 namespace patina {
 namespace {
 
-// Pressed 2.5 to 5 mm deep and slid across the bisector of a box's edge, at 7 um a tick: most of it
-// deeper than the band tells directions (5.25 voxels = 2.35 mm). An ordinary press is no fault, and
-// the force passes from one face to the other without a jump.
+// Pressed 2.5 to 5 mm deep and slid across the bisector of a box's edge, at 7 um a tick, most of it
+// deeper than the band: the contact point stays on the face where it is, however near the other.
 TEST(Crease, SlidingAcrossAnEdgeDeeperThanTheBandIsNoFault) {
   const Vec3 half(0.03, 0.025, 0.02);
   const Field box = cubeField([=](const Vec3& p) { return boxDistance(p, half); },
@@ -22,18 +21,15 @@ TEST(Crease, SlidingAcrossAnEdgeDeeperThanTheBandIsNoFault) {
       glide(*snapshot, memory, edge + Vec3(1e-3, -depth - 4e-3, 0), 1e-4);
       Contact contact = glide(*snapshot, memory, edge + Vec3(-depth, -depth - 4e-3, 0), 7e-6);
       Vec3 last = contact.force;
-      bool deep = false;
       for (double along = -4e-3; along < 4e-3; along += 7e-6) {
         const Vec3 inwards(-depth - std::max(along, 0.0), -depth + std::min(along, 0.0), 0);
         contact = tick(*snapshot, memory, edge + inwards, 1e-3);
         ASSERT_FALSE(contact.fault) << depth << ' ' << along;
         ASSERT_TRUE(contact.touching);
         ASSERT_LT((contact.force - last).norm(), 1.2e-3 * stiffness) << depth << ' ' << along;
-        deep |= contact.deep;
         last = contact.force;
       }
-      EXPECT_TRUE(deep);
-      EXPECT_GT(contact.normal.y(), 0.9); // the other face has it now
+      EXPECT_GT(contact.normal.x(), 0.99); // of the face where it came in
     }
   }
 }

@@ -190,7 +190,7 @@ TEST(Friction, LosingContactForgetsTheStuckPoint) {
   EXPECT_GT(tangential(glide(*snapshot, memory, Vec3(1e-3, 0, -2e-3))), 0.1);
   glide(*snapshot, memory, Vec3(1e-3, 0, 1e-4));
   EXPECT_FALSE(memory.has_stuck);
-  EXPECT_EQ(tangential(tick(*snapshot, memory, Vec3(1e-3, 0, -1e-3), kPeriod)), 0.0);
+  EXPECT_LT(tangential(tick(*snapshot, memory, Vec3(1e-3, 0, -1e-3), kPeriod)), 1e-12);
 }
 
 // T-K10, first reading: Coulomb alone already grows with depth.

@@ -77,54 +77,23 @@ TEST(LocalStiffness, OfAnOffsetSurfaceTakesTheDepthUnderIt) {
   EXPECT_NEAR(at.lambda_min, expected, 0.02 * std::abs(expected));
 }
 
-// The normal turns within one cell. Where nodes lie on the diagonal the blend has a closed form: it
-// turns by sqrt(2) / h.
-TEST(LocalStiffness, OnARidgeThroughNodesIsMinusRootTwoForceOverVoxel) {
-  const double h = 0.5e-3;
-  const Vec3 half = Vec3::Constant(0.0103);
-  const Field field = cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64);
-  for (const double depth : {1.0, 2.0, 4.0}) {
-    const LocalStiffness at =
-        pressed(sceneOf(kStiffness), field, Vec3(half.x(), half.y(), 1e-3), depth * h);
-    const double expected = -std::sqrt(2) * at.force / h;
-    EXPECT_NEAR(at.lambda_min, expected, 0.004 * std::abs(expected));
-    EXPECT_LT(at.uncertainty, 0.004 * std::abs(expected));
-  }
-}
-
-// -1.8 to -1.9 K d / h on the ridge with d below either face, wherever the nodes are.
-TEST(LocalStiffness, OnARidgeGrowsWithDepthOverVoxel) {
-  const double half = 0.0203;
-  for (const double h : {0.5e-3, 1e-3}) {
-    for (double shift = 0; shift < 1; shift += 0.125) {
-      const Vec3 centre(shift * h, 0, 0);
-      const auto phi = [=](const Vec3& p) { return boxDistance(p - centre, Vec3::Constant(half)); };
-      const StiffnessProbe probe(sceneOf(kStiffness),
-                                 cubeField(phi, h, static_cast<int>(std::lround(0.05 / h))));
-      double steepest = 0;
-      for (double aside = -0.5; aside <= 0.5; aside += 0.05) {
-        const Vec3 above(half + (aside - 0.2) * h, half - (aside + 0.2) * h, 1.3e-3);
-        const auto at = probe.at(centre + above, 3 * h);
-        ASSERT_TRUE(at);
-        const double below = half - (at->tip - centre).head<2>().maxCoeff();
-        steepest = std::min(steepest, at->lambda_min / (kStiffness * below / h));
-      }
-      EXPECT_GT(steepest, -2.0);
-      EXPECT_LT(steepest, -1.6);
-    }
-  }
-}
-
-TEST(LocalStiffness, ACoarseStepSmearsARidgeAndSaysSo) {
+// A ridge holds no tip: pressed in along the bisector it ends on one of the faces, and this is
+// said.
+TEST(LocalStiffness, OnARidgeTheTipSlipsOffToAFace) {
   const double h = 0.5e-3;
   const Vec3 half = Vec3::Constant(0.0103);
   const Field field = cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64);
   const StiffnessProbe probe(sceneOf(kStiffness), field);
-  const Vec3 edge(half.x(), half.y(), 1e-3);
-  const auto usual = probe.at(edge, 4 * h), coarse = probe.at(edge, 4 * h, 0.25);
-  ASSERT_TRUE(usual && coarse);
-  EXPECT_GT(coarse->uncertainty, 0.05 * std::abs(coarse->lambda_min));
-  EXPECT_GT(coarse->lambda_min, 0.85 * usual->lambda_min);
+  for (const double depth : {2.0, 4.0}) {
+    const auto at = probe.at(Vec3(half.x(), half.y(), 1e-3), depth * h);
+    ASSERT_TRUE(at);
+    EXPECT_TRUE(at->slips);
+    EXPECT_NEAR(at->lambda_max, kStiffness, 0.01 * kStiffness);
+    EXPECT_GT(at->normal.head<2>().maxCoeff(), 0.99);
+  }
+  const auto beside = probe.at(Vec3(half.x(), 1e-3, 1e-3), 2 * h);
+  ASSERT_TRUE(beside);
+  EXPECT_FALSE(beside->slips);
 }
 
 TEST(LocalStiffness, PastTheMiddleOfAThinPlateTheTipIsHeldAsInTheServo) {
@@ -133,7 +102,7 @@ TEST(LocalStiffness, PastTheMiddleOfAThinPlateTheTipIsHeldAsInTheServo) {
   EXPECT_NEAR(held.lambda_max, kStiffness, 1e-3 * kStiffness);
   EXPECT_NEAR(held.force, 1, 1e-3); // 2 mm deep in 0.5 mm: from the side of entry
   EXPECT_GT(held.normal.z(), 0.999);
-  scene.haptics.history = false;
+  scene.haptics.contact = HapticProperties::Contact::ray;
   EXPECT_FALSE(StiffnessProbe(scene, plateField()).at(Vec3(1e-4, 2e-4, 0.25e-3)));
 }
 

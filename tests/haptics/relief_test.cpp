@@ -345,22 +345,5 @@ TEST(PulledRelief, IsThatOfTheObjectTouched) {
     }
 }
 
-TEST(BakedRelief, IsFeltAsAPotentialOrAsInThePaper) {
-  const Slab& plane = fineSlab();
-  FeltObject baked;
-  baked.highest = 1e-3;
-  Scene scene = sceneOf(500);
-  scene.relief.mode = ReliefMode::baked;
-  const auto names = [&] {
-    std::string list;
-    const auto snapshot = compiledWith(scene, baked, plane.field);
-    for (const StageInfo& stage : snapshot->why) list += stage.name + " ";
-    return list;
-  };
-  EXPECT_EQ(names(), "contact potential spring limit ");
-  scene.relief.form = ForceForm::literal;
-  EXPECT_EQ(names(), "contact spring limit ");
-}
-
 } // namespace
 } // namespace patina

@@ -151,18 +151,18 @@ TEST(StabilityRatio, InStickTheTangentialLoopObeysItToo) {
   }
 }
 
-// Under an offset the two sides of a groove push the tip back and forth across one cell: six times
-// K, on a model of one stiffness. Here the map shows what no single number does.
-TEST(StabilityRatio, AGrooveUnderAnOffsetBuzzesWhereItsSidesDoNot) {
+// Under an offset the two sides of a groove hold the tip together, each with its own K: no
+// direction is stiffer than a plane, and the loop says so.
+TEST(StabilityRatio, AGrooveUnderAnOffsetIsAsStiffAsItsSides) {
   Scene scene = bare(500);
   scene.haptics.offset = 2e-3;
   const auto at = StiffnessProbe(scene, groove()).at(Vec3::Zero());
   ASSERT_TRUE(at);
-  ASSERT_GT(at->lambda_max, 5 * 500);
+  EXPECT_NEAR(at->lambda_max, 500, 5);
   ASSERT_GT(at->lambda_min, -1);
   EXPECT_GT(ratioAt(scene, groove(), Vec3(8e-3, 0, 8e-3)), 1.9);
   scene.device_model = DeviceModel{};
-  EXPECT_LT(ratioAt(scene, groove(), Vec3::Zero()), 0.5);
+  EXPECT_GT(ratioAt(scene, groove(), Vec3::Zero()), 1.9);
   for (const double factor : {0.9, 1.1}) {
     const double damping = at->lambda_max / (2 * scene.device_model->rate) / factor;
     scene.device_model->damping = damping;
@@ -245,16 +245,15 @@ TEST(StabilityMap, WhereTheTipSlipsOffItIsAPlane) {
   const StabilityMap map =
       stabilityMap(bare(500), cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64),
                    mesh, progress);
-  EXPECT_LT(*std::min_element(map.least.begin(), map.least.end()), -5 * kGrip);
   EXPECT_GT(map.slipping, 5u);
   EXPECT_LT(map.slipping, mesh.positions.size());
   EXPECT_NEAR(map.worst_ratio, limitWith(0) / 500, 0.02);
 }
 
-// Where a plate without history turns the force round, wherever between its sides that is.
+// Where the paper's ray turns the force of a plate round, wherever between its sides that is.
 TEST(StabilityMap, AJumpOfTheForceIsCountedAndNotDivided) {
   Scene scene = bare(1e3);
-  scene.haptics.history = false;
+  scene.haptics.contact = HapticProperties::Contact::ray;
   TriangleMesh mesh;
   mesh.positions = {Vec3(1e-4, 2e-4, 1e-3)};
   Progress progress;
