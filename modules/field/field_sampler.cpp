@@ -40,7 +40,7 @@ constexpr double kShallowestHandOver = -0.25;
 
 // Spread of the nodes' directions up to which they are one, and from there on until the derivative
 // alone is taken.
-constexpr double kOneDirection = 0.005, kCreaseWidth = 0.015;
+constexpr double kAgreed = 0.0006, kCreaseWidth = 0.001;
 
 struct Blend {
   Float4 sum;        // trilinear phi and gradient
@@ -132,39 +132,63 @@ SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q) const noexcept {
   const float squared =
       value.sum[1] * value.sum[1] + value.sum[2] * value.sum[2] + value.sum[3] * value.sum[3];
   sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
-  if (std::abs(squared - 1) > kOneDirection) [[unlikely]]
+  if (std::abs(squared - 1) > kAgreed) [[unlikely]]
     followCrease(cell, sample);
   return sample;
 }
 
+namespace {
+
+// The four nodes of a layer of a cell, x fastest, a quantity each.
+struct Layer {
+  Float4 phi, gx, gy, gz;
+};
+Layer layerAt(const SampleNode* node) {
+  const Float4 a = load(node[0]), b = load(node[1]), c = load(node[kRow]), d = load(node[kRow + 1]);
+  const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+               ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7),
+               cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5),
+               cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  return {__builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5),
+          __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
+          __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5),
+          __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
+}
+
+float sumOf(Float4 value) {
+  return (value[0] + value[1]) + (value[2] + value[3]);
+}
+
+} // namespace
+
 // The gradient's length alone does not tell: in a field with relief baked in it is not 1 on either
 // side.
 void FieldSampler::followCrease(const Cell& cell, SurfaceSample& sample) const noexcept {
-  const std::array<std::array<double, 2>, 3> weight = {{{1.0 - cell.fx, 1.0 * cell.fx},
-                                                        {1.0 - cell.fy, 1.0 * cell.fy},
-                                                        {1.0 - cell.fz, 1.0 * cell.fz}}};
-  Vec3 derivative = Vec3::Zero();
-  double squares = 0;
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    const std::size_t i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
-    const SampleNode& node = cell.node[k * kLayer + j * kRow + i];
-    double value = node.phi;
-    const double w = weight[0][i] * weight[1][j] * weight[2][k];
-    const Vec3 g(node.gx, node.gy, node.gz);
-    squares += w * g.squaredNorm();
-    if (sampler_ == Sampler::high) {
-      const Vec3 away(weight[0][1] - static_cast<double>(i), weight[1][1] - static_cast<double>(j),
-                      weight[2][1] - static_cast<double>(k));
-      value += 0.5 * g.dot(away);
-      derivative += 0.5 * w * g;
-    }
-    derivative += value * Vec3((i ? 1 : -1) * weight[1][j] * weight[2][k],
-                               (j ? 1 : -1) * weight[0][i] * weight[2][k],
-                               (k ? 1 : -1) * weight[0][i] * weight[1][j]);
-  }
+  const float fx = cell.fx, fy = cell.fy, fz = cell.fz, ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
+  const Layer low = layerAt(cell.node), high = layerAt(cell.node + kLayer);
+  const Float4 weight = {ex * ey, fx * ey, ex * fy, fx * fy};
+  const Float4 squares_low = low.gx * low.gx + low.gy * low.gy + low.gz * low.gz,
+               squares_high = high.gx * high.gx + high.gy * high.gy + high.gz * high.gz;
+  const float squares = sumOf(weight * (ez * squares_low + fz * squares_high));
   if (!(squares > 0)) return;
-  sample.spread = 1 - sample.gradient.squaredNorm() / squares;
-  const double share = std::clamp((sample.spread - kOneDirection) / kCreaseWidth, 0.0, 1.0);
+  sample.spread = std::max(0.0, 1 - sample.gradient.squaredNorm() / static_cast<double>(squares));
+  const double share = std::clamp((sample.spread - kAgreed) / kCreaseWidth, 0.0, 1.0);
+  if (share == 0) {
+    sample.spread = 0;
+    return;
+  }
+  Float4 v_low = low.phi, v_high = high.phi;
+  Vec3 derivative = Vec3::Zero();
+  if (sampler_ == Sampler::high) {
+    const Float4 half_x = {0.5F * fx, -0.5F * ex, 0.5F * fx, -0.5F * ex},
+                 half_y = {0.5F * fy, 0.5F * fy, -0.5F * ey, -0.5F * ey};
+    v_low += half_x * low.gx + half_y * low.gy + 0.5F * fz * low.gz;
+    v_high += half_x * high.gx + half_y * high.gy - 0.5F * ez * high.gz;
+    derivative = 0.5 * sample.gradient;
+  }
+  const Float4 v = ez * v_low + fz * v_high;
+  derivative += Vec3((v[1] - v[0]) * ey + (v[3] - v[2]) * fy,
+                     (v[2] - v[0]) * ex + (v[3] - v[1]) * fx, sumOf(weight * (v_high - v_low)));
   sample.gradient += share * (derivative - sample.gradient);
 }
 

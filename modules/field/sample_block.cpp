@@ -7,14 +7,14 @@ namespace patina {
 namespace {
 
 // phi of a block's nodes and of the layers around them that gradients read.
-constexpr int kPadded = kBlockSide + 3; // nodes -1 .. 9: the 9^3 samples and both their neighbours
+constexpr int kPadded = kBlockSide + 5; // nodes -2 .. 10: the 9^3 samples and two to either side
 using PaddedPhi = std::array<float, kPadded * kPadded * kPadded>;
 
 constexpr std::size_t paddedIndex(int x, int y, int z) {
-  return static_cast<std::size_t>(((z + 1) * kPadded + (y + 1)) * kPadded + (x + 1));
+  return static_cast<std::size_t>(((z + 2) * kPadded + (y + 2)) * kPadded + (x + 2));
 }
 
-// Of padded coordinate -1 .. 9: which of the three blocks along an axis, and where in it.
+// Of padded coordinate -2 .. 10: which of the three blocks along an axis, and where in it.
 constexpr int neighbourOf(int c) {
   return c < 0 ? 0 : c < kBlockSide ? 1 : 2;
 }
@@ -45,20 +45,20 @@ Neighbours neighboursOf(const SurfaceField& field, const std::array<int, 3>& at)
 
 void gather(const Neighbours& about, PaddedPhi& padded) {
   float* out = padded.data();
-  for (int z = -1; z < kPadded - 1; ++z)
-    for (int y = -1; y < kPadded - 1; ++y, out += kPadded) {
+  for (int z = -2; z < kPadded - 2; ++z)
+    for (int y = -2; y < kPadded - 2; ++y, out += kPadded) {
       const auto first = static_cast<std::size_t>(9 * neighbourOf(z) + 3 * neighbourOf(y));
       const int row = (indexIn(z) * kBlockSide + indexIn(y)) * kBlockSide;
       const float* low = about.phi[first];
       const float* own = about.phi[first + 1];
       const float* high = about.phi[first + 2];
-      out[0] = low ? low[row + kBlockSide - 1] : about.fill[first];
+      for (int x = 0; x < 2; ++x) out[x] = low ? low[row + kBlockSide - 2 + x] : about.fill[first];
       if (own)
-        std::memcpy(out + 1, own + row, kBlockSide * sizeof(float));
+        std::memcpy(out + 2, own + row, kBlockSide * sizeof(float));
       else
-        for (int x = 1; x <= kBlockSide; ++x) out[x] = about.fill[first + 1];
-      out[kBlockSide + 1] = high ? high[row] : about.fill[first + 2];
-      out[kBlockSide + 2] = high ? high[row + 1] : about.fill[first + 2];
+        for (int x = 0; x < kBlockSide; ++x) out[2 + x] = about.fill[first + 1];
+      for (int x = 0; x < 3; ++x)
+        out[kBlockSide + 2 + x] = high ? high[row + x] : about.fill[first + 2];
     }
 }
 
@@ -76,57 +76,49 @@ Int4 isStored(Float4 phi) {
   return (phi < kBeyondBand) & (phi > -kBeyondBand);
 }
 
-// K04: central where both neighbours are stored, one-sided where one is, zero where none is.
-struct Differences {
-  Float4 central, before, after;
-};
-Differences differences(const float* node, int step, Float4 here) {
+Float4 magnitude(Float4 value) {
+  const Float4 none = {};
+  return value < none ? -value : value;
+}
+
+// K04: central where both neighbours are stored, one-sided where one is, zero where none is. Beside
+// a crease a central difference is the slope of neither side; what counts there is the difference
+// on the side that the crease is not on, which is where the slope changes least (essentially
+// non-oscillatory differences of second order: Harten, Engquist, Osher, Chakravarthy 1987). Of a
+// smooth surface and its facets the slope changes alike on either side, and that is left alone.
+Float4 difference(const float* node, int step, Float4 here) {
   const Float4 before = load(node - step), after = load(node + step);
   const Int4 has_before = isStored(before), has_after = isStored(after);
   const Float4 low = has_before ? before : here, high = has_after ? after : here;
   const Float4 half = {0.5F, 0.5F, 0.5F, 0.5F}, one = {1, 1, 1, 1};
-  Differences d;
-  d.central = (high - low) * (has_before & has_after ? half : one);
-  d.before = has_before ? here - low : d.central;
-  d.after = has_after ? high - here : d.central;
-  return d;
-}
+  const Float4 central = (high - low) * (has_before & has_after ? half : one);
 
-// Beside a crease a central difference is the slope of neither side. Of the eight ways to take one
-// difference an axis those count that have a distance's slope, 1: they lie on the node's own side.
-// Where the surface is smooth all do, and their mean is the central difference.
-void takeOwnSide(Differences& x, Differences& y, Differences& z) {
-  const Float4 one = {1, 1, 1, 1}, none = {};
-  const Float4 off = x.central * x.central + y.central * y.central + z.central * z.central - one;
-  const Float4 noticed = {0.002F, 0.002F, 0.002F, 0.002F};
-  const Int4 beside = (off > noticed) | (off < -noticed);
-  if (!(beside[0] | beside[1] | beside[2] | beside[3])) return;
+  const Float4 before2 = load(node - 2 * step), after2 = load(node + 2 * step);
+  const Float4 bend = after - here - (here - before);
+  const Float4 bend_low = here - before - (before - before2),
+               bend_high = after2 - after - (after - here);
+  const Float4 crease = {0.02F, 0.02F, 0.02F, 0.02F};
+  const Int4 creased =
+      has_before & has_after & isStored(before2) & isStored(after2) &
+      ((magnitude(bend - bend_low) > crease) | (magnitude(bend - bend_high) > crease));
+  if (!(creased[0] | creased[1] | creased[2] | creased[3])) return central;
+  const Float4 from_low = here - before + half * bend_low,
+               from_high = after - here - half * bend_high;
   const Float4 least = {1e-5F, 1e-5F, 1e-5F, 1e-5F};
-  Float4 gx = none, gy = none, gz = none, sum = none;
-  for (int choice = 0; choice < 8; ++choice) {
-    const Float4 cx = choice & 1 ? x.after : x.before, cy = choice & 2 ? y.after : y.before,
-                 cz = choice & 4 ? z.after : z.before;
-    const Float4 error = cx * cx + cy * cy + cz * cz - one;
-    const Float4 weight = one / (error * error + least);
-    gx += weight * cx;
-    gy += weight * cy;
-    gz += weight * cz;
-    sum += weight;
-  }
-  x.central = beside ? gx / sum : x.central;
-  y.central = beside ? gy / sum : y.central;
-  z.central = beside ? gz / sum : z.central;
+  const Float4 trust_low = one / (bend_low * bend_low + least),
+               trust_high = one / (bend_high * bend_high + least),
+               trust = one / (bend * bend + least);
+  return creased ? (trust_low * from_low + trust * central + trust_high * from_high) /
+                       (trust_low + trust + trust_high)
+                 : central;
 }
 
 void fillFour(const float* node, SampleNode* out) {
   const Float4 phi = load(node), none = {};
   const Int4 stored = isStored(phi);
-  Differences x = differences(node, 1, phi), y = differences(node, kPadded, phi),
-              z = differences(node, kPadded * kPadded, phi);
-  takeOwnSide(x, y, z);
-  const Float4 gx = stored ? x.central : none;
-  const Float4 gy = stored ? y.central : none;
-  const Float4 gz = stored ? z.central : none;
+  const Float4 gx = stored ? difference(node, 1, phi) : none;
+  const Float4 gy = stored ? difference(node, kPadded, phi) : none;
+  const Float4 gz = stored ? difference(node, kPadded * kPadded, phi) : none;
   const Float4 a = __builtin_shufflevector(phi, gx, 0, 4, 1, 5);
   const Float4 b = __builtin_shufflevector(gy, gz, 0, 4, 1, 5);
   const Float4 c = __builtin_shufflevector(phi, gx, 2, 6, 3, 7);

@@ -19,6 +19,7 @@ constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
+constexpr double kMostLent = 2e-3; // voxels^2
 constexpr int kMostLooks = 8, kMostTightenings = 3, kMostShortenings = 4;
 constexpr double kLeastStep = 1.0 / 16;
 constexpr double kSeated = 1e-4;
@@ -102,7 +103,8 @@ ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec
   return aim;
 }
 
-ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const noexcept {
+ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
+                              Proxy& proxy) const noexcept {
   ProxyMove move;
   Walls& walls = proxy.walls;
   Vec3 start = proxy.c, anchor = proxy.c;
@@ -209,12 +211,17 @@ ProxyMove ProxySearch::follow(const Vec3& x, double ball, Proxy& proxy) const no
     }
     c = height >= -kOnSurface ? c : anchor;
   }
-  // Where the surface is smooth c is that of x, whatever came before, and nothing adds up.
-  if (!smooth) {
+  // Of a move dc under the spring's mean force between the ticks.
+  const auto given = [&](const Vec3& to) {
+    return 0.5 * ((start - from) + (to - x)).dot(to - start);
+  };
+  if (!smooth || proxy.lent + given(c) > kMostLent) {
     const double from_start = (start - x).squaredNorm();
     if ((c - x).squaredNorm() > from_start)
       c = (anchor - x).squaredNorm() <= from_start ? anchor : start;
+    if (smooth && given(c) > 0) c = start;
   }
+  proxy.lent = std::max(0.0, proxy.lent + given(c));
 
   for (int i = walls.count - 1; i >= 0; --i)
     if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);

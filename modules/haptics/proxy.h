@@ -14,6 +14,7 @@ namespace patina {
 struct Proxy {
   Vec3 c = Vec3::Zero();
   Walls walls;
+  double lent = 0; // work that moves of c have given so far, over the stiffness [voxel^2]
 };
 
 struct ProxyMove {
@@ -27,17 +28,19 @@ struct ProxyMove {
 // c(t) = local argmin |y - x|^2 subject to phi(y) >= iso, continued from where it was. Only the
 // surface's neighbourhood is read, whatever the depth of x.
 //
-// About creases, where c depends on the way, |c - x| never grows by a move for which x stands
-// still, so that no shape creates energy (P11).
+// No shape creates energy (P11): about creases, where c depends on the way, |c - x| never grows by
+// a move of c. On a smooth surface c is that of x whatever came before, and the sampled normals
+// give and take a little; what they have given is kept count of, and beyond a bound they give no
+// more.
 class ProxySearch {
  public:
   // steepness: how much faster than the distance to the surface phi may fall, >= 1.
   ProxySearch(const FieldSampler& sampler, double iso, double steepness = 1) noexcept
       : sampler_(&sampler), iso_(iso), per_steepness_(1 / steepness) {}
 
-  // In contact: x is the new tip; `ball` bounds how far c goes. Leaves proxy.c on the surface, or
-  // says that contact has ended.
-  ProxyMove follow(const Vec3& x, double ball, Proxy& proxy) const noexcept;
+  // In contact: x is the new tip, from the last; `ball` bounds how far c goes. Leaves proxy.c on
+  // the surface, or says that contact has ended.
+  ProxyMove follow(const Vec3& x, const Vec3& from, double ball, Proxy& proxy) const noexcept;
 
   // Where the way from a free point to `to` first meets the surface, on its free side to 1e-5;
   // parts thinner than 1/16 voxel may be missed. height: phi - iso at from and at to, where known.

@@ -47,10 +47,11 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   } else {
     if (!enter(x, from, contact, memory, proxy.c)) return;
     proxy.walls.count = 0;
+    proxy.lent = 0;
     ball += (x - proxy.c).norm();
   }
   memory.reseat = false;
-  const ProxyMove move = search_.follow(x, ball, proxy);
+  const ProxyMove move = search_.follow(x, from, ball, proxy);
   contact.samples += move.samples;
   if (!move.touching) {
     memory.leaveContact();

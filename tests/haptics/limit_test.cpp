@@ -91,7 +91,7 @@ TEST(JumpFault, TeleportIntoContactFadesIn) {
     contact = tick(*snapshot, memory, Vec3(12e-3, 0, -12e-3), kPeriod);
     EXPECT_TRUE(contact.touching);
     EXPECT_EQ(contact.fault, i * kPeriod < kFaultFadeTime + kFaultReturnTime - 1e-9) << i;
-    if (i * kPeriod < kFaultFadeTime - 1e-9) EXPECT_EQ(contact.force.norm(), 0);
+    EXPECT_LE(contact.force.norm(), i * kPeriod < kFaultFadeTime - 1e-9 ? 0 : 3.3);
     EXPECT_GE(contact.force.z(), last);
     EXPECT_LT(contact.force.z() - last, 0.04);
     last = contact.force.z();
