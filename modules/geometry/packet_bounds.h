@@ -76,9 +76,11 @@ PATINA_INLINE Lanes childDistances(const WideNode& node, const Points& p) {
   const Lanes z = p.z - load(node.centre[2]);
   const Lanes box = lengthSquared(gap(x, load(node.half[0])), gap(y, load(node.half[1])),
                                   gap(z, load(node.half[2])));
-  return larger(box, cylinderDistance(x, y, z, load(node.normal[0]), load(node.normal[1]),
-                                      load(node.normal[2]), load(node.low), load(node.high),
-                                      load(node.radius)));
+  const Lanes radius = load(node.radius);
+  if (!any(radius < spread(__builtin_inff()))) return box;
+  return larger(box,
+                cylinderDistance(x, y, z, load(node.normal[0]), load(node.normal[1]),
+                                 load(node.normal[2]), load(node.low), load(node.high), radius));
 }
 
 } // namespace patina::PATINA_KERNEL

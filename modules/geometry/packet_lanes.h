@@ -102,6 +102,16 @@ PATINA_INLINE float largest(const Lanes& a) {
   return _mm_cvtss_f32(m);
 }
 
+PATINA_INLINE float smallest(const Lanes& a) {
+  __m128 m = _mm_min_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
+  m = _mm_min_ps(m, _mm_movehl_ps(m, m));
+  m = _mm_min_ss(m, _mm_shuffle_ps(m, m, 1));
+  return _mm_cvtss_f32(m);
+}
+PATINA_INLINE float first(const Lanes& a) {
+  return _mm256_cvtss_f32(a.v);
+}
+
 // column[i] = element i of each of the eight rows.
 PATINA_INLINE void transpose(const float* const (&row)[8], Lanes* column) {
   __m256 r[8], s[8];
@@ -257,6 +267,18 @@ PATINA_INLINE float largest(const Lanes& x) {
     m = x.b[i] > m ? x.b[i] : m;
   }
   return m;
+}
+
+PATINA_INLINE float smallest(const Lanes& x) {
+  float m = x.a[0];
+  for (int i = 0; i < 4; ++i) {
+    m = x.a[i] < m ? x.a[i] : m;
+    m = x.b[i] < m ? x.b[i] : m;
+  }
+  return m;
+}
+PATINA_INLINE float first(const Lanes& x) {
+  return x.a[0];
 }
 
 #endif

@@ -5,7 +5,8 @@
 
 namespace patina::PATINA_KERNEL {
 
-constexpr int kStack = 640; // 7 more a level; the tree's depth is bounded by its builder
+constexpr int kDepth = 90;  // of the tree, bounded by its builder
+constexpr int kStack = 640; // 7 more a level
 
 struct Entry {
   float d2;
@@ -74,56 +75,57 @@ inline void searchWarm(const LatticeJob& job, const Points& p, const Box& box, s
   }
 }
 
-struct PointEntry {
-  float d2;
+// A node on the way down: the distances of its children that wait, infinite for those that went.
+struct Waiting {
+  alignas(32) float d2[kWide];
   std::int32_t node;
 };
 
-// From the node `at`; `visit` gets triangles at hand and tightens the limit, which it returns.
-template <typename Visit>
-PATINA_INLINE void descend(const WideNode* nodes, const Points& p, std::int32_t at, float limit,
-                           const Visit& visit) {
-  PointEntry stack[kStack];
+// One point from the root. `visit` gets a triangle and `visitBlock` those of a node from `inner`
+// on; both tighten the limit, which they return. Nearest children first, but they are not sorted:
+// by when the second's turn comes, few are near enough. The limit is at most kFarthest.
+template <typename Visit, typename VisitBlock>
+PATINA_INLINE void descend(const WideNode* nodes, std::int32_t inner, const Points& p, float limit,
+                           const Visit& visit, const VisitBlock& visitBlock) {
+  Waiting stack[kDepth];
   int top = 0;
+  std::int32_t at = 0;
   for (;;) {
-    const WideNode& node = nodes[at];
-    const Lanes d2 = childDistances(node, p);
-    unsigned near = bits(d2 <= spread(limit));
-    alignas(32) float distance[kWide];
-    store(distance, d2);
-    std::int32_t triangle[kWide];
-    int triangles = 0;
-    const int base = top;
-    while (near) {
-      const int place = __builtin_ctz(near);
-      near &= near - 1;
-      const std::int32_t child = node.child[place];
-      if (child < 0) {
-        triangle[triangles++] = ~child;
+    if (at >= inner) {
+      limit = visitBlock(at - inner);
+    } else {
+      store(stack[top].d2, childDistances(nodes[at], p));
+      stack[top++].node = at;
+    }
+    for (;;) {
+      if (top == 0) return;
+      Waiting& waiting = stack[top - 1];
+      const Lanes d2 = load(waiting.d2);
+      const float nearest = smallest(d2);
+      if (!(nearest <= limit)) {
+        --top;
         continue;
       }
-      int slot = top++;
-      while (slot > base && stack[slot - 1].d2 < distance[place]) {
-        stack[slot] = stack[slot - 1];
-        --slot;
-      }
-      stack[slot] = {distance[place], child};
+      const int place = __builtin_ctz(bits(d2 <= spread(nearest)));
+      waiting.d2[place] = __builtin_inff();
+      at = nodes[waiting.node].child[place];
+      if (at >= 0) break;
+      limit = visit(~at);
     }
-    if (triangles > 0) limit = visit(triangle, triangles);
-    do {
-      if (top == 0) return;
-      --top;
-    } while (stack[top].d2 > limit);
-    at = stack[top].node;
   }
 }
 
 inline void searchPoint(const LatticeJob& job, const Points& p, Nearest& nearest) {
-  const auto visit = [&](std::int32_t(&triangle)[kWide], int count) __attribute__((always_inline)) {
-    tryTriangles(job.triangles, triangle, count, p, nearest);
+  const auto visit = [&](std::int32_t triangle) __attribute__((always_inline)) {
+    tryTriangle(job.triangles, triangle, p, nearest);
     return nearest.limit;
   };
-  descend(job.nodes, p, 0, nearest.limit, visit);
+  const auto visitBlock = [&](std::int32_t at) __attribute__((always_inline)) {
+    const WideNode& node = job.nodes[job.inner + at];
+    take(job.triangles, squaredDistance(job.blocks[at], p), node.child, nearest);
+    return nearest.limit;
+  };
+  descend(job.nodes, job.inner, p, nearest.limit, visit, visitBlock);
 }
 
 } // namespace patina::PATINA_KERNEL

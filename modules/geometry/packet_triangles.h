@@ -77,6 +77,30 @@ PATINA_INLINE Lanes squaredDistance(const T& t, const Lanes& rx, const Lanes& ry
   return madd(z, z, choose(inside, zero, edge));
 }
 
+// Of one point, in every lane, from a block's triangles.
+PATINA_INLINE Lanes squaredDistance(const TriangleBlock& t, const Points& p) {
+  const Lanes rx = p.x - load(t.a[0]), ry = p.y - load(t.a[1]), rz = p.z - load(t.a[2]);
+  const Lanes ux = load(t.along[0]), uy = load(t.along[1]), uz = load(t.along[2]);
+  const Lanes vx = load(t.across[0]), vy = load(t.across[1]), vz = load(t.across[2]);
+  const Lanes x = madd(rx, ux, madd(ry, uy, rz * uz));
+  const Lanes y = madd(rx, vx, madd(ry, vy, rz * vz));
+  const Lanes z =
+      madd(rx, uy * vz - uz * vy, madd(ry, uz * vx - ux * vz, rz * (ux * vy - uy * vx)));
+  const Lanes zero = spread(0.0f), one = spread(1.0f);
+  const Lanes ab = load(t.ab), cx = load(t.c_x), cy = load(t.c_y);
+  const Lanes from_b = x - ab, bc_x = cx - ab;
+  const Lanes on_bc = smaller(larger(madd(from_b, bc_x, y * cy) * load(t.per_bc2), zero), one);
+  const Lanes on_ac = smaller(larger(madd(x, cx, y * cy) * load(t.per_ac2), zero), one);
+  const Lanes over_ab = x - smaller(larger(x, zero), ab);
+  const Lanes bc_dx = from_b - on_bc * bc_x, bc_dy = y - on_bc * cy;
+  const Lanes ac_dx = x - on_ac * cx, ac_dy = y - on_ac * cy;
+  const Lanes edge =
+      smaller(madd(over_ab, over_ab, y * y),
+              smaller(madd(bc_dx, bc_dx, bc_dy * bc_dy), madd(ac_dx, ac_dx, ac_dy * ac_dy)));
+  const Mask inside = smaller(y, smaller(x * cy - y * cx, y * bc_x - from_b * cy)) > zero;
+  return madd(z, z, choose(inside, zero, edge));
+}
+
 struct Answer {
   Lanes best, limit, face_d2;
   IntLanes face, triangle;
@@ -111,43 +135,45 @@ struct Nearest {
   std::int32_t face, triangle;
 };
 
-// Squared distances of one point from `count` triangles; other lanes repeat the first.
-PATINA_INLINE Lanes triangleDistances(const PacketTriangle* triangles, std::int32_t (&index)[kWide],
-                                      int count, const Points& p) {
-  if (count == 1) {
-    const PacketTriangle& t = triangles[index[0]];
-    return squaredDistance(OneTriangle{t}, p.x - spread(t.a[0]), p.y - spread(t.a[1]),
-                           p.z - spread(t.a[2]));
-  }
-  for (int i = count; i < kWide; ++i) index[i] = index[0];
-  EightTriangles t;
-  gather(triangles, index, t);
-  return squaredDistance(t, p.x - t.a(0), p.y - t.a(1), p.z - t.a(2));
+// Of one point, in every lane, from one triangle.
+PATINA_INLINE Lanes squaredDistance(const PacketTriangle& t, const Points& p) {
+  return squaredDistance(OneTriangle{t}, p.x - spread(t.a[0]), p.y - spread(t.a[1]),
+                         p.z - spread(t.a[2]));
 }
 
-PATINA_INLINE void tryTriangles(const PacketTriangle* triangles, std::int32_t (&index)[kWide],
-                                int count, const Points& p, Nearest& nearest) {
-  const Lanes d2 = triangleDistances(triangles, index, count, p);
-  unsigned near = bits(d2 <= spread(nearest.limit)) & ((1u << count) - 1);
+PATINA_INLINE void take(const PacketTriangle* triangles, std::int32_t index, float d2,
+                        Nearest& nearest) {
+  if (d2 < nearest.best) {
+    nearest.best = d2;
+    const float limit = __builtin_sqrtf(d2) * (1 + kTie) + kTieFloor;
+    nearest.limit = limit * limit;
+  }
+  const std::int32_t face = triangles[index].face;
+  if (face < nearest.face || nearest.limit < nearest.face_d2) {
+    nearest.face = face;
+    nearest.face_d2 = d2;
+    nearest.triangle = index;
+  }
+}
+
+// `child` are the triangles, as ~index.
+PATINA_INLINE void take(const PacketTriangle* triangles, const Lanes& d2, const std::int32_t* child,
+                        Nearest& nearest) {
+  unsigned near = bits(d2 <= spread(nearest.limit));
   if (!near) return;
   alignas(32) float distance[kWide];
   store(distance, d2);
   while (near) {
     const int i = __builtin_ctz(near);
     near &= near - 1;
-    if (distance[i] > nearest.limit) continue;
-    if (distance[i] < nearest.best) {
-      nearest.best = distance[i];
-      const float limit = __builtin_sqrtf(nearest.best) * (1 + kTie) + kTieFloor;
-      nearest.limit = limit * limit;
-    }
-    const std::int32_t face = triangles[index[i]].face;
-    if (face < nearest.face || nearest.limit < nearest.face_d2) {
-      nearest.face = face;
-      nearest.face_d2 = distance[i];
-      nearest.triangle = index[i];
-    }
+    if (distance[i] <= nearest.limit) take(triangles, ~child[i], distance[i], nearest);
   }
+}
+
+PATINA_INLINE void tryTriangle(const PacketTriangle* triangles, std::int32_t index, const Points& p,
+                               Nearest& nearest) {
+  const float d2 = first(squaredDistance(triangles[index], p));
+  if (d2 <= nearest.limit) take(triangles, index, d2, nearest);
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -39,9 +39,27 @@ struct alignas(64) PacketTriangle {
 };
 static_assert(sizeof(PacketTriangle) == 128);
 
+// Squared distances beyond which a point has no nearest triangle; places without one are farther.
+inline constexpr float kFarthest = 1e36f;
+
+// Eight triangles side by side, all that a node without nodes below it holds: one point meets them
+// at once, without collecting them first. Frames as in PacketTriangle; a place without a triangle
+// is far away.
+struct alignas(64) TriangleBlock {
+  float a[3][kWide];
+  float along[3][kWide], across[3][kWide]; // along AB, in the plane towards C
+  float ab[kWide];
+  float c_x[kWide], c_y[kWide];         // C in the frame
+  float per_bc2[kWide], per_ac2[kWide]; // 1 / length^2; 0 where there is no length
+  std::int32_t face[kWide];
+};
+static_assert(sizeof(TriangleBlock) == 512);
+
 // The nodes origin + spacing (i, j, k), 0 <= i, j, k < side, x fastest.
 struct LatticeJob {
   const WideNode* nodes;
+  std::int32_t inner;          // nodes from here on hold triangles alone: those of ...
+  const TriangleBlock* blocks; // ... blocks[node - inner]
   const PacketTriangle* triangles;
   float triangle_size; // the mean longest edge
   double origin[3];
@@ -53,16 +71,21 @@ struct LatticeJob {
   float* distance;
 };
 
-// All triangles that may be nearest to a point: those whose distance, as float knows it, is at most
-// `slack` above the least. Slack must cover what float loses.
+// All faces that may be nearest to a point: those whose distance, as float knows it, is at most
+// `slack` above the least. Slack must cover what float loses. A face in several pieces may come
+// more than once.
 struct PointJob {
   const WideNode* nodes;
+  std::int32_t inner;
+  const TriangleBlock* blocks;
   const PacketTriangle* triangles;
+  const std::int32_t* corners; // three a face, and
+  const double* positions;     // three a corner: fetched ahead for those who will need them
   float point[3];
   float reach; // nothing farther matters
   float slack;
   static constexpr int kMost = 64;
-  std::int32_t triangle[kMost];
+  std::int32_t face[kMost];
   float distance2[kMost];
   int count; // the answer's; -1 if there are too many
 };

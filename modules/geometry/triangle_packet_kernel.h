@@ -201,13 +201,11 @@ PATINA_INLINE Answer searchPoints(const LatticeJob& job, const Packet& packet, f
   store(y, packet.points.y);
   store(z, packet.points.z);
   alignas(32) float best[kWide];
+  limit = limit < kFarthest ? limit : kFarthest;
   for (int lane = 0; lane < kWide; ++lane) {
     const Points p{spread(x[lane]), spread(y[lane]), spread(z[lane])};
     Nearest nearest{limit, limit, __builtin_inff(), 0x7fffffff, -1};
-    if (warm >= 0) {
-      std::int32_t index[kWide] = {warm};
-      tryTriangles(job.triangles, index, 1, p, nearest);
-    }
+    if (warm >= 0) tryTriangle(job.triangles, warm, p, nearest);
     searchPoint(job, p, nearest);
     found[lane] = nearest.triangle;
     best[lane] = nearest.best;
@@ -316,7 +314,7 @@ PATINA_INLINE int keepWithin(PointJob& job, int count, float limit) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     if (job.distance2[i] > limit) continue;
-    job.triangle[kept] = job.triangle[i];
+    job.face[kept] = job.face[i];
     job.distance2[kept++] = job.distance2[i];
   }
   return kept;
@@ -330,29 +328,42 @@ void pointCandidates(PointJob& job) {
   float limit = withSlack(job.reach);
   int count = 0;
   bool full = false;
-  const auto visit = [&](std::int32_t(&triangle)[kWide], int triangles)
-      __attribute__((always_inline)) {
-    const Lanes d2 = triangleDistances(job.triangles, triangle, triangles, p);
-    unsigned near = bits(d2 <= spread(limit)) & ((1u << triangles) - 1);
+  const auto take = [&](float d2, std::int32_t face) __attribute__((always_inline)) {
+    if (count == PointJob::kMost) count = keepWithin(job, count, limit);
+    if (count == PointJob::kMost) {
+      full = true;
+      limit = -1; // ends the descent
+      return;
+    }
+    const float sharper = withSlack(__builtin_sqrtf(d2));
+    if (sharper < limit) {
+      limit = sharper;
+      const std::int32_t* const corners = job.corners + 3 * face;
+      for (int k = 0; k < 3; ++k) __builtin_prefetch(job.positions + 3 * corners[k]);
+    }
+    job.face[count] = face;
+    job.distance2[count++] = d2;
+  };
+  const auto visit = [&](std::int32_t triangle) __attribute__((always_inline)) {
+    const float d2 = first(squaredDistance(job.triangles[triangle], p));
+    if (d2 <= limit) take(d2, job.triangles[triangle].face);
+    return limit;
+  };
+  const auto visitBlock = [&](std::int32_t at) __attribute__((always_inline)) {
+    const TriangleBlock& block = job.blocks[at];
+    const Lanes d2 = squaredDistance(block, p);
+    unsigned near = bits(d2 <= spread(limit));
     if (!near) return limit;
     alignas(32) float distance2[kWide];
     store(distance2, d2);
     while (near) {
       const int i = __builtin_ctz(near);
       near &= near - 1;
-      const float sharper = withSlack(__builtin_sqrtf(distance2[i]));
-      if (sharper < limit) limit = sharper;
-      if (count == PointJob::kMost) count = keepWithin(job, count, limit);
-      if (count == PointJob::kMost) {
-        full = true;
-        return limit = -1; // ends the descent
-      }
-      job.triangle[count] = triangle[i];
-      job.distance2[count++] = distance2[i];
+      if (distance2[i] <= limit) take(distance2[i], block.face[i]);
     }
     return limit;
   };
-  descend(job.nodes, p, 0, limit, visit);
+  descend(job.nodes, job.inner, p, limit, visit, visitBlock);
   job.count = full ? -1 : keepWithin(job, count, limit);
 }
 

@@ -96,6 +96,42 @@ TrianglePieces piecesOf(const std::vector<Vec3>& positions,
   return pieces;
 }
 
+std::vector<TriangleBlock> triangleBlocks(const std::vector<WideNode>& nodes, std::int32_t inner,
+                                          const std::vector<PacketTriangle>& triangles) {
+  // Below this length the end points are one, as far as float can tell.
+  constexpr float kShort = 1e-12f;
+  const auto inverseSquare = [](float length) {
+    return length > kShort ? 1 / (length * length) : 0.0f;
+  };
+  PacketTriangle nowhere{};
+  for (int i = 0; i < 3; ++i) {
+    nowhere.a[i] = 1e19f;
+    nowhere.axis[i][i] = 1;
+  }
+  const auto begin = static_cast<std::size_t>(inner);
+  std::vector<TriangleBlock> blocks(nodes.size() - begin);
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t n) {
+    const WideNode& node = nodes[begin + n];
+    TriangleBlock& block = blocks[n];
+    for (std::size_t k = 0; k < kWide; ++k) {
+      const PacketTriangle& t =
+          node.half[0][k] < 0 ? nowhere : triangles[static_cast<std::size_t>(~node.child[k])];
+      for (int i = 0; i < 3; ++i) {
+        block.a[i][k] = t.a[i];
+        block.along[i][k] = t.axis[0][i];
+        block.across[i][k] = t.axis[1][i];
+      }
+      block.ab[k] = t.ab;
+      block.c_x[k] = t.ac * t.ac_x;
+      block.c_y[k] = t.ac * t.ac_y;
+      block.per_bc2[k] = inverseSquare(t.bc);
+      block.per_ac2[k] = inverseSquare(t.ac);
+      block.face[k] = t.face;
+    }
+  });
+  return blocks;
+}
+
 PacketTriangle packetTriangle(const Vec3& p, const Vec3& q, const Vec3& r, std::int32_t face) {
   // AB is the longest edge, so that C projects onto it and a needle stays harmless.
   const double pq = (q - p).squaredNorm(), qr = (r - q).squaredNorm(), rp = (p - r).squaredNorm();

@@ -19,6 +19,10 @@ struct TrianglePieces {
 // short triangle are worth more than a small count, in speed and in float's digits.
 TrianglePieces piecesOf(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
+// The triangles of the nodes from `inner` on.
+std::vector<TriangleBlock> triangleBlocks(const std::vector<WideNode>& nodes, std::int32_t inner,
+                                          const std::vector<PacketTriangle>& triangles);
+
 PacketTriangle packetTriangle(const Vec3& p, const Vec3& q, const Vec3& r, std::int32_t face);
 
 } // namespace patina

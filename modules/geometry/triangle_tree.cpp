@@ -64,7 +64,9 @@ struct TriangleTree::Impl {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::vector<WideNode> nodes;
+  std::int32_t inner = 0; // nodes from here on have a block
   std::vector<PacketTriangle> leaves;
+  std::vector<TriangleBlock> blocks;
   float mean_edge = 0; // longest edge of a leaf
 
   Vec3 toTree(const Vec3& p) const { return (p - centre) / unit; }
@@ -113,15 +115,18 @@ struct TriangleTree::Impl {
     if (far > 1e3) return false;
     PointJob job;
     job.nodes = nodes.data();
+    job.inner = inner;
+    job.blocks = blocks.data();
     job.triangles = leaves.data();
+    job.corners = triangles.data()->data();
+    job.positions = positions.data()->data();
     for (int i = 0; i < 3; ++i) job.point[i] = static_cast<float>(p[i]);
     const double slack = 2e-6 * (1 + far);
     job.reach = static_cast<float>(std::min(std::sqrt(result.best) * (1 + 1e-6), 1e6));
     job.slack = static_cast<float>(slack);
     trianglesNear(job);
     if (job.count < 0) return false;
-    for (int i = 0; i < job.count; ++i)
-      tryFace(p, leaves[static_cast<std::size_t>(job.triangle[i])].face, result);
+    for (int i = 0; i < job.count; ++i) tryFace(p, job.face[i], result);
     return true;
   }
 
@@ -178,6 +183,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
 
   TrianglePieces pieces = piecesOf(impl->positions, impl->triangles);
   impl->nodes = buildWideBvh(pieces.boxes);
+  impl->inner = moveLeavesBehind(impl->nodes);
   impl->leaves.resize(pieces.boxes.size());
   const auto faces = static_cast<std::int32_t>(impl->triangles.size());
   tbb::parallel_for(
@@ -195,6 +201,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
         }
       });
   fitCylinders(impl->nodes, impl->leaves);
+  impl->blocks = triangleBlocks(impl->nodes, impl->inner, impl->leaves);
   double edges = 0;
   for (const PacketTriangle& leaf : impl->leaves) edges += static_cast<double>(leaf.ab);
   impl->mean_edge = static_cast<float>(edges / static_cast<double>(impl->leaves.size()));
@@ -351,9 +358,17 @@ void TriangleTree::closestOnLattice(const Vec3& origin, double spacing, int side
       !origin.allFinite() || !(spacing > 0))
     throw std::invalid_argument("closestOnLattice: side must be even and the answers side^3");
   const Vec3 at = impl_->toTree(origin);
-  const LatticeJob job{impl_->nodes.data(),        impl_->leaves.data(),  impl_->mean_edge,
-                       {at[0], at[1], at[2]},      spacing / impl_->unit, side,
-                       max_distance / impl_->unit, face.data(),           distance.data()};
+  const LatticeJob job{impl_->nodes.data(),
+                       impl_->inner,
+                       impl_->blocks.data(),
+                       impl_->leaves.data(),
+                       impl_->mean_edge,
+                       {at[0], at[1], at[2]},
+                       spacing / impl_->unit,
+                       side,
+                       max_distance / impl_->unit,
+                       face.data(),
+                       distance.data()};
   patina::closestOnLattice(job);
   for (std::size_t i = 0; i < count; ++i) {
     distance[i] *= static_cast<float>(impl_->unit / spacing);
@@ -369,7 +384,8 @@ std::size_t TriangleTree::bytes() const {
   return sizeof(Impl) + impl_->positions.capacity() * sizeof(Vec3) +
          impl_->triangles.capacity() * sizeof(Triangle) +
          impl_->nodes.capacity() * sizeof(WideNode) +
-         impl_->leaves.capacity() * sizeof(PacketTriangle);
+         impl_->leaves.capacity() * sizeof(PacketTriangle) +
+         impl_->blocks.capacity() * sizeof(TriangleBlock);
 }
 
 } // namespace patina

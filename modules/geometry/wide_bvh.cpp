@@ -139,6 +139,9 @@ class Builder {
       subtrees[i].reserve(pieces[i].size() / 6);
       node(pieces[i], depth + 1, subtrees[i]);
     });
+    std::size_t total = nodes.size();
+    for (const std::vector<WideNode>& subtree : subtrees) total += subtree.size();
+    nodes.reserve(total);
     for (std::size_t i = 0; i < count; ++i) {
       setBox(nodes[at], i, pieces[i].bounds.lo.data(), pieces[i].bounds.hi.data());
       const auto offset = static_cast<std::int32_t>(nodes.size());
@@ -294,6 +297,29 @@ void fitCylinder(WideNode& node, std::size_t place, const Range& range,
 
 std::vector<WideNode> buildWideBvh(std::vector<BoxRef>& refs) {
   return Builder(refs).build();
+}
+
+std::int32_t moveLeavesBehind(std::vector<WideNode>& nodes) {
+  const auto holdsNodes = [](const WideNode& node) {
+    return std::any_of(node.child, node.child + kWide,
+                       [](std::int32_t child) { return child > 0; });
+  };
+  std::vector<std::int32_t> place(nodes.size());
+  const auto inner =
+      static_cast<std::int32_t>(std::count_if(nodes.begin(), nodes.end(), holdsNodes));
+  std::int32_t ahead = 0, behind = inner;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    place[n] = holdsNodes(nodes[n]) ? ahead++ : behind++;
+  for (WideNode& node : nodes)
+    for (std::int32_t& child : node.child)
+      if (child > 0) child = place[static_cast<std::size_t>(child)];
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    while (place[n] != static_cast<std::int32_t>(n)) {
+      const auto to = static_cast<std::size_t>(place[n]);
+      std::swap(nodes[n], nodes[to]);
+      std::swap(place[n], place[to]);
+    }
+  return inner;
 }
 
 void fitCylinders(std::vector<WideNode>& nodes, const std::vector<PacketTriangle>& triangles) {

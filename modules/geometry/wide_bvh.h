@@ -28,6 +28,10 @@ std::vector<WideNode> buildWideBvh(std::vector<BoxRef>& refs);
 
 inline constexpr int kMaxTreeDepth = 88;
 
+// Puts the nodes that hold triangles alone behind the others, and says how many others there are.
+// Parents stay ahead of their children. A point's search leaves what is behind unread.
+std::int32_t moveLeavesBehind(std::vector<WideNode>& nodes);
+
 // Fits the children's cylinders, given the triangles in the order of refs.
 void fitCylinders(std::vector<WideNode>& nodes, const std::vector<PacketTriangle>& triangles);
 

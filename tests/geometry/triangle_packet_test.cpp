@@ -1,12 +1,15 @@
 // The packet kernel is compiled twice: both must give the same distances.
 #include "geometry/triangle_packet.h"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
 #include "geometry/shapes.h"
 #include "geometry/triangle_pieces.h"
+#include "geometry/triangle_tree.h"
 #include "geometry/wide_bvh.h"
 
 namespace patina {
@@ -21,6 +24,7 @@ struct Kernels {
   explicit Kernels(const TriangleMesh& mesh) {
     TrianglePieces pieces = piecesOf(mesh.positions, mesh.triangles);
     nodes = buildWideBvh(pieces.boxes);
+    inner = moveLeavesBehind(nodes);
     const auto faces = static_cast<std::int32_t>(mesh.triangles.size());
     for (const BoxRef& box : pieces.boxes) {
       const std::int32_t id = box.id();
@@ -35,6 +39,7 @@ struct Kernels {
       }
     }
     fitCylinders(nodes, triangles);
+    blocks = triangleBlocks(nodes, inner, triangles);
   }
 
   template <typename Kernel>
@@ -43,6 +48,8 @@ struct Kernels {
     result.triangle.resize(static_cast<std::size_t>(side * side * side));
     result.distance.resize(result.triangle.size());
     kernel({nodes.data(),
+            inner,
+            blocks.data(),
             triangles.data(),
             0.1f,
             {origin, origin, origin},
@@ -54,8 +61,24 @@ struct Kernels {
     return result;
   }
 
+  PointJob pointJob(const TriangleMesh& mesh, const Vec3& p) const {
+    PointJob job;
+    job.nodes = nodes.data();
+    job.inner = inner;
+    job.blocks = blocks.data();
+    job.triangles = triangles.data();
+    job.corners = mesh.triangles.data()->data();
+    job.positions = mesh.positions.data()->data();
+    for (int i = 0; i < 3; ++i) job.point[i] = static_cast<float>(p[i]);
+    job.reach = 1e6f;
+    job.slack = static_cast<float>(2e-6 * (1 + p.cwiseAbs().maxCoeff()));
+    return job;
+  }
+
   std::vector<WideNode> nodes;
+  std::int32_t inner = 0;
   std::vector<PacketTriangle> triangles;
+  std::vector<TriangleBlock> blocks;
 };
 
 void expectAgreement(const TriangleMesh& mesh) {
@@ -86,11 +109,66 @@ TEST(TrianglePacket, PlainAndNativeInstructionsAgree) {
   expectAgreement(sheet(1, 1, 3));
 }
 
+double exactDistance(const TriangleMesh& mesh, std::size_t face, const Vec3& p) {
+  const Vec3 a = mesh.corner(face, 0), b = mesh.corner(face, 1), c = mesh.corner(face, 2);
+  const Vec3 w = closestBarycentric(p, a, b, c);
+  return (w[0] * a + w[1] * b + w[2] * c - p).norm();
+}
+
+// The answer is the lowest of the faces that tie in double precision. So it is the same bits in all
+// instructions as long as each kernel hands over every one of them.
+void expectEveryNearestFace(const TriangleMesh& mesh, double half) {
+  const Kernels kernels(mesh);
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> u(-half, half);
+  for (int i = 0; i < 200; ++i) {
+    Vec3 p(u(random), u(random), u(random));
+    if (i % 4 == 0) p = mesh.positions[random() % mesh.positions.size()]; // ties
+    std::vector<double> distance(mesh.triangles.size());
+    for (std::size_t f = 0; f < distance.size(); ++f) distance[f] = exactDistance(mesh, f, p);
+    const double least = *std::min_element(distance.begin(), distance.end());
+    for (const auto kernel : {trianglesNear, trianglesNearPlain}) {
+      PointJob job = kernels.pointJob(mesh, p);
+      kernel(job);
+      ASSERT_GT(job.count, 0);
+      for (std::size_t f = 0; f < distance.size(); ++f) {
+        if (distance[f] > least * (1 + 1e-11) + 1e-12) continue;
+        const auto found = std::count(job.face, job.face + job.count, static_cast<std::int32_t>(f));
+        ASSERT_GT(found, 0) << p.transpose() << " face " << f;
+      }
+    }
+  }
+}
+
+// Thinner and thinner, in all directions.
+TriangleMesh needles() {
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> u(-0.7, 0.7);
+  TriangleMesh mesh;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 a(u(random), u(random), u(random)), b(u(random), u(random), u(random));
+    const Vec3 side = std::pow(10.0, -i % 16) * (b - a).unitOrthogonal();
+    for (const Vec3& p : {a, b, Vec3(a + 0.3 * (b - a) + side)}) mesh.positions.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
+TEST(TrianglePacket, HandsOverEveryNearestFace) {
+  expectEveryNearestFace(icosphere(0.9, 8), 1);
+  expectEveryNearestFace(torus(0.7, 0.2, 37, 19), 1);
+  expectEveryNearestFace(box(Vec3(1.4, 1, 1e-3)), 1);
+  expectEveryNearestFace(needles(), 1);
+  expectEveryNearestFace(icosphere(0.9, 3), 300); // far for float
+}
+
 TEST(TrianglePacket, NodesAreFullAndNoPathIsTooLong) {
   const TriangleMesh mesh = icosphere(0.9, 30);
   TrianglePieces pieces = piecesOf(mesh.positions, mesh.triangles);
-  const std::vector<WideNode> nodes = buildWideBvh(pieces.boxes);
+  std::vector<WideNode> nodes = buildWideBvh(pieces.boxes);
+  const std::int32_t inner = moveLeavesBehind(nodes);
   EXPECT_LT(nodes.size(), pieces.boxes.size() / 5);
+  EXPECT_LT(inner, static_cast<std::int32_t>(nodes.size() / 5));
   std::vector<int> depth(nodes.size(), 0), seen(pieces.boxes.size(), 0);
   depth[0] = 1;
   for (std::size_t n = 0; n < nodes.size(); ++n)
@@ -100,6 +178,7 @@ TEST(TrianglePacket, NodesAreFullAndNoPathIsTooLong) {
       if (child < 0) {
         ++seen[static_cast<std::size_t>(~child)];
       } else {
+        ASSERT_LT(n, static_cast<std::size_t>(inner)); // behind are triangles alone
         ASSERT_GT(child, static_cast<std::int32_t>(n));
         depth[static_cast<std::size_t>(child)] = depth[n] + 1;
         ASSERT_LE(depth[n] + 1, 12);

@@ -117,6 +117,68 @@ TEST(TriangleTree, AgreesWithBruteForceOnDegenerateTriangles) {
                   randomPoints(100, 3, {500, 0, 0}), 1e-10);
 }
 
+// Nodes that are not full, nodes that hold both nodes and triangles, a root without nodes.
+TEST(TriangleTree, AgreesWithBruteForceForAnyNumberOfTriangles) {
+  for (const int count : {1, 2, 7, 8, 9, 15, 16, 17, 63, 64, 65, 511, 513, 777, 1500})
+    expectAgreement(soup(count, 0.1, static_cast<unsigned>(count)), randomPoints(50, 1.5), 1e-14);
+  TriangleMesh shrinking; // splits peel off a few at a time
+  for (int i = 0; i < 3000; ++i) {
+    const double s = std::exp2(-0.01 * i);
+    for (const Vec3& p : {Vec3(1, 0, 0), Vec3(1.02, 0.1, 0), Vec3(1, 0, 0.1)})
+      shrinking.positions.push_back(s * p);
+    shrinking.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  expectAgreement(shrinking, randomPoints(50, 1), 1e-11); // up to there the small ones tie
+}
+
+TEST(TriangleTree, AgreesWithBruteForceAtAnySizeAndPlace) {
+  for (const double scale : {1e-9, 1.0, 1e9}) {
+    TriangleMesh mesh = soup(300, 0.2, 41);
+    for (Vec3& p : mesh.positions) p *= scale;
+    expectAgreement(mesh, randomPoints(100, 1.5 * scale), 1e-14 * scale);
+  }
+  TriangleMesh moved = soup(300, 0.2, 42);
+  const Vec3 offset(1e6, -1e6, 1e6);
+  for (Vec3& p : moved.positions) p += offset;
+  expectAgreement(moved, randomPoints(100, 1.5, offset), 2e-9); // the oracle's own rounding
+}
+
+TEST(TriangleTree, AgreesWithBruteForceOnNeedles) {
+  TriangleMesh mesh;
+  std::mt19937 random(43);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 a = randomPoint(random, 1), b = randomPoint(random, 1);
+    const double width = std::pow(10.0, -i % 13);
+    mesh = joined(mesh, oneTriangle(a, b, 0.5 * (a + b) + width * (b - a).unitOrthogonal()));
+  }
+  expectAgreement(mesh, randomPoints(500, 1.5), 1e-12);
+}
+
+// Pairs of the same triangle, the other way round and from another corner.
+TEST(TriangleTree, TiesOfDuplicatesGoToTheLowestFaceWhateverTheWarmStart) {
+  TriangleMesh mesh = soup(700, 0.1, 44);
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t i = count; i-- > 0;) {
+    const auto [a, b, c] = mesh.triangles[i];
+    mesh.triangles.push_back({b, a, c});
+  }
+  const TriangleTree tree(mesh);
+  std::mt19937 random(45);
+  std::uniform_int_distribution<std::int32_t> face(0, static_cast<std::int32_t>(2 * count) - 1);
+  for (const Vec3& p : randomPoints(500, 1.2)) {
+    const std::int32_t found = tree.closestPoint(p).surface.face;
+    EXPECT_LT(found, static_cast<std::int32_t>(count));
+    EXPECT_EQ(tree.closestPoint(p, face(random)).surface.face, found);
+    EXPECT_EQ(tree.closestPoint(p, static_cast<std::int32_t>(2 * count) - 1 - found).surface.face,
+              found);
+  }
+}
+
+TEST(TriangleTree, HoldsAtMost300BytesATriangle) {
+  const TriangleTree tree(icosphere(1, 79));
+  EXPECT_LT(tree.bytes(), 300 * tree.size());
+}
+
 // A pile of identical boxes gives the builder nothing to split by.
 TEST(TriangleTree, BuildsOverCoincidentTrianglesAndNamesTheLowest) {
   TriangleMesh mesh = oneTriangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -309,6 +371,20 @@ TEST(TriangleTreeLattice, TiesGoToTheLowestFace) {
   std::vector<std::int32_t> face(512);
   tree.closestOnLattice(Vec3::Constant(-1.05), 0.3, 8, 10, distance, face);
   for (const std::int32_t f : face) EXPECT_LT(f, static_cast<std::int32_t>(count));
+}
+
+// Fine triangles and a coarse lattice are searched point by point; there float overflows.
+TEST(TriangleTreeLattice, EndsForPointsBeyondFloat) {
+  const TriangleTree tree(icosphere(1, 7)); // with places that hold no triangle
+  std::vector<float> distance(512);
+  std::vector<std::int32_t> face(512);
+  for (const double spacing : {1.0, 1e17, 1e25, 1e45}) {
+    tree.closestOnLattice(Vec3::Constant(-spacing), spacing, 8, kInf, distance, face);
+    for (const std::int32_t f : face) {
+      EXPECT_LT(f, 980);
+      EXPECT_TRUE(f >= 0 || spacing > 1e16);
+    }
+  }
 }
 
 TEST(TriangleTreeLattice, RefusesWrongSizes) {
