@@ -9,7 +9,7 @@ PATINA_HEADLESS_PACKAGES="xvfb xauth libgl1-mesa-dri"
 PATINA_TEST_PACKAGES="$PATINA_HEADLESS_PACKAGES libgtest-dev libgmock-dev libbenchmark-dev
   clang-14 libclang-rt-14-dev"
 # Only for the comparison with other programs; the tests pass without them.
-PATINA_PEER_PACKAGES="libopenvdb-dev"
+PATINA_PEER_PACKAGES="libopenvdb-dev libembree-dev"
 
 say() { printf '\n== %s\n' "$*" >&2; }
 
