@@ -1,0 +1,63 @@
+// The judge of all limits on time, while two other threads want the processors.
+#include "support/least_time.h"
+
+#include <atomic>
+#include <thread>
+
+namespace patina::test {
+namespace {
+
+class TwoBusyThreads {
+ public:
+  ~TwoBusyThreads() {
+    done_ = true;
+    for (std::thread& each : threads_) each.join();
+  }
+
+ private:
+  void spin() const {
+    while (!done_) {
+    }
+  }
+  alignas(256) std::atomic<bool> done_{
+      false}; // on a line of its own: what they read slows no other
+  alignas(256) std::thread threads_[2]{std::thread([this] { spin(); }),
+                                       std::thread([this] { spin(); })};
+};
+
+PATINA_TIMED_TEST(LeastTime, DoubledWorkIsFoundWhileOthersWantTheProcessors) {
+  const TwoBusyThreads others;
+  Reference once, twice, reference;
+  const std::vector<double> least = leastSeconds(
+      {[&] { once.ticks(2000); }, [&] { twice.ticks(4000); }, [&] { reference.ticks(2000); }});
+  EXPECT_TRUE(within("the same work", least[0], least[2], 1.1));
+  EXPECT_FALSE(within("twice the work", least[1], least[2], 1.5));
+  EXPECT_TRUE(within("twice the work", least[1], least[2], 2.2));
+}
+
+// A hundredth and a half of the steps is long: the 99th hundredth sees it, the half does not.
+PATINA_TIMED_TEST(LeastTime, AFewLongStepsAreFoundWhileOthersWantTheProcessors) {
+  const TwoBusyThreads others;
+  constexpr std::size_t kSteps = 20000;
+  Reference even, uneven;
+  LeastSteps all(kSteps), few(kSteps);
+  for (int round = 0; round < 3; ++round) {
+    all.walk(0, [&](int, std::size_t) { even.tick(); });
+    few.walk(0, [&](int, std::size_t i) { uneven.ticks(i % 200 < 3 ? 2 : 1); });
+  }
+  EXPECT_TRUE(within("p99 of even steps", all.seconds().p99, all.seconds().p50, 1.3));
+  EXPECT_TRUE(within("p50 of uneven steps", few.seconds().p50, all.seconds().p50, 1.1));
+  EXPECT_FALSE(within("p99 of uneven steps", few.seconds().p99, all.seconds().p99, 1.4));
+}
+
+PATINA_TIMED_TEST(LeastTime, EndsInItsTimeWhenNothingSettles) {
+  Reference reference;
+  int calls = 0; // each call shorter than the one before, for ever
+  const double begin = secondsOn(CLOCK_MONOTONIC);
+  leastSeconds({[&] { reference.ticks(1000000 / ++calls); }}, 1000, 0.5);
+  EXPECT_GE(calls, 3);
+  EXPECT_LT(secondsOn(CLOCK_MONOTONIC) - begin, 20);
+}
+
+} // namespace
+} // namespace patina::test

@@ -1,0 +1,169 @@
+// Limits on time that hold on any machine, whatever else it does: what code costs is compared with
+// a reference kernel beside it in the same run, and the ratio is judged.
+//
+// The least time counts: other programs can only add. Works of some 100 us and more take turns and
+// are timed by the thread's own processor time, which leaves out what others had of the core. Steps
+// shorter than that are timed by the clock, and each step of a path keeps the least of its repeats:
+// a core that is taken away falls on another step each time, what the code does on the same one.
+// Both are repeated in a row, within one slice of the scheduler's: the first call brings back to
+// the cache what others have driven out of it, where it is while a scene is felt.
+//
+// There is always a verdict. Sanitizers multiply times by what they please: a PATINA_TIMED_TEST is
+// not part of their builds.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/percentiles.h"
+#include "support/sanitized.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PATINA_TIMED_TEST(suite, name) [[maybe_unused]] static void suite##name##Untimed()
+#else
+#define PATINA_TIMED_TEST(suite, name) TEST(suite, name)
+#endif
+
+namespace patina::test {
+
+inline double secondsOn(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// Processor time of the calling thread [s]: waiting, for a core or for another thread, is not in
+// it.
+inline double threadSeconds() {
+  return secondsOn(CLOCK_THREAD_CPUTIME_ID);
+}
+
+using Work = std::function<void()>;
+
+// The least thread time [s] of one call of each work. Rounds go on until `settled` of them in a row
+// have found nothing shorter by a hundredth, but not beyond `most_seconds`, save for three rounds.
+// What a work gives to other threads is not counted: see OneThread.
+inline std::vector<double> leastSeconds(const std::vector<Work>& works, int settled = 10,
+                                        double most_seconds = 20) {
+  std::vector<double> least(works.size(), std::numeric_limits<double>::infinity());
+  const double end = secondsOn(CLOCK_MONOTONIC) + most_seconds;
+  int quiet = 0;
+  for (int round = 0; round < 3 || (quiet < settled && secondsOn(CLOCK_MONOTONIC) < end); ++round) {
+    ++quiet;
+    for (std::size_t i = 0; i < works.size(); ++i)
+      for (int in_a_row = least[i] < 1e-3 ? 3 : 1; in_a_row > 0; --in_a_row) {
+        const double begin = threadSeconds();
+        works[i]();
+        const double seconds = threadSeconds() - begin;
+        if (seconds < 0.99 * least[i]) quiet = 0;
+        least[i] = std::min(least[i], seconds);
+      }
+  }
+  return least;
+}
+
+// The least time of each step of a path.
+class LeastSteps {
+ public:
+  explicit LeastSteps(std::size_t count)
+      : seconds_(count, std::numeric_limits<double>::infinity()) {}
+
+  // step(state, i) for i = 0 .. count - 1, several times for each leg of the path, every time from
+  // the state at the leg's beginning. May be called again; the least of all calls is kept.
+  template <class State, class Step> void walk(State state, const Step& step) {
+    for (std::size_t leg = 0; leg < seconds_.size(); leg += kLeg) {
+      const std::size_t end = std::min(leg + kLeg, seconds_.size());
+      const State begin = state;
+      for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        state = begin;
+        timed(clock_, [] {});
+        for (std::size_t i = leg; i < end; ++i) timed(seconds_[i], [&] { step(state, i); });
+      }
+    }
+  }
+  // [s], over the steps, without the reading of the clock.
+  Percentiles seconds() const {
+    std::vector<double> own = seconds_;
+    for (double& each : own) each = std::max(0.0, each - clock_);
+    return percentiles(own);
+  }
+
+ private:
+  template <class Step> static void timed(double& least, const Step& step) {
+    timespec begin{}, end{};
+    clock_gettime(CLOCK_MONOTONIC, &begin);
+    step();
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    least = std::min(least, static_cast<double>(end.tv_sec - begin.tv_sec) +
+                                1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec));
+  }
+  static constexpr std::size_t kLeg = 250;
+  static constexpr int kRepeats = 8;
+  std::vector<double> seconds_;
+  double clock_ = std::numeric_limits<double>::infinity();
+};
+
+// What the code is compared with: kernels that wait for what they made before, as a tick does, so
+// that neither a wide nor a narrow processor is favoured by much.
+class Reference {
+ public:
+  Reference() : next_(kLoads), from_(kCopied), to_(kCopied) {
+    std::iota(next_.begin(), next_.end(), 0U);
+    std::mt19937 random(1);
+    for (std::size_t i = next_.size() - 1; i > 0; --i) // one cycle through all
+      std::swap(next_[i], next_[random() % i]);
+  }
+
+  // 8 dependent loads from 64 kB, 40 dependent multiplications and additions.
+  void tick() {
+    for (int i = 0; i < 8; ++i) at_ = next_[at_];
+    double x = 1 + 1e-9 * at_;
+    for (int i = 0; i < 40; ++i) x = 0.99 * x + 0.01;
+    at_ = next_[at_ ^ static_cast<std::uint32_t>(x > 2)]; // the next one waits for this one
+    kept_ = x;
+  }
+  void ticks(int count) {
+    for (int i = 0; i < count; ++i) tick();
+  }
+  // 16 MB from one place to another.
+  void copy() {
+    std::memcpy(to_.data(), from_.data(), kCopied);
+    kept_ = to_[static_cast<std::size_t>(kept_) % kCopied];
+    ++from_[0];
+  }
+
+ private:
+  static constexpr std::size_t kLoads = 1 << 14, kCopied = 1 << 24;
+  std::vector<std::uint32_t> next_;
+  std::vector<char> from_, to_;
+  std::uint32_t at_ = 0;
+  volatile double kept_ = 0;
+};
+
+// Shows the times and whether their ratio is at most `most`:
+//   EXPECT_TRUE(within("tick", tick, reference, 2.5));
+inline testing::AssertionResult within(const std::string& name, double seconds, double reference,
+                                       double most) {
+  const double ratio = seconds / reference;
+  const auto& [scale, unit] = seconds < 1e-6   ? std::pair(1e9, "ns")
+                              : seconds < 1e-3 ? std::pair(1e6, "us")
+                                               : std::pair(1e3, "ms");
+  char text[200];
+  std::snprintf(text, sizeof text, "%-40s %8.1f %s, %7.2f of the reference; at most %g",
+                name.c_str(), scale * seconds, unit, ratio, most);
+  std::printf("%s\n", text);
+  return (ratio <= most ? testing::AssertionSuccess() : testing::AssertionFailure()) << text;
+}
+
+} // namespace patina::test
