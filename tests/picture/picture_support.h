@@ -2,7 +2,6 @@
 // the next.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -12,6 +11,7 @@
 #include <vtkSmartPointer.h>
 
 #include "core/types.h"
+#include "support/own_display.h"
 
 namespace patina {
 
@@ -68,7 +68,6 @@ inline bool isCool(const Vec3& c) {
 }
 
 #define PATINA_NEEDS_DISPLAY()                                                                     \
-  if (std::getenv("DISPLAY") == nullptr)                                                           \
-  GTEST_SKIP() << "no DISPLAY: run under xvfb-run -a -s \"-screen 0 1280x800x24\""
+  if (!test::hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY"
 
 } // namespace patina

@@ -1,0 +1,89 @@
+// An X server of the test program's own, so that no program's pictures depend on what others do to
+// a server that they share.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <csignal>
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace patina::test {
+
+// An Xvfb that is started; it ends with this value, and with the thread that made it.
+class XServer {
+ public:
+  // Absent: a number that is free, which the server looks for itself.
+  explicit XServer(std::optional<int> number = std::nullopt) {
+    int said[2];
+    if (pipe2(said, O_CLOEXEC) != 0) return;
+    said_ = said[0];
+    std::vector<std::string> words = {"Xvfb",     "-displayfd", std::to_string(said[1]),
+                                      "-screen",  "0",          "1280x800x24",
+                                      "-noreset", "-nolisten",  "tcp"};
+    if (number) words.push_back(":" + std::to_string(*number));
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGTERM);
+      fcntl(said[1], F_SETFD, 0);
+      const int nowhere = open("/dev/null", O_RDWR);
+      for (const int stream : {0, 1, 2}) dup2(nowhere, stream);
+      execvp("Xvfb", arguments.data());
+      _exit(127);
+    }
+    close(said[1]);
+  }
+  ~XServer() {
+    if (said_ >= 0) close(said_);
+    if (pid_ <= 0) return;
+    kill(pid_, SIGTERM);
+    waitpid(pid_, nullptr, 0);
+  }
+  XServer(const XServer&) = delete;
+  XServer& operator=(const XServer&) = delete;
+
+  // Waits until the server answers. Absent if it cannot be started.
+  std::optional<int> number() {
+    std::string text;
+    for (char c = 0; !number_ && said_ >= 0 && read(said_, &c, 1) == 1;)
+      if (c != '\n')
+        text += c;
+      else
+        number_ = std::stoi(text);
+    return number_;
+  }
+
+ private:
+  pid_t pid_ = -1;
+  int said_ = -1;
+  std::optional<int> number_;
+};
+
+// Whether pictures can be drawn: from the first call on DISPLAY names a server of this program's
+// own, or, where Xvfb is not installed, the one that the environment names. In the main thread.
+inline bool hasDisplay() {
+  static const bool has = [] {
+    for (int i = 0; i < 3; ++i) {
+      // Lives as long as the program: whoever has a connection to it may close that last of all.
+      auto server = std::make_unique<XServer>();
+      if (const auto number = server->number()) {
+        setenv("DISPLAY", (":" + std::to_string(*number)).c_str(), 1);
+        (void)server.release();
+        break;
+      }
+    }
+    return std::getenv("DISPLAY") != nullptr;
+  }();
+  return has;
+}
+
+} // namespace patina::test
