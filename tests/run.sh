@@ -38,8 +38,7 @@ run_tests() {
   configure build -DPATINA_PEERS=$peers
   build build
   say "All tests"
-  xvfb-run -a -s "-screen 0 1280x800x24" \
-    ctest --test-dir build --output-on-failure -j "$(nproc)" </dev/null
+  ctest --test-dir build --output-on-failure -j "$(nproc)" </dev/null
 }
 
 # LeakSanitizer needs ptrace, which some containers forbid.

@@ -1,4 +1,4 @@
-// A window per test, shown on the X display that the tests run under.
+// A window per test, shown on the test program's own X display.
 #pragma once
 
 #include <cstdlib>
@@ -17,6 +17,7 @@
 #include "app/gui/main_window.h"
 #include "app/gui/window_style.h"
 #include "geometry/mesh_io.h"
+#include "support/own_display.h"
 
 namespace patina {
 
@@ -40,8 +41,7 @@ inline QApplication& application() {
 class WindowTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (std::getenv("DISPLAY") == nullptr)
-      GTEST_SKIP() << "no DISPLAY: run under xvfb-run -a -s \"-screen 0 1280x800x24\"";
+    if (!test::hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
     folder_ = std::filesystem::temp_directory_path() / ("patina-gui-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
     QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,

@@ -1,35 +1,12 @@
 // Commands that draw: with a display, or with the word of advice that one is missing.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <sstream>
-#include <unistd.h>
-
 #include "core/file.h"
 #include "integration/program.h"
+#include "support/own_display.h"
 
 namespace patina::test {
 namespace {
-
-bool has(const std::string& tool) {
-  std::istringstream path(std::getenv("PATH") ? std::getenv("PATH") : "");
-  for (std::string folder; std::getline(path, folder, ':');)
-    if (std::filesystem::exists(std::filesystem::path(folder) / tool)) return true;
-  return false;
-}
-
-// The words run under a virtual display. Its number starts far from others': two xvfb-run that
-// look for a free one at the same moment may find the same.
-Outcome runOnDisplay(std::vector<std::string> words) {
-  std::vector<std::string> all = {"-a",
-                                  "-n",
-                                  std::to_string(100 + getpid() % 800),
-                                  "-s",
-                                  "-screen 0 1280x800x24",
-                                  programPath().string()};
-  all.insert(all.end(), words.begin(), words.end());
-  return Running(all, "xvfb-run").wait();
-}
 
 Outcome runWithoutDisplay(std::vector<std::string> words) {
   std::vector<std::string> all = {"-u", "DISPLAY", programPath().string()};
@@ -53,13 +30,13 @@ TEST(Pictures, SayWhatToDoWithoutADisplay) {
 }
 
 TEST(Pictures, AreDrawnInTheAskedSize) {
-  if (!has("xvfb-run")) GTEST_SKIP() << "xvfb-run is not installed";
+  if (!hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
   const ScratchFolder folder;
   const std::string box = folder / "box.ply";
   ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
   const Outcome outcome =
-      runOnDisplay({"render", box, "-o", folder / "p.png", "--show", "mesh,slice,tip", "--tip",
-                    "0,0,19mm", "--view", "+x", "--size", "320x200", "--resolution", "50"});
+      run({"render", box, "-o", folder / "p.png", "--show", "mesh,slice,tip", "--tip", "0,0,19mm",
+           "--view", "+x", "--size", "320x200", "--resolution", "50"});
   ASSERT_EQ(outcome.exit, 0) << outcome.err;
   const std::string png = readFile(folder / "p.png");
   ASSERT_GT(png.size(), 1000u);
