@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <thread>
 
 #include "app/edit_desk.h"
@@ -12,8 +11,7 @@
 #include "haptics/latency.h"
 #include "haptics/realtime.h"
 #include "haptics/servo_loop.h"
-#include "support/busy_machine.h"
-#include "support/sanitized.h"
+#include "support/least_time.h"
 
 namespace patina {
 namespace {
@@ -21,10 +19,8 @@ namespace {
 using test::Desk;
 using test::oneBall;
 
-constexpr double kFelt = 2e-3;   // [s], after its dab is done
-constexpr double kPeriodUs = 50; // [us], 5 % of a period
-constexpr double kTickUs = 5;    // [us], of a tick
-constexpr double kDepth = 1e-3;  // [m], at which the tip rests in the ball of 20 mm
+constexpr double kDepth = 1e-3; // [m], at which the tip rests in the ball of 20 mm
+constexpr double kSoonUs = 20;  // [us]: a wake-up that is no later is in time
 const Vec3 kPlace(0.02, 0, 0);
 
 // Rests in the surface and notes when which force came to the hand.
@@ -49,16 +45,6 @@ class ResolvedDevice final : public Device {
   std::size_t count_ = 0;
 };
 
-// The thread's own time beside the clock's: what another program takes from it is not the edit's.
-struct Moment {
-  std::int64_t wall = 0, own = 0; // [ns]
-  static Moment now() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return {monotonicNs(), std::int64_t{1000000000} * time.tv_sec + time.tv_nsec};
-  }
-};
-
 // Each dab makes the place under the tip a little stiffer: 8 N/m are 8 mN, one tick's fade.
 Brush rising() {
   Brush brush = test::stiffBrush(8);
@@ -68,9 +54,11 @@ Brush rising() {
 }
 
 struct Pass {
-  std::vector<double> after_dab, at_hand; // [s], from the dab's end to the tick that feels it
-  std::vector<double> step_us, late_us;
-  std::vector<double> idle_step_us, idle_late_us; // of ticks after painting, by the same law
+  // Of each dab: what its hand-over takes of the thread beyond the dab itself [s], ticks that began
+  // from then until the force came to the hand, and that time [s].
+  std::vector<double> work, ticks, felt;
+  std::vector<double> step_us, late_us;           // of ticks while painting
+  std::vector<double> idle_step_us, idle_late_us; // after painting, by the same law
   bool realtime = false, fault = false;
   std::size_t dropped = 0;
 };
@@ -81,10 +69,12 @@ Pass paint(int dabs) {
   auto owned = std::make_unique<ResolvedDevice>();
   const ResolvedDevice& device = *owned;
   ServoLoop loop(std::move(owned), 1000);
-  Moment published;
+  double work_done = 0;
+  std::int64_t published = 0;
   Editor editor(oneBall(100, 20), progress, [&](const EditorNotice& notice) {
     loop.publish(notice.compiled->snapshot);
-    published = Moment::now();
+    work_done = test::threadSeconds();
+    published = monotonicNs();
   });
   loop.publish(editor.compiled()->snapshot);
   editor.prepare(Tool::stiffness, progress);
@@ -101,7 +91,8 @@ Pass paint(int dabs) {
   pause(1500);
   const std::size_t first = samples.size();
   struct Dab {
-    std::int64_t begin, work, published; // [ns]; work: of this thread, beyond the dab itself
+    std::int64_t begin, published; // [ns]
+    double work;                   // [s]
   };
   std::vector<Dab> times;
   for (int i = 0; i < dabs; ++i) {
@@ -111,14 +102,14 @@ Pass paint(int dabs) {
                   editor.scene());
     const StrokeSample sample{0, kPlace, 0.5};
     alone.begin(rising());
-    const Moment before = Moment::now();
+    const double before = test::threadSeconds();
     (void)alone.dab(sample);
-    const std::int64_t took = Moment::now().own - before.own;
+    const double took = test::threadSeconds() - before;
     editor.beginStroke(rising(), progress);
-    const Moment begin = Moment::now();
+    const std::int64_t begin = monotonicNs();
+    const double work_begin = test::threadSeconds();
     (void)editor.dab(sample);
-    times.push_back(
-        {begin.wall, std::max<std::int64_t>(0, published.own - begin.own - took), published.wall});
+    times.push_back({begin, published, std::max(0.0, work_done - work_begin - took)});
     (void)editor.endStroke();
     pause(6);
   }
@@ -138,16 +129,14 @@ Pass paint(int dabs) {
     const auto felt = std::find_if(
         at, ticks.end(), [&](const auto& tick) { return std::abs(tick.force - was) > 1e-3; });
     if (felt == ticks.end()) continue;
-    // A force goes to the hand at the beginning of the tick after the one that made it.
-    const auto since = [&](const auto& tick) {
-      return 1e-9 *
-             static_cast<double>(dab.work + std::max<std::int64_t>(0, tick.ns - dab.published));
-    };
-    pass.after_dab.push_back(since(*(felt - 1)));
-    pass.at_hand.push_back(since(*felt));
+    const auto first_after =
+        std::find_if(at, ticks.end(), [&](const auto& tick) { return tick.ns >= dab.published; });
+    pass.work.push_back(dab.work);
+    pass.ticks.push_back(static_cast<double>(std::max<std::ptrdiff_t>(0, felt - first_after)));
+    pass.felt.push_back(
+        dab.work + 1e-9 * static_cast<double>(std::max<std::int64_t>(0, felt->ns - dab.published)));
   }
-  for (std::size_t i = 200; i < samples.size(); ++i) {
-    if (i < first) continue;
+  for (std::size_t i = std::max<std::size_t>(200, first); i < samples.size(); ++i) {
     const bool painting = i < last;
     (painting ? pass.step_us : pass.idle_step_us).push_back(1e-3 * samples[i].step_ns);
     (painting ? pass.late_us : pass.idle_late_us).push_back(1e-3 * samples[i].late_ns);
@@ -164,42 +153,46 @@ std::string row(const char* name, const std::vector<double>& us) {
   return text;
 }
 
-TEST(FeltEdit, ADabIsFeltWithinTwoMillisecondsAndNoTickIsLongBecauseOfIt) { // T-K20
-  if (test::kSanitized) GTEST_SKIP() << "times mean nothing here";
-  std::string text;
-  double best_felt = 1e9, best_tick = 1e9, best_delay = 1e9;
+// What is felt when is counted in ticks, what it costs is processor time, and a tick is so short
+// that few are broken off: none depends on what else runs here. Only with real-time priority is a
+// tick on time whatever else runs: lateness is judged there, and shown elsewhere. p99, of which a
+// dab's tick or two in ten are part.
+PATINA_TIMED_TEST(FeltEdit, ADabIsFeltInTheNextTicksAndNoTickIsLongBecauseOfIt) { // T-K20
+  double work = 1e9, ticks = 1e9, step = 1e9, late = 1e9;
   bool realtime = false;
   for (int round = 0; round < 3; ++round) {
     const Pass pass = paint(250);
     EXPECT_FALSE(pass.fault);
     EXPECT_EQ(pass.dropped, 0u);
-    ASSERT_GT(pass.after_dab.size(), 240u) << "a dab that is not felt";
+    ASSERT_GT(pass.felt.size(), 240u) << "a dab that is not felt";
     const auto us = [](std::vector<double> seconds) {
       for (double& each : seconds) each *= 1e6;
       return seconds;
     };
-    text += row("felt after its dab is done", us(pass.after_dab)) +
-            row("  at the hand", us(pass.at_hand)) + row("tick while painting", pass.step_us) +
-            row("tick while nothing is painted", pass.idle_step_us) +
-            row("late while painting", pass.late_us) +
-            row("late while nothing is painted", pass.idle_late_us);
+    std::printf("%s", (row("hand-over of a dab, thread", us(pass.work)) +
+                       row("  felt after its dab is done", us(pass.felt)) +
+                       row("tick while painting", pass.step_us) +
+                       row("  while nothing is painted", pass.idle_step_us) +
+                       row("late while painting", pass.late_us) +
+                       row("  while nothing is painted", pass.idle_late_us))
+                          .c_str());
     realtime = realtime || pass.realtime;
-    best_felt = std::min(best_felt, percentiles(pass.after_dab).p99);
-    // A tick as long as those while nothing is painted is not long because of it.
-    const double tick = percentiles(pass.step_us).p999;
-    best_tick = std::min(best_tick, tick > percentiles(pass.idle_step_us).p999 ? tick : 0.0);
-    best_delay =
-        std::min(best_delay, percentiles(pass.late_us).p999 - percentiles(pass.idle_late_us).p999);
+    work = std::min(work, percentiles(pass.work).p50);
+    ticks = std::min(ticks, percentiles(pass.ticks).p99);
+    step = std::min(step, percentiles(pass.step_us).p99 / percentiles(pass.idle_step_us).p99);
+    late = std::min(late, percentiles(pass.late_us).p99 /
+                              std::max(kSoonUs, percentiles(pass.idle_late_us).p99));
   }
-  std::printf("%s", text.c_str());
-  const bool holds = best_felt <= kFelt && best_tick <= kTickUs && best_delay <= kPeriodUs;
-  if (!holds && (test::machineIsCrowded() || !realtime))
-    GTEST_SKIP() << "other programs want the processors, and go first where there is no real-time "
-                    "priority: shown and not judged\n"
-                 << text;
-  EXPECT_LE(best_felt, kFelt);
-  EXPECT_LE(best_tick, kTickUs);
-  EXPECT_LE(best_delay, kPeriodUs);
+  std::printf("felt in %g ticks; against ticks while nothing is painted: tick %.2f, late %.2f%s\n",
+              ticks, step, late, realtime ? "" : " (no real-time priority here: not judged)");
+  test::Reference reference;
+  EXPECT_TRUE(test::within("hand-over of a dab, p50, against 1000 ticks", work,
+                           test::leastSeconds({[&] { reference.ticks(1000); }})[0], 5));
+  EXPECT_LE(ticks, 2);
+  EXPECT_LE(step, 6);
+  if (realtime) {
+    EXPECT_LE(late, 3);
+  }
 }
 
 // For the thread sanitizer: painting, values, undo and a servo that reads meanwhile.

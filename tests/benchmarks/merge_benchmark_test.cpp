@@ -1,27 +1,20 @@
 // A scene of a hundred objects against one (K14): the tick must not know, and the build may cost
-// a few times that of one mesh with all the triangles. Times as in the contact benchmark.
+// a few times that of one mesh with all the triangles.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 
 #include "app/compile_scene.h"
-#include "app/studies/contact_test_path.h"
+#include "benchmarks/tick_time.h"
 #include "field/build_field.h"
 #include "geometry/shapes.h"
-#include "support/busy_machine.h"
-#include "support/sanitized.h"
+#include "support/one_thread.h"
 
 namespace patina {
 namespace {
 
-using test::kSanitized;
-using test::kSlowMachine;
-
 constexpr double kRadius = 0.05; // of the sphere that the fixed test touches, at the origin
 constexpr int kFrequency = 7;    // 980 triangles
-constexpr int kRepeats = 10;
 
 // The touched sphere among `count` of its kind, on one voxel whatever the count.
 Scene spheres(int count) {
@@ -37,60 +30,34 @@ Scene spheres(int count) {
   return scene;
 }
 
-double secondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-TEST(MergeTiming, TickOfAHundredObjectsIsThatOfOne) {
-  if (kSanitized) GTEST_SKIP() << "times mean nothing under a sanitizer";
+PATINA_TIMED_TEST(MergeTiming, TickOfAHundredObjectsIsThatOfOne) {
   Progress progress;
   const auto one = compile(spheres(1), progress), many = compile(spheres(100), progress);
   const ContactTest test = makeContactTest({});
-  double p50[2] = {1e9, 1e9}, batch[2] = {1e9, 1e9};
-  int clean = 0;
-  for (int round = 0; round < kRepeats; ++round)
-    for (int i = 0; i < 2; ++i) {
-      const HapticSnapshot& snapshot = i ? *many->snapshot : *one->snapshot;
-      contactTestTiming(snapshot, test, 1);
-      const test::CpuShare share;
-      const ContactTestTiming pass = contactTestTiming(snapshot, test, 1);
-      clean += share.value() >= test::kCleanShare;
-      p50[i] = std::min(p50[i], pass.p50);
-      batch[i] = std::min(batch[i], pass.batch);
-    }
-  std::printf("1 object: p50 %.0f, in batches %.1f ns; 100 objects: p50 %.0f, in batches %.1f ns; "
-              "ratio %.3f (%d clean passes)\n",
-              p50[0], batch[0], p50[1], batch[1], batch[1] / batch[0], clean);
-  if (clean < 4) GTEST_SKIP() << "the machine is busy: no pass had a core to itself";
-  EXPECT_LE(p50[1], 250 * kSlowMachine);
-  EXPECT_LE(batch[1] / batch[0], 1.1); // whatever the machine's speed
-  if (p50[1] > 250) GTEST_SKIP() << "250 ns do not hold on this machine now: see above";
+  const std::vector<double> seconds = test::pathSeconds({one->snapshot, many->snapshot}, test);
+  EXPECT_TRUE(
+      test::within("2000 ticks: 100 objects against one", seconds[1], seconds[0], 1.1)); // 1.01
+  const test::TickTime time = test::tickTime(*many->snapshot, test);
+  EXPECT_TRUE(test::within("100 objects, p50", time.tick.p50, time.reference.p50, 4.5)); // 1.55
 }
 
 // Packed this densely each band reaches over its neighbours: each object holds its own, and the
 // blocks built are some four times those of one mesh. That is the price of moving one alone.
-TEST(MergeTiming, AHundredObjectsBuildInAFewTimesTheTimeOfOneMesh) {
-  if (kSanitized) GTEST_SKIP() << "times mean nothing under a sanitizer";
+PATINA_TIMED_TEST(MergeTiming, AHundredObjectsBuildInAFewTimesTheTimeOfOneMesh) {
+  const test::OneThread alone;
   const Scene scene = spheres(100);
   const TriangleMesh joint = worldMesh(scene);
   Progress progress;
-  double together = 1e9, apart = 1e9;
-  for (int i = 0; i < 3; ++i) {
-    together = std::min(together, secondsOf([&] {
-                          (void)withSamples(buildField(joint, scene.field, progress).field);
-                        }));
-    apart = std::min(apart, secondsOf([&] { (void)compile(scene, progress); }));
-  }
-  std::printf("100 objects %.3f s, one mesh %.3f s: ratio %.2f\n", apart, together,
-              apart / together);
-  EXPECT_LE(apart / together, 4);
+  const std::vector<double> seconds = test::leastSeconds(
+      {[&] { (void)withSamples(buildField(joint, scene.field, progress).field); },
+       [&] { (void)compile(scene, progress); }},
+      1);
+  EXPECT_TRUE(test::within("100 objects against one mesh", seconds[1], seconds[0], 5)); // 2.7
 }
 
 // One of four objects of 60,000 triangles, about 150 cells along the longest side.
-TEST(MergeTiming, MovingOneObjectCostsThatObjectAndTheUnion) {
-  if (kSanitized) GTEST_SKIP() << "times mean nothing under a sanitizer";
+PATINA_TIMED_TEST(MergeTiming, MovingOneObjectCostsThatObjectAndTheUnion) {
+  const test::OneThread alone;
   Progress progress;
   Scene scene;
   const auto mesh = std::make_shared<const TriangleMesh>(icosphere(0.03, 55));
@@ -99,18 +66,17 @@ TEST(MergeTiming, MovingOneObjectCostsThatObjectAndTheUnion) {
     object.world_from_object.translation() = Vec3(0.05 * (i % 2), 0.05 * (i / 2), 0);
     scene.objects.push_back(object);
   }
-  const double whole = secondsOf([&] { (void)compile(scene, progress); });
   auto compiled = compile(scene, progress);
-  double best = 1e9, best_exact = 1e9;
-  for (int i = 0; i < 6; ++i) {
-    scene.redistance = i % 2 == 1;
-    scene.objects[3].world_from_object.translation().x() = 0.049 - 0.001 * i;
-    double& least = scene.redistance ? best_exact : best;
-    least = std::min(least, secondsOf([&] { compiled = recompile(*compiled, scene, progress); }));
-  }
-  std::printf("4 x %zu triangles: all %.3f s, one moved %.3f s, with depths re-measured %.3f s\n",
-              mesh->triangles.size(), whole, best, best_exact);
-  EXPECT_LT(best, whole);
+  double to = 0.049;
+  const auto move = [&](bool redistance) {
+    scene.redistance = redistance;
+    scene.objects[3].world_from_object.translation().x() = to -= 0.001;
+    compiled = recompile(*compiled, scene, progress);
+  };
+  const std::vector<double> seconds = test::leastSeconds(
+      {[&] { (void)compile(scene, progress); }, [&] { move(false); }, [&] { move(true); }}, 1);
+  EXPECT_TRUE(test::within("one of 4 moved, against all", seconds[1], seconds[0], 0.7)); // 0.28
+  EXPECT_TRUE(test::within("  with depths measured anew", seconds[2], seconds[0], 1.5)); // 0.72
 }
 
 } // namespace

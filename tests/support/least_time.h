@@ -136,11 +136,12 @@ class Reference {
   void ticks(int count) {
     for (int i = 0; i < count; ++i) tick();
   }
-  // 16 MB from one place to another.
-  void copy() {
+  // What a dab or a bake does much of: arithmetic that waits for memory, and memory that is copied
+  // (16 MB).
+  void bake() {
+    ticks(50000);
     std::memcpy(to_.data(), from_.data(), kCopied);
-    kept_ = to_[static_cast<std::size_t>(kept_) % kCopied];
-    ++from_[0];
+    from_[0] = to_[at_];
   }
 
  private:
