@@ -130,7 +130,6 @@ TEST(EditThread, NoCallWaitsForWhatIsUnderWayAndCancelEndsIt) {
   Desk desk;
   desk.open(oneBall());
   std::string outcome;
-  const auto begin = std::chrono::steady_clock::now();
   desk.edits.apply(
       "finer",
       [](const CompiledScene& present) {
@@ -144,9 +143,7 @@ TEST(EditThread, NoCallWaitsForWhatIsUnderWayAndCancelEndsIt) {
   desk.edits.endStroke();
   EXPECT_TRUE(desk.edits.busy());
   (void)desk.edits.take();
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  EXPECT_LT(seconds, 0.05);
+  EXPECT_TRUE(outcome.empty()) << "it takes seconds, and is not done";
   ASSERT_TRUE(desk.waitUntil([&] {
     desk.edits.cancel();
     return !outcome.empty();

