@@ -313,7 +313,7 @@ PATINA_TIMED_TEST(MeshFileTiming, AMillionTrianglesAreReadInAFewPassesOfTheirByt
              product = (product ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
            kept = product;
          }},
-        2);
+        2, 8);
     EXPECT_TRUE(test::within(ending, seconds[0], seconds[1], most));
     std::filesystem::remove(file);
   }

@@ -10,7 +10,7 @@
 
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
-#include "support/busy_machine.h"
+#include "haptics/run_queue_wait.h"
 
 namespace patina {
 namespace {
@@ -296,11 +296,13 @@ TEST_F(Painting, ReliefSaysHowHighItMayBe) { // F7
 TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
   choose(Tool::stiffness);
   QElapsedTimer clock;
-  double longest = 0, before = 0;
+  const RunQueueWait queue; // what other programs take of the processor is not the window's
+  double longest = 0, frame = 0, before = 0; // [ms]
   QTimer beat;
   QObject::connect(&beat, &QTimer::timeout, [&] {
-    const double now = static_cast<double>(clock.nsecsElapsed()) * 1e-6;
-    longest = std::max(longest, now - before);
+    const double now = 1e-6 * static_cast<double>(clock.nsecsElapsed() - queue.total().value_or(0));
+    if (before != 0) longest = std::max(longest, now - before);
+    frame = std::max(frame, 1000 * view().frameSeconds());
     before = now;
   });
   // A field of 300 cells takes a second or more.
@@ -322,11 +324,10 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
   }));
   const double took =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::printf("edit %.0f ms, longest gap of the window %.0f ms, frame %.0f ms\n", 1000 * took,
-              longest, 1000 * view().frameSeconds());
+  std::printf("edit %.0f ms, longest gap of the window %.0f ms, longest frame %.0f ms\n",
+              1000 * took, longest, frame);
   EXPECT_GT(1000 * took, 5 * longest);
-  // A frame of software OpenGL, and no more.
-  EXPECT_LT(longest, test::machineIsCrowded() ? 1000 : 150);
+  EXPECT_LT(longest, 3 * std::max(frame, 20.0)); // a frame of software OpenGL, and little more
 }
 
 TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {

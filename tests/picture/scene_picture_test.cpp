@@ -179,15 +179,13 @@ TEST_F(ScenePicture, ATipNobodyMovedRestsOnTheSurface) {
 TEST(Picture, SaysWhatToDoWithoutADisplay) {
   const char* display = std::getenv("DISPLAY");
   const std::string kept = display != nullptr ? display : "";
-  for (const char* value : {"", ":31999"}) {
-    setenv("DISPLAY", value, 1);
-    SceneView view;
-    try {
-      renderToPng(view, {64, 64}, fs::temp_directory_path() / "never.png");
-      ADD_FAILURE() << "drawn on display '" << value << "'";
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("xvfb-run"), std::string::npos);
-    }
+  setenv("DISPLAY", "", 1);
+  SceneView view;
+  try {
+    renderToPng(view, {64, 64}, fs::temp_directory_path() / "never.png");
+    ADD_FAILURE() << "drawn on no display";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("xvfb-run"), std::string::npos);
   }
   if (display != nullptr)
     setenv("DISPLAY", kept.c_str(), 1);
