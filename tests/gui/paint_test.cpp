@@ -130,7 +130,7 @@ TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
 TEST_F(Painting, AQuickClickPaintsToo) {
   choose(Tool::color);
   send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
-  wait(200);
+  wait(200 + static_cast<int>(4000 * view().frameSeconds())); // the tip hovers there
   send(QEvent::MouseButtonPress, middle(), Qt::LeftButton, Qt::LeftButton);
   send(QEvent::MouseButtonRelease, middle(), Qt::LeftButton, Qt::NoButton);
   EXPECT_TRUE(strokeDone(1));
