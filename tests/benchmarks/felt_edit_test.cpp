@@ -187,9 +187,9 @@ PATINA_TIMED_TEST(FeltEdit, ADabIsFeltInTheNextTicksAndNoTickIsLongBecauseOfIt) 
               ticks, step, late, realtime ? "" : " (no real-time priority here: not judged)");
   test::Reference reference;
   EXPECT_TRUE(test::within("hand-over of a dab, p50, against 1000 ticks", work,
-                           test::leastSeconds({[&] { reference.ticks(1000); }})[0], 5));
+                           test::leastSeconds({[&] { reference.ticks(1000); }})[0], 5)); // 2
   EXPECT_LE(ticks, 2);
-  EXPECT_LE(step, 6);
+  EXPECT_LE(step, 3); // 1.07
   if (realtime) {
     EXPECT_LE(late, 3);
   }
