@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "field/distance_blocks.h"
 #include "field/signs.h"
+#include "geometry/open_parts.h"
 #include "geometry/orientation.h"
 #include "geometry/triangle_tree.h"
 #include "geometry/winding_number.h"
@@ -48,9 +49,16 @@ std::vector<std::int32_t> someUsable(const TriangleMesh& mesh) {
   return usable;
 }
 
+TriangleMesh closedPart(const TriangleMesh& mesh, const OpenParts& open) {
+  std::vector<std::int32_t> faces;
+  for (std::size_t f = 0; f < open.open.size(); ++f)
+    if (!open.open[f]) faces.push_back(static_cast<std::int32_t>(f));
+  return onlyFaces(mesh, faces);
+}
+
 // grid_for(box of the sound triangles) chooses the grid.
 template <class GridFor>
-BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
+BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band, OpenSides sides,
                  Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = cpuSeconds();
@@ -79,9 +87,13 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
     }
   }
   const TriangleMesh& oriented = turned ? *turned : sound;
-  const WindingNumber winding(oriented);
+  WindingNumber winding(oriented);
+  const OpenParts open = openParts(oriented, winding);
+  if (open.any()) winding = WindingNumber(closedPart(oriented, open));
+  report.open_parts = open.parts;
+  report.open_triangles = open.triangles;
   progress.throwIfCancelled();
-  report.ambiguous_signs = assignSigns(builder, oriented, tree, winding, progress);
+  report.ambiguous_signs = assignSigns(builder, oriented, tree, winding, open, sides, progress);
   progress.throwIfCancelled();
   if (report.dropped_triangles > 0) renumberFaces(builder, usable);
 
@@ -99,13 +111,14 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
 
 BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress) {
   return build(
-      mesh, [&](const Box3& box) { return gridAround(box, spec); }, spec.band, progress);
+      mesh, [&](const Box3& box) { return gridAround(box, spec); }, spec.band, spec.sides,
+      progress);
 }
 
 BuiltField buildField(const TriangleMesh& mesh, const FieldGrid& grid, double band,
-                      Progress& progress) {
+                      Progress& progress, OpenSides sides) {
   return build(
-      mesh, [&](const Box3&) { return grid; }, band, progress);
+      mesh, [&](const Box3&) { return grid; }, band, sides, progress);
 }
 
 Box3 fieldBounds(const TriangleMesh& mesh) {

@@ -18,7 +18,8 @@ struct FieldReport {
   std::size_t dense_bytes = 0;       // distance + face for every node of the same grid
   std::size_t dropped_triangles = 0; // non-finite and degenerate
   std::size_t ambiguous_signs = 0;   // nodes where the sign rules disagree; the majority stands
-  std::size_t redistanced_nodes = 0; // of several objects in one: see redistance.h
+  std::size_t open_parts = 0, open_triangles = 0; // that have no inside (openParts)
+  std::size_t redistanced_nodes = 0;              // of several objects in one: see redistance.h
 };
 
 struct BuiltField {
@@ -28,14 +29,15 @@ struct BuiltField {
 
 // Exact distance and nearest face for every node with |phi| <= band; sign by connected components
 // of edges that the surface cannot cross (|d1| + |d2| > length) and one generalised winding number
-// for each, cross-checked. Parallel; polls `progress` and throws Cancelled. Degenerate and
-// non-finite triangles are dropped and counted. Face indices refer to `mesh` as given. Throws Error
-// if no triangle is left or the grid is impossible.
+// for each, cross-checked; beside open parts of the mesh by their front (see signs.h): there is no
+// solid deeper behind them than the band. Parallel; polls `progress` and throws Cancelled.
+// Degenerate and non-finite triangles are dropped and counted. Face indices refer to `mesh` as
+// given. Throws Error if no triangle is left or the grid is impossible.
 BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress);
 
 // The same on a given grid, which must reach at least `band` voxels past the mesh on each side.
 BuiltField buildField(const TriangleMesh& mesh, const FieldGrid& grid, double band,
-                      Progress& progress);
+                      Progress& progress, OpenSides sides = OpenSides::one);
 
 // Of the triangles that a field is built from. Throws Error if there is none.
 Box3 fieldBounds(const TriangleMesh& mesh);

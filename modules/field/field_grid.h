@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/types.h"
+#include "geometry/open_parts.h"
 
 namespace patina {
 
@@ -25,9 +26,10 @@ struct FieldGrid {
 };
 
 struct FieldSpec {
-  int resolution = 150;        // cells along the longest side, band included on both ends
-  std::optional<double> voxel; // [m]; takes the place of resolution
-  double band = 8;             // voxels on each side of the surface in which nodes are stored
+  int resolution = 150;             // cells along the longest side, band included on both ends
+  std::optional<double> voxel;      // [m]; takes the place of resolution
+  double band = 8;                  // voxels on each side of the surface in which nodes are stored
+  OpenSides sides = OpenSides::one; // of the mesh's open parts
 };
 
 // `spec` with its band widened, where need be, so that `reach` [m] and `margin` voxels more lie in

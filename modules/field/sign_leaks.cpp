@@ -30,11 +30,13 @@ std::vector<std::int32_t> welded(const std::vector<Vec3>& positions) {
 
 } // namespace
 
-bool isClosed(const TriangleMesh& mesh) {
+bool isClosed(const TriangleMesh& mesh, const OpenParts& open) {
   const std::vector<std::int32_t> vertex = welded(mesh.positions);
   std::vector<Triangle> faces;
   faces.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (open.any() && open.open[f]) continue;
+    const Triangle& t = mesh.triangles[f];
     Triangle face;
     for (std::size_t k = 0; k < 3; ++k) face[k] = vertex[static_cast<std::size_t>(t[k])];
     std::sort(face.begin(), face.end());

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "field/sign_components.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/open_parts.h"
 
 namespace patina::signs {
 
-// No edge, vertices at equal positions being one and coincident faces too, has a single face: no
-// component can run from inside to outside, whichever way the faces are turned.
-bool isClosed(const TriangleMesh& mesh);
+// Of the faces that are not open: no edge, vertices at equal positions being one and coincident
+// faces too, has a single face: no component can run from inside to outside, whichever way the
+// faces are turned.
+bool isClosed(const TriangleMesh& mesh, const OpenParts& open);
 
 // A cut of leaking components that follows the parts' opinions (1 = surely inside, -1 = surely
 // outside, 0 = none; NaN = not of a leaking component) and crosses few edges: a random walk from

@@ -10,6 +10,7 @@
 #include "field/sign_components.h"
 #include "field/sign_leaks.h"
 #include "field/sign_slivers.h"
+#include "geometry/front_side.h"
 
 namespace patina {
 
@@ -34,8 +35,9 @@ bool saysInside(float w) {
 class Signer {
  public:
   Signer(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-         const WindingNumber& winding, Progress& progress)
-      : builder_(builder), mesh_(mesh), tree_(tree), winding_(winding), progress_(progress) {}
+         const WindingNumber& winding, const OpenParts& open, Progress& progress)
+      : builder_(builder), mesh_(mesh), tree_(tree), winding_(winding), open_(open),
+        progress_(progress) {}
 
   std::size_t run() {
     parts_ = signs::connectedComponents(builder_);
@@ -117,7 +119,7 @@ class Signer {
     }
     countFaced(voters);
     if (!mixed) return;
-    if (!signs::isClosed(mesh_)) cutLeaks(tally);
+    if (!signs::isClosed(mesh_, open_)) cutLeaks(tally);
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i)
       if (!std::isnan(vote_[i]) && sign_[i] != kByNode &&
           saysInside(vote_[i]) != (sign_[i] == kInside))
@@ -266,6 +268,7 @@ class Signer {
         builder_.face[static_cast<std::size_t>(part.slot)]->face[part.deepest];
     if (face < 0) return 0;
     const auto f = static_cast<std::size_t>(face);
+    if (open_.any() && open_.open[f]) return 0;
     const Vec3 a = mesh_.corner(f, 0), b = mesh_.corner(f, 1), c = mesh_.corner(f, 2);
     const Vec3 p = world(part.slot, part.deepest);
     const Vec3 w = closestBarycentric(p, a, b, c);
@@ -289,23 +292,6 @@ class Signer {
       if (field.top[i] < 0)
         field.top[i] = sign_[parts_.partOfBlock(i)] == kInside ? SurfaceField::kInside
                                                                : SurfaceField::kOutside;
-    const auto& n = field.blocks;
-    std::size_t corner = 0;
-    for (int z = 0; z <= n[2]; ++z) {
-      for (int y = 0; y <= n[1]; ++y) {
-        for (int x = 0; x <= n[0]; ++x, ++corner) {
-          // The last layer lies past the grid, and so outside.
-          if (field.coarse.empty() || x == n[0] || y == n[1] || z == n[2]) continue;
-          const std::int32_t slot = field.slotOf(x, y, z);
-          const bool inside = slot >= 0
-                                  ? builder_.distance[static_cast<std::size_t>(slot)]->phi[0] < 0
-                                  : slot == SurfaceField::kInside;
-          if (!inside) continue;
-          CoarseNode& node = field.coarse[corner];
-          node = {-node.phi, -node.gx, -node.gy, -node.gz};
-        }
-      }
-    }
   }
 
   void writeBlock(std::size_t slot) {
@@ -327,6 +313,7 @@ class Signer {
   const TriangleMesh& mesh_;
   const TriangleTree& tree_;
   const WindingNumber& winding_;
+  const OpenParts& open_;
   Progress& progress_;
   Components parts_;
   std::vector<float> depth_;             // by root: of the component
@@ -337,11 +324,74 @@ class Signer {
   std::size_t ambiguous_ = 0;
 };
 
+// The nodes nearest to an open part; coarse nodes too. Returns how many are ambiguous.
+std::size_t signOpen(FieldBuilder& builder, const TriangleMesh& mesh, const OpenParts& open) {
+  const FrontSide front(mesh, open.open);
+  const auto isOpen = [&](std::int32_t face) {
+    return face >= 0 && open.open[static_cast<std::size_t>(face)] != 0;
+  };
+  std::atomic<std::size_t> doubtful{0};
+  tbb::parallel_for(std::size_t{0}, builder.distance.size(), [&](std::size_t slot) {
+    auto& phi = builder.distance[slot]->phi;
+    const auto& faces = builder.face[slot]->face;
+    std::size_t here = 0;
+    for (std::size_t n = 0; n < phi.size(); ++n) {
+      if (!isOpen(faces[n]) || !(phi[n] > kOnSurface)) continue;
+      const std::array<int, 3> at = signs::nodeAt(builder, static_cast<std::int32_t>(slot), n);
+      const Side side = front.at(builder.field.grid.toWorld(Vec3(at[0], at[1], at[2])), faces[n]);
+      here += side == Side::beyond_back && phi[n] <= kRim;
+      if (side == Side::back) phi[n] = -phi[n];
+    }
+    doubtful += here;
+  });
+  const auto& blocks = builder.field.blocks;
+  const auto nx = static_cast<std::size_t>(blocks[0] + 1),
+             ny = static_cast<std::size_t>(blocks[1] + 1);
+  tbb::parallel_for(std::size_t{0}, builder.coarse_face.size(), [&](std::size_t i) {
+    const std::int32_t face = builder.coarse_face[i];
+    CoarseNode& node = builder.field.coarse[i];
+    if (!isOpen(face) || node.phi < 0) return;
+    const Vec3 at(static_cast<double>(i % nx), static_cast<double>(i / nx % ny),
+                  static_cast<double>(i / nx / ny));
+    if (front.at(builder.field.grid.toWorld(kBlockSide * at), face) == Side::back)
+      node = {-node.phi, -node.gx, -node.gy, -node.gz};
+  });
+  return doubtful;
+}
+
+void signCoarse(FieldBuilder& builder) {
+  SurfaceField& field = builder.field;
+  const auto& n = field.blocks;
+  std::size_t corner = 0;
+  for (int z = 0; z <= n[2]; ++z) {
+    for (int y = 0; y <= n[1]; ++y) {
+      for (int x = 0; x <= n[0]; ++x, ++corner) {
+        // The last layer lies past the grid, and so outside.
+        if (field.coarse.empty() || x == n[0] || y == n[1] || z == n[2]) continue;
+        const std::int32_t slot = field.slotOf(x, y, z);
+        const bool inside = slot >= 0 ? builder.distance[static_cast<std::size_t>(slot)]->phi[0] < 0
+                                      : slot == SurfaceField::kInside;
+        if (!inside) continue;
+        CoarseNode& node = field.coarse[corner];
+        node = {-node.phi, -node.gx, -node.gy, -node.gz};
+      }
+    }
+  }
+}
+
 } // namespace
 
 std::size_t assignSigns(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-                        const WindingNumber& winding, Progress& progress) {
-  return Signer(builder, mesh, tree, winding, progress).run();
+                        const WindingNumber& winding, const OpenParts& open, OpenSides sides,
+                        Progress& progress) {
+  std::size_t ambiguous = 0;
+  if (open.triangles < mesh.triangles.size()) {
+    ambiguous = Signer(builder, mesh, tree, winding, open, progress).run();
+    signCoarse(builder);
+  }
+  progress.throwIfCancelled();
+  if (open.any() && sides == OpenSides::one) ambiguous += signOpen(builder, mesh, open);
+  return ambiguous;
 }
 
 } // namespace patina

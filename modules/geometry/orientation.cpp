@@ -3,24 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
-#include "geometry/vertex_weld.h"
+#include "geometry/edge_uses.h"
 
 namespace patina {
 namespace {
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
-}
-
-std::vector<Triangle> weldedTriangles(const TriangleMesh& mesh) {
-  VertexWeld weld(mesh.positions.size());
-  std::vector<std::int32_t> vertex;
-  vertex.reserve(mesh.positions.size());
-  for (const Vec3& p : mesh.positions) vertex.push_back(weld.index(p));
-  std::vector<Triangle> result = mesh.triangles;
-  for (Triangle& t : result)
-    for (std::int32_t& v : t) v = vertex[index(v)];
-  return result;
 }
 
 // Faces joined over edges, each with whether it must be turned to agree with the lowest of them.
