@@ -11,7 +11,10 @@ FaceNodes randomFaces(int different, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<std::int32_t> pick(-1, different - 2);
   FaceNodes nodes;
-  for (std::int32_t& face : nodes.face) face = pick(random) * 7919;
+  for (std::int32_t& face : nodes.face) {
+    const std::int32_t picked = pick(random);
+    face = picked < 0 ? -1 : 1'000'000 + picked * 7919;
+  }
   return nodes;
 }
 
@@ -25,17 +28,29 @@ TEST(FaceBlock, GivesBackEveryFaceHoweverManyThereAre) {
   }
 }
 
-TEST(FaceBlock, ListsUpToTwoHundredAndFiftySixFacesByTheByte) {
-  FaceNodes nodes;
-  for (std::size_t n = 0; n < nodes.face.size(); ++n) {
-    nodes.face[n] = static_cast<std::int32_t>(n % 256);
+// Every way through a block: a face for each layer of nodes along an axis, for each row, for all.
+TEST(FaceBlock, HoldsFacesThatLieInLayersSmallWhateverTheirAxis) {
+  for (const int shift : {0, 3, 6}) {
+    FaceNodes nodes;
+    for (std::size_t n = 0; n < nodes.face.size(); ++n)
+      nodes.face[n] = static_cast<std::int32_t>(n >> shift & 7U) - 1;
+    const FaceBlock block(nodes);
+    for (std::size_t n = 0; n < nodes.face.size(); ++n) ASSERT_EQ(block.at(n), nodes.face[n]);
+    EXPECT_LE(block.bytes(), sizeof(FaceBlock) + 8 * 2 + 4); // 8 runs of 3 bits
   }
-  const FaceBlock listed(nodes);
-  EXPECT_EQ(listed.bytes(), sizeof(FaceBlock) + 256 * 4 + 512);
-  nodes.face[300] = 1000;
-  const FaceBlock whole(nodes);
-  EXPECT_EQ(whole.bytes(), sizeof(FaceBlock) + 512 * 4);
-  EXPECT_EQ(whole.at(300), 1000);
+  FaceNodes one;
+  one.face.fill(12);
+  EXPECT_EQ(FaceBlock(one).bytes(), sizeof(FaceBlock) + 2);
+  EXPECT_LE(sizeof(FaceBlock), 80U);
+}
+
+TEST(FaceBlock, ShiftsFacesButNotTheirAbsence) {
+  for (const int different : {2, 40, 300, 100000}) {
+    const FaceNodes nodes = randomFaces(different, 7);
+    const FaceBlock shifted(FaceBlock(nodes), 12345);
+    for (std::size_t n = 0; n < nodes.face.size(); ++n)
+      ASSERT_EQ(shifted.at(n), nodes.face[n] < 0 ? -1 : nodes.face[n] + 12345);
+  }
 }
 
 } // namespace
