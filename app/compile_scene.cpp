@@ -43,7 +43,8 @@ bool same(const SceneObject& a, const SceneObject& b) {
 }
 
 bool same(const FieldSpec& a, const FieldSpec& b) {
-  return a.resolution == b.resolution && a.voxel == b.voxel && a.band == b.band;
+  return a.resolution == b.resolution && a.voxel == b.voxel && a.band == b.band &&
+         a.sides == b.sides;
 }
 
 // Whether a lattice's voxel still suits what `spec` asks for.
@@ -80,11 +81,12 @@ std::shared_ptr<CompiledObject> prepared(const SceneObject& object) {
   return result;
 }
 
-void build(CompiledObject& object, const BlockLattice& lattice, double band, Progress& progress) {
+void build(CompiledObject& object, const BlockLattice& lattice, double band, OpenSides sides,
+           Progress& progress) {
   try {
     const BlockBox blocks = blocksAround(lattice, fieldBounds(*object.mesh), band);
     object.first_block = blocks.low;
-    object.built = buildField(*object.mesh, gridOf(lattice, blocks), band, progress);
+    object.built = buildField(*object.mesh, gridOf(lattice, blocks), band, progress, sides);
   } catch (const Error& error) {
     throw Error("object '" + object.object.name + "': " + error.what());
   }
@@ -149,7 +151,8 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, doubl
   tbb::parallel_for(std::size_t{0}, todo.size(), [&](std::size_t i) {
     Progress part(progress, shared.listener(i));
     // Isolated: a thread that waits for one object's loops must not begin another object.
-    tbb::this_task_arena::isolate([&] { build(*fresh[todo[i]], lattice, compiled.band, part); });
+    tbb::this_task_arena::isolate(
+        [&] { build(*fresh[todo[i]], lattice, compiled.band, spec.sides, part); });
   });
   // Names may change while the field is kept.
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -179,6 +182,8 @@ BuiltField united(const CompiledScene& compiled, Progress& progress) {
   for (const auto& object : compiled.objects) {
     built.report.dropped_triangles += object->built.report.dropped_triangles;
     built.report.ambiguous_signs += object->built.report.ambiguous_signs;
+    built.report.open_parts += object->built.report.open_parts;
+    built.report.open_triangles += object->built.report.open_triangles;
   }
   progress.throwIfCancelled();
   if (compiled.scene.redistance) {

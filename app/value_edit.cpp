@@ -18,6 +18,7 @@ const std::string* find(const List& list, const std::string& key) {
 std::string wordForAbsent(const std::string& key) {
   static const std::map<std::string, std::string> kUsual = {{"contact", "ray"},
                                                             {"history", "on"},
+                                                            {"surface.sides", "one"},
                                                             {"merge.redistance", "off"},
                                                             {"relief.mode", "pulled"},
                                                             {"relief.height", "0.001"},

@@ -8,6 +8,7 @@
 #include "app/stage_cost.h"
 #include "core/numbers.h"
 #include "geometry/mesh_report.h"
+#include "geometry/open_parts.h"
 #include "visualization/field_io.h"
 
 namespace patina::cli {
@@ -63,6 +64,21 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& report, Json& json
   rows.emplace_back("watertight", report.watertight ? "yes" : "no");
   rows.emplace_back("components", formatCount(report.components));
   rows.emplace_back("defects", defectsText(report));
+}
+
+void describeSides(std::size_t open_triangles, const Scene& scene, const MeshReport& report,
+                   Json& json, TextRows& rows) {
+  const auto counts = sideCounts(report.triangles - report.non_finite - report.degenerate,
+                                 open_triangles, scene.field.sides);
+  Json list = Json::array();
+  for (const SideCount& count : counts) {
+    Json entry = Json::object();
+    entry.set("sides", count.sides);
+    entry.set("triangles", count.triangles);
+    list.push(entry);
+  }
+  json.set("components_sides", list);
+  if (!counts.empty()) rows.emplace_back("sides", text(counts));
 }
 
 void describeObjects(const Scene& scene, Json& json, TextRows& rows) {
@@ -180,7 +196,9 @@ int runInfo(const InfoOptions& options, Console& console) {
   describeObjects(scene, json, rows);
   if (options.no_field || scene.objects.empty()) {
     const TriangleMesh mesh = worldMesh(scene);
-    describeMesh(mesh, inspect(mesh), json, rows);
+    const MeshReport report = inspect(mesh);
+    describeMesh(mesh, report, json, rows);
+    describeSides(openParts(mesh).triangles, scene, report, json, rows);
     json.set("layers", Json::array());
     json.set("stages", Json::array());
   } else if (is_field) {
@@ -189,7 +207,9 @@ int runInfo(const InfoOptions& options, Console& console) {
     for (const auto& [key, value] : options.scene.settings)
       console.warn(options.input.string() + ": --" + key + " has no effect on a field");
     const TriangleMesh mesh = worldMesh(scene);
-    describeMesh(mesh, inspect(mesh), json, rows);
+    const MeshReport mesh_report = inspect(mesh);
+    describeMesh(mesh, mesh_report, json, rows);
+    describeSides(openParts(mesh).triangles, scene, mesh_report, json, rows);
     const SurfaceField field = readField(options.input);
     FieldReport report;
     report.blocks = field.blockCount();
@@ -201,6 +221,8 @@ int runInfo(const InfoOptions& options, Console& console) {
   } else {
     const auto compiled = compileFor(std::move(scene), console);
     describeMesh(*compiled->mesh, compiled->mesh_report, json, rows);
+    describeSides(compiled->built.report.open_triangles, compiled->scene, compiled->mesh_report,
+                  json, rows);
     describeField(*compiled->built.field, compiled->built.report, json, rows);
     describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), compiled.get(), json, rows);
     describeStages(*compiled, json, rows);
@@ -219,7 +241,8 @@ Command infoCommand() {
   command.name = "info";
   command.summary = "what a mesh, field or workspace is and what it costs to feel";
   command.description =
-      "Size, defects and whether the mesh is watertight; the bytes of each layer of its field; the "
+      "Size, defects, whether the mesh is watertight and what of it is open and felt from one side "
+      "or two; the bytes of each layer of its field; the "
       "stages of the servo that are on, why, and what each costs in bytes and ns (measured here, "
       "on "
       "short strokes over the mesh). Of a field (.vti) written by patina: the file's own grid and "
@@ -228,10 +251,11 @@ Command infoCommand() {
       "the "
       "bytes of its paint, how high its relief is and what height the device bears, and the edits "
       "that can be undone.\n"
-      "JSON: kind, triangles, vertices, bounds [m], watertight, components, defects (non_finite, "
-      "degenerate, duplicate, boundary_edges, non_manifold_edges, misoriented_edges), objects "
-      "(name, "
-      "triangles), layers (name, bytes; why, of the one that keeps several objects apart), stages "
+      "JSON: kind, triangles, vertices, bounds [m], watertight, components, components_sides "
+      "(sides: "
+      "closed, one-sided or two-sided; triangles), defects (non_finite, degenerate, duplicate, "
+      "boundary_edges, non_manifold_edges, misoriented_edges), objects (name, triangles), layers "
+      "(name, bytes; why, of the one that keeps several objects apart), stages "
       "(name, why, bytes, ns), field (as patina field), stability (as patina "
       "render; only with a device); of a painted scene more layers, relief (object, highest, "
       "wavelength [m]; admissible [m], exceeded: with a device), history (undo, redo).";

@@ -131,6 +131,7 @@ Command sceneCommand() {
       "friction.dynamic, friction.depth, friction.slip, offset [m], magnet.range [m], "
       "magnet.strength [N/m], magnet.fades (on or off), contact (proxy or ray), "
       "tip.radius [m], force.limit [N], resolution, voxel [m], band [voxels], sampler, "
+      "surface.sides (one or two: from where open meshes are felt), "
       "merge.redistance (on or off), relief.mode (pulled: read at the contact point; baked: moved "
       "into the field), relief.height [m] (of a relief of 1; below 0 engraves what was raised), "
       "relief.force and material.force (conservative: no closed path does work; literal: as in the "

@@ -93,6 +93,11 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
   row(tr("Watertight"), report.watertight ? tr("yes") : tr("no"),
       tr("Every edge has two faces. Contact works either way; inside and outside are then told by "
          "the winding number."));
+  row(tr("Sides"),
+      text(patina::text(sideCounts(report.triangles - report.non_finite - report.degenerate,
+                                   scene.built.report.open_triangles, scene.scene.field.sides))),
+      tr("Closed parts have an inside. Open ones, such as a terrain, are felt from the front of "
+         "their triangles, or from both sides with surface.sides = two and a tip radius."));
   const auto defect = [&](const QString& caption, std::size_t count, const QString& tip) {
     if (count > 0) row(caption, text(formatCount(count)), tip, true);
   };

@@ -274,6 +274,13 @@ const std::vector<Entry>& entries() {
          s.sampler = parseSampler(t);
        },
        [](const Scene& s) { return Text(std::string(name(s.sampler))); }},
+      {"surface.sides",
+       [](Scene& s, const std::string& t) {
+         if (t != "one" && t != "two")
+           throw Error("surface.sides = '" + t + "': it must be one or two");
+         s.field.sides = t == "one" ? OpenSides::one : OpenSides::two;
+       },
+       [](const Scene& s) { return s.field.sides == OpenSides::one ? Text() : Text("two"); }},
       {"merge.redistance",
        [](Scene& s, const std::string& t) { s.redistance = yesOrNo("merge.redistance", t); },
        [](const Scene& s) { return s.redistance ? onOff(true) : Text(); }},

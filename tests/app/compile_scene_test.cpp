@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -188,6 +189,26 @@ TEST(CompileScene, ABadEditThrowsAndNothingIsLost) {
   Progress cancelled;
   cancelled.cancel();
   EXPECT_THROW((void)recompile(*old, old->scene, cancelled), Cancelled);
+}
+
+TEST(CompileScene, SidesAreBuiltAnew) {
+  Scene scene;
+  scene.field.resolution = 50;
+  scene.objects.push_back({"sheet", std::make_shared<const TriangleMesh>(sheet(0.05, 0.05, 4))});
+  scene.objects.push_back({"ball", std::make_shared<const TriangleMesh>(icosphere(0.01, 4))});
+  setValue(scene, "tip.radius", "1mm");
+  Progress progress;
+  const auto one = compile(scene, progress);
+  EXPECT_EQ(one->built.report.open_parts, 1U);
+  EXPECT_EQ(one->built.report.open_triangles, 32U);
+  setValue(scene, "surface.sides", "two");
+  EXPECT_FALSE(canRetune(*one, scene));
+  const auto two = recompile(*one, scene, progress);
+  const FieldSampler before(*one->built.field, Sampler::high),
+      after(*two->built.field, Sampler::high);
+  const Vec3 behind(0.018, 0.018, -2e-3);
+  EXPECT_NEAR(before.at(behind).phi, -2e-3, 1e-5);
+  EXPECT_NEAR(after.at(behind).phi, 2e-3, 1e-5);
 }
 
 } // namespace

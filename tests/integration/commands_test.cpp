@@ -71,6 +71,57 @@ TEST_F(Commands, InfoReportsTheMeshItsLayersAndItsStages) {
   EXPECT_EQ(std::count(stages.begin(), stages.end(), "limit"), 1);
 }
 
+TEST_F(Commands, InfoSaysWhatIsOpen) {
+  const auto sidesOf = [](const Json& info) { return info.at("components_sides").dump(-1); };
+  EXPECT_EQ(sidesOf(runJson({"info", sphere, "--no-field"})),
+            R"([{"sides":"closed","triangles":8000}])");
+  const std::string sheet =
+      folder.write("sheet.obj", "v 0 0 0\nv 80 0 0\nv 80 80 0\nv 0 80 0\nf 1 2 3\nf 1 3 4\n");
+  const std::string one = R"([{"sides":"one-sided","triangles":2}])";
+  EXPECT_EQ(sidesOf(runJson({"info", sheet, "--no-field"})), one);
+  EXPECT_EQ(sidesOf(runJson({"info", sheet, "--resolution", "60"})), one);
+  EXPECT_NE(run({"info", sheet, "--no-field"}).out.find("sides       one-sided\n"),
+            std::string::npos);
+  const std::string both = folder / "both";
+  EXPECT_EQ(run({"scene", "-o", both, "--add", sheet, "--add", sphere, "--set", "tip.radius=1mm",
+                 "--set", "surface.sides=two"})
+                .exit,
+            0);
+  EXPECT_EQ(sidesOf(runJson({"info", both})),
+            R"([{"sides":"closed","triangles":8000},{"sides":"two-sided","triangles":2}])");
+}
+
+// 3 mm below its front all over, and out again beyond its rim.
+TEST_F(Commands, AnOpenTerrainIsFeltFromItsFront) {
+  std::string mesh, tip = "t [s],x [m],y [m],z [m]\n";
+  constexpr int kSide = 40;
+  const auto height = [](double x, double y) {
+    return 0.003 * std::sin(90 * x) * std::cos(70 * y);
+  };
+  for (int j = 0; j <= kSide; ++j)
+    for (int i = 0; i <= kSide; ++i) {
+      const double x = 0.1 * i / kSide, y = 0.1 * j / kSide;
+      mesh += "v " + std::to_string(1000 * x) + " " + std::to_string(1000 * y) + " " +
+              std::to_string(1000 * height(x, y)) + "\n";
+    }
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i) {
+      const int a = j * (kSide + 1) + i + 1, b = a + kSide + 1;
+      mesh += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(b + 1) +
+              "\nf " + std::to_string(a) + " " + std::to_string(b + 1) + " " + std::to_string(b) +
+              "\n";
+    }
+  constexpr int kTicks = 1000;
+  for (int n = 0; n < kTicks; ++n) {
+    const double x = 0.01 + 0.08 * n / kTicks, y = 0.03 + 0.04 * n / kTicks;
+    tip += std::to_string(1e-3 * n) + "," + std::to_string(x) + "," + std::to_string(y) + "," +
+           std::to_string(height(x, y) - 0.003) + "\n";
+  }
+  const Json felt = runJson({"feel", folder.write("terrain.obj", mesh), "--path",
+                             folder.write("deep.csv", tip), "-o", folder / "felt.csv"});
+  EXPECT_EQ(felt.at("contact_ticks").asInteger(), kTicks);
+}
+
 TEST_F(Commands, InfoWithoutFieldLeavesLayersAndStagesEmpty) {
   const Json info = runJson({"info", sphere, "--no-field"});
   EXPECT_TRUE(info.at("layers").asArray().empty());

@@ -24,6 +24,7 @@ List withEverything() {
           {"voxel", "0.001"},
           {"band", "6"},
           {"sampler", "kim"},
+          {"surface.sides", "two"},
           {"merge.redistance", "on"},
           {"relief.mode", "baked"},
           {"relief.height", "-5e-04"},
@@ -73,6 +74,7 @@ TEST(SceneValues, AbsentFeaturesAreNotListed) {
 TEST(SceneValues, NoneMakesAFeatureAbsent) {
   Scene scene;
   setValues(scene, withEverything());
+  setValue(scene, "surface.sides", "one");
   for (const char* key : {"damping", "friction.static", "tip.radius", "voxel"})
     setValue(scene, key, "none");
   EXPECT_FALSE(scene.haptics.damping);
@@ -122,6 +124,22 @@ TEST(SceneValues, BadValuesOfPaintAreRefused) {
                                        {"paint.size", "512.5"}}) {
     EXPECT_THROW(setValue(scene, key, value), Error) << key;
     EXPECT_EQ(values(scene), values(Scene{})) << key;
+  }
+}
+
+TEST(SceneValues, TwoSidesNeedATipOrAnOffset) {
+  for (const List& list :
+       {List{{"surface.sides", "two"}}, List{{"surface.sides", "two"}, {"tip.radius", "0"}},
+        List{{"surface.sides", "both"}, {"tip.radius", "1mm"}}}) {
+    Scene scene;
+    EXPECT_THROW(setValues(scene, list), Error);
+    EXPECT_EQ(scene.field.sides, OpenSides::one);
+  }
+  for (const char* size : {"tip.radius", "offset"}) {
+    Scene scene;
+    setValues(scene, {{"surface.sides", "two"}, {size, "1mm"}});
+    EXPECT_EQ(scene.field.sides, OpenSides::two);
+    EXPECT_THROW(setValue(scene, size, "none"), Error);
   }
 }
 
@@ -190,13 +208,14 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
     setValue(scene, "stifness", "5");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
-              "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
-              "magnet.fades contact history tip.radius force.limit resolution voxel band sampler "
-              "merge.redistance relief.mode relief.height relief.force relief.smoothing "
-              "material.force paint.size stabiliser device.mass device.damping device.coulomb "
-              "device.encoder device.rate device.delay device");
+    EXPECT_EQ(
+        std::string(error.what()),
+        "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
+        "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
+        "magnet.fades contact history tip.radius force.limit resolution voxel band sampler "
+        "surface.sides merge.redistance relief.mode relief.height relief.force relief.smoothing "
+        "material.force paint.size stabiliser device.mass device.damping device.coulomb "
+        "device.encoder device.rate device.delay device");
   }
 }
 
