@@ -47,6 +47,25 @@ bool same(const FieldSpec& a, const FieldSpec& b) {
          a.sides == b.sides;
 }
 
+bool readsFaces(const Scene& scene) {
+  return (scene.redistance && scene.objects.size() > 1) ||
+         std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const SceneObject& o) { return o.paint != nullptr; });
+}
+
+bool hasFaces(const SurfaceField& field) {
+  return field.face.size() == field.blockCount();
+}
+
+std::shared_ptr<const CompiledObject> withoutFaces(const CompiledObject& object) {
+  auto bare = std::make_shared<CompiledObject>(object);
+  auto field = std::make_shared<SurfaceField>(*object.built.field);
+  field->face = {};
+  bare->built.report.bytes = field->bytes();
+  bare->built.field = std::move(field);
+  return bare;
+}
+
 // Whether a lattice's voxel still suits what `spec` asks for.
 bool suits(double voxel, const FieldSpec& spec, const Box3& box) {
   if (spec.voxel) return true;
@@ -119,7 +138,7 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, doubl
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (old)
       for (const auto& kept : old->objects)
-        if (same(kept->object, scene.objects[i])) objects[i] = kept;
+        if (same(kept->object, scene.objects[i]) && hasFaces(*kept->built.field)) objects[i] = kept;
     if (!objects[i]) objects[i] = fresh[i] = prepared(scene.objects[i]);
     box.extend(fieldBounds(*objects[i]->mesh));
     progress.throwIfCancelled();
@@ -201,7 +220,7 @@ BuiltField united(const CompiledScene& compiled, Progress& progress) {
 }
 
 std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene scene, double room,
-                                                 Progress& progress) {
+                                                 FaceLayer faces, Progress& progress) {
   validate(scene);
   if (scene.objects.empty()) throw Error("the scene has no object: add a mesh to it");
   progress.throwIfCancelled();
@@ -209,6 +228,8 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
   auto compiled = std::make_shared<CompiledScene>();
   compiled->scene = std::move(scene);
   compiled->objects = compiledObjects(old, *compiled, room, progress);
+  if (faces == FaceLayer::if_read && !readsFaces(compiled->scene))
+    for (auto& object : compiled->objects) object = withoutFaces(*object);
   progress.throwIfCancelled();
   if (compiled->objects.size() == 1) {
     const CompiledObject& only = *compiled->objects[0];
@@ -277,13 +298,13 @@ MeshReport sumOf(const std::vector<MeshReport>& reports) {
   return sum;
 }
 
-std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress) {
-  return compileFrom(nullptr, std::move(scene), 0, progress);
+std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress, FaceLayer faces) {
+  return compileFrom(nullptr, std::move(scene), 0, faces, progress);
 }
 
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
                                                Progress& progress, double room) {
-  return compileFrom(&old, std::move(scene), room, progress);
+  return compileFrom(&old, std::move(scene), room, FaceLayer::kept, progress);
 }
 
 bool fits(const CompiledScene& compiled, double reach) {
@@ -295,7 +316,7 @@ bool canRetune(const CompiledScene& old, const Scene& scene) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (!same(old.objects[i]->object, scene.objects[i])) return false;
   return same(old.scene.field, scene.field) && old.scene.redistance == scene.redistance &&
-         fits(old, reachOf(scene, &old));
+         fits(old, reachOf(scene, &old)) && (!readsFaces(scene) || hasFaces(*old.built.field));
 }
 
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {

@@ -46,20 +46,27 @@ struct CompiledScene {
   std::vector<std::shared_ptr<const CompiledObject>> objects; // in the scene's order
 };
 
+// Nearest faces by node, a layer of the field: read by what is painted and by merge.redistance, and
+// by a brush. kept: whatever is painted next finds them; if_read: absent where nothing in the scene
+// reads them.
+enum class FaceLayer : std::uint8_t { kept, if_read };
+
 // Slow; polls progress, throws Cancelled. Safe on a background thread. One object keeps the grid
 // that fits it; several share a lattice about all of them.
-std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress);
+std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress,
+                                             FaceLayer faces = FaceLayer::kept);
 // For objects added, moved or removed, and for any other change: fields of objects with the same
-// mesh and pose are kept, so that only the others are built and the union is made anew. The lattice
-// and its voxel stay, too, until field values change or the scene has outgrown them (more than
-// twice or less than half the cells that `resolution` asks for); then all is built as by compile().
-// `room` [m]: at least so far from the surface shall be felt, for what is painted next.
+// mesh and pose are kept (if they have their faces), so that only the others are built and the
+// union is made anew. The lattice and its voxel stay, too, until field values change or the scene
+// has outgrown them (more than twice or less than half the cells that `resolution` asks for); then
+// all is built as by compile(). `room` [m]: at least so far from the surface shall be felt, for
+// what is painted next.
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
                                                Progress& progress, double room = 0);
 // Whether what reaches so far from the surface [m] lies in the band.
 bool fits(const CompiledScene& compiled, double reach);
 // Whether retuned() can make `scene` from `old`: the same objects in the same places and the same
-// field values, and what is felt fits into the band.
+// field values, what is felt fits into the band, and faces are there if something reads them.
 bool canRetune(const CompiledScene& old, const Scene& scene);
 // Only values of touch and device, names or paint changed: keeps the field, whatever reach they ask
 // for; throws Error if that does not fit. Quick: only what differs is made anew.

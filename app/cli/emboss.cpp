@@ -25,7 +25,7 @@ int runEmboss(const EmbossOptions& options, Console& console) {
   if (highestRelief(scene) == 0)
     console.warn(options.input.string() + ": there is no relief: the mesh is the field's surface");
   scene.relief.mode = ReliefMode::pulled; // baked below, into a field of its own
-  const auto compiled = compileFor(std::move(scene), console);
+  const auto compiled = compileFor(std::move(scene), console, FaceLayer::kept);
   const std::vector<ReliefSource> sources = reliefSources(*compiled);
   const TriangleMesh mesh =
       embossed(compiled->built.field, *compiled->mesh, sources, console.progress());

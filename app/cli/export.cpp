@@ -50,7 +50,8 @@ int runExport(const ExportOptions& options, Console& console) {
   const std::filesystem::path& folder = options.output;
   std::vector<TimedTip> path;
   if (!options.path.empty()) path = readTipPath(options.path);
-  const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
+  const auto compiled =
+      compileFor(openWith(options.input, options.scene, console), console, FaceLayer::kept);
   std::vector<ToolSample> samples;
   if (!path.empty()) samples = feel(*compiled->snapshot, path, console.progress());
   std::optional<SurfaceStability> stability;

@@ -121,8 +121,8 @@ Scene openWith(const std::filesystem::path& path, const SceneOptions& options, C
   return openedWith(path, options, console).scene;
 }
 
-std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console) {
-  auto compiled = compile(std::move(scene), console.progress());
+std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console, FaceLayer faces) {
+  auto compiled = compile(std::move(scene), console.progress(), faces);
   for (const std::string& line : compileWarnings(*compiled)) console.warn(line);
   return compiled;
 }

@@ -44,6 +44,7 @@ OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& op
                        Console& console);
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console);
 // compile(), with what should be known of the result as warnings.
-std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console);
+std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console,
+                                                FaceLayer faces = FaceLayer::if_read);
 
 } // namespace patina::cli

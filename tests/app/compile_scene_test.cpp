@@ -191,6 +191,41 @@ TEST(CompileScene, ABadEditThrowsAndNothingIsLost) {
   EXPECT_THROW((void)recompile(*old, old->scene, cancelled), Cancelled);
 }
 
+bool hasLayer(const CompiledScene& compiled, const std::string& name) {
+  const auto layers = compiled.built.field->layerBytes();
+  return std::any_of(layers.begin(), layers.end(),
+                     [&](const LayerBytes& layer) { return layer.name == name; });
+}
+
+TEST(CompileScene, FacesAreAbsentWhereNothingReadsThem) {
+  Scene one;
+  one.field.resolution = 50;
+  one.objects.push_back({"ball", std::make_shared<const TriangleMesh>(icosphere(0.03, 6))});
+  Scene two = one;
+  two.objects.push_back({"box", std::make_shared<const TriangleMesh>(box(Vec3(0.05, 0.02, 0.02)))});
+  Scene exact = two;
+  exact.redistance = true;
+  Progress progress;
+  for (const Scene& scene : {one, two, exact}) {
+    const auto kept = compile(scene, progress);
+    const auto read = compile(scene, progress, FaceLayer::if_read);
+    EXPECT_TRUE(hasLayer(*kept, "face"));
+    EXPECT_EQ(hasLayer(*read, "face"), scene.redistance);
+    ContactMemory a, b;
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 tip(0.02, 0.004, 0.03 - 3e-5 * i);
+      ASSERT_EQ(tick(*kept->snapshot, a, tip, 1e-3).force,
+                tick(*read->snapshot, b, tip, 1e-3).force);
+    }
+    // What is painted or measured next finds them again.
+    EXPECT_TRUE(hasLayer(*recompile(*read, exact, progress), "face"));
+    Scene painted = scene;
+    painted.objects[0].paint = std::make_shared<const ObjectPaint>();
+    EXPECT_TRUE(canRetune(*kept, painted));
+    EXPECT_EQ(canRetune(*read, painted), scene.redistance);
+  }
+}
+
 TEST(CompileScene, SidesAreBuiltAnew) {
   Scene scene;
   scene.field.resolution = 50;
