@@ -76,7 +76,7 @@ std::optional<std::string> thinSheetWarning(const MeshReport& report) {
   if (report.boundary_edges == 0) return std::nullopt;
   return formatCount(report.boundary_edges) + (report.boundary_edges == 1 ? " edge" : " edges") +
          " of one triangle: what is open has no inside and is felt from its front; set "
-         "surface.sides=two and tip.radius to feel both sides";
+         "tip.radius and surface.sides=two to feel both sides";
 }
 
 namespace {
