@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "app/compile_scene.h"
-#include "authoring/relief_limits.h"
 #include "haptics/painted_range.h"
 #include "haptics/relief_stage.h"
 
@@ -26,36 +25,29 @@ bool isPainted(const Scene& scene) {
                      [](const SceneObject& o) { return o.paint && o.paint->material; });
 }
 
-float highestIn(const TiledImage& image, std::size_t tile) {
-  float most = 0;
-  if (const auto& values = image.sharedTile(tile))
-    for (const float g : *values) most = std::max(most, std::abs(g));
-  return most;
+const FeltRelief* reliefOf(const CompiledScene* compiled, std::size_t object) {
+  return compiled && object < compiled->paint.relief.size() ? &compiled->paint.relief[object]
+                                                            : nullptr;
 }
 
-// Greatest |g|; of an image that shares tiles with `before`, whose own is known, only the others
-// are looked at.
-float highest(const TiledImage& image, const TiledImage* before, float highest_before) {
-  const bool shares = before && before->tileCount() == image.tileCount();
-  float most = shares ? highest_before : 0;
-  for (std::size_t i = 0; i < image.tileCount(); ++i)
-    if (!shares || image.sharedTile(i) != before->sharedTile(i))
-      most = std::max(most, highestIn(image, i));
-  return most;
+std::shared_ptr<const ImageRange> rangeOf(const std::shared_ptr<const TiledImage>& image,
+                                          const std::shared_ptr<const TiledImage>& before,
+                                          const std::shared_ptr<const ImageRange>& known) {
+  if (known && image == before) return known;
+  return std::make_shared<const ImageRange>(imageRange(*image, before.get(), known.get()));
 }
 
-// By object.
-std::vector<float> highestOf(const Scene& scene, const CompiledScene* before) {
-  std::vector<float> result(scene.objects.size());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const ObjectPaint* paint = paintOf(scene, i);
-    if (!paint || !paint->relief) continue;
-    const bool known = before && i < before->paint.highest.size();
-    const ObjectPaint* old = known ? paintOf(before->scene, i) : nullptr;
-    result[i] = highest(*paint->relief, old ? old->relief.get() : nullptr,
-                        known ? before->paint.highest[i] : 0);
-  }
-  return result;
+// The image that stands for the relief, as it was painted.
+FeltRelief sourceOf(const Scene& scene, std::size_t object, const CompiledScene* before) {
+  FeltRelief relief;
+  const ObjectPaint* paint = paintOf(scene, object);
+  if (!paint || !paint->relief) return relief;
+  static const FeltRelief kNone;
+  const FeltRelief* known = reliefOf(before, object);
+  if (!known) known = &kNone;
+  relief.source = paint->relief;
+  relief.source_range = rangeOf(relief.source, known->source, known->source_range);
+  return relief;
 }
 
 // A pulled image is read through cubics, a baked one bilinearly.
@@ -87,25 +79,35 @@ struct Maker {
                            keeps ? old->material.get() : nullptr);
   }
 
-  // The image as it is felt.
-  std::shared_ptr<const TiledImage> image(std::size_t i) const {
-    const ObjectPaint& paint = *paintOf(compiled.scene, i);
+  // Its source, as it is felt.
+  void smooth(std::size_t i, FeltRelief& relief) const {
+    relief.felt = relief.source;
+    relief.felt_range = relief.source_range;
     const double deviation = compiled.scene.relief.smoothing;
-    if (!(deviation > 0)) return paint.relief;
-    const ObjectPaint* old = before ? paintOf(before->scene, i) : nullptr;
-    const bool same_layout = old && old->layout.uvs == paint.layout.uvs;
-    if (same_layout && old->relief == paint.relief && i < before->paint.relief.size() &&
-        before->scene.relief.smoothing == deviation)
-      return before->paint.relief[i];
-    const TriangleMesh& mesh = *compiled.objects[i]->mesh;
-    std::shared_ptr<const TexelMap> texels;
-    if (same_layout && i < before->paint.texels.size()) texels = before->paint.texels[i];
-    if (!texels)
-      texels = std::make_shared<const TexelMap>(
-          texelMap(*paint.layout.uvs, paint.relief->width(), paint.relief->height()));
-    made.texels[i] = texels;
-    return std::make_shared<const TiledImage>(
-        smoothed(*paint.relief, mesh, paint.layout, *texels, deviation));
+    if (!(deviation > 0)) return;
+    const ObjectPaint& paint = *paintOf(compiled.scene, i);
+    const ObjectPaint* old_paint = before ? paintOf(before->scene, i) : nullptr;
+    const FeltRelief* old = reliefOf(before, i);
+    const bool keeps = old && old->smoother && old_paint &&
+                       old_paint->layout.uvs == paint.layout.uvs &&
+                       old->source->width() == relief.source->width() &&
+                       old->source->height() == relief.source->height();
+    if (keeps && before->scene.relief.smoothing == deviation) {
+      relief.smoother = old->smoother;
+      relief.felt = old->source == relief.source
+                        ? old->felt
+                        : std::make_shared<const TiledImage>(relief.smoother->resmoothed(
+                              *old->felt, *old->source, *relief.source));
+      relief.felt_range = rangeOf(relief.felt, old->felt, old->felt_range);
+      return;
+    }
+    auto texels = keeps ? old->smoother->texels()
+                        : std::make_shared<const TexelMap>(texelMap(
+                              *paint.layout.uvs, relief.source->width(), relief.source->height()));
+    relief.smoother = std::make_shared<const ReliefSmoother>(
+        compiled.objects[i]->mesh, paint.layout.uvs, std::move(texels), deviation);
+    relief.felt = std::make_shared<const TiledImage>(relief.smoother->smoothed(*relief.source));
+    relief.felt_range = rangeOf(relief.felt, nullptr, nullptr);
   }
 
   std::shared_ptr<const ReliefSurface> pulled(std::size_t i) const {
@@ -117,7 +119,7 @@ struct Maker {
       surface->faces = old->relief->faces;
     else
       surface->faces = reliefFaces(*compiled.objects[i]->mesh, *paint.layout.uvs);
-    surface->image = made.relief[i];
+    surface->image = made.relief[i].felt;
     surface->height = compiled.scene.relief.height;
     return surface;
   }
@@ -131,9 +133,10 @@ std::vector<ReliefSource> sourcesOf(const CompiledScene& compiled, const FeltPai
     source.first_face = first;
     source.faces = static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
     first += source.faces;
-    if (i >= paint.relief.size() || !paint.relief[i]) continue;
+    if (i >= paint.relief.size() || !paint.relief[i].felt) continue;
     source.uvs = paintOf(compiled.scene, i)->layout.uvs;
-    source.image = paint.relief[i];
+    source.image = paint.relief[i].felt;
+    source.range = paint.relief[i].felt_range;
     source.height = compiled.scene.relief.height;
   }
   return sources;
@@ -162,7 +165,10 @@ void bake(const CompiledScene& compiled, const CompiledScene* before, FeltPaint&
   }
   made.bake = before->paint.bake;
   const bool as_it_was =
-      before->paint.relief == made.relief && before->scene.relief == compiled.scene.relief;
+      before->scene.relief == compiled.scene.relief &&
+      std::equal(made.relief.begin(), made.relief.end(), before->paint.relief.begin(),
+                 before->paint.relief.end(),
+                 [](const FeltRelief& a, const FeltRelief& b) { return a.felt == b.felt; });
   made.field = as_it_was ? before->paint.field
                          : made.bake->rebaked(*before->paint.field,
                                               sourcesOf(*before, before->paint), sources);
@@ -212,14 +218,18 @@ std::size_t FeltPaint::bytes() const {
     if (object.material) bytes += object.material->bytes();
     if (object.relief) bytes += patina::bytes(*object.relief->faces);
   }
-  for (const auto& map : texels)
-    if (map) bytes += map->owner.size() * sizeof(map->owner[0]);
+  for (const FeltRelief& image : relief) {
+    if (image.smoother) bytes += image.smoother->bytes();
+    if (image.felt && image.felt != image.source) bytes += image.felt->bytes();
+  }
   return bytes;
 }
 
 double reachOf(const Scene& scene, const CompiledScene* before) {
-  const std::vector<float> all = highestOf(scene, before);
-  const float most = all.empty() ? 0 : *std::max_element(all.begin(), all.end());
+  float most = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (const FeltRelief relief = sourceOf(scene, i, before); relief.source)
+      most = std::max(most, relief.source_range->all.highest());
   const double relief = std::abs(scene.relief.height) * static_cast<double>(most);
   return reachOf(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
 }
@@ -247,11 +257,7 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
       before && before->built.field == compiled.built.field ? before : nullptr;
   Maker maker{compiled, before, made};
   const bool relief = hasRelief(scene);
-  if (relief) {
-    made.highest = highestOf(scene, before);
-    made.relief.resize(scene.objects.size());
-    made.texels.resize(scene.objects.size());
-  }
+  if (relief) made.relief.resize(scene.objects.size());
   std::int32_t first = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     progress.throwIfCancelled();
@@ -259,12 +265,11 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
     object.first_face = first;
     object.object_from_world = scene.objects[i].world_from_object.inverse();
     object.material = maker.material(i, baseMaterial(scene.haptics));
-    const ObjectPaint* paint = paintOf(scene, i);
-    if (relief && paint && paint->relief) {
-      made.relief[i] = maker.image(i);
-      const float most =
-          made.relief[i] == paint->relief ? made.highest[i] : highest(*made.relief[i], nullptr, 0);
-      object.highest = overshoot(scene) * std::abs(scene.relief.height) * static_cast<double>(most);
+    if (relief) made.relief[i] = sourceOf(scene, i, before);
+    if (relief && made.relief[i].source) {
+      maker.smooth(i, made.relief[i]);
+      object.highest = overshoot(scene) * std::abs(scene.relief.height) *
+                       static_cast<double>(made.relief[i].felt_range->all.highest());
       if (scene.relief.mode == ReliefMode::pulled && object.highest > 0)
         object.relief = maker.pulled(i);
     }

@@ -6,6 +6,7 @@
 
 #include "authoring/painter.h"
 #include "authoring/relief_bake.h"
+#include "authoring/relief_smoothing.h"
 #include "haptics/felt_object.h"
 #include "scene/scene.h"
 
@@ -13,14 +14,18 @@ namespace patina {
 
 struct CompiledScene;
 
+// One object's relief, with what the next version may make use of.
+struct FeltRelief {
+  std::shared_ptr<const TiledImage> source, felt; // the same unless it is smoothed
+  std::shared_ptr<const ImageRange> source_range, felt_range;
+  std::shared_ptr<const ReliefSmoother> smoother; // absent: not smoothed
+};
+
 // Absent wherever nothing is painted. Immutable; versions share what did not change.
 struct FeltPaint {
   std::vector<FeltObject> objects;        // in the scene's order; empty = nothing painted is felt
   std::shared_ptr<const ReliefBake> bake; // only where relief is baked
-  // By object, only where relief is felt: what the servo reads is the image, smoothed if asked for.
-  std::vector<std::shared_ptr<const TiledImage>> relief;
-  std::vector<std::shared_ptr<const TexelMap>> texels; // only where it is smoothed
-  std::vector<float> highest; // of |g| of each object's own image; at least, after an erasure
+  std::vector<FeltRelief> relief;         // by object, only where relief is felt
   // What is felt: compiled.built.field, or that with relief in it.
   std::shared_ptr<const SurfaceField> field;
 
@@ -28,7 +33,7 @@ struct FeltPaint {
 };
 
 // How far from the surface its properties reach [m], relief included. `before` may be null: only
-// tiles that differ from its are looked at, and what was higher there may still count.
+// tiles that differ from its are looked at.
 double reachOf(const Scene& scene, const CompiledScene* before = nullptr);
 // The same once a stroke with this brush has been painted, whatever its samples.
 double reachAfter(const CompiledScene& compiled, const Brush& brush);

@@ -46,11 +46,11 @@ double excess(const ReliefLimit& limit) {
 std::optional<Worst> worstRelief(const CompiledScene& compiled) {
   std::optional<Worst> worst;
   for (std::size_t i = 0; i < compiled.paint.relief.size(); ++i) {
-    if (!compiled.paint.relief[i]) continue;
+    if (!compiled.paint.relief[i].felt) continue;
     const SceneObject& object = compiled.scene.objects[i];
-    const ReliefLimit limit =
-        reliefLimit(*compiled.objects[i]->mesh, object.paint->layout, *compiled.paint.relief[i],
-                    compiled.scene.relief.height, compiled.scene.device_model);
+    const ReliefLimit limit = reliefLimit(
+        *compiled.objects[i]->mesh, object.paint->layout, *compiled.paint.relief[i].felt,
+        compiled.scene.relief.height, compiled.scene.device_model);
     const bool worse = !worst || std::pair(excess(limit), limit.highest) >
                                      std::pair(excess(worst->limit), worst->limit.highest);
     if (limit.highest > 0 && worse) worst = Worst{limit, object.name};
@@ -69,11 +69,10 @@ std::vector<LayerBytes> paintLayers(const CompiledScene& compiled) {
     if (object.material) add(layers, "felt material", object.material->bytes());
     if (object.relief) add(layers, "felt relief", bytes(*object.relief->faces));
   }
-  for (std::size_t i = 0; i < felt.relief.size(); ++i)
-    if (felt.relief[i] && felt.relief[i] != compiled.scene.objects[i].paint->relief)
-      add(layers, "smoothed relief", felt.relief[i]->bytes());
-  for (const auto& map : felt.texels)
-    if (map) add(layers, "texel map", map->owner.size() * sizeof(map->owner[0]));
+  for (const FeltRelief& relief : felt.relief) {
+    if (relief.felt != relief.source) add(layers, "smoothed relief", relief.felt->bytes());
+    if (relief.smoother) add(layers, "relief smoothing", relief.smoother->bytes());
+  }
   if (felt.bake) {
     add(layers, "relief bake", felt.bake->bytes());
     const auto own = [](const SurfaceField& field) { return field.bytes(); };

@@ -42,10 +42,10 @@ std::optional<ReliefLimit> worstLimit(const CompiledScene& compiled, const Progr
   const auto& felt = compiled.paint.relief; // smoothed if asked for: what a hand has to bear
   for (std::size_t i = 0; i < felt.size(); ++i) {
     progress.throwIfCancelled();
-    if (!felt[i]) continue;
+    if (!felt[i].felt) continue;
     const SceneObject& object = compiled.scene.objects[i];
     const ReliefLimit limit =
-        reliefLimit(*object.mesh, object.paint->layout, *felt[i], compiled.scene.relief.height,
+        reliefLimit(*object.mesh, object.paint->layout, *felt[i].felt, compiled.scene.relief.height,
                     compiled.scene.device_model);
     if (limit.highest > 0 && (!worst || severity(limit) > severity(*worst))) worst = limit;
   }

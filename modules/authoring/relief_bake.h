@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "authoring/image_range.h"
 #include "core/progress.h"
 #include "field/surface_field.h"
 #include "geometry/texture_layout.h"
@@ -17,8 +18,9 @@ namespace patina {
 struct ReliefSource {
   std::int32_t first_face = 0, faces = 0;
   std::shared_ptr<const CornerUvs> uvs;
-  std::shared_ptr<const TiledImage> image; // one channel; null: flat
-  double height = 0;                       // [m] of g = 1
+  std::shared_ptr<const TiledImage> image;   // one channel; null: flat
+  double height = 0;                         // [m] of g = 1
+  std::shared_ptr<const ImageRange> range{}; // of the image; null: every texel is looked at
 };
 
 // Voxels of band that a baked field keeps beyond its relief: down to there contact is as deep as it

@@ -2,10 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include "core/error.h"
 
@@ -26,38 +22,6 @@ const float* tileOrZeros(const TiledImage& image, std::size_t index) {
 
 bool isFlat(const ReliefSource& source) {
   return !source.image || source.height == 0;
-}
-
-struct Range {
-  float low = 0, high = 0;
-  bool finite = true;
-};
-
-Range rangeOf(const float* tile) {
-  Range range;
-  float poison = 0; // NaN as soon as a value is NaN or infinite
-  for (int t = 0; t < kTileTexels; ++t) {
-    range.low = std::min(range.low, tile[t]);
-    range.high = std::max(range.high, tile[t]);
-    poison += 0 * tile[t];
-  }
-  range.finite = poison == 0;
-  return range;
-}
-
-Range together(const Range& a, const Range& b) {
-  return {std::min(a.low, b.low), std::max(a.high, b.high), a.finite && b.finite};
-}
-
-Range rangeOf(const TiledImage& image) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, image.tileCount(), 64), Range{},
-      [&](const tbb::blocked_range<std::size_t>& tiles, Range range) {
-        for (std::size_t i = tiles.begin(); i < tiles.end(); ++i)
-          if (const float* tile = image.tile(i)) range = together(range, rangeOf(tile));
-        return range;
-      },
-      together);
 }
 
 // Look-ups that read a texel of [i0, i1] x [j0, j1]: up to one texel away, and a little more for
@@ -98,7 +62,7 @@ ReliefRange reliefRange(std::span<const ReliefSource> sources) {
   ReliefRange range;
   for (const ReliefSource& source : sources) {
     if (isFlat(source)) continue;
-    const Range own = rangeOf(*source.image);
+    const TileRange own = (source.range ? *source.range : imageRange(*source.image)).all;
     if (!own.finite || !std::isfinite(source.height))
       throw Error("relief: the image holds a value that is not a finite number");
     for (const float g : {own.low, own.high}) {
@@ -109,17 +73,11 @@ ReliefRange reliefRange(std::span<const ReliefSource> sources) {
   return range;
 }
 
-std::vector<UvBox> differences(const ReliefSource& before, const ReliefSource& after) {
-  if (isFlat(before) && isFlat(after)) return {};
-  const std::vector<UvBox> everywhere{{{-1, -1}, {2, 2}}};
-  if (before.height != after.height || isFlat(before) || isFlat(after)) return everywhere;
-  const TiledImage &a = *before.image, &b = *after.image;
-  if (&a == &b) return {};
-  if (a.width() != b.width() || a.height() != b.height()) return everywhere;
-  std::vector<UvBox> boxes;
-  for (std::size_t index = 0; index < a.tileCount(); ++index) {
-    if (a.sharedTile(index) == b.sharedTile(index)) continue;
-    const float *left = tileOrZeros(a, index), *right = tileOrZeros(b, index);
+std::vector<TexelBox> changedTexels(const TiledImage& before, const TiledImage& after) {
+  std::vector<TexelBox> boxes;
+  for (std::size_t index = 0; index < after.tileCount(); ++index) {
+    if (before.sharedTile(index) == after.sharedTile(index)) continue;
+    const float *left = tileOrZeros(before, index), *right = tileOrZeros(after, index);
     int i0 = kTileSide, i1 = -1, j0 = kTileSide, j1 = -1;
     for (int j = 0; j < kTileSide; ++j) {
       const float *row = left + j * kTileSide, *other = right + j * kTileSide;
@@ -133,10 +91,23 @@ std::vector<UvBox> differences(const ReliefSource& before, const ReliefSource& a
       }
     }
     if (i1 < 0) continue;
-    const int i = static_cast<int>(index) % a.tilesAcross() * kTileSide,
-              j = static_cast<int>(index) / a.tilesAcross() * kTileSide;
-    boxes.push_back(around(i + i0, j + j0, i + i1, j + j1, a));
+    const int i = static_cast<int>(index) % after.tilesAcross() * kTileSide,
+              j = static_cast<int>(index) / after.tilesAcross() * kTileSide;
+    boxes.push_back({i + i0, j + j0, i + i1 + 1, j + j1 + 1});
   }
+  return boxes;
+}
+
+std::vector<UvBox> differences(const ReliefSource& before, const ReliefSource& after) {
+  if (isFlat(before) && isFlat(after)) return {};
+  const std::vector<UvBox> everywhere{{{-1, -1}, {2, 2}}};
+  if (before.height != after.height || isFlat(before) || isFlat(after)) return everywhere;
+  const TiledImage &a = *before.image, &b = *after.image;
+  if (&a == &b) return {};
+  if (a.width() != b.width() || a.height() != b.height()) return everywhere;
+  std::vector<UvBox> boxes;
+  for (const TexelBox& box : changedTexels(a, b))
+    boxes.push_back(around(box.i0, box.j0, box.i1 - 1, box.j1 - 1, a));
   return boxes;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "authoring/relief_feet.h"
+#include "geometry/texel_map.h"
 
 namespace patina {
 
@@ -57,6 +58,9 @@ struct ReliefRange {
   double low = 0, high = 0;
 };
 ReliefRange reliefRange(std::span<const ReliefSource> sources);
+
+// Per tile that differs, the texels that do; of images of one size and one channel.
+std::vector<TexelBox> changedTexels(const TiledImage& before, const TiledImage& after);
 
 // The part of the unit square where look-ups may differ between two versions of a source, as boxes.
 struct UvBox {

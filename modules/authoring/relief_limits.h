@@ -1,7 +1,6 @@
-// How high a relief may be before touching it buzzes (F7), and its smoothing.
+// How high a relief may be before touching it buzzes (F7).
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "geometry/texel_map.h"
@@ -16,7 +15,8 @@ namespace patina {
 //
 // h'' is taken by second differences over one texel, along the surface by the face's own metric, in
 // the direction where it is largest, wherever all nine texels show one piece of the surface. What
-// is a texel wide counts, noise of the image too: it is felt. Smoothing is the cure.
+// is a texel wide counts, noise of the image too: it is felt. Smoothing is the cure
+// (relief_smoothing.h).
 struct ReliefLimit {
   double highest = 0;   // [m], |height|
   double curvature = 0; // [1/m], worst |h''| along the surface
@@ -31,17 +31,5 @@ struct ReliefLimit {
 ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
                         const TiledImage& relief, double height,
                         const std::optional<DeviceModel>& device);
-
-// The image through a Gaussian of `deviation` [m] along the surface, without reading across a
-// chart's edge in the image: heat flow for the time deviation^2 / 2 between texels that are
-// neighbours on the surface, by each face's metric. A constant keeps its value to 1e-6; a wave of
-// length lambda keeps exp(-2 pi^2 deviation^2 / lambda^2) of its height, to the O(texel^2) of a
-// Laplacian. Values below 1e-7 are 0. Where texels are less than a quarter
-// of their mean size, or less than deviation / 64, they are smoothed as if they were that large.
-// What is painted elsewhere does not change a bit. Parallel, deterministic. Some 30 bytes a texel
-// meanwhile; grows with deviation / texel. Throws invalid_argument for a negative deviation or if
-// image and map differ in size.
-TiledImage smoothed(const TiledImage& relief, const TriangleMesh& mesh, const TextureLayout& layout,
-                    const TexelMap& texels, double deviation);
 
 } // namespace patina

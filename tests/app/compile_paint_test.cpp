@@ -82,7 +82,7 @@ TEST_F(FeltPaints, SmoothedReliefIsLowerAndTheImageStays) {
   EXPECT_LT(editor.compiled()->paint.objects[0].highest, 0.8 * highest);
   EXPECT_GT(editor.compiled()->paint.objects[0].highest, 1e-5);
   editor.apply(ValueEdit{{{"relief.smoothing", "none"}}}, progress);
-  EXPECT_EQ(editor.compiled()->paint.relief[0], image);
+  EXPECT_EQ(editor.compiled()->paint.relief[0].felt, image);
 }
 
 TEST_F(FeltPaints, ChangesNameWhatDiffersAndNothingElse) {

@@ -1,0 +1,173 @@
+#include "authoring/relief_smoothing.h"
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "authoring/relief_sheet.h"
+
+namespace patina {
+namespace {
+
+using namespace test;
+
+ReliefSmoother smoother(const TriangleMesh& mesh, const std::shared_ptr<const CornerUvs>& uvs,
+                        int size, double deviation) {
+  return {std::make_shared<const TriangleMesh>(mesh), uvs,
+          std::make_shared<const TexelMap>(texelMap(*uvs, size, size)), deviation};
+}
+
+ReliefSmoother smootherOn(const Sheet& sheet, int size, double deviation) {
+  return smoother(sheet.mesh, sheet.layout.uvs, size, deviation);
+}
+
+TiledImage smoothedOn(const Sheet& sheet, const TiledImage& image, double deviation) {
+  return smootherOn(sheet, image.width(), deviation).smoothed(image);
+}
+
+double amplitudeAlong(const TiledImage& image, int from, int to) {
+  float low = 1e9F, high = -1e9F;
+  for (int j = from; j < to; ++j)
+    for (int i = from; i < to; ++i) {
+      low = std::min(low, image.at(i, j, 0));
+      high = std::max(high, image.at(i, j, 0));
+    }
+  return 0.5 * static_cast<double>(high - low);
+}
+
+// exp(-2 pi^2 sigma^2 / lambda^2), in the middle where the sheet's edge is not seen.
+TEST(SmoothedRelief, DampsAWaveAsAGaussianDoes) {
+  const double wavelength = 24 * kTexel, k = 2 * M_PI / wavelength;
+  for (const Eigen::Matrix2d& m :
+       {matrix(1, 0, 0, 1), matrix(0, -1, 0.8, 0), matrix(0.9, 0.3, 0, 0.9)}) {
+    const Sheet sheet(m);
+    const Eigen::Matrix2d side_from_uv = m.inverse() * kWidth;
+    for (const double ratio : {0.05, 0.125, 0.25}) {
+      const double deviation = ratio * wavelength;
+      for (const Vec2& along : {Vec2(1, 0), Vec2(0, 1), Vec2(0.6, -0.8)}) {
+        const auto image = reliefImage(kSize, [&](double u, double v) {
+          return std::cos(k * along.dot(side_from_uv * Vec2(u - 0.5, v - 0.5)));
+        });
+        const TiledImage after = smoothedOn(sheet, *image, deviation);
+        const double kept = std::exp(-2 * M_PI * M_PI * ratio * ratio);
+        EXPECT_NEAR(amplitudeAlong(after, 104, 152) / amplitudeAlong(*image, 104, 152), kept, 0.02)
+            << ratio << "\n"
+            << m << "\n"
+            << along;
+      }
+    }
+  }
+}
+
+TEST(SmoothedRelief, IsTheGaussianOfALine) {
+  const Sheet sheet;
+  const auto line = reliefImage(
+      kSize, [](double u, double) { return static_cast<int>(u * kSize) == 128 ? 1.0 : 0.0; });
+  const double texels = 4;
+  const TiledImage after = smoothedOn(sheet, *line, texels * kTexel);
+  for (int i = 104; i <= 152; ++i) {
+    const double d = (i - 128) / texels;
+    EXPECT_NEAR(static_cast<double>(after.at(i, 128, 0)),
+                std::exp(-0.5 * d * d) / (texels * std::sqrt(2 * M_PI)), 1.5e-3);
+  }
+}
+
+TEST(SmoothedRelief, KeepsConstantsAndWhatIsNotShown) {
+  const TriangleMesh ball = icosphere(0.05, 12);
+  const TextureLayout layout = textureLayout(ball, kSize);
+  const TexelMap texels = texelMap(*layout.uvs, kSize, kSize);
+  const auto image = reliefImage(kSize, [&](double u, double v) {
+    const int i = static_cast<int>(u * kSize), j = static_cast<int>(v * kSize);
+    return texels.ownerAt(i, j) >= 0 ? 0.7 : -3.0; // not read across a chart's edge
+  });
+  const TiledImage after = smoother(ball, layout.uvs, kSize, 3e-3).smoothed(*image);
+  for (int j = 0; j < kSize; ++j)
+    for (int i = 0; i < kSize; ++i)
+      ASSERT_NEAR(after.at(i, j, 0), image->at(i, j, 0), 1e-6) << i << " " << j;
+  EXPECT_TRUE(same(smoother(ball, layout.uvs, kSize, 0).smoothed(*image), *image));
+}
+
+// The heat that leaves a dab stays on its chart: the sum over the surface is kept.
+TEST(SmoothedRelief, KeepsTheVolumeOfADab) {
+  const Sheet sheet(matrix(0.8, 0.2, -0.1, 0.6));
+  const auto dab = reliefImage(
+      kSize, [](double u, double v) { return std::hypot(u - 0.6, v - 0.5) < 0.05 ? 1.0 : 0.0; });
+  const TiledImage after = smoothedOn(sheet, *dab, 6e-3);
+  double sum[2] = {0, 0};
+  for (int j = 0; j < kSize; ++j)
+    for (int i = 0; i < kSize; ++i) {
+      sum[0] += static_cast<double>(dab->at(i, j, 0));
+      sum[1] += static_cast<double>(after.at(i, j, 0));
+    }
+  EXPECT_NEAR(sum[1] / sum[0], 1, 1e-3);
+}
+
+// So that an edit stays local, whatever is smoothed.
+TEST(SmoothedRelief, IsBitForBitTheSameFarFromAnEdit) {
+  const Sheet sheet;
+  const auto near = [](double u, double v, double x, double y) {
+    return std::hypot(u - x, v - y) < 0.04 ? 1.0 : 0.0;
+  };
+  const auto one = reliefImage(kSize, [&](double u, double v) { return near(u, v, 0.2, 0.2); });
+  const auto two = reliefImage(
+      kSize, [&](double u, double v) { return near(u, v, 0.2, 0.2) + 0.5 * near(u, v, 0.8, 0.7); });
+  const TiledImage a = smoothedOn(sheet, *one, 1e-3), b = smoothedOn(sheet, *two, 1e-3);
+  for (int j = 0; j < 96; ++j)
+    for (int i = 0; i < 96; ++i) ASSERT_EQ(a.at(i, j, 0), b.at(i, j, 0));
+  EXPECT_GT(b.at(204, 179, 0), 0.4F);
+  EXPECT_EQ(a.at(204, 179, 0), 0.0F);
+}
+
+// A stroke over charts, gutters and the image's border, raised, engraved and erased.
+TEST(SmoothedRelief, MadeAnewRoundAnEditIsTheWholeImageBitForBit) {
+  struct Case {
+    TriangleMesh mesh;
+    std::shared_ptr<const CornerUvs> uvs;
+    double deviation;
+  };
+  const TriangleMesh ball = icosphere(0.03, 7);
+  const Sheet sheet, sheared(matrix(0.6, 0.3, 0, 0.6));
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> at(0, 1);
+  for (const Case& one : {Case{ball, textureLayout(ball, kSize).uvs, 0.4e-3},
+                          {sheet.mesh, sheet.layout.uvs, 0.9e-3},
+                          {sheared.mesh, sheared.layout.uvs, 1.5e-3}}) {
+    const ReliefSmoother kept = smoother(one.mesh, one.uvs, kSize, one.deviation);
+    TiledImage before(kSize, kSize, 1), result = kept.smoothed(before);
+    std::size_t shared = 0;
+    for (int dab = 0; dab < 12; ++dab) {
+      TiledImage relief = before;
+      const double value = dab % 4 == 3 ? 0 : at(random) - 0.4; // the last of four erases
+      for (int spot = 0; spot <= dab % 3; ++spot) {             // as a brush across a seam does
+        const int ci = static_cast<int>(at(random) * kSize),
+                  cj = static_cast<int>(at(random) * kSize);
+        for (int j = std::max(cj - 9, 0); j < std::min(cj + 10, kSize); ++j)
+          for (int i = std::max(ci - 9, 0); i < std::min(ci + 10, kSize); ++i)
+            if (std::hypot(i - ci, j - cj) < 9)
+              relief.writable(relief.tileOf(i, j))[relief.offsetOf(i, j)] =
+                  static_cast<float>(value * (1 + 0.1 * at(random)));
+      }
+      const TiledImage next = kept.resmoothed(result, before, relief);
+      ASSERT_TRUE(same(next, smoother(one.mesh, one.uvs, kSize, one.deviation).smoothed(relief)))
+          << dab;
+      for (std::size_t t = 0; t < next.tileCount(); ++t)
+        shared += next.sharedTile(t) && next.sharedTile(t) == result.sharedTile(t);
+      before = relief;
+      result = next;
+    }
+    EXPECT_GT(shared, 12U); // what no dab is near is not made anew
+  }
+}
+
+TEST(SmoothedRelief, RefusesWhatMakesNoSense) {
+  const Sheet sheet;
+  const TiledImage other(64, 64, 1);
+  for (const double deviation : {-1e-3, static_cast<double>(NAN), static_cast<double>(INFINITY)})
+    EXPECT_THROW((void)smootherOn(sheet, kSize, deviation), std::invalid_argument);
+  EXPECT_THROW((void)smootherOn(sheet, kSize, 1e-3).smoothed(other), std::invalid_argument);
+}
+
+} // namespace
+} // namespace patina

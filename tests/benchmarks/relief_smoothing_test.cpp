@@ -1,0 +1,89 @@
+// What smoothing of relief adds to a dab on an image that is painted all over: it is made anew
+// where the brush was, whatever the size of the image.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "app/editor.h"
+#include "app/session.h"
+#include "geometry/shapes.h"
+#include "support/sanitized.h"
+
+namespace patina {
+namespace {
+
+constexpr double kRadius = 0.03;              // of the sphere [m]
+constexpr double kBrush = 0.05 * 2 * kRadius; // 5 % of the object
+constexpr double kDeviation = 0.2e-3;         // [m]
+constexpr double kMost = 3;                   // times a dab without smoothing
+constexpr int kDabs = 40, kRounds = 5;
+
+std::unique_ptr<Editor> paintedBall(ReliefMode mode, int size, double deviation) {
+  Progress progress;
+  Scene scene = sceneOf(icosphere(kRadius, 7), "ball");
+  scene.relief.mode = mode;
+  scene.relief.smoothing = deviation;
+  scene.paint_size = size;
+  auto editor = std::make_unique<Editor>(scene, progress);
+  Stroke all;
+  all.brush.tool = Tool::relief;
+  all.brush.value = 2e-4;
+  all.brush.radius = 3 * kRadius;
+  all.samples = {{0, Vec3(0, 0, kRadius), 0}};
+  (void)editor->apply(all, progress);
+  return editor;
+}
+
+// Of each dab of a stroke, which is the same every round, the least: what else the machine does
+// can only add.
+void time(Editor& editor, int round, std::vector<double>& least) {
+  Brush brush;
+  brush.tool = Tool::relief;
+  brush.value = 3e-4;
+  brush.radius = kBrush;
+  Progress progress;
+  editor.beginStroke(brush, progress);
+  for (int i = 0; i < kDabs; ++i) {
+    const double angle = 0.2 * kBrush / kRadius * i, tilt = 0.7;
+    const Vec3 n(std::cos(angle) * std::sin(tilt), std::sin(angle) * std::sin(tilt),
+                 std::cos(tilt));
+    const auto start = std::chrono::steady_clock::now();
+    (void)editor.dab({i / 60.0, kRadius * n, 1});
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    auto& best = least[static_cast<std::size_t>(i)];
+    best = round == 0 ? seconds : std::min(best, seconds);
+  }
+  editor.cancelStroke();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin() + 1, values.end()); // the first one makes what the stroke needs
+  return values[values.size() / 2];
+}
+
+TEST(SmoothedDab, CostsThreeTimesOneWithoutSmoothingOnAnyImage) {
+  if (test::kSanitized) GTEST_SKIP() << "times say nothing under a sanitizer";
+  for (const int size : {512, 2048})
+    for (const ReliefMode mode : {ReliefMode::pulled, ReliefMode::baked}) {
+      const auto plain = paintedBall(mode, size, 0), smooth = paintedBall(mode, size, kDeviation);
+      std::vector<double> without(kDabs), with(kDabs);
+      for (int round = 0; round < kRounds; ++round) { // in turn, so that both meet the same machine
+        time(*plain, round, without);
+        time(*smooth, round, with);
+      }
+      const double ratio = median(with) / median(without);
+      std::printf("%d^2 %s: %.2f ms without smoothing, %.2f ms with, ratio %.2f\n", size,
+                  mode == ReliefMode::pulled ? "pulled" : "baked", 1e3 * median(without),
+                  1e3 * median(with), ratio);
+      EXPECT_LE(ratio, kMost);
+    }
+}
+
+} // namespace
+} // namespace patina
