@@ -1,0 +1,85 @@
+// T-K11: relief that is baked into the field costs a tick nothing.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "app/editor.h"
+#include "app/session.h"
+#include "geometry/shapes.h"
+#include "support/sanitized.h"
+
+namespace patina {
+namespace {
+
+constexpr double kRadius = 0.03, kHeight = 4e-4; // [m]
+constexpr double kApart = 0.03;                  // share of a tick
+constexpr int kTips = 2000, kPasses = 300;
+
+struct Felt {
+  std::shared_ptr<const CompiledScene> scene;
+  std::vector<Vec3> tips; // as deep below its own surface as the other's
+  std::size_t samples = 0, touching = 0;
+
+  double pass() { // [ns] a tick
+    ContactMemory memory;
+    samples = touching = 0;
+    const auto start = std::chrono::steady_clock::now();
+    for (const Vec3& tip : tips) {
+      const Contact contact = tick(*scene->snapshot, memory, tip, 1e-3);
+      samples += static_cast<std::size_t>(contact.samples);
+      touching += contact.touching;
+    }
+    const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
+    return spent.count() / kTips;
+  }
+};
+
+std::vector<Vec3> tipsOver(double radius) {
+  std::vector<Vec3> tips;
+  for (int i = 0; i < kTips; ++i) {
+    const double t = 2e-3 * i;
+    const Vec3 n(std::sin(1 + 0.3 * t) * std::cos(t), std::sin(1 + 0.3 * t) * std::sin(t),
+                 std::cos(1 + 0.3 * t));
+    tips.push_back((radius - 8e-4 - 3e-4 * std::sin(9 * t)) * n);
+  }
+  return tips;
+}
+
+TEST(BakedTexture, ATickCostsWhatItCostsWithoutIt) {
+  Progress progress;
+  Scene scene = sceneOf(icosphere(kRadius, 40), "ball");
+  setValues(scene, {{"relief.mode", "baked"}, {"relief.force", "literal"}, {"band", "12"}});
+  Editor editor(scene, progress);
+  Felt without{editor.compiled(), tipsOver(kRadius)};
+  Stroke all;
+  all.brush.tool = Tool::relief;
+  all.brush.value = kHeight;
+  all.brush.radius = 3 * kRadius;
+  all.brush.falloff = 1e4;
+  all.samples = {{0, Vec3(0, 0, kRadius), 0}};
+  (void)editor.apply(all, progress);
+  Felt with{editor.compiled(), tipsOver(kRadius + kHeight)};
+  ASSERT_NE(with.scene->paint.field, with.scene->built.field); // it is in the field
+  ASSERT_EQ(with.scene->built.field->grid.voxel, without.scene->built.field->grid.voxel);
+  EXPECT_EQ(with.scene->snapshot->stages.size(), without.scene->snapshot->stages.size());
+  double least_with = std::numeric_limits<double>::infinity(), least_without = least_with;
+  for (int i = 0; i < kPasses; ++i) { // in turn: both meet the same machine
+    least_without = std::min(least_without, without.pass());
+    least_with = std::min(least_with, with.pass());
+  }
+  std::printf("%.1f ns a tick without texture, %.1f with, ratio %.3f; %zu and %zu look-ups\n",
+              least_without, least_with, least_with / least_without, without.samples, with.samples);
+  EXPECT_EQ(without.touching, static_cast<std::size_t>(kTips));
+  EXPECT_EQ(with.touching, static_cast<std::size_t>(kTips));
+  EXPECT_EQ(with.samples, without.samples);
+  if (test::kSanitized) GTEST_SKIP() << "times say nothing under a sanitizer";
+  EXPECT_NEAR(least_with / least_without, 1, kApart);
+}
+
+} // namespace
+} // namespace patina
