@@ -20,7 +20,7 @@ namespace {
 constexpr double kMostTexels = 64; // deviation, in texels
 constexpr double kSqueezed = 4;    // texels a side that stand for one of mean size, at most
 constexpr double kLeastValue = 1e-7;
-constexpr double kTail = 1e-9; // of the series
+constexpr double kTail = 1e-8; // of the series
 
 // Heat flow through a face: conductances to the neighbours along i, j and both diagonals, and the
 // area that a texel has [m^2]. The split keeps all four from being negative, unless a face is
