@@ -18,12 +18,14 @@ bool needsImages(Tool tool) {
 }
 
 bool isFinite(const StrokeSample& sample) {
-  return sample.position.allFinite() && std::isfinite(sample.t) && std::isfinite(sample.force);
+  return sample.position.allFinite() && std::isfinite(sample.t) && std::isfinite(sample.force) &&
+         (!sample.tip || sample.tip->allFinite());
 }
 
 // As a stroke may hold it: a device that was started anew begins its time again.
 StrokeSample recordable(StrokeSample sample, const Stroke& stroke) {
   sample.force = std::abs(sample.force);
+  if (stroke.brush.seed == Seed::nearest) sample.tip.reset(); // nothing reads it
   if (!stroke.samples.empty()) sample.t = std::max(sample.t, stroke.samples.back().t);
   return sample;
 }

@@ -60,7 +60,7 @@ std::shared_ptr<const PaintSurface> paintSurfaceOf(const CompiledScene& compiled
 }
 
 bool needsImages(const Brush& brush) {
-  if (brush.tool != Tool::erase) return !channelOf(brush.tool);
+  if (brush.tool != Tool::erase) return layerOf(brush, Tool::color) || layerOf(brush, Tool::relief);
   return brush.erases.empty() || brush.erases == "color" || brush.erases == "relief";
 }
 

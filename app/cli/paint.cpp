@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -22,6 +23,7 @@ namespace {
 struct PaintOptions {
   std::filesystem::path input, output;
   std::vector<std::string> strokes;
+  std::optional<Seed> seed; // of all strokes, whatever they say
   OpenOptions open;
 };
 
@@ -42,11 +44,17 @@ void count(PaintRun& run, const EditorNotice& notice) {
       run.blocks.insert({change.object, block});
 }
 
+bool paintsMaterial(const Brush& brush) {
+  const std::vector<BrushLayer> layers = layersOf(brush);
+  return std::any_of(layers.begin(), layers.end(),
+                     [](const BrushLayer& layer) { return channelOf(layer.tool).has_value(); });
+}
+
 // A brush reaches all 8 nodes of a cell only from sqrt(3) voxels on (K22).
 void warnOfVoxel(const ScriptStroke& script, double voxel, Console& console) {
   const Brush& brush = script.stroke.brush;
   const double whole = std::sqrt(3.0) * voxel;
-  if (!channelOf(brush.tool) || brush.radius_per_force != 0 || brush.radius >= whole) return;
+  if (!paintsMaterial(brush) || brush.radius_per_force != 0 || brush.radius >= whole) return;
   console.warn(script.where + ": a radius of " + formatLength(brush.radius) +
                " does not fill a cell of " + formatLength(voxel) +
                ": values are felt diluted; from " + formatLength(whole) + " on they are not");
@@ -57,7 +65,7 @@ void warnOfNothing(const ScriptStroke& script, const PaintReport& report, double
   const Brush& brush = script.stroke.brush;
   if (script.stroke.samples.empty())
     console.warn(script.where + " has no samples");
-  else if (report.dabs > 0 && report.nodes == 0 && channelOf(brush.tool))
+  else if (report.dabs > 0 && report.texels == 0 && report.nodes == 0 && paintsMaterial(brush))
     console.warn(script.where + " painted nothing: no node of the grid lies within the radius of " +
                  formatLength(brush.radius) + "; the voxel is " + formatLength(voxel));
   else if (report.dabs == 0)
@@ -118,7 +126,7 @@ void keepWhatIsDone(Editor& editor, const PaintRun& run, const std::filesystem::
 void requireHeight(const Scene& scene, const std::vector<ScriptStroke>& script) {
   if (scene.relief.height != 0) return;
   for (const ScriptStroke& one : script)
-    if (one.stroke.brush.tool == Tool::relief)
+    if (layerOf(one.stroke.brush, Tool::relief))
       throw Error(one.where + ": relief.height is 0: no relief can be painted");
 }
 
@@ -156,7 +164,10 @@ int report(const PaintOptions& options, const Editor& editor, std::size_t stroke
 int runPaint(const PaintOptions& options, Console& console) {
   std::vector<ScriptStroke> script;
   for (const std::string& path : options.strokes)
-    for (ScriptStroke& one : readScript(path, console)) script.push_back(std::move(one));
+    for (ScriptStroke& one : readScript(path, console)) {
+      if (options.seed) one.stroke.brush.seed = *options.seed;
+      script.push_back(std::move(one));
+    }
   const std::filesystem::path input = inputPath(options.input);
   const bool in_place = sameFolder(input, options.output);
   requireWorkspacePlace(options.output);
@@ -202,6 +213,10 @@ Command paintCommand() {
       "whole history. With the input itself as output every stroke is on disk as soon as it is "
       "painted: what was painted before Ctrl-C, or before a stroke that fails, stays, and patina "
       "undo takes it back. A stroke that touches nothing is warned of and is no edit.\n"
+      "A stroke may carry several layers, such as colour, stiffness and relief at once; it is one "
+      "edit. Its brush starts from the surface's nearest point, or with seed segment from where "
+      "the "
+      "way from the tip goes through the surface.\n"
       "A radius below 1.73 voxels reaches some nodes of a cell only: painted stiffness and "
       "friction are then felt diluted.\n"
       "JSON: workspace, strokes, edits (strokes that painted something), dabs, faces, texels, "
@@ -214,6 +229,9 @@ Command paintCommand() {
   command.input("WORKSPACE", "Workspace, mesh (.obj .ply .stl) or volume (.vti).", options->input);
   command.arguments.push_back({"--strokes", "STROKES.json", "What to paint.", "", true, true,
                                [options](const auto& text) { options->strokes.push_back(text); }});
+  command.arguments.push_back({"--seed", "nearest|segment",
+                               "Where brushes start, whatever the strokes say.", "", false, false,
+                               [options](const auto& text) { options->seed = parseSeed(text); }});
   command.output("WORKSPACE", "The folder, which may be the input.", options->output);
   addOpenOptions(command, options->open);
   command.run = [options](Console& console) { return runPaint(*options, console); };

@@ -23,10 +23,10 @@ double held(double value, const MaterialRange& range) {
 
 MaterialStroke::MaterialStroke(std::shared_ptr<const PaintSurface> surface, std::size_t object,
                                std::shared_ptr<const MaterialMap> start, const Material& base,
-                               std::vector<MaterialChannel> channels)
+                               std::vector<MaterialInk> inks)
     : surface_(std::move(surface)), world_from_object_(surface_->objects[object].world_from_object),
       start_(mapOr(start, *surface_, world_from_object_)), map_(start_), base_(base),
-      channels_(std::move(channels)) {}
+      inks_(std::move(inks)) {}
 
 std::size_t MaterialStroke::paint(const Dab& dab, const Brush& brush) {
   const Dab local = dab.in(world_from_object_.inverse()); // but its front
@@ -113,7 +113,7 @@ std::size_t MaterialStroke::lay(const Dab& local, const Brush& brush) {
         if (weight <= static_cast<double>(before)) return;
         before = static_cast<float>(weight);
       }
-      for (const MaterialChannel channel : channels_) {
+      for (const auto& [channel, value] : inks_) {
         const MaterialLayer* under = (builds_up ? map_ : start_).layer(block, channel);
         if (erases && !under) continue;
         Pair pair;
@@ -122,9 +122,9 @@ std::size_t MaterialStroke::lay(const Dab& local, const Brush& brush) {
                   static_cast<double>(under->weight[node])};
         if (brush.mode == StrokeMode::add && !erases) {
           const double ground = (1 - pair.weight) * valueOf(base_, channel);
-          pair.value = held(ground + pair.value + weight * brush.value, rangeOf(channel)) - ground;
+          pair.value = held(ground + pair.value + weight * value, rangeOf(channel)) - ground;
         } else {
-          pair.value = (1 - weight) * pair.value + (erases ? 0 : weight * brush.value);
+          pair.value = (1 - weight) * pair.value + (erases ? 0 : weight * value);
           pair.weight = (1 - weight) * pair.weight + (erases ? 0 : weight);
           const bool nothing = pair.weight < kNothing && std::abs(pair.value) < kNothing;
           if (erases && nothing) pair = {};
@@ -152,7 +152,8 @@ std::size_t MaterialStroke::smooth(const Dab& local, const Brush& brush) {
       const int n = static_cast<int>(node);
       const std::array<std::int32_t, 3> at{8 * block[0] + n % 8, 8 * block[1] + n / 8 % 8,
                                            8 * block[2] + n / 64};
-      for (const MaterialChannel channel : channels_) {
+      for (const MaterialInk& ink : inks_) {
+        const MaterialChannel channel = ink.channel;
         Pair mean;
         for (std::size_t axis = 0; axis < 3; ++axis)
           for (const int step : {-1, 1}) {

@@ -12,14 +12,20 @@
 
 namespace patina {
 
+// What the brush lays on one channel.
+struct MaterialInk {
+  MaterialChannel channel;
+  double value = 0; // SI
+};
+
 class MaterialStroke {
  public:
   // start: as it is before the stroke; null = nothing painted yet, and the nodes will lie where the
-  // field's do (as the object stands now). base: what is felt without paint. channels: those that
-  // the brush works on; with tool erase it takes away from all of them.
+  // field's do (as the object stands now). base: what is felt without paint. inks: of the channels
+  // that the brush works on; with tool erase it takes away from all of them.
   MaterialStroke(std::shared_ptr<const PaintSurface> surface, std::size_t object,
                  std::shared_ptr<const MaterialMap> start, const Material& base,
-                 std::vector<MaterialChannel> channels);
+                 std::vector<MaterialInk> inks);
 
   std::size_t paint(const Dab& dab, const Brush& brush); // returns the nodes that it covers
 
@@ -51,7 +57,7 @@ class MaterialStroke {
   Pose world_from_object_;
   MaterialMap start_, map_;
   Material base_;
-  std::vector<MaterialChannel> channels_;
+  std::vector<MaterialInk> inks_;
   std::map<Index, Weights> weights_; // the stroke's greatest so far
   bool changed_ = false;
   std::set<Index> written_;

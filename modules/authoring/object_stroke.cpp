@@ -5,15 +5,17 @@
 namespace patina {
 namespace {
 
-std::vector<MaterialChannel> channelsOf(const Brush& brush, const MaterialMap* map) {
-  if (const std::optional<MaterialChannel> channel = channelOf(brush.tool)) return {*channel};
-  std::vector<MaterialChannel> channels;
+std::vector<MaterialInk> inksOf(const Brush& brush, const MaterialMap* map) {
+  std::vector<MaterialInk> inks;
+  for (const BrushLayer& layer : layersOf(brush))
+    if (const std::optional<MaterialChannel> channel = channelOf(layer.tool))
+      inks.push_back({*channel, layer.value});
   for (int t = 0; map && t < static_cast<int>(Tool::erase); ++t) {
     const auto tool = static_cast<Tool>(t);
     const std::optional<MaterialChannel> channel = channelOf(tool);
-    if (channel && erases(brush, tool) && map->has(*channel)) channels.push_back(*channel);
+    if (channel && erases(brush, tool) && map->has(*channel)) inks.push_back({*channel, 0});
   }
-  return channels;
+  return inks;
 }
 
 template <typename T> void join(std::vector<T>& all, const std::vector<T>& more) {
@@ -29,7 +31,7 @@ bool erases(const Brush& brush, Tool tool) {
 }
 
 bool changesImages(const Brush& brush, const ObjectPaint* paint) {
-  return brush.tool == Tool::color || brush.tool == Tool::relief ||
+  return layerOf(brush, Tool::color) || layerOf(brush, Tool::relief) ||
          (paint && ((paint->color && erases(brush, Tool::color)) ||
                     (paint->relief && erases(brush, Tool::relief))));
 }
@@ -39,17 +41,21 @@ ObjectStroke::ObjectStroke(std::shared_ptr<const PaintSurface> surface, std::siz
     : surface_(std::move(surface)), object_(object), brush_(task.brush), paint_(std::move(start)) {
   static const ObjectPaint kNone{};
   const ObjectPaint& paint = paint_ ? *paint_ : kNone;
-  const auto& [red, green, blue] = brush_.color;
-  const bool erase = brush_.tool == Tool::erase;
-  if (brush_.tool == Tool::color || (paint.color && erases(brush_, Tool::color)))
+  if (const BrushLayer* layer = layerOf(brush_, Tool::color)) {
+    const auto& [red, green, blue] = layer->color;
     color_.emplace(surface_, object, paint.color, kColorChannels,
-                   Ink{{red, green, blue, 1}, erase});
-  if (brush_.tool == Tool::relief || (paint.relief && erases(brush_, Tool::relief)))
+                   Ink{{red, green, blue, 1}, false});
+  } else if (paint.color && erases(brush_, Tool::color)) {
+    color_.emplace(surface_, object, paint.color, kColorChannels, Ink{{}, true});
+  }
+  if (const BrushLayer* layer = layerOf(brush_, Tool::relief))
     relief_.emplace(surface_, object, paint.relief, 1,
-                    Ink{{brush_.value / task.relief_height, 0, 0, 0}, erase});
-  std::vector<MaterialChannel> channels = channelsOf(brush_, paint.material.get());
-  if (!channels.empty())
-    material_.emplace(surface_, object, paint.material, task.base, std::move(channels));
+                    Ink{{layer->value / task.relief_height, 0, 0, 0}, false});
+  else if (paint.relief && erases(brush_, Tool::relief))
+    relief_.emplace(surface_, object, paint.relief, 1, Ink{{}, true});
+  std::vector<MaterialInk> inks = inksOf(brush_, paint.material.get());
+  if (!inks.empty())
+    material_.emplace(surface_, object, paint.material, task.base, std::move(inks));
 }
 
 void ObjectStroke::paint(const Dab& dab, std::span<const std::int32_t> faces, PaintReport& report) {

@@ -52,7 +52,8 @@ struct Painter::Impl {
   }
 
   bool dab(const PathStep& step, PaintReport& report);
-  std::optional<Touch> stamp(const Vec3& position, double radius, const std::optional<Touch>& last,
+  std::optional<ClosestPoint> footOf(const PathStep& step) const;
+  std::optional<Touch> stamp(const PathStep& step, const std::optional<Touch>& last,
                              PaintReport& report);
   void apply(const Dab& dab, std::span<const std::int32_t> faces, PaintReport& report);
   std::size_t objectOf(std::int32_t face) const;
@@ -78,7 +79,7 @@ Painter::~Painter() = default;
 
 void Painter::begin(const Brush& brush) {
   validate(brush);
-  if (brush.tool == Tool::relief && impl_->task.relief_height == 0)
+  if (layerOf(brush, Tool::relief) && impl_->task.relief_height == 0)
     throw Error("relief.height is 0: no relief can be painted");
   end();
   const bool images = std::any_of(impl_->paint.begin(), impl_->paint.end(), [&](const auto& paint) {
@@ -132,24 +133,36 @@ std::vector<PaintChange> Painter::takeChanges() {
 // little off paints both sides alike. Whether the surface is within the brush.
 bool Painter::Impl::dab(const PathStep& step, PaintReport& report) {
   if (!step.connected) touch = mirrored = std::nullopt;
-  touch = stamp(step.position, step.radius, touch, report);
+  touch = stamp(step, touch, report);
   if (!touch || task.brush.symmetry == Symmetry::none) {
     mirrored.reset();
     return touch.has_value();
   }
   const PaintObject& owner = surface->objects[objectOf(touch->foot.surface.face)];
   const int axis = static_cast<int>(task.brush.symmetry) - static_cast<int>(Symmetry::x);
-  Vec3 p = owner.world_from_object.inverse() * touch->foot.point;
-  p[axis] = 2 * owner.middle[axis] - p[axis];
-  mirrored = stamp(owner.world_from_object * p, step.radius, mirrored, report);
+  const auto beyond = [&](const Vec3& place) {
+    Vec3 p = owner.world_from_object.inverse() * place;
+    p[axis] = 2 * owner.middle[axis] - p[axis];
+    return Vec3(owner.world_from_object * p);
+  };
+  PathStep there = step;
+  there.position = beyond(touch->foot.point);
+  if (step.tip) there.tip = beyond(*step.tip);
+  mirrored = stamp(there, mirrored, report);
   return true;
 }
 
-std::optional<Painter::Impl::Touch> Painter::Impl::stamp(const Vec3& position, double radius,
-                                                         const std::optional<Touch>& last,
-                                                         PaintReport& report) {
+std::optional<ClosestPoint> Painter::Impl::footOf(const PathStep& step) const {
+  if (task.brush.seed == Seed::segment && step.tip)
+    if (const auto hit = fill.pierced(*step.tip, step.position)) return hit;
+  return fill.foot(step.position);
+}
+
+std::optional<Painter::Impl::Touch>
+Painter::Impl::stamp(const PathStep& step, const std::optional<Touch>& last, PaintReport& report) {
+  const double radius = step.radius;
   if (!(radius > 0)) return std::nullopt;
-  const std::optional<ClosestPoint> foot = fill.foot(position);
+  const std::optional<ClosestPoint> foot = footOf(step);
   if (!foot || !(foot->distance <= radius)) return std::nullopt;
   Dab dab{foot->point, foot->point, radius, radius, Vec3::Zero()};
   const std::int32_t seed = foot->surface.face;

@@ -39,15 +39,15 @@ Interval within(const FieldGrid& grid, const Vec3& a, const Vec3& b) {
 
 std::vector<PathStep> StrokePath::to(const StrokeSample& sample) {
   reached_ = false;
-  const bool finite =
-      sample.position.allFinite() && std::isfinite(sample.force) && std::isfinite(sample.t);
+  const bool finite = sample.position.allFinite() && std::isfinite(sample.force) &&
+                      std::isfinite(sample.t) && (!sample.tip || sample.tip->allFinite());
   if (!finite || grid_.toGrid(sample.position).cwiseAbs().maxCoeff() > kFarthest) return {};
   const double target = brushRadius(brush_, sample.force);
   if (!last_) {
     last_ = sample;
     radius_ = target;
     reached_ = true;
-    return {{sample.position, radius_, false}};
+    return {{sample.position, radius_, false, sample.tip}};
   }
   const StrokeSample from = *last_;
   const double radius = radius_;
@@ -70,9 +70,12 @@ std::vector<PathStep> StrokePath::to(const StrokeSample& sample) {
     const double t = k / count;
     steps.push_back(
         {from.position + t * way, radius + t * (radius_ - radius), k > first || k == 1});
+    if (from.tip && sample.tip) steps.back().tip = *from.tip + t * (*sample.tip - *from.tip);
   }
   reached_ = last == count && first <= last;
-  if (reached_) steps.back().position = sample.position;
+  if (!reached_) return steps;
+  steps.back().position = sample.position;
+  steps.back().tip = sample.tip;
   return steps;
 }
 

@@ -13,6 +13,7 @@ struct PathStep {
   Vec3 position = Vec3::Zero(); // [m], world; near the surface
   double radius = 0;            // [m]
   bool connected = false;       // with the step before
+  std::optional<Vec3> tip{};    // [m], world; absent where either sample has none
 };
 
 class StrokePath {

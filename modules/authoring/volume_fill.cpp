@@ -22,32 +22,79 @@ ClosestPoint closestOn(const TriangleMesh& mesh, std::int32_t face, const Vec3& 
   return result;
 }
 
+struct Crossing {
+  double t = 0; // of the way
+  Vec3 barycentric = Vec3::Zero();
+};
+
+// Of the line through `from` along `way` with a face.
+std::optional<Crossing> crossing(const TriangleMesh& mesh, std::int32_t face, const Vec3& from,
+                                 const Vec3& way) {
+  const std::size_t f = index(face);
+  Eigen::Matrix3d sides;
+  sides << mesh.corner(f, 1) - mesh.corner(f, 0), mesh.corner(f, 2) - mesh.corner(f, 0), -way;
+  const double volume = sides.determinant();
+  if (!(std::abs(volume) > 1e-12 * sides.col(0).norm() * sides.col(1).norm() * way.norm()))
+    return std::nullopt;
+  const Vec3 at = sides.inverse() * (from - mesh.corner(f, 0));
+  constexpr double kSlack = 1e-9; // an edge belongs to both of its faces
+  const double rest = 1 - at[0] - at[1];
+  if (!(at[0] >= -kSlack && at[1] >= -kSlack && rest >= -kSlack)) return std::nullopt;
+  return Crossing{at[2], Vec3(rest, at[0], at[1])};
+}
+
 } // namespace
 
 VolumeFill::VolumeFill(std::shared_ptr<const PaintSurface> surface)
     : surface_(std::move(surface)), face_mark_(surface_->mesh->triangles.size()),
       vertex_mark_(surface_->mesh->positions.size()) {}
 
-std::optional<ClosestPoint> VolumeFill::foot(const Vec3& p) const {
+std::vector<std::int32_t> VolumeFill::facesOfCell(const Vec3& p) const {
   const SurfaceField& field = *surface_->field;
+  std::vector<std::int32_t> faces;
   const Vec3 q = field.grid.toGrid(p);
   for (int axis = 0; axis < 3; ++axis)
     if (!(q[axis] >= -1 && q[axis] <= field.grid.nodes[static_cast<std::size_t>(axis)]))
-      return std::nullopt;
+      return faces;
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::int32_t face = field.faceAt(static_cast<int>(std::floor(q[0])) + (corner & 1),
+                                           static_cast<int>(std::floor(q[1])) + (corner >> 1 & 1),
+                                           static_cast<int>(std::floor(q[2])) + (corner >> 2));
+    if (face >= 0 && (faces.empty() || face != faces.back())) faces.push_back(face);
+  }
+  return faces;
+}
+
+std::optional<ClosestPoint> VolumeFill::pierced(const Vec3& tip, const Vec3& p) const {
+  const Vec3 way = p - tip;
+  const double length = way.norm();
+  if (!(length > 1e-12)) return std::nullopt;
+  const double end = 1 + 2 * surface_->field->grid.voxel / length;
+  std::optional<ClosestPoint> best;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::int32_t face : facesOfCell(p)) {
+    const std::optional<Crossing> hit = crossing(*surface_->mesh, face, tip, way);
+    // What lies beyond p counts only where nothing lies before it.
+    if (!hit || hit->t < 0 || hit->t > end) continue;
+    const double rank = hit->t <= 1 ? 1 - hit->t : hit->t;
+    if (!(rank < nearest)) continue;
+    nearest = rank;
+    best = ClosestPoint{};
+    best->surface = {face, hit->barycentric};
+    best->point = tip + hit->t * way;
+    best->distance = (best->point - p).norm();
+  }
+  return best;
+}
+
+std::optional<ClosestPoint> VolumeFill::foot(const Vec3& p) const {
   ClosestPoint best;
   best.distance = std::numeric_limits<double>::infinity();
   const auto consider = [&](std::int32_t face) {
     const ClosestPoint candidate = closestOn(*surface_->mesh, face, p);
     if (candidate.distance < best.distance) best = candidate;
   };
-  std::int32_t last = -1;
-  for (int corner = 0; corner < 8; ++corner) {
-    const std::int32_t face = field.faceAt(static_cast<int>(std::floor(q[0])) + (corner & 1),
-                                           static_cast<int>(std::floor(q[1])) + (corner >> 1 & 1),
-                                           static_cast<int>(std::floor(q[2])) + (corner >> 2));
-    if (face >= 0 && face != last) consider(face);
-    last = face;
-  }
+  for (const std::int32_t face : facesOfCell(p)) consider(face);
   if (best.surface.face < 0) return std::nullopt;
   const Adjacency& adjacency = *surface_->adjacency;
   for (std::int32_t from = -1; from != best.surface.face;) {

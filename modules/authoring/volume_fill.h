@@ -21,6 +21,10 @@ class VolumeFill {
   // downhill from them tell. Nullopt beyond the field's band.
   std::optional<ClosestPoint> foot(const Vec3& p) const;
 
+  // Where the way from the tip to p goes through a face that the nodes of p's cell name, the place
+  // nearest to p; two voxels beyond p where there is none before (K15). Nullopt: none there either.
+  std::optional<ClosestPoint> pierced(const Vec3& tip, const Vec3& p) const;
+
   // Faces of which some point is within `radius` of the centre: those connected with `seed` inside
   // the sphere, and with any face that a node inside it names, so that other objects and parts are
   // found too. Parts between nodes may be missed; what is returned is within reach. Where `front`
@@ -30,6 +34,7 @@ class VolumeFill {
                                      const Vec3& front);
 
  private:
+  std::vector<std::int32_t> facesOfCell(const Vec3& p) const; // that its nodes name
   void nextEpoch();
   void seedFromNodes();
   void visit(std::int32_t face);

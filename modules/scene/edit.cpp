@@ -5,19 +5,26 @@
 namespace patina {
 namespace {
 
+std::string describeLayer(const BrushLayer& layer, const Brush& brush) {
+  std::string text(name(layer.tool));
+  if (brush.mode == StrokeMode::smooth) return text + " smoothed";
+  if (layer.tool == Tool::color) return text;
+  if (brush.mode == StrokeMode::add) text += layer.value < 0 ? " less" : " more by";
+  const std::optional<MaterialChannel> channel = channelOf(layer.tool);
+  const bool length = !channel || *channel == MaterialChannel::roughness;
+  if (length) return text + " " + formatLength(layer.value);
+  const std::string_view measure = unit(*channel);
+  return text + " " + formatNumber(layer.value) +
+         (measure.empty() ? "" : " " + std::string(measure));
+}
+
 std::string describeStroke(const Stroke& stroke) {
   const Brush& brush = stroke.brush;
   if (brush.tool == Tool::erase) return brush.erases.empty() ? "erase" : "erase " + brush.erases;
-  std::string text(name(brush.tool));
-  if (brush.mode == StrokeMode::smooth) return text + " smoothed";
-  if (brush.tool == Tool::color) return text;
-  if (brush.mode == StrokeMode::add) text += brush.value < 0 ? " less" : " more by";
-  const std::optional<MaterialChannel> channel = channelOf(brush.tool);
-  const bool length = !channel || *channel == MaterialChannel::roughness;
-  if (length) return text + " " + formatLength(brush.value);
-  const std::string_view measure = unit(*channel);
-  return text + " " + formatNumber(brush.value) +
-         (measure.empty() ? "" : " " + std::string(measure));
+  std::string text;
+  for (const BrushLayer& layer : layersOf(brush))
+    text += (text.empty() ? "" : ", ") + describeLayer(layer, brush);
+  return text;
 }
 
 std::string describeValues(const ValueEdit& edit) {

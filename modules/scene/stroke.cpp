@@ -1,5 +1,6 @@
 #include "scene/stroke.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -29,6 +30,7 @@ constexpr std::array<std::string_view, 8> kToolNames{
     "damping", "roughness", "erase"};
 constexpr std::array<std::string_view, 3> kShapeNames{"power", "cone", "smooth"};
 constexpr std::array<std::string_view, 4> kModeNames{"max", "build-up", "add", "smooth"};
+constexpr std::array<std::string_view, 2> kSeedNames{"nearest", "segment"};
 constexpr std::array<std::string_view, 4> kSymmetryNames{"none", "x", "y", "z"};
 
 template <typename T, std::size_t N>
@@ -46,11 +48,32 @@ void requireBetween(const char* key, double value, double low, double high) {
 }
 
 // Stiffness is not 0: a contact without any is none.
-MaterialRange valueRange(const Brush& brush) {
-  if (brush.tool == Tool::relief) return {-kMostHeight, kMostHeight};
-  MaterialRange range = rangeOf(*channelOf(brush.tool));
-  if (brush.mode == StrokeMode::add) range.least = -range.most;
+MaterialRange valueRange(Tool tool, StrokeMode mode) {
+  if (tool == Tool::relief) return {-kMostHeight, kMostHeight};
+  MaterialRange range = rangeOf(*channelOf(tool));
+  if (mode == StrokeMode::add) range.least = -range.most;
   return range;
+}
+
+void validateLayer(const BrushLayer& layer, StrokeMode mode) {
+  if (layer.tool == Tool::color) {
+    for (const double part : layer.color) requireBetween("value", part, 0, 1);
+    if (mode == StrokeMode::add) throw Error("mode add: colours cannot be added");
+  } else if (layer.tool != Tool::erase) {
+    const MaterialRange range = valueRange(layer.tool, mode);
+    requireBetween("value", layer.value, range.least, range.most);
+  }
+}
+
+void validateLayers(const Brush& brush) {
+  const std::vector<BrushLayer> layers = layersOf(brush);
+  for (auto layer = layers.begin(); layer != layers.end(); ++layer) {
+    validateLayer(*layer, brush.mode);
+    if (layers.size() > 1 && layer->tool == Tool::erase)
+      throw Error("layers: erase must be the only one");
+    if (std::any_of(layers.begin(), layer, [&](const auto& l) { return l.tool == layer->tool; }))
+      throw Error("layers: " + std::string(name(layer->tool)) + " is there twice");
+  }
 }
 
 Vec3 vectorFrom(const Json& json) {
@@ -76,6 +99,8 @@ StrokeSample sampleFrom(const Json& json) {
       sample.position = vectorFrom(value);
     else if (key == "force")
       sample.force = value.asNumber();
+    else if (key == "tip")
+      sample.tip = vectorFrom(value);
     else
       throw Error("unknown key '" + key + "'");
   }
@@ -95,25 +120,70 @@ std::vector<StrokeSample> samplesFrom(const Json& json) {
   return samples;
 }
 
-void setValue(Brush& brush, const Json& value) {
+void setValue(BrushLayer& layer, const Json& value) {
   if (value.isArray()) {
     const Vec3 color = vectorFrom(value);
-    brush.color = {color.x(), color.y(), color.z()};
-    if (brush.tool != Tool::color)
-      throw Error("must be a number for tool " + std::string(name(brush.tool)));
+    layer.color = {color.x(), color.y(), color.z()};
+    if (layer.tool != Tool::color)
+      throw Error("must be a number for tool " + std::string(name(layer.tool)));
   } else {
-    brush.value = value.asNumber();
-    if (brush.tool == Tool::color) throw Error("must be [r, g, b] for tool color");
+    layer.value = value.asNumber();
+    if (layer.tool == Tool::color) throw Error("must be [r, g, b] for tool color");
   }
+}
+
+// The keys of a layer; what stands beside them is not looked at.
+BrushLayer layerFrom(const Json& json, bool needs_value) {
+  BrushLayer layer;
+  layer.tool = chosen<Tool>("tool", json.at("tool").asString(), kToolNames);
+  if (const Json* value = json.find("value")) {
+    try {
+      setValue(layer, *value);
+    } catch (const Error& error) {
+      throw Error(std::string("'value' ") + error.what());
+    }
+  } else if (needs_value && layer.tool != Tool::erase) {
+    (void)json.at("value");
+  }
+  return layer;
+}
+
+Json toJson(const BrushLayer& layer, Json json) {
+  json.set("tool", name(layer.tool));
+  if (layer.tool == Tool::color)
+    json.set("value", jsonOf(layer.color[0], layer.color[1], layer.color[2]));
+  else if (layer.tool != Tool::erase)
+    json.set("value", layer.value);
+  return json;
+}
+
+void setLayers(Brush& brush, const Json& json) {
+  const bool needs_value = brush.mode != StrokeMode::smooth;
+  const Json* several = json.find("layers");
+  if (!several) {
+    static_cast<BrushLayer&>(brush) = layerFrom(json, needs_value);
+    return;
+  }
+  if (json.find("tool") || json.find("value"))
+    throw Error("'layers' must not stand beside 'tool' and 'value'");
+  std::vector<BrushLayer> layers;
+  for (const Json& item : several->asArray()) {
+    try {
+      for (const auto& [key, value] : item.asObject())
+        if (key != "tool" && key != "value") throw Error("unknown key '" + key + "'");
+      layers.push_back(layerFrom(item, needs_value));
+    } catch (const Error& error) {
+      throw Error("layer " + std::to_string(layers.size() + 1) + ": " + error.what());
+    }
+  }
+  if (layers.empty()) throw Error("'layers' must hold one layer or more");
+  static_cast<BrushLayer&>(brush) = layers.front();
+  brush.also.assign(layers.begin() + 1, layers.end());
 }
 
 void setKey(Stroke& stroke, const std::string& key, const Json& value) {
   Brush& brush = stroke.brush;
-  if (key == "tool")
-    brush.tool = chosen<Tool>("tool", value.asString(), kToolNames);
-  else if (key == "value")
-    setValue(brush, value);
-  else if (key == "radius")
+  if (key == "radius")
     brush.radius = value.asNumber();
   else if (key == "radius_per_force")
     brush.radius_per_force = value.asNumber();
@@ -129,6 +199,8 @@ void setKey(Stroke& stroke, const std::string& key, const Json& value) {
     brush.mode = chosen<StrokeMode>("mode", value.asString(), kModeNames);
   else if (key == "front_only")
     brush.front_only = value.asBool();
+  else if (key == "seed")
+    brush.seed = parseSeed(value.asString());
   else if (key == "symmetry")
     brush.symmetry = chosen<Symmetry>("symmetry", value.asString(), kSymmetryNames);
   else if (key == "erases")
@@ -141,9 +213,8 @@ void setKey(Stroke& stroke, const std::string& key, const Json& value) {
 
 Stroke strokeOfKeys(const Json& json) {
   Stroke stroke;
-  // The tool decides how its value is read, wherever it stands.
-  setKey(stroke, "tool", json.at("tool"));
   for (const auto& [key, value] : json.asObject()) {
+    if (key == "tool" || key == "value" || key == "layers") continue; // below
     try {
       setKey(stroke, key, value);
     } catch (const Error& error) {
@@ -152,12 +223,15 @@ Stroke strokeOfKeys(const Json& json) {
     }
   }
   (void)json.at("samples");
-  if (stroke.brush.tool != Tool::erase && stroke.brush.mode != StrokeMode::smooth)
-    (void)json.at("value");
+  setLayers(stroke.brush, json); // the mode tells whether values must be there
   return stroke;
 }
 
 } // namespace
+
+Seed parseSeed(const std::string& text) {
+  return chosen<Seed>("seed", text, kSeedNames);
+}
 
 std::string_view name(Tool tool) {
   return kToolNames[static_cast<std::size_t>(tool)];
@@ -183,6 +257,19 @@ std::optional<MaterialChannel> channelOf(Tool tool) {
   return std::nullopt;
 }
 
+std::vector<BrushLayer> layersOf(const Brush& brush) {
+  std::vector<BrushLayer> layers{brush};
+  layers.insert(layers.end(), brush.also.begin(), brush.also.end());
+  return layers;
+}
+
+const BrushLayer* layerOf(const Brush& brush, Tool tool) {
+  if (brush.tool == tool) return &brush;
+  const auto layer = std::find_if(brush.also.begin(), brush.also.end(),
+                                  [&](const BrushLayer& l) { return l.tool == tool; });
+  return layer == brush.also.end() ? nullptr : &*layer;
+}
+
 void validate(const Brush& brush) {
   requireBetween("radius", brush.radius, 0, kLongest);
   requireBetween("radius_per_force", brush.radius_per_force, -kLongest, kLongest);
@@ -190,13 +277,7 @@ void validate(const Brush& brush) {
   requireBetween("most_radius", brush.most_radius, brush.least_radius, kLongest);
   require(brush.falloff > 0 && brush.falloff <= kMostFalloff, "falloff", brush.falloff,
           "above 0 and at most " + formatNumber(kMostFalloff));
-  if (brush.tool == Tool::color) {
-    for (const double part : brush.color) requireBetween("value", part, 0, 1);
-    if (brush.mode == StrokeMode::add) throw Error("mode add: colours cannot be added");
-  } else if (brush.tool != Tool::erase) {
-    const MaterialRange range = valueRange(brush);
-    requireBetween("value", brush.value, range.least, range.most);
-  }
+  validateLayers(brush);
   if (!brush.erases.empty()) {
     if (brush.tool != Tool::erase) throw Error("'erases' belongs to tool erase");
     if (chosen<Tool>("erases", brush.erases, kToolNames) == Tool::erase)
@@ -212,6 +293,7 @@ void validate(const Stroke& stroke) {
     const std::string where = "sample " + std::to_string(i + 1) + ": ";
     if (!sample.position.allFinite() || !std::isfinite(sample.t))
       throw Error(where + "time and position must be finite");
+    if (sample.tip && !sample.tip->allFinite()) throw Error(where + "its tip must be finite");
     if (!(sample.force >= 0) || !std::isfinite(sample.force))
       throw Error(where + "force = " + formatNumber(sample.force) + ": it must be 0 or more");
     if (sample.t < last) throw Error(where + "its time is before the last one's");
@@ -223,17 +305,20 @@ Json toJson(const Stroke& stroke) {
   const Brush& brush = stroke.brush;
   const Brush usual;
   Json json = Json::object();
-  json.set("tool", name(brush.tool));
-  if (brush.tool == Tool::color)
-    json.set("value", jsonOf(brush.color[0], brush.color[1], brush.color[2]));
-  else if (brush.tool != Tool::erase)
-    json.set("value", brush.value);
+  if (brush.also.empty()) {
+    json = toJson(static_cast<const BrushLayer&>(brush), std::move(json));
+  } else {
+    Json layers = Json::array();
+    for (const BrushLayer& layer : layersOf(brush)) layers.push(toJson(layer, Json::object()));
+    json.set("layers", std::move(layers));
+  }
   json.set("radius", brush.radius).set("falloff", brush.falloff);
   json.set("shape", textOf(brush.shape, kShapeNames)).set("mode", textOf(brush.mode, kModeNames));
   json.set("front_only", brush.front_only);
   if (brush.radius_per_force != 0) json.set("radius_per_force", brush.radius_per_force);
   if (brush.least_radius != usual.least_radius) json.set("least_radius", brush.least_radius);
   if (brush.most_radius != usual.most_radius) json.set("most_radius", brush.most_radius);
+  if (brush.seed != Seed::nearest) json.set("seed", textOf(brush.seed, kSeedNames));
   if (brush.symmetry != Symmetry::none)
     json.set("symmetry", textOf(brush.symmetry, kSymmetryNames));
   if (!brush.erases.empty()) json.set("erases", brush.erases);
@@ -243,6 +328,7 @@ Json toJson(const Stroke& stroke) {
     Json item = Json::object();
     item.set("t", sample.t).set("position", jsonOf(p.x(), p.y(), p.z()));
     item.set("force", sample.force);
+    if (sample.tip) item.set("tip", jsonOf(sample.tip->x(), sample.tip->y(), sample.tip->z()));
     samples.push(std::move(item));
   }
   json.set("samples", std::move(samples));

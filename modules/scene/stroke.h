@@ -35,19 +35,29 @@ enum class StrokeMode : std::uint8_t {
   add,      // value is added, greatest weight once; not for colour
   smooth    // every dab moves values towards their neighbours'
 };
+enum class Seed : std::uint8_t {
+  nearest, // the surface's point nearest to the sample
+  segment  // where the way from the tip to the sample goes through the surface (K15)
+};
 enum class Symmetry : std::uint8_t { none, x, y, z }; // across the middle of the object's box
 
-struct Brush {
+struct BrushLayer {
   Tool tool = Tool::color;
   std::array<double, 3> color{1, 0, 0}; // sRGB in [0, 1], of Tool::color
   double value = 0;                     // SI, of the other tools: relief [m], stiffness [N/m] ...
-  double radius = 0.005;                // r [m]
-  double radius_per_force = 0;          // k_r [m/N]: r + k_r |F|, K19
+  bool operator==(const BrushLayer&) const = default;
+};
+
+struct Brush : BrushLayer {
+  std::vector<BrushLayer> also; // laid on by the same stroke, each with a tool of its own; no erase
+  double radius = 0.005;        // r [m]
+  double radius_per_force = 0;  // k_r [m/N]: r + k_r |F|, K19
   double least_radius = 0, most_radius = 1; // [m], clamp of that
   double falloff = 1;                       // f > 0
   BrushShape shape = BrushShape::power;
   StrokeMode mode = StrokeMode::max;
   bool front_only = false; // only faces that look the way the seed face does
+  Seed seed = Seed::nearest;
   Symmetry symmetry = Symmetry::none;
   std::string erases; // "" = everything, or a tool's name
   bool operator==(const Brush&) const = default;
@@ -57,6 +67,7 @@ struct StrokeSample {
   double t = 0;                 // [s]
   Vec3 position = Vec3::Zero(); // [m], world: the point of the surface under the tip, or near it
   double force = 0;             // |F| [N]
+  std::optional<Vec3> tip{};    // [m], world: for Seed::segment, which without it is nearest
   bool operator==(const StrokeSample&) const = default;
 };
 
@@ -66,12 +77,17 @@ struct Stroke {
   bool operator==(const Stroke&) const = default;
 };
 
-std::string_view name(Tool tool); // as in files: "color", "friction.static", ...
+Seed parseSeed(const std::string& text); // throws Error
+std::string_view name(Tool tool);        // as in files: "color", "friction.static", ...
 // The channel that a tool paints; nullopt for colour, relief and erase.
 std::optional<MaterialChannel> channelOf(Tool tool);
 
+std::vector<BrushLayer> layersOf(const Brush& brush);     // one or more, its own first
+const BrushLayer* layerOf(const Brush& brush, Tool tool); // null: it lays on none of that
+
 // Throws Error in one line that names what is out of range: radius and falloff > 0 (a radius of 0
-// paints nothing and is allowed), finite values, colours in [0, 1], the channel's range.
+// paints nothing and is allowed), finite values, colours in [0, 1], the channel's range, each tool
+// once.
 void validate(const Brush& brush);
 void validate(const Stroke& stroke);
 

@@ -207,5 +207,57 @@ TEST(VolumeFill, ManyFillsLeaveNoTraceOfOneAnother) {
   EXPECT_EQ(filled(fill, Vec3(0, 0, 0.05), 0.02), filled(fresh, Vec3(0, 0, 0.05), 0.02));
 }
 
+// K15a: of all faces that the way goes through, the one nearest to its end.
+TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
+  const auto surface = bareSurface(icosphere(0.05, 12));
+  const TriangleMesh& mesh = *surface->mesh;
+  const VolumeFill fill(surface);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  int beyond = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 out = Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 askew = 2e-3 * Vec3(normal(random), normal(random), normal(random));
+    const Vec3 tip = 0.047 * out + askew;
+    // The VCP of a field lies a little beside the faces, on either side.
+    const Vec3 vcp = 0.0499 * out + 2e-4 * normal(random) * out;
+    int hit = -1;
+    double at = 0;
+    const Vec3 way = vcp - tip;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+      const Vec3 across = (b - a).cross(c - a);
+      const double t = across.dot(a - tip) / across.dot(way);
+      const Vec3 p = tip + t * way;
+      const bool inside = (b - a).cross(p - a).dot(across) >= 0 &&
+                          (c - b).cross(p - b).dot(across) >= 0 &&
+                          (a - c).cross(p - c).dot(across) >= 0;
+      // Faces at the sphere's far side are no part of the VCP's cell.
+      if (inside && t >= 0 && (p - vcp).norm() < 3e-3) hit = static_cast<int>(f), at = t;
+    }
+    ASSERT_GE(hit, 0) << n;
+    const auto found = fill.pierced(tip, vcp);
+    ASSERT_TRUE(found) << n;
+    EXPECT_EQ(found->surface.face, hit) << n;
+    EXPECT_LT((found->point - (tip + at * way)).norm(), 1e-12);
+    EXPECT_LT((position(mesh, found->surface) - found->point).norm(), 1e-12);
+    beyond += at > 1;
+  }
+  EXPECT_GT(beyond, 200); // the way was taken farther
+  EXPECT_LT(beyond, 1800);
+}
+
+TEST(VolumeFill, ASegmentThatGoesThroughNothingPicksNothing) {
+  const auto surface = bareSurface(icosphere(0.05, 12));
+  const VolumeFill fill(surface);
+  const Vec3 top(0, 0, 0.05);
+  const double h = surface->field->grid.voxel;
+  EXPECT_FALSE(fill.pierced(top, top));                                    // no way at all
+  EXPECT_FALSE(fill.pierced(0.9 * top, 0.92 * top));                       // ends 2 h short of it
+  EXPECT_TRUE(fill.pierced(top - Vec3(0, 0, 3 * h), top - Vec3(0, 0, h))); // and here it does not
+  EXPECT_FALSE(fill.pierced(Vec3(1, 0, 0), Vec3(1, 0, 0.1)));              // outside the field
+  EXPECT_FALSE(fill.pierced(top + Vec3(0, 0, h), top + Vec3(h, 0, h)));    // along it
+}
+
 } // namespace
 } // namespace patina

@@ -75,6 +75,35 @@ TEST(Strokes, WrittenOnesReadBackBitForBit) {
   EXPECT_EQ(parseStrokes(toJson(strokes).dump(), "again"), strokes);
 }
 
+// The paper's brush lays on colour and haptic properties at once.
+TEST(Strokes, SeveralLayersAreOneStrokeAndOneLayerIsTheOldForm) {
+  const std::string several = R"({"layers": [
+    {"tool": "color", "value": [0.1, 0.2, 1]}, {"value": 900, "tool": "stiffness"},
+    {"tool": "friction.static", "value": 0.7}], "radius": 0.004, "seed": "segment",
+    "samples": [{"position": [0, 0, 1], "tip": [0.1, 0.2, 0.9]}, {"position": [0, 0, 2]}]})";
+  const std::vector<Stroke> strokes = parseStrokes(textOf(several), "hand.json");
+  const Brush& brush = strokes.at(0).brush;
+  EXPECT_EQ(brush.seed, Seed::segment);
+  ASSERT_EQ(layersOf(brush).size(), 3U);
+  EXPECT_EQ(layersOf(brush)[0].color, (std::array<double, 3>{0.1, 0.2, 1}));
+  ASSERT_NE(layerOf(brush, Tool::stiffness), nullptr);
+  EXPECT_EQ(layerOf(brush, Tool::stiffness)->value, 900);
+  EXPECT_EQ(layerOf(brush, Tool::static_friction)->value, 0.7);
+  EXPECT_EQ(layerOf(brush, Tool::relief), nullptr);
+  EXPECT_EQ(strokes[0].samples[0].tip, std::optional(Vec3(0.1, 0.2, 0.9)));
+  EXPECT_FALSE(strokes[0].samples[1].tip);
+  EXPECT_EQ(parseStrokes(toJson(strokes).dump(-1), "again"), strokes);
+  EXPECT_EQ(describe(strokes[0]), "color, stiffness 900 N/m, friction.static 0.7");
+
+  const auto one = parseStrokes(
+      textOf(R"({"layers": [{"tool": "stiffness", "value": 900}], "samples": []})"), "hand.json");
+  EXPECT_EQ(one, parseStrokes(textOf(R"({"tool": "stiffness", "value": 900, "samples": []})"),
+                              "hand.json"));
+  const std::string text = toJson(one).dump(-1);
+  for (const char* key : {"layers", "seed", "tip"}) // files that did without stay as they were
+    EXPECT_EQ(text.find(key), std::string::npos) << key;
+}
+
 TEST(Strokes, BadOnesAreNamedByFileStrokeSampleAndKey) {
   const std::pair<std::string, std::vector<std::string>> bad[] = {
       {"{\"version\": 2, \"strokes\": []}", {"version 2", "version 1"}},
@@ -117,6 +146,28 @@ TEST(Strokes, BadOnesAreNamedByFileStrokeSampleAndKey) {
        {"sample 2", "time"}},
       {textOf(R"({"tool": "damping", "value": 1, "samples": [{"position": [0, 0, null]}]})"),
        {"sample 1"}},
+      {textOf(R"({"layers": [], "samples": []})"), {"layers", "one"}},
+      {textOf(R"({"layers": [{"tool": "relief", "value": 1e-3}, {"tool": "damping"}],
+                  "samples": []})"),
+       {"layer 2", "value"}},
+      {textOf(R"({"layers": [{"tool": "damping", "value": 1, "radius": 1}], "samples": []})"),
+       {"layer 1", "radius"}},
+      {textOf(R"({"layers": [{"tool": "damping", "value": 1}], "tool": "relief", "samples": []})"),
+       {"layers", "tool"}},
+      {textOf(R"({"layers": [{"tool": "damping", "value": 1}, {"tool": "damping", "value": 2}],
+                  "samples": []})"),
+       {"damping", "twice"}},
+      {textOf(R"({"layers": [{"tool": "damping", "value": 1}, {"tool": "erase"}],
+                  "samples": []})"),
+       {"erase"}},
+      {textOf(R"({"layers": [{"tool": "relief", "value": 1e-3}, {"tool": "color",
+                  "value": [0, 0, 1]}], "mode": "add", "samples": []})"),
+       {"add"}},
+      {textOf(R"({"tool": "damping", "value": 1, "seed": "far", "samples": []})"),
+       {"seed", "far", "segment"}},
+      {textOf(R"({"tool": "damping", "value": 1, "samples": [{"position": [0, 0, 0],
+                  "tip": [0, 0]}]})"),
+       {"sample 1", "3 numbers"}},
       {textOf(R"({"tool": "damping", "value": NaN, "samples": []})"), {"hand.json"}}};
   for (const auto& [text, parts] : bad) {
     const std::string error = errorOf(text);
@@ -129,9 +180,10 @@ TEST(Strokes, BadOnesAreNamedByFileStrokeSampleAndKey) {
 
 TEST(Strokes, NumbersThatAreNoneAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (double Brush::*value :
-       {&Brush::value, &Brush::radius, &Brush::falloff, &Brush::radius_per_force,
-        &Brush::least_radius, &Brush::most_radius}) {
+  const std::vector<double Brush::*> numbers = {&Brush::value,        &Brush::radius,
+                                                &Brush::falloff,      &Brush::radius_per_force,
+                                                &Brush::least_radius, &Brush::most_radius};
+  for (double Brush::*value : numbers) {
     Brush brush;
     brush.tool = Tool::relief;
     EXPECT_NO_THROW(validate(brush));
