@@ -15,8 +15,9 @@ const ObjectPaint* paintOf(const Scene& scene, std::size_t object) {
 
 bool hasRelief(const Scene& scene) {
   return scene.relief.height != 0 &&
-         std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const SceneObject& o) { return o.paint && o.paint->relief; });
+         std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
+           return o.paint && hasRelief(*o.paint, scene.relief.source);
+         });
 }
 
 bool isPainted(const Scene& scene) {
@@ -25,7 +26,7 @@ bool isPainted(const Scene& scene) {
                      [](const SceneObject& o) { return o.paint && o.paint->material; });
 }
 
-const FeltRelief* reliefOf(const CompiledScene* compiled, std::size_t object) {
+const FeltRelief* knownRelief(const CompiledScene* compiled, std::size_t object) {
   return compiled && object < compiled->paint.relief.size() ? &compiled->paint.relief[object]
                                                             : nullptr;
 }
@@ -37,16 +38,18 @@ std::shared_ptr<const ImageRange> rangeOf(const std::shared_ptr<const TiledImage
   return std::make_shared<const ImageRange>(imageRange(*image, before.get(), known.get()));
 }
 
-// The image that stands for the relief, as it was painted.
+// The image that stands for the relief, before it is smoothed.
 FeltRelief sourceOf(const Scene& scene, std::size_t object, const CompiledScene* before) {
   FeltRelief relief;
   const ObjectPaint* paint = paintOf(scene, object);
-  if (!paint || !paint->relief) return relief;
+  if (!paint) return relief;
   static const FeltRelief kNone;
-  const FeltRelief* known = reliefOf(before, object);
+  const FeltRelief* known = knownRelief(before, object);
   if (!known) known = &kNone;
-  relief.source = paint->relief;
-  relief.source_range = rangeOf(relief.source, known->source, known->source_range);
+  if (scene.relief.source == ReliefFrom::color) relief.grey = known->grey;
+  relief.source = reliefOf(*paint, scene.relief.source, &relief.grey);
+  if (relief.source)
+    relief.source_range = rangeOf(relief.source, known->source, known->source_range);
   return relief;
 }
 
@@ -87,7 +90,7 @@ struct Maker {
     if (!(deviation > 0)) return;
     const ObjectPaint& paint = *paintOf(compiled.scene, i);
     const ObjectPaint* old_paint = before ? paintOf(before->scene, i) : nullptr;
-    const FeltRelief* old = reliefOf(before, i);
+    const FeltRelief* old = knownRelief(before, i);
     const bool keeps = old && old->smoother && old_paint &&
                        old_paint->layout.uvs == paint.layout.uvs &&
                        old->source->width() == relief.source->width() &&
@@ -146,7 +149,8 @@ bool sameLayouts(const Scene& a, const Scene& b) {
   for (std::size_t i = 0; i < a.objects.size(); ++i) {
     const ObjectPaint* left = paintOf(a, i);
     const ObjectPaint* right = paintOf(b, i);
-    const bool relief_left = left && left->relief, relief_right = right && right->relief;
+    const bool relief_left = left && hasRelief(*left, a.relief.source);
+    const bool relief_right = right && hasRelief(*right, b.relief.source);
     if (relief_left != relief_right) return false;
     if (relief_left && left->layout.uvs != right->layout.uvs) return false;
   }
@@ -219,6 +223,7 @@ std::size_t FeltPaint::bytes() const {
     if (object.relief) bytes += patina::bytes(*object.relief->faces);
   }
   for (const FeltRelief& image : relief) {
+    if (image.grey.grey) bytes += image.grey.grey->bytes();
     if (image.smoother) bytes += image.smoother->bytes();
     if (image.felt && image.felt != image.source) bytes += image.felt->bytes();
   }
@@ -238,9 +243,15 @@ double reachAfter(const CompiledScene& compiled, const Brush& brush) {
   const Scene& scene = compiled.scene;
   const double now = reachOf(scene, &compiled);
   if (brush.mode == StrokeMode::smooth) return now;
-  double value = 0;
-  if (brush.tool == Tool::relief) value = overshoot(scene) * std::abs(brush.value);
-  if (brush.tool == Tool::roughness) value = kRoughnessPeak * std::abs(brush.value);
+  double value = 0; // no more than all of its layers together
+  if (scene.relief.source == ReliefFrom::color) {
+    if (const BrushLayer* layer = layerOf(brush, Tool::color))
+      value += overshoot(scene) * std::abs(scene.relief.height) * grey(layer->color);
+  } else if (const BrushLayer* layer = layerOf(brush, Tool::relief)) {
+    value += overshoot(scene) * std::abs(layer->value);
+  }
+  if (const BrushLayer* layer = layerOf(brush, Tool::roughness))
+    value += kRoughnessPeak * std::abs(layer->value);
   const double bare = reachOf(scene.haptics);
   return brush.mode == StrokeMode::add ? now + value : std::max(now, bare + value);
 }

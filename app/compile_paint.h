@@ -8,6 +8,7 @@
 #include "authoring/relief_bake.h"
 #include "authoring/relief_smoothing.h"
 #include "haptics/felt_object.h"
+#include "scene/grey_relief.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -16,6 +17,7 @@ struct CompiledScene;
 
 // One object's relief, with what the next version may make use of.
 struct FeltRelief {
+  GreyImage grey;                                 // where relief is the colour's
   std::shared_ptr<const TiledImage> source, felt; // the same unless it is smoothed
   std::shared_ptr<const ImageRange> source_range, felt_range;
   std::shared_ptr<const ReliefSmoother> smoother; // absent: not smoothed

@@ -70,6 +70,7 @@ std::vector<LayerBytes> paintLayers(const CompiledScene& compiled) {
     if (object.relief) add(layers, "felt relief", bytes(*object.relief->faces));
   }
   for (const FeltRelief& relief : felt.relief) {
+    if (relief.grey.grey) add(layers, "grey of colour", relief.grey.grey->bytes());
     if (relief.felt != relief.source) add(layers, "smoothed relief", relief.felt->bytes());
     if (relief.smoother) add(layers, "relief smoothing", relief.smoother->bytes());
   }

@@ -17,14 +17,16 @@ namespace {
 
 bool sameRelief(const CompiledScene& a, const CompiledScene& b) {
   if (a.scene.relief.height != b.scene.relief.height ||
+      a.scene.relief.source != b.scene.relief.source ||
       a.scene.relief.smoothing != b.scene.relief.smoothing ||
       a.scene.device_model != b.scene.device_model ||
       a.scene.objects.size() != b.scene.objects.size())
     return false;
   for (std::size_t i = 0; i < a.scene.objects.size(); ++i) {
-    const auto& left = a.scene.objects[i].paint;
-    const auto& right = b.scene.objects[i].paint;
-    if ((left ? left->relief : nullptr) != (right ? right->relief : nullptr)) return false;
+    const auto image = [i](const CompiledScene& compiled) {
+      return i < compiled.paint.relief.size() ? compiled.paint.relief[i].felt : nullptr;
+    };
+    if (image(a) != image(b)) return false;
   }
   return true;
 }
@@ -117,14 +119,21 @@ void ReliefPanel::rebuild(double height) {
       emit edited(relief_);
     });
   };
-  combo(2, "relief_mode", tr("Felt"), {tr("from the image"), tr("baked into the field")},
+  combo(2, "relief_source", tr("Taken from"), {tr("what is painted as relief"), tr("the colour")},
+        relief_.source == ReliefFrom::painted ? 0 : 1,
+        tr("The colour: its grey value is felt as height, bright is high, and what is not painted "
+           "or black stays as it is."),
+        [](ReliefSettings& r, int index) {
+          r.source = index == 0 ? ReliefFrom::painted : ReliefFrom::color;
+        });
+  combo(3, "relief_mode", tr("Felt"), {tr("from the image"), tr("baked into the field")},
         relief_.mode == ReliefMode::pulled ? 0 : 1,
         tr("From the image: read at each contact, as fine as it is painted. Baked: the field is "
            "moved, as in the paper; costs nothing a tick, and loses what is finer than 8 voxels."),
         [](ReliefSettings& r, int index) {
           r.mode = index == 0 ? ReliefMode::pulled : ReliefMode::baked;
         });
-  combo(3, "relief_force", tr("Force"), {tr("conservative"), tr("literal")},
+  combo(4, "relief_force", tr("Force"), {tr("conservative"), tr("literal")},
         relief_.form == ForceForm::conservative ? 0 : 1,
         tr("Conservative: the force has a potential, no loop does work. Literal: as the papers "
            "have it."),
@@ -140,7 +149,7 @@ void ReliefPanel::rebuild(double height) {
     relief_.smoothing = value / 1000;
     emit edited(relief_);
   });
-  column->addWidget(smoothing, 4, 0, 1, 2);
+  column->addWidget(smoothing, 5, 0, 1, 2);
   layout_->insertWidget(0, rows_);
 }
 

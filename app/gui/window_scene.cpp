@@ -5,6 +5,7 @@
 #include "app/gui/load_dialogs.h"
 #include "app/gui/main_window.h"
 #include "haptics/stabilisers.h"
+#include "scene/grey_relief.h"
 
 namespace patina {
 namespace {
@@ -28,8 +29,9 @@ QString stabilityNote(const Scene& scene) {
 }
 
 bool hasRelief(const Scene& scene) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const SceneObject& o) { return o.paint && o.paint->relief; });
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
+    return o.paint && hasRelief(*o.paint, scene.relief.source);
+  });
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
+#include "scene/grey_relief.h"
 
 namespace patina {
 namespace {
@@ -127,10 +128,9 @@ Material baseMaterial(const HapticProperties& haptics) {
 double highestRelief(const Scene& scene) {
   float highest = 0;
   for (const SceneObject& object : scene.objects) {
-    if (!object.paint || !object.paint->relief) continue;
-    const TiledImage& image = *object.paint->relief;
-    for (std::size_t i = 0; i < image.tileCount(); ++i)
-      if (const auto& tile = image.sharedTile(i))
+    const auto image = object.paint ? reliefOf(*object.paint, scene.relief.source) : nullptr;
+    for (std::size_t i = 0; image && i < image->tileCount(); ++i)
+      if (const auto& tile = image->sharedTile(i))
         for (const float g : *tile) highest = std::max(highest, std::abs(g));
   }
   return std::abs(scene.relief.height) * static_cast<double>(highest);

@@ -291,6 +291,15 @@ const std::vector<Entry>& entries() {
          s.relief.mode = t == "pulled" ? ReliefMode::pulled : ReliefMode::baked;
        },
        [](const Scene& s) { return s.relief.mode == ReliefMode::pulled ? Text() : Text("baked"); }},
+      {"relief.source",
+       [](Scene& s, const std::string& t) {
+         if (t != "painted" && t != "color" && !isNone(t))
+           throw Error("relief.source = '" + t + "': it must be painted or color");
+         s.relief.source = t == "color" ? ReliefFrom::color : ReliefFrom::painted;
+       },
+       [](const Scene& s) {
+         return s.relief.source == ReliefFrom::painted ? Text() : Text("color");
+       }},
       {"relief.height",
        [](Scene& s, const std::string& t) {
          s.relief.height = isNone(t) ? ReliefSettings{}.height : lengthFor("relief.height", t);

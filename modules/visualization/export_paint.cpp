@@ -16,6 +16,7 @@
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 
+#include "scene/grey_relief.h"
 #include "visualization/paint_quantity.h"
 #include "visualization/palette.h"
 #include "visualization/refined_surface.h"
@@ -117,7 +118,8 @@ void addImages(vtkPointData& data, const ObjectPaint& paint, const Points& point
 } // namespace
 
 void writePaintVtp(const std::filesystem::path& path, const Scene& scene, std::size_t object) {
-  const SceneObject& one = scene.objects.at(object);
+  SceneObject one = scene.objects.at(object);
+  one.paint = withRelief(one.paint, scene.relief.source);
   if (!one.paint) throw std::invalid_argument("writePaintVtp: nothing is painted");
   const RefinedSurface fine = fineSurface(one);
   const Points points = pointsOf(fine.mesh);

@@ -7,6 +7,7 @@
 #include <vtkMapper.h>
 #include <vtkProperty.h>
 
+#include "scene/grey_relief.h"
 #include "visualization/image_surface.h"
 #include "visualization/material_surface.h"
 #include "visualization/scalar_bar.h"
@@ -23,7 +24,8 @@ ValueRange both(const ValueRange& a, const ValueRange& b) {
 
 struct PaintLayer::Impl {
   struct Drawn {
-    SceneObject object;
+    SceneObject object; // with the relief that is felt
+    GreyImage grey;
     std::shared_ptr<const TexelMap> texels;
     std::unique_ptr<ImageSurface> image;
     std::unique_ptr<MaterialSurface> material;
@@ -129,6 +131,8 @@ void PaintLayer::set(const Scene& scene,
       old->object.mesh = nullptr;
     }
     objects[i].object = scene.objects[i];
+    objects[i].object.paint =
+        withRelief(scene.objects[i].paint, scene.relief.source, &objects[i].grey);
     if (i < texels.size() && texels[i]) objects[i].texels = texels[i];
     if (!objects[i].object.paint) {
       my.remove(objects[i]);

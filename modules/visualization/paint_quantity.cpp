@@ -7,6 +7,7 @@
 #include <vtkMath.h>
 
 #include "core/types.h"
+#include "scene/grey_relief.h"
 #include "visualization/distance_map.h"
 #include "visualization/palette.h"
 
@@ -67,8 +68,11 @@ bool hasPaint(const SceneObject& object, PaintQuantity quantity) {
 }
 
 bool hasPaint(const Scene& scene, PaintQuantity quantity) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [&](const SceneObject& object) { return hasPaint(object, quantity); });
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+    if (quantity == PaintQuantity::relief)
+      return object.paint && hasRelief(*object.paint, scene.relief.source);
+    return hasPaint(object, quantity);
+  });
 }
 
 std::string arrayName(PaintQuantity quantity) {

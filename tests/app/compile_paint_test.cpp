@@ -117,5 +117,77 @@ TEST_F(FeltPaints, HighReliefWidensTheBand) {
   EXPECT_GT(compiled->band, flat->band);
 }
 
+// K21: bright is high, and neither black nor what is not painted changes anything.
+TEST_F(FeltPaints, ReliefIsTheGreyOfTheColourWhereTheSceneTakesItFromThere) {
+  for (const char* mode : {"pulled", "baked"}) {
+    Scene scene = ballScene();
+    setValues(scene, {{"relief.mode", mode}, {"relief.height", "0.4mm"}});
+    Editor editor(scene, progress);
+    Stroke stroke = dabAt(Tool::color, 0, 0.008, Vec3(0, 0, kBall));
+    stroke.brush.falloff = 50;
+    stroke.brush.color = {0.2, 0.9, 0.4};
+    editor.apply(stroke, progress);
+    EXPECT_TRUE(editor.compiled()->paint.objects.empty()); // colour alone is not felt
+    editor.apply(ValueEdit{{{"relief.source", "color"}}}, progress);
+    const double luma = 0.2126 * 0.2 + 0.7152 * 0.9 + 0.0722 * 0.4;
+    const auto& felt = editor.compiled()->paint.relief.at(0).felt;
+    const TiledImage& color = *editor.scene().objects[0].paint->color;
+    for (int j = 0; j < color.height(); ++j)
+      for (int i = 0; i < color.width(); ++i)
+        ASSERT_NEAR(static_cast<double>(felt->at(i, j, 0)),
+                    luma * static_cast<double>(color.at(i, j, 3)), 1e-6);
+    EXPECT_FALSE(editor.scene().objects[0].paint->relief); // nothing is painted as relief
+
+    // The field's own radius apart, the tip is held 0.4 mm * luma farther out.
+    ContactMemory memory;
+    const Vec3 tip(0, 0, kBall - 5e-4);
+    const double with = tick(*editor.compiled()->snapshot, memory, tip, 1e-3).force.z();
+    ContactMemory bare;
+    const double without = tick(*compile(scene, progress)->snapshot, bare, tip, 1e-3).force.z();
+    EXPECT_NEAR((with - without) / scene.haptics.stiffness, 4e-4 * luma, 0.02 * 4e-4) << mode;
+
+    // Painting on is felt as it comes, as compile() would have it.
+    for (Stroke one : manyStrokes(9, 4)) {
+      one.brush.color = {0.1 * static_cast<double>(one.samples.size()), 0.8, 0.3};
+      editor.apply(one, progress);
+    }
+    const auto whole = compile(editor.scene(), progress);
+    EXPECT_TRUE(feelAlike(*whole->snapshot, *editor.compiled()->snapshot)) << mode;
+    EXPECT_TRUE(same(*whole->paint.relief[0].felt, *editor.compiled()->paint.relief[0].felt));
+
+    editor.apply(ValueEdit{{{"relief.source", "painted"}}}, progress);
+    EXPECT_TRUE(editor.compiled()->paint.relief.at(0).felt ==
+                editor.scene().objects[0].paint->relief);
+  }
+}
+
+TEST_F(FeltPaints, BlackIsNotFeltAsRelief) { // T-K21d
+  Scene scene = ballScene();
+  setValue(scene, "relief.source", "color");
+  Editor editor(scene, progress);
+  Stroke stroke = dabAt(Tool::color, 0, 0.01, Vec3(0, 0, kBall));
+  stroke.brush.color = {0, 0, 0};
+  editor.apply(stroke, progress);
+  EXPECT_TRUE(feelAlike(*editor.compiled()->snapshot, *compile(ballScene(), progress)->snapshot));
+}
+
+// One entry of the history: undone and done again as one, and replayed to the same bits.
+TEST_F(FeltPaints, LayersOfAStrokeAreOneEdit) {
+  Editor editor(ballScene(), progress);
+  Stroke stroke = dabAt(Tool::stiffness, 900, 0.008, Vec3(0, 0, kBall));
+  for (const Tool tool : {Tool::color, Tool::relief, Tool::static_friction})
+    stroke.brush.also.push_back({tool, {0.2, 0.4, 0.6}, tool == Tool::relief ? 3e-4 : 0.5});
+  editor.apply(stroke, progress);
+  EXPECT_EQ(editor.history().undoable(), 1U);
+  const ObjectPaint paint = *editor.scene().objects[0].paint;
+  EXPECT_TRUE(paint.color && paint.relief);
+  EXPECT_TRUE(paint.material->has(MaterialChannel::stiffness));
+  EXPECT_TRUE(paint.material->has(MaterialChannel::static_friction));
+  EXPECT_EQ(editor.undo(1, progress), 1U);
+  EXPECT_FALSE(editor.scene().objects[0].paint);
+  EXPECT_EQ(editor.redo(1, progress), 1U);
+  EXPECT_TRUE(same(*editor.scene().objects[0].paint, paint));
+}
+
 } // namespace
 } // namespace patina

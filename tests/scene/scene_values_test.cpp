@@ -17,7 +17,7 @@ List withEverything() {
           {"magnet.range", "0.002"},
           {"magnet.strength", "250"},
           {"magnet.fades", "on"},
-          {"contact", "potential"},
+          {"contact", "ray"},
           {"history", "off"},
           {"tip.radius", "0.0015"},
           {"force.limit", "5"},
@@ -27,6 +27,7 @@ List withEverything() {
           {"surface.sides", "two"},
           {"merge.redistance", "on"},
           {"relief.mode", "baked"},
+          {"relief.source", "color"},
           {"relief.height", "-5e-04"},
           {"relief.force", "literal"},
           {"relief.smoothing", "2e-04"},
@@ -212,9 +213,9 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
         std::string(error.what()),
         "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
         "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
-        "magnet.fades contact history tip.radius force.limit resolution voxel band sampler "
-        "surface.sides merge.redistance relief.mode relief.height relief.force relief.smoothing "
-        "material.force paint.size stabiliser device.mass device.damping device.coulomb "
+        "magnet.fades contact tip.radius force.limit resolution voxel band sampler "
+        "surface.sides merge.redistance relief.mode relief.source relief.height relief.force "
+        "relief.smoothing material.force paint.size stabiliser device.mass device.damping device.coulomb "
         "device.encoder device.rate device.delay device");
   }
 }
