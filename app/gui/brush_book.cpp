@@ -21,6 +21,7 @@ double rounded(double value) {
 void BrushBook::suit(double extent, const HapticProperties& haptics) {
   extent_ = extent;
   common_ = {};
+  also_.clear();
   common_.radius = rounded(0.04 * extent);
   common_.falloff = 2;
   own_.clear();
@@ -49,12 +50,25 @@ Brush BrushBook::brush(Tool tool) const {
   brush.value = own->second.value;
   brush.mode = own->second.mode;
   brush.erases = own->second.erases;
+  brush.also.clear();
+  for (const Tool other : also_)
+    if (canJoin(brush, other)) brush.also.push_back(own_.at(other));
   return brush;
 }
 
 void BrushBook::set(const Brush& brush) {
   common_ = brush;
   own_[brush.tool] = brush;
+  for (const auto& [tool, own] : own_)
+    if (canJoin(brush, tool)) {
+      also_.erase(tool);
+      if (layerOf(brush, tool)) also_.insert(tool);
+    }
+}
+
+bool canJoin(const Brush& brush, Tool tool) {
+  return tool != brush.tool && tool != Tool::erase && brush.tool != Tool::erase &&
+         !(tool == Tool::color && brush.mode == StrokeMode::add);
 }
 
 Brush picked(Brush brush, const SurfaceValues& values) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "authoring/surface_values.h"
 #include "scene/stroke.h"
@@ -14,7 +15,9 @@ class BrushBook {
   void suit(double extent, const HapticProperties& haptics);
 
   Brush brush(Tool tool) const;
-  void set(const Brush& brush); // of its tool; size and shape of all
+  // Of its tool; size and shape of all. What it paints also is painted with other tools, too, each
+  // layer with its own tool's value.
+  void set(const Brush& brush);
 
   double extent() const { return extent_; }
   double press = 0.8; // [N], with which the mouse presses the tool on
@@ -22,9 +25,12 @@ class BrushBook {
  private:
   double extent_ = 0.1;
   Brush common_;
+  std::set<Tool> also_;
   std::map<Tool, Brush> own_;
 };
 
+// Whether one stroke may lay on `tool` beside what the brush does.
+bool canJoin(const Brush& brush, Tool tool);
 // `brush` with what is painted at a place; only what its tool paints.
 Brush picked(Brush brush, const SurfaceValues& values);
 // 0 < d < r where the weight is one half; 0 where it nowhere is.

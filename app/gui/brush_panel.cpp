@@ -8,6 +8,7 @@
 #include <QColorDialog>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QMenu>
 #include <QSignalBlocker>
 #include <QToolButton>
 
@@ -103,6 +104,7 @@ void BrushPanel::rebuild(const BrushBook& book) {
     addColor();
   else
     addValue(book.extent());
+  addLayers(book);
   addSize(book);
   addShape();
   addChoices();
@@ -198,6 +200,50 @@ void BrushPanel::addValue(double extent) {
   });
 }
 
+void BrushPanel::addLayers(const BrushBook& book) {
+  if (brush_.tool == Tool::erase) return;
+  const std::array<std::pair<Tool, QString>, 7> tools{
+      {{Tool::color, tr("colour")},
+       {Tool::relief, tr("relief")},
+       {Tool::stiffness, tr("stiffness")},
+       {Tool::static_friction, tr("static friction")},
+       {Tool::dynamic_friction, tr("dynamic friction")},
+       {Tool::damping, tr("damping")},
+       {Tool::roughness, tr("roughness")}}};
+  auto* box = new QToolButton(rows_);
+  box->setObjectName(QStringLiteral("brush_also"));
+  box->setText(tr("Paints also…"));
+  box->setToolTip(tr("What the same stroke lays on beside this, each as its own tool is set"));
+  box->setPopupMode(QToolButton::InstantPopup);
+  box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  auto* menu = new QMenu(box);
+  const auto say = [box, menu] {
+    QStringList words;
+    for (const QAction* action : menu->actions())
+      if (action->isChecked()) words << action->text();
+    box->setText(words.isEmpty() ? tr("Paints also…")
+                                 : tr("Also: %1").arg(words.join(QStringLiteral(", "))));
+  };
+  for (const auto& [tool, caption] : tools) {
+    if (!canJoin(brush_, tool)) continue;
+    QAction* action = menu->addAction(caption);
+    action->setObjectName(QStringLiteral("also_") +
+                          QString::fromUtf8(std::string(name(tool)).c_str()));
+    action->setCheckable(true);
+    action->setChecked(layerOf(brush_, tool) != nullptr);
+    const BrushLayer layer = book.brush(tool);
+    connect(action, &QAction::toggled, this, [this, layer, say](bool on) {
+      std::erase_if(brush_.also, [&](const BrushLayer& l) { return l.tool == layer.tool; });
+      if (on) brush_.also.push_back(layer);
+      say();
+      change();
+    });
+  }
+  say();
+  box->setMenu(menu);
+  rows_->layout()->addWidget(box);
+}
+
 void BrushPanel::addSize(const BrushBook& book) {
   const double most = 500 * book.extent();
   ValueRow* radius = addRow("brush_radius", tr("Radius"), QStringLiteral("mm"),
@@ -261,6 +307,16 @@ void BrushPanel::addChoices() {
       change();
     });
   }
+  auto* seed =
+      addCombo("brush_seed", tr("Starts"), {tr("at the nearest point"), tr("under the tip")},
+               static_cast<int>(brush_.seed));
+  seed->setToolTip(
+      tr("Under the tip: where the way from the tip goes through the surface, as in the "
+         "paper; on thin parts it is the side that is touched"));
+  connect(seed, qOverload<int>(&QComboBox::activated), this, [this](int index) {
+    brush_.seed = static_cast<Seed>(index);
+    change();
+  });
   auto* symmetry = addCombo("brush_symmetry", tr("Mirrored"),
                             {tr("not"), tr("across x"), tr("across y"), tr("across z")},
                             static_cast<int>(brush_.symmetry));

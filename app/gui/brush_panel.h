@@ -30,6 +30,7 @@ class BrushPanel : public QGroupBox {
   void addSize(const BrushBook& book);
   void addShape();
   void addChoices();
+  void addLayers(const BrushBook& book);
   void change();
   ValueRow* addRow(const char* name, const QString& caption, const QString& unit,
                    const RowRange& range, double value, const QString& tip = {});

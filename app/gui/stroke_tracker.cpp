@@ -25,10 +25,10 @@ std::vector<StrokePiece> StrokeTracker::feed(std::span<const ToolSample> ticks, 
       began_ = tick.t;
       StrokePiece& first = piece();
       first.begins = true;
-      first.samples.push_back({0, tick.surface, tick.force.norm()});
+      first.samples.push_back({0, tick.surface, tick.force.norm(), tick.tip});
       taken_ = tick.t;
     } else if (tick.t - taken_ >= kSpacing - 1e-4) { // a clock's rounding is not a tick
-      piece().samples.push_back({tick.t - began_, tick.surface, tick.force.norm()});
+      piece().samples.push_back({tick.t - began_, tick.surface, tick.force.norm(), tick.tip});
       taken_ = tick.t;
     }
   }

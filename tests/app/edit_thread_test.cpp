@@ -199,7 +199,7 @@ TEST(ValueEdits, TheDifferenceOfTwoScenesMakesOneOfTheOther) {
   scenes[5].device = "simulated";
   scenes[5].device_model = DeviceModel{0.1, 0.5, 0.05, 30e-6, 2000, 1};
   scenes[5].stabilisers = Stabilisers{true, false};
-  scenes[6].relief = {ReliefMode::baked, -0.7e-3, ForceForm::literal, 2e-4};
+  scenes[6].relief = {ReliefMode::baked, ReliefFrom::color, -0.7e-3, ForceForm::literal, 2e-4};
   scenes[6].material_form = ForceForm::literal;
   scenes[6].paint_size = 1024;
   scenes[7].haptics.tip_radius = 1.0 / 3e3;

@@ -143,6 +143,28 @@ TEST_F(Painting, BesideTheObjectNothingIsPainted) {
   EXPECT_TRUE(window_->standing().edits.empty());
 }
 
+TEST_F(Painting, LayersThatAreTickedArePaintedByTheSameStroke) {
+  choose(Tool::stiffness);
+  for (const char* name : {"also_color", "also_friction.static"}) {
+    ASSERT_NE(action(name), nullptr) << name;
+    action(name)->trigger();
+  }
+  EXPECT_EQ(action("also_stiffness"), nullptr); // that is what the tool paints anyway
+  EXPECT_EQ(layersOf(window_->desk().brush()).size(), 3U);
+  stroke(middle(), middle() + QPoint(40, 0));
+  ASSERT_TRUE(strokeDone(1));
+  ASSERT_NE(paint(), nullptr);
+  EXPECT_TRUE(paint()->color);
+  EXPECT_FALSE(paint()->relief);
+  EXPECT_TRUE(paint()->material->has(MaterialChannel::stiffness));
+  EXPECT_TRUE(paint()->material->has(MaterialChannel::static_friction));
+  // Another tool keeps the ticks, and its own layer is no second one.
+  choose(Tool::color);
+  EXPECT_EQ(layersOf(window_->desk().brush()).size(), 2U);
+  choose(Tool::erase);
+  EXPECT_EQ(layersOf(window_->desk().brush()).size(), 1U);
+}
+
 TEST_F(Painting, AClickInTheHistoryGoesThere) {
   choose(Tool::color);
   stroke(middle() - QPoint(50, 30), middle() + QPoint(50, -30), 200);
