@@ -87,6 +87,51 @@ TEST_F(Paint, ReliefIsFeltAsHighAsPainted) {
   EXPECT_NEAR(feltLast(workspace, press)[kForceZ] / 500, 0.5e-3, 1e-5);
 }
 
+// Colour, stiffness and friction by one stroke: one edit, on disk as one record.
+TEST_F(Paint, LayersOfAStrokeAreOneEditAndReplayToTheSameBits) {
+  Stroke several = stroke(Tool::stiffness, 900, 0.008, {{0.0003, 0.0004, kTop}});
+  several.brush.also = {{Tool::color, {0.2, 0.9, 0.4}, 0}, {Tool::static_friction, {}, 0.6}};
+  several.brush.seed = Seed::segment;
+  several.samples[0].tip = Vec3(0.0003, 0.0004, kTop - 1e-3);
+  const std::string strokes = script("several.json", {several});
+  const Json report = runJson({"paint", workspace, "--strokes", strokes, "-o", folder / "a"});
+  EXPECT_EQ(report.at("edits").asInteger(), 1);
+  EXPECT_EQ(report.at("history").asInteger(), 1);
+  const Scene painted = loadWorkspace(folder / "a");
+  ASSERT_TRUE(painted.objects[0].paint && painted.objects[0].paint->color);
+  EXPECT_TRUE(painted.objects[0].paint->material->has(MaterialChannel::static_friction));
+  const std::vector<double> felt = feltLast(folder / "a", pressAt(0.0003, 0.0004, 1e-3));
+  EXPECT_NEAR(felt[kForceZ] / felt[kDepth], 900, 9);
+  const std::string journal = openWorkspace(folder / "a").journal_file.string();
+  ASSERT_EQ(run({"paint", workspace, "--strokes", journal, "-o", folder / "b"}).exit, 0);
+  EXPECT_TRUE(same(painted, loadWorkspace(folder / "b")));
+  ASSERT_EQ(run({"undo", folder / "a"}).exit, 0);
+  EXPECT_FALSE(loadWorkspace(folder / "a").objects[0].paint);
+  ASSERT_EQ(run({"redo", folder / "a"}).exit, 0);
+  EXPECT_TRUE(same(painted, loadWorkspace(folder / "a")));
+  const Outcome bad =
+      run({"paint", workspace, "--strokes", strokes, "--seed", "far", "-o", folder / "c"});
+  EXPECT_EQ(bad.exit, 2);
+  EXPECT_NE(bad.err.find("segment"), std::string::npos) << bad.err;
+}
+
+// K21: the grey value of the colour, felt as height in both forms.
+TEST_F(Paint, ColourIsFeltAsReliefWhereTheSceneTakesItFromThere) {
+  Stroke color = stroke(Tool::color, 0, 0.012, {{0.0003, 0.0004, kTop}});
+  color.brush.color = {1, 1, 1};
+  const std::string strokes = script("white.json", {color});
+  ASSERT_EQ(run({"paint", workspace, "--strokes", strokes, "-o", workspace}).exit, 0);
+  const std::string press = pressAt(0.0003, 0.0004, 1e-3);
+  EXPECT_NEAR(feltLast(workspace, press)[kForceZ] / 500, 1e-3, 1e-5);
+  for (const char* mode : {"pulled", "baked"}) {
+    ASSERT_EQ(run({"scene", "-o", workspace, "--set", "relief.source=color", "--set",
+                   "relief.height=0.5mm", "--set", std::string("relief.mode=") + mode})
+                  .exit,
+              0);
+    EXPECT_NEAR(feltLast(workspace, press)[kForceZ] / 500, 1.5e-3, 1.5e-5) << mode;
+  }
+}
+
 // A journal is a script.
 TEST_F(Paint, ReplayedFromAJournalGivesTheSameBits) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", folder / "a"}).exit, 0);
