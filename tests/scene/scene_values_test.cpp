@@ -18,7 +18,6 @@ List withEverything() {
           {"magnet.strength", "250"},
           {"magnet.fades", "on"},
           {"contact", "ray"},
-          {"history", "off"},
           {"tip.radius", "0.0015"},
           {"force.limit", "5"},
           {"voxel", "0.001"},
@@ -100,7 +99,7 @@ TEST(SceneValues, OffsetAndMagnetExcludeEachOther) {
 
 TEST(SceneValues, BadValuesOfTheLoopAreRefused) {
   Scene scene;
-  for (const auto& [key, value] : List{{"history", "maybe"},
+  for (const auto& [key, value] : List{{"contact", "maybe"},
                                        {"stabiliser", "naive"},
                                        {"device.delay", "1.5"},
                                        {"device.mass", "0"},

@@ -1,0 +1,80 @@
+// Several layers by one stroke, and where a dab starts (K15, K17).
+#include <gtest/gtest.h>
+
+#include "authoring/paint_fixture.h"
+
+namespace patina {
+namespace {
+
+using test::brushOf;
+using test::forTexels;
+using test::sceneOf;
+using test::strokeAlong;
+using test::strokeAt;
+using test::surfaceOf;
+
+constexpr double kR = 0.05; // of the sphere
+const Vec3 kTop(0, 0, kR);
+
+// The paper's brush: what each layer would leave by itself, by one stroke.
+TEST(Painter, LayersOfOneStrokeAreThoseOfAStrokeEach) {
+  const Scene scene = sceneOf(icosphere(kR, 12), 60, 256);
+  const auto surface = surfaceOf(scene);
+  for (const StrokeMode mode : {StrokeMode::max, StrokeMode::build_up}) {
+    Brush brush = brushOf(Tool::stiffness, 0.012, 900);
+    brush.mode = mode;
+    brush.color = {0.3, 0.1, 0.9};
+    Scene apart = scene;
+    for (const auto& [tool, value] : {std::pair{Tool::stiffness, 900.0},
+                                      {Tool::color, 0.0},
+                                      {Tool::relief, 3e-4},
+                                      {Tool::static_friction, 0.7}}) {
+      BrushLayer layer = brush;
+      layer.tool = tool;
+      layer.value = value;
+      if (tool != brush.tool) brush.also.push_back(layer);
+      Brush one = brush;
+      one.also.clear();
+      static_cast<BrushLayer&>(one) = layer;
+      apart = painted(surface, apart, strokeAlong(one, kTop, Vec3(kR, 0, 0), 7));
+    }
+    PaintReport report;
+    const Scene after =
+        painted(surface, scene, strokeAlong(brush, kTop, Vec3(kR, 0, 0), 7), &report);
+    EXPECT_GT(report.texels, 0U);
+    EXPECT_GT(report.nodes, 0U);
+    EXPECT_TRUE(same(*after.objects[0].paint, *apart.objects[0].paint));
+    EXPECT_TRUE(after.objects[0].paint->material->has(MaterialChannel::static_friction));
+  }
+}
+
+// A sheet thinner than the field can tell: what is nearest may be its far side.
+TEST(Painter, SeedOnTheSegmentPaintsTheSideThatTheTipCameThrough) {
+  const double thick = 2e-4;
+  const Scene scene = sceneOf(box(Vec3(0.05, 0.05, thick), 4), 60, 256);
+  const auto surface = surfaceOf(scene);
+  Brush brush = brushOf(Tool::color, 0.004);
+  brush.front_only = true;
+  Stroke stroke = strokeAt(brush, Vec3(0.003, 0.002, -0.4 * thick)); // nearer to the lower side
+  stroke.samples[0].tip = Vec3(0.003, 0.002, 3 * thick); // held at the upper one, above it
+  const auto sides = [&](const Scene& after) {
+    std::pair<int, int> count; // upper, lower
+    const TiledImage& image = *after.objects[0].paint->color;
+    forTexels(*surface, 0, image, [&](const Vec3& p, int i, int j) {
+      if (image.at(i, j, 3) > 0) ++(p.z() > 0 ? count.first : count.second);
+    });
+    return count;
+  };
+  const auto nearest = sides(painted(surface, scene, stroke));
+  EXPECT_EQ(nearest.first, 0);
+  EXPECT_GT(nearest.second, 100);
+  stroke.brush.seed = Seed::segment;
+  const auto pierced = sides(painted(surface, scene, stroke));
+  EXPECT_GT(pierced.first, 100);
+  EXPECT_EQ(pierced.second, 0);
+  stroke.samples[0].tip.reset(); // without a tip there is no way
+  EXPECT_EQ(sides(painted(surface, scene, stroke)), nearest);
+}
+
+} // namespace
+} // namespace patina
