@@ -102,7 +102,7 @@ void Walls::remove(int index) noexcept {
   --count;
 }
 
-void Walls::add(const Wall& newest) noexcept {
+void Walls::add(const WallPlane& newest) noexcept {
   if (count == kMost) {
     int farthest = 0;
     double most = -1;

@@ -9,7 +9,7 @@
 namespace patina {
 
 // A wall as it was seen at a point of it: L(y) = normal.y - offset, free where L >= 0.
-struct Wall {
+struct WallPlane {
   Vec3 normal = Vec3::Zero(); // unit, outward
   double offset = 0;
   Vec3 seen = Vec3::Zero();
@@ -20,13 +20,15 @@ struct Wall {
 // The newest last. When there is no room the one seen farthest from the new one goes.
 struct Walls {
   static constexpr int kMost = 4;
-  std::array<Wall, kMost> wall;
+  std::array<WallPlane, kMost> wall;
   int count = 0;
 
-  void add(const Wall& newest) noexcept;
+  void add(const WallPlane& newest) noexcept;
   void remove(int index) noexcept;
-  const Wall& operator[](int index) const noexcept { return wall[static_cast<std::size_t>(index)]; }
-  Wall& operator[](int index) noexcept { return wall[static_cast<std::size_t>(index)]; }
+  const WallPlane& operator[](int index) const noexcept {
+    return wall[static_cast<std::size_t>(index)];
+  }
+  WallPlane& operator[](int index) noexcept { return wall[static_cast<std::size_t>(index)]; }
 };
 
 // z = argmin |y - x|^2 subject to L_i(y) >= 0 = x + sum of load_i n_i over the active walls.

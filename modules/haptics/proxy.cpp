@@ -76,7 +76,7 @@ bool shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target
 void reviewWalls(Walls& walls, const Vec3& z, double height, const Vec3& normal,
                  bool smooth) noexcept {
   for (int i = walls.count - 1; i >= 0; --i) {
-    Wall& wall = walls[i];
+    WallPlane& wall = walls[i];
     const double excess = wall.height(z) - height;
     const bool same = wall.normal.dot(normal) > kSameWall;
     bool drop = false;

@@ -16,10 +16,13 @@ constexpr double kStored = 0.5 * kStiffness * kDepth * kDepth;
 
 const std::vector<Vec3> kAxes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
 
-// The largest |work| of loops about `centre`, in the planes across each of `axes`.
-double worstLoop(const HapticSnapshot& snapshot, const Vec3& centre,
-                 const std::vector<Vec3>& axes) {
-  double worst = 0;
+// Of loops about `centre`, in the planes across each of `axes`, after a lap to settle in.
+struct Loops {
+  double worst = 0;   // the largest |work| [J]
+  double created = 0; // the most that was given to the hand [J]
+};
+Loops worstLoop(const HapticSnapshot& snapshot, const Vec3& centre, const std::vector<Vec3>& axes) {
+  Loops loops;
   for (const Vec3& axis : axes) {
     const Vec3 u = axis.unitOrthogonal(), v = axis.normalized().cross(u);
     const int count = 3000;
@@ -37,9 +40,10 @@ double worstLoop(const HapticSnapshot& snapshot, const Vec3& centre,
       last_tip = tip;
     }
     EXPECT_FALSE(memory.faulted);
-    worst = std::max(worst, std::abs(work));
+    loops.worst = std::max(loops.worst, std::abs(work));
+    loops.created = std::max(loops.created, work);
   }
-  return worst;
+  return loops;
 }
 
 struct Mode {
@@ -77,7 +81,8 @@ LoopEnergy onASphere(const Mode& mode, Sampler sampler, int cells) {
   std::mt19937 random(11);
   const int count = 24;
   for (int i = 0; i < count; ++i) {
-    const double loop = worstLoop(*snapshot, (R - mode.depth) * randomDirection(random), kAxes);
+    const double loop =
+        worstLoop(*snapshot, (R - mode.depth) * randomDirection(random), kAxes).worst;
     energy.worst = std::max(energy.worst, loop);
     energy.rms += loop * loop;
   }
@@ -100,85 +105,36 @@ TEST(ClosedLoopEnergy, OfASmoothSurfaceIsSmallAndFallsWithTheSquareOfTheVoxel) {
   }
 }
 
-// The worst loop about an edge of a box, `beside` the bisector of its faces.
-double worstAtAnEdge(const Mode& mode, int cells, const std::vector<double>& beside,
-                     const std::vector<Vec3>& axes) {
+// About the edge of a box, `beside` the bisector of its faces, where the contact point may pass
+// from one to the other: that takes energy, and never gives any (P11, T-P4).
+TEST(ClosedLoopEnergy, AboutACreaseNothingIsGiven) {
   const Vec3 half(0.03, 0.025, 0.02);
-  const double voxel = 0.06 / (cells - 16.0);
-  const double band = std::max(8.0, std::ceil(9e-3 / voxel) + 3);
-  const int side = 2 * static_cast<int>(std::ceil(0.03 / voxel + band + 1));
-  const Field box =
-      cubeField([=](const Vec3& p) { return boxDistance(p, half); }, voxel, side, band);
-  Scene scene = sceneOf(kStiffness);
-  mode.set(scene.haptics);
-  const auto snapshot = compileStages(scene, box);
-  double worst = 0;
-  for (const double along : {-3e-3, 0.37e-3, 2.1e-3})
-    for (const double aside : beside) {
-      const Vec3 edge(half.x(), half.y(), along);
-      worst = std::max(
-          worst,
-          worstLoop(*snapshot, edge - mode.depth * Vec3(1, 1, 0) + aside * Vec3(1, -1, 0.3), axes));
-    }
-  return worst;
-}
-
-// Loops about the bisector, where the two faces' forces take turns.
-TEST(ClosedLoopEnergy, AboutACreaseStaysBelowAHundredthOfWhatIsStored) {
-  for (const int cells : {75, 150})
-    for (const Mode& mode : kModes) {
-      const double worst = worstAtAnEdge(mode, cells, {0}, kAxes);
-      std::printf("%-10s crease at %d: %.2g J, %.2f %% of K d^2 / 2\n", mode.name, cells, worst,
-                  100 * worst / kStored);
-      // An offset is felt on both sides of the edge; 1.1 % in the worst phase of its cells.
-      const double share = std::string(mode.name) == "offset" ? 0.012 : 0.01;
-      EXPECT_LE(worst, share * kStored) << mode.name << ' ' << cells;
-    }
-}
-
-// Loops that graze the bisector from one side: within a voxel of it the blended direction is
-// neither face's, and the ray along it is longer than the distance. The paper's contact claims no
-// potential there; what it takes is told, and falls with the voxel.
-TEST(ClosedLoopEnergy, BesideACreaseFallsWithTheVoxel) {
-  const std::vector<double> beside = {0.3e-3, 0.5e-3, 1.1e-3, 2.3e-3};
-  const std::vector<Vec3> axes = {Vec3(0, 0, 1), Vec3(0.3, 0.5, 0.8)};
-  for (const Mode& mode : kModes) {
-    const double coarse = worstAtAnEdge(mode, 75, beside, axes);
-    const double fine = worstAtAnEdge(mode, 150, beside, axes);
-    std::printf("%-10s beside a crease: %.0f %% of K d^2 / 2 at 75, %.0f %% at 150\n", mode.name,
-                100 * coarse / kStored, 100 * fine / kStored);
-    EXPECT_LT(fine, 0.65 * coarse) << mode.name;
-    EXPECT_LT(fine, 0.5 * kStored) << mode.name;
-  }
-}
-
-// The form that claims to be conservative everywhere is.
-TEST(ClosedLoopEnergy, OfAPotentialIsNothingAlsoBesideACrease) {
-  using Form = HapticProperties::Contact;
-  const std::array<Mode, 3> modes = {{
-      {"contact", [](HapticProperties& h) { h.contact = Form::potential; }, kDepth},
-      {"finite tip",
-       [](HapticProperties& h) {
-         h.contact = Form::potential;
-         h.tip_radius = 1e-3;
-       },
-       kDepth - 1e-3},
-      {"offset",
-       [](HapticProperties& h) {
-         h.contact = Form::potential;
-         h.offset = 2e-3;
-       },
-       kDepth - 2e-3},
-  }};
-  const std::vector<double> beside = {0, 0.3e-3, 0.5e-3, 1.1e-3, 2.3e-3};
   const std::vector<Vec3> axes = {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0.3, 0.5, 0.8)};
-  for (const Mode& mode : modes) {
-    const double crease = worstAtAnEdge(mode, 150, beside, axes);
-    const LoopEnergy smooth = onASphere(mode, Sampler::high, 150);
-    std::printf("%-10s potential: %.2g J on a sphere, %.3f %% of K d^2 / 2 about a crease\n",
-                mode.name, smooth.worst, 100 * crease / kStored);
-    EXPECT_LE(crease, 0.01 * kStored) << mode.name;
-    EXPECT_LE(smooth.worst, 3e-6) << mode.name;
+  for (const int cells : {75, 150}) {
+    const double voxel = 0.06 / (cells - 16.0);
+    const double band = std::max(8.0, std::ceil(9e-3 / voxel) + 3);
+    const int side = 2 * static_cast<int>(std::ceil(0.03 / voxel + band + 1));
+    const Field box =
+        cubeField([=](const Vec3& p) { return boxDistance(p, half); }, voxel, side, band);
+    for (const Mode& mode : kModes) {
+      Scene scene = sceneOf(kStiffness);
+      mode.set(scene.haptics);
+      if (scene.haptics.magnet) continue; // out of contact its pull is the field's own direction
+      const auto snapshot = compileStages(scene, box);
+      Loops most;
+      for (const double along : {-3e-3, 0.37e-3, 2.1e-3})
+        for (const double aside : {0.0, 0.3e-3, 0.5e-3, 1.1e-3, 2.3e-3}) {
+          const Vec3 centre = Vec3(half.x(), half.y(), along) - mode.depth * Vec3(1, 1, 0) +
+                              aside * Vec3(1, -1, 0.3);
+          const Loops loops = worstLoop(*snapshot, centre, axes);
+          most.worst = std::max(most.worst, loops.worst);
+          most.created = std::max(most.created, loops.created);
+        }
+      std::printf("%-10s crease at %d: %.2g J given, %.2g J taken at most, of %.2g J stored\n",
+                  mode.name, cells, most.created, most.worst, kStored);
+      EXPECT_LE(most.created, 5e-6) << mode.name << ' ' << cells;
+      EXPECT_LE(most.worst, 4 * kStored) << mode.name << ' ' << cells;
+    }
   }
 }
 
