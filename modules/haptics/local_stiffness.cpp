@@ -15,8 +15,10 @@ constexpr double kForce = 1;         // [N]
 constexpr double kStep = 0.02;       // voxels
 constexpr double kMinGradient = 0.1; // K05
 constexpr double kStart = 0.5;       // voxels outside, where the way in begins
-// Ticks in which the contact point settles, to an error of (depth / radius of curvature)^3.
-constexpr int kSettle = 4;
+// The contact point settles: in how many ticks, and to what step [voxels].
+constexpr int kMostSettling = 32;
+constexpr double kSettled = 1e-6;
+constexpr double kSlips = 0.3; // of the depth, aside
 // Ticks so far apart that no velocity is left over from the way in, and no ramp half done.
 constexpr double kRest = 1e5; // [s]
 
@@ -45,29 +47,28 @@ StiffnessProbe::StiffnessProbe(const Scene& scene, std::shared_ptr<const Surface
       raised_(raisedBy(objects)), press_(std::min(kForce, scene.haptics.force_limit)),
       coupling_(coupling), painted_(!objects.empty()) {}
 
-// Painted friction and damping are in the wall's stages, but a first tick of contact has neither
-// slid nor, with kRest, a velocity.
-Contact StiffnessProbe::contactAt(const WayIn& way, const Vec3& tip) const {
-  ContactMemory memory = way.memory;
+// Painted friction and damping are in the wall's stages, but a contact that begins has neither slid
+// nor, with kRest, a velocity.
+Contact StiffnessProbe::settled(ContactMemory& memory, const Vec3& tip) const {
   Contact contact = tick(*wall_, memory, tip, kRest);
-  bool ran = contact.snap;
-  for (int i = 1; i < kSettle; ++i) {
+  for (int i = 1; i < kMostSettling; ++i) {
+    const Vec3 last = contact.candidate;
     contact = tick(*wall_, memory, tip, kRest);
-    ran = ran || contact.snap;
+    if ((contact.candidate - last).norm() < kSettled * sampler_.grid().voxel) break;
   }
-  contact.snap = ran;
   return contact;
 }
 
-Vec3 StiffnessProbe::forceAt(const WayIn& way, const Vec3& tip) const {
-  return contactAt(way, tip).force;
-}
-
-Eigen::Matrix3d StiffnessProbe::differenced(const WayIn& way, const Vec3& tip, double step) const {
+Eigen::Matrix3d StiffnessProbe::differenced(const ContactMemory& at, const Vec3& tip,
+                                            double step) const {
+  const auto forceAt = [&](const Vec3& p) {
+    ContactMemory memory = at;
+    return settled(memory, p).force;
+  };
   Eigen::Matrix3d slope;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 move = step * Vec3::Unit(axis);
-    slope.col(axis) = (forceAt(way, tip - move) - forceAt(way, tip + move)) / (2 * step);
+    slope.col(axis) = (forceAt(tip - move) - forceAt(tip + move)) / (2 * step);
   }
   return slope;
 }
@@ -93,7 +94,8 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
   double stiffness = wall_->base.stiffness;
   if (painted_) { // what is felt there, and how high
     const Vec3 below = way.surface - (raised_ + press_ / stiffness) * way.outward;
-    const Contact contact = contactAt(way, below);
+    ContactMemory memory = way.memory;
+    const Contact contact = settled(memory, below);
     if (contact.touching) stiffness = contact.material.stiffness;
     if (contact.touching && raised_ > 0)
       way.surface =
@@ -103,17 +105,19 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
   LocalStiffness result;
   result.depth = depth.value_or(press_ / stiffness);
   result.tip = way.surface - result.depth * way.outward;
-  const Contact contact = contactAt(way, result.tip);
+  ContactMemory memory = way.memory;
+  const Contact contact = settled(memory, result.tip);
   result.material = contact.material;
-  result.slips = contact.snap;
+  const Vec3 ran = contact.surface - point;
+  result.slips = (ran - ran.dot(way.outward) * way.outward).norm() > kSlips * result.depth;
   const Vec3& force = contact.force;
   result.force = force.norm();
   if (!(result.force > 0)) return std::nullopt;
   result.normal = force / result.force;
   const double length = std::min(step * voxel, 0.5 * result.depth);
-  result.matrix = differenced(way, result.tip, length);
+  result.matrix = differenced(memory, result.tip, length);
   result.uncertainty =
-      (result.matrix - differenced(way, result.tip, 0.5 * length)).cwiseAbs().maxCoeff();
+      (result.matrix - differenced(memory, result.tip, 0.5 * length)).cwiseAbs().maxCoeff();
   if (!result.matrix.allFinite()) return std::nullopt;
   const Vec3 values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
                           0.5 * (result.matrix + result.matrix.transpose()), Eigen::EigenvaluesOnly)

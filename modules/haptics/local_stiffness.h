@@ -56,9 +56,8 @@ class StiffnessProbe {
 
  private:
   struct WayIn;
-  Contact contactAt(const WayIn& way, const Vec3& tip) const;
-  Vec3 forceAt(const WayIn& way, const Vec3& tip) const;
-  Eigen::Matrix3d differenced(const WayIn& way, const Vec3& tip, double step) const;
+  Contact settled(ContactMemory& memory, const Vec3& tip) const;
+  Eigen::Matrix3d differenced(const ContactMemory& at, const Vec3& tip, double step) const;
 
   std::shared_ptr<const HapticSnapshot> wall_;
   FieldSampler sampler_;

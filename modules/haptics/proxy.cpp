@@ -13,6 +13,7 @@ constexpr double kRestError = 3e-4; // what a step may leave undone where the su
 constexpr double kSmoothStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
 constexpr double kFlat = 0.2, kLeastSlope = 0.3;
+constexpr double kMostTrust = 2;
 constexpr double kTrust = 1; // how far a wall is believed from where the VCP is feasible
 constexpr double kSameWall = 0.97;
 constexpr double kRefuted = 0.02;
@@ -22,7 +23,7 @@ constexpr double kForget = 2;
 constexpr double kMostLent = 2e-3; // voxels^2
 constexpr int kMostLooks = 8, kMostTightenings = 3, kMostShortenings = 4;
 constexpr double kLeastStep = 1.0 / 16;
-constexpr double kSeated = 1e-4;
+constexpr double kSeated = 1e-4, kGrazing = 0.02;
 constexpr int kMostMarch = 128, kMostSeek = 24;
 
 } // namespace
@@ -157,7 +158,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     if (height >= -kOnSurface) {
       anchor = z;
       anchor_height = std::max(height, 0.0);
-      trust = std::max({std::min(kTrust, 2 * trust), kStaleTrust, per_steepness_ * height});
+      trust = std::max({std::min(kMostTrust, 2 * trust), kStaleTrust, per_steepness_ * height});
     }
     const Aim next = aimAt(x, walls, start, ball, anchor, trust);
     const double step = (next.to.z - z).norm();
@@ -236,12 +237,12 @@ bool ProxySearch::isFree(const Vec3& from, double height_from, const Vec3& to, d
                          int& samples) const noexcept {
   const double way = (to - from).norm();
   return way < kTrust || per_steepness_ * (height_from + height_to) >= way ||
-         !firstCrossing(from, height_from, to, height_to, samples);
+         !firstCrossing(from, height_from, to, height_to, samples, kGrazing);
 }
 
 std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_from, const Vec3& to,
-                                               std::optional<double> height_to,
-                                               int& samples) const noexcept {
+                                               std::optional<double> height_to, int& samples,
+                                               double grazing) const noexcept {
   const double length = (to - from).norm();
   if (!(length > 0)) return std::nullopt;
   const Vec3 along = 1 / length * (to - from);
@@ -256,12 +257,12 @@ std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_f
     const double s = std::min(length, outside + std::max(per_steepness_ * above, kLeastStep));
     const double height = heightAt(from + s * along);
     ++samples;
-    if (height < 0) {
+    if (height < -grazing) {
       inside = s;
       below = height;
     } else {
       outside = s;
-      above = height;
+      above = std::max(height, 0.0);
     }
   }
   if (inside < 0) return std::nullopt;

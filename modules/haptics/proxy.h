@@ -45,7 +45,8 @@ class ProxySearch {
   // Where the way from a free point to `to` first meets the surface, on its free side to 1e-5;
   // parts thinner than 1/16 voxel may be missed. height: phi - iso at from and at to, where known.
   std::optional<Vec3> firstCrossing(const Vec3& from, double height_from, const Vec3& to,
-                                    std::optional<double> height_to, int& samples) const noexcept;
+                                    std::optional<double> height_to, int& samples,
+                                    double grazing = 0) const noexcept;
 
   // For a tip that is inside without having come from anywhere: out along the direction that the
   // field has, from the coarse nodes where it is deeper than the band. Nothing if that leads to no

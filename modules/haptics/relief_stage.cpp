@@ -44,8 +44,10 @@ void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
 }
 
 // By how much the relief itself has moved the VCP since the last tick, at most.
-void announceStep(Contact& contact, ContactMemory::Leaning& last, double height) noexcept {
-  const ContactMemory::Leaning now{true, height, contact.depth, contact.slope};
+void announceStep(Contact& contact, ContactMemory::Leaning& last, double height,
+                  const Vec3& slope) noexcept {
+  const ContactMemory::Leaning now{true, height, contact.depth,
+                                   contact.touching ? slope : Vec3(Vec3::Zero())};
   if (last.known)
     contact.relief_step +=
         std::abs(now.height - last.height) *
@@ -102,7 +104,7 @@ void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
                          ? Vec3::Zero()
                          : pulledBack(reliefs_->sampler(), contact, at.slope);
   lower(contact, shell_ - at.height, slope);
-  announceStep(contact, memory.relief, at.height);
+  announceStep(contact, memory.relief, at.height, slope);
 }
 
 RoughPattern roughPattern(const Vec3& p) noexcept {
@@ -152,7 +154,7 @@ void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexce
                              pattern.height * contact.roughness_gradient);
   }
   lower(contact, shell_ - height, slope);
-  announceStep(contact, memory.roughness, height);
+  announceStep(contact, memory.roughness, height, slope);
 }
 
 } // namespace patina

@@ -69,7 +69,7 @@ TEST(ContactCourse, ErrorFallsWithTheVoxel) {
   std::vector<double> log_voxel, log_error;
   for (const int resolution : {75, 150, 300}) {
     CourseReport all;
-    for (const char* name : {"L", "room", "groove", "torus"})
+    for (const char* name : {"box", "L", "room", "groove"})
       all.add(courseOn(contactScene(name), resolution, longer(2000)));
     const double voxel = contactField(contactScene("box"), 0, resolution)->grid.voxel;
     const double error = percentiles(all.error).p99;
@@ -150,7 +150,10 @@ std::vector<Vec3> recorded(const std::filesystem::path& path) {
 TEST(RecordedPath, IntoTheCornerOfAnL) {
   const auto mesh = sharedData("contact_paths/L.obj"), path = sharedData("contact_paths/Lpath.csv");
   PATINA_SKIP_WITHOUT(mesh);
-  const ContactScene scene{"L", {inMetres(readMesh(mesh), MeshUnit::mm).mesh}};
+  ContactScene scene{"L", {inMetres(readMesh(mesh), MeshUnit::mm).mesh}};
+  // The file's faces look inwards; the program turns them, the oracle takes them as they are.
+  if (ExactSurface(scene.meshes).distance(Vec3(1, 1, 1)) < 0)
+    for (auto& triangle : scene.meshes[0].triangles) std::swap(triangle[1], triangle[2]);
   for (const char* key : {"offset", "tip.radius"}) {
     const CourseReport report = along(scene, recorded(path), 2e-3, key);
     EXPECT_GT(report.contacts, 100);
