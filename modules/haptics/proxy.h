@@ -38,7 +38,8 @@ class ProxySearch {
   ProxySearch(const FieldSampler& sampler, double iso, double steepness = 1) noexcept
       : sampler_(&sampler), iso_(iso), per_steepness_(1 / steepness) {}
 
-  // In contact: x is the new tip, from the last; `ball` bounds how far c goes. Leaves proxy.c on
+  // In contact: x is the new tip, from the last (proxy.c where contact begins, and nothing pulls
+  // yet); `ball` bounds how far c goes. Leaves proxy.c on
   // the surface, or says that contact has ended.
   ProxyMove follow(const Vec3& x, const Vec3& from, double ball, Proxy& proxy) const noexcept;
 

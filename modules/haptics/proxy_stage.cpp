@@ -51,7 +51,7 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
     ball += (x - proxy.c).norm();
   }
   memory.reseat = false;
-  const ProxyMove move = search_.follow(x, from, ball, proxy);
+  const ProxyMove move = search_.follow(x, memory.in_contact ? from : proxy.c, ball, proxy);
   contact.samples += move.samples;
   if (!move.touching) {
     memory.leaveContact();
