@@ -212,9 +212,12 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     }
     c = height >= -kOnSurface ? c : anchor;
   }
-  // Of a move dc under the spring's mean force between the ticks.
+  // By a move of c under the mean depth, along the mean normal: nothing on an exact surface.
   const auto given = [&](const Vec3& to) {
-    return 0.5 * ((start - from) + (to - x)).dot(to - start);
+    const Vec3 before = start - from, after = to - x;
+    const double d0 = before.norm(), d1 = after.norm();
+    if (!(d0 > kOnSurface && d1 > kOnSurface)) return 0.0;
+    return 0.25 * (d0 + d1) * (1 / d0 * before + 1 / d1 * after).dot(to - start);
   };
   if (!smooth || proxy.lent + given(c) > kMostLent) {
     const double from_start = (start - x).squaredNorm();
