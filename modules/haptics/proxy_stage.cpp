@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kLongestTick = 0.05; // [s], of those that a proxy may run on its own
 constexpr double kUnlooked = 0.1;     // voxels of clearance that nobody needs to look at
+constexpr double kFarthest = 1e9;     // voxels
 constexpr double kNoDepth = 1e-9;     // voxels
 
 void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Contact& contact) {
@@ -32,7 +33,13 @@ ProxyStage::ProxyStage(std::shared_ptr<const SurfaceField> field, Sampler sample
 
 void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const Vec3 x = toGrid(contact.tip);
-  const Vec3 from = memory.has_last_tip ? toGrid(memory.last_tip) : x;
+  const Vec3 last = memory.has_last_tip ? toGrid(memory.last_tip) : x;
+  const Vec3 from = last.cwiseAbs().maxCoeff() < kFarthest ? last : x;
+  if (!(x.cwiseAbs().maxCoeff() < kFarthest)) { // no place at all: squares would overflow
+    memory.leaveContact();
+    memory.clearance = std::numeric_limits<double>::infinity();
+    return;
+  }
   Proxy& proxy = memory.proxy;
   double ball =
       (x - from).norm() + kSnapSpeed * per_voxel_ * std::clamp(contact.dt, 0.0, kLongestTick);

@@ -250,25 +250,6 @@ TEST(StabilityMap, WhereTheTipSlipsOffItIsAPlane) {
   EXPECT_NEAR(map.worst_ratio, limitWith(0) / 500, 0.02);
 }
 
-// Where the paper's ray turns the force of a plate round, wherever between its sides that is.
-TEST(StabilityMap, AJumpOfTheForceIsCountedAndNotDivided) {
-  Scene scene = bare(2.5e3);
-  scene.haptics.contact = HapticProperties::Contact::ray;
-  TriangleMesh mesh;
-  mesh.positions = {Vec3(1e-4, 2e-4, 1e-3)};
-  Progress progress;
-  std::size_t jumping = 0;
-  // Pressed by 0.4 mm into a plate of some 0.8 mm: past the middle in steps of 1/60 voxel, so that
-  // one of them has the turn within the differences.
-  for (double thickness = 0.76e-3; thickness < 0.84e-3; thickness += 3e-6) {
-    const StabilityMap map = stabilityMap(scene, plateField(thickness, 0.1e-3, 44), mesh, progress);
-    jumping += map.jumping;
-    EXPECT_EQ(map.jumping > 0, std::isnan(map.ratio[0]) && !std::isnan(map.least[0]));
-  }
-  EXPECT_GT(jumping, 0u);
-  EXPECT_LT(jumping, 20u);
-}
-
 TEST(StabilityMap, OfASphereIsTheSameEverywhere) {
   const TriangleMesh mesh = icosphere(0.03, 12);
   Progress progress;
