@@ -28,6 +28,7 @@ std::string describeStroke(const Stroke& stroke) {
 }
 
 std::string describeValues(const ValueEdit& edit) {
+  if (edit.values.empty()) return "no change"; // of keys that there were once
   std::string text;
   for (const auto& [key, value] : edit.values)
     text += (text.empty() ? "" : ", ") + (key + " = " + value);

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "workspace/journal_lines.h"
+#include "workspace/older_values.h"
 
 namespace patina {
 namespace {
@@ -39,6 +40,7 @@ ValueEdit valuesFrom(const Json& json) {
     if (both.size() != 2) throw Error("a value needs a key and a text");
     edit.values.emplace_back(both[0].asString(), both[1].asString());
   }
+  renewValues(edit.values); // a journal outlives versions, and none is ever changed
   return edit;
 }
 

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
+#include "workspace/older_values.h"
 
 namespace patina {
 namespace {
@@ -149,6 +150,7 @@ Manifest manifestFrom(const Json& json) {
   std::vector<std::pair<std::string, std::string>> list;
   for (const auto& [key, value] : json.at("values").asObject())
     list.emplace_back(key, textOf(value));
+  if (version < 3) renewValues(list);
   setValues(manifest.values, list);
   if (version >= 2) readHistory(json, manifest);
   return manifest;

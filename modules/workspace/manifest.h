@@ -13,7 +13,8 @@
 
 namespace patina {
 
-inline constexpr int kWorkspaceVersion = 2; // 1, without paint and history, is read too
+// Read too: 1, without paint and history; 2, whose contact was another (older_values.h).
+inline constexpr int kWorkspaceVersion = 3;
 inline constexpr const char* kManifestName = "workspace.json";
 
 struct ContentFile {

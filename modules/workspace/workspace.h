@@ -28,8 +28,8 @@ struct OpenedWorkspace {
   std::vector<std::string> notes; // what was found and mended, one line each
 };
 
-// workspace.json (version 2, relative paths, SHA-256 of each file): the scene as saved. Beside it
-// meshes/, paint/, states/ and journal-N.jsonl. Version 1, without history, is read too.
+// workspace.json (version 3, relative paths, SHA-256 of each file): the scene as saved. Beside it
+// meshes/, paint/, states/ and journal-N.jsonl. Versions 1, without history, and 2 are read too.
 // A torn last record is left out with a note. Throws FileError naming file, line and cause: unknown
 // version, wrong hash, a path that leaves the folder, a journal that is damaged, another
 // workspace's, or shorter than what was saved. With `recover` what can be read is kept and the rest
@@ -58,8 +58,9 @@ void saveWorkspace(const Scene& scene, const std::filesystem::path& folder);
 
 // The same with a journal of its own that holds `journal`, in place of any that is there: what a
 // history is written with into another folder. Its StoredSceneEdits name states that storeState()
-// has put there. One atomic step, too. The caller holds a FolderLock from before it stores the first
-// of them (the other two take it): another program's saving would remove what nothing names yet.
+// has put there. One atomic step, too. The caller holds a FolderLock from before it stores the
+// first of them (the other two take it): another program's saving would remove what nothing names
+// yet.
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const std::vector<JournalEvent>& journal, const std::filesystem::path& folder);
 

@@ -194,7 +194,7 @@ TEST_F(History, WrongHashesAndPathsThatLeaveTheFolderAreRefusedWithoutAChange) {
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
   };
-  tryWith(replaced("\"version\": 2", "\"version\": 77"), {"version", "77"});
+  tryWith(replaced("\"version\": 3", "\"version\": 77"), {"version", "77"});
   tryWith(replaced("meshes/", "../meshes/"), {"../meshes"});
   tryWith(replaced("\"sha256\": \"", "\"sha256\": \"0"), {"workspace.json"});
   writeFileAtomically(manifest, whole);

@@ -2,6 +2,7 @@
 // said.
 #include <chrono>
 
+#include "workspace/sha256.h"
 #include "workspace/workspace_support.h"
 
 namespace patina {
@@ -250,13 +251,13 @@ TEST_F(HistoryTest, AReplacedWorkspaceIsNotSavedOverByItsOldEditor) {
   EXPECT_TRUE(same(openWorkspace(folder).scene, sceneWithObjects(0.02)));
 }
 
-TEST_F(HistoryTest, VersionOneOpensAndBecomesVersionTwo) {
+TEST_F(HistoryTest, VersionOneOpensAndBecomesThePresentOne) {
   fs::remove_all(folder);
   const Scene scene = sceneWithObjects(0.05);
   saveWorkspace(scene, folder);
   // What version 1 wrote: no history, 8 digits in names.
   std::string text = readFile(json());
-  text.replace(text.find("\"version\": 2"), 12, "\"version\": 1");
+  text.replace(text.find("\"version\": 3"), 12, "\"version\": 1");
   text.resize(text.find(",\n  \"event\""));
   for (const auto& item : fs::directory_iterator(folder / "meshes")) {
     const std::string name = item.path().filename();
@@ -274,6 +275,36 @@ TEST_F(HistoryTest, VersionOneOpensAndBecomesVersionTwo) {
   saveWorkspace(found.scene, folder);
   EXPECT_TRUE(same(openWorkspace(folder).scene, scene));
   EXPECT_EQ(filesIn("meshes"), 2u);
+}
+
+// Version 2: contact had a potential in place of a proxy, and a side of its own that could be
+// switched off.
+TEST_F(HistoryTest, VersionTwoOpensWithTheContactOfToday) {
+  const auto asVersionTwo = [](std::string text) {
+    text.replace(text.find("\"version\": 3"), 12, "\"version\": 2");
+    const std::string_view key = "\"values\": {";
+    text.insert(text.find(key) + key.size(), R"("contact": "potential", "history": "off", )");
+    return text;
+  };
+  writeFileAtomically(json(), asVersionTwo(readFile(json())));
+  const std::string text = asVersionTwo(readFile(folder / state));
+  const std::string old_state = "states/2-" + sha256(text).substr(0, 16) + ".json";
+  writeFileAtomically(folder / old_state, text);
+  const OpenedWorkspace found = openWorkspace(folder);
+  EXPECT_TRUE(same(found.scene, later));
+  EXPECT_EQ(found.scene.haptics.contact, HapticProperties::Contact::proxy);
+  EXPECT_TRUE(same(loadState(folder, old_state), later));
+  saveWorkspace(found.scene, found.event, found.states, folder);
+  EXPECT_FALSE(says(readFile(json()), "potential"));
+  EXPECT_TRUE(same(openWorkspace(folder).scene, later));
+}
+
+TEST_F(HistoryTest, ThePresentVersionKnowsNoKeyOfAnOlderOne) {
+  std::string text = readFile(json());
+  const std::string_view key = "\"values\": {";
+  text.insert(text.find(key) + key.size(), R"("history": "off", )");
+  writeFileAtomically(json(), text);
+  EXPECT_TRUE(says(errorOfOpening(), "unknown key 'history'"));
 }
 
 class RecoverTest : public HistoryTest {

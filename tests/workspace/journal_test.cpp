@@ -37,6 +37,17 @@ TEST(Journal, EveryKindOfRecordComesBack) {
   EXPECT_EQ(journal.events, everyKind());
 }
 
+// A record's place in the history stays, whatever is left of it.
+TEST(Journal, ValuesOfOlderVersionsAreThoseOfToday) {
+  const JournalText journal = parseJournal(
+      textOf({ValueEdit{{{"history", "off"}, {"contact", "potential"}, {"stiffness", "700"}}},
+              ValueEdit{{{"history", "on"}}}, ValueEdit{{{"contact", "ray"}}}}));
+  EXPECT_TRUE(isWhole(journal)) << journal.damage;
+  const std::vector<JournalEvent> today{ValueEdit{{{"contact", "proxy"}, {"stiffness", "700"}}},
+                                        ValueEdit{}, ValueEdit{{{"contact", "ray"}}}};
+  EXPECT_EQ(journal.events, today);
+}
+
 TEST(Journal, CutAnywhereItsWholeRecordsRemain) {
   const std::string text = textOf(everyKind());
   for (std::size_t size = 0; size <= text.size(); ++size) {
