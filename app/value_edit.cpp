@@ -16,8 +16,7 @@ const std::string* find(const List& list, const std::string& key) {
 
 // Keys that values() leaves out where they have their usual value, and its word.
 std::string wordForAbsent(const std::string& key) {
-  static const std::map<std::string, std::string> kUsual = {{"contact", "ray"},
-                                                            {"history", "on"},
+  static const std::map<std::string, std::string> kUsual = {{"contact", "proxy"},
                                                             {"surface.sides", "one"},
                                                             {"merge.redistance", "off"},
                                                             {"relief.mode", "pulled"},

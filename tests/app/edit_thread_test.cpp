@@ -203,6 +203,7 @@ TEST(ValueEdits, TheDifferenceOfTwoScenesMakesOneOfTheOther) {
   scenes[6].material_form = ForceForm::literal;
   scenes[6].paint_size = 1024;
   scenes[7].haptics.tip_radius = 1.0 / 3e3;
+  scenes[7].field.sides = OpenSides::two;
   for (const Scene& before : scenes)
     for (const Scene& after : scenes) {
       const auto edit = valueEdit(before, after);
