@@ -214,10 +214,12 @@ TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
   const VolumeFill fill(surface);
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
-  int beyond = 0;
+  const TriangleTree tree(mesh);
+  const FieldGrid& grid = surface->field->grid;
+  int beyond = 0, unknown = 0;
   for (int n = 0; n < 2000; ++n) {
     const Vec3 out = Vec3(normal(random), normal(random), normal(random)).normalized();
-    const Vec3 askew = 2e-3 * Vec3(normal(random), normal(random), normal(random));
+    const Vec3 askew = 1e-3 * Vec3(normal(random), normal(random), normal(random)).cross(out);
     const Vec3 tip = 0.047 * out + askew;
     // The VCP of a field lies a little beside the faces, on either side.
     const Vec3 vcp = 0.0499 * out + 2e-4 * normal(random) * out;
@@ -237,12 +239,22 @@ TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
     }
     ASSERT_GE(hit, 0) << n;
     const auto found = fill.pierced(tip, vcp);
-    ASSERT_TRUE(found) << n;
+    if (!found) { // the cell's nodes are all nearer to other faces
+      const Vec3 cell = grid.toGrid(vcp).array().floor();
+      for (int k = 0; k < 8; ++k)
+        EXPECT_NE(
+            tree.closestPoint(grid.toWorld(cell + Vec3(k & 1, k >> 1 & 1, k >> 2))).surface.face,
+            hit)
+            << n;
+      ++unknown;
+      continue;
+    }
     EXPECT_EQ(found->surface.face, hit) << n;
     EXPECT_LT((found->point - (tip + at * way)).norm(), 1e-12);
     EXPECT_LT((position(mesh, found->surface) - found->point).norm(), 1e-12);
     beyond += at > 1;
   }
+  EXPECT_LT(unknown, 20);
   EXPECT_GT(beyond, 200); // the way was taken farther
   EXPECT_LT(beyond, 1800);
 }
@@ -253,7 +265,7 @@ TEST(VolumeFill, ASegmentThatGoesThroughNothingPicksNothing) {
   const Vec3 top(0, 0, 0.05);
   const double h = surface->field->grid.voxel;
   EXPECT_FALSE(fill.pierced(top, top));                                    // no way at all
-  EXPECT_FALSE(fill.pierced(0.9 * top, 0.92 * top));                       // ends 2 h short of it
+  EXPECT_FALSE(fill.pierced(0.8 * top, top - Vec3(0, 0, 2.1 * h)));        // ends 2.1 h short of it
   EXPECT_TRUE(fill.pierced(top - Vec3(0, 0, 3 * h), top - Vec3(0, 0, h))); // and here it does not
   EXPECT_FALSE(fill.pierced(Vec3(1, 0, 0), Vec3(1, 0, 0.1)));              // outside the field
   EXPECT_FALSE(fill.pierced(top + Vec3(0, 0, h), top + Vec3(h, 0, h)));    // along it
