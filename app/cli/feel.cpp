@@ -71,7 +71,7 @@ int runFeel(const FeelOptions& options, Console& console) {
       {"largest force", rounded(max_force) + " N"},
       {"largest depth", formatLength(max_depth)}};
   if (deep_ticks)
-    rows.emplace_back("deep", formatCount(deep_ticks) + " ticks deeper than the band");
+    rows.emplace_back("deep", formatCount(deep_ticks) + " ticks found contact from inside");
   if (faults) rows.emplace_back("faults", formatCount(faults) + " ticks faded by a force jump");
   const TextRows field = fieldRows(*compiled->built.field, compiled->built.report);
   rows.insert(rows.end(), field.begin(), field.end());
@@ -97,9 +97,8 @@ Command feelCommand() {
       "and the time of the step. The path has the columns t [s],x [m],y [m],z [m], its times "
       "increasing; the time between two rows is the tick.\n"
       "JSON: ticks, stages, step_ns (p50, p99, p999, max, and timer: what reading the clock adds), "
-      "contact_ticks, deep_ticks, fault_ticks, bad_tips (NaN or infinite), max_force [N], "
-      "max_depth [m], field (as patina "
-      "field).";
+      "contact_ticks, deep_ticks (found contact from inside, not by the way in), fault_ticks, "
+      "bad_tips (NaN or infinite), max_force [N], max_depth [m], field (as patina field).";
   command.examples = {"patina feel bunny.ply --path tip.csv -o forces.csv --stiffness 800",
                       "patina feel workspace --path tip.csv -o forces.csv --tip-radius 1mm --json"};
   command.input("MESH", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);

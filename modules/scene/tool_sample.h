@@ -21,7 +21,7 @@ struct ToolSample {
   std::int32_t face = -1;     // nearest face of `surface`
   bool contact = false;
   bool attracted = false;    // out of contact, pulled by a magnet
-  bool deep = false;         // deeper than the band: coarse field or held VCP
+  bool deep = false;         // where contact is was found from inside, not by the way in
   bool fault = false;        // a jump faded the force to zero (F13)
   std::uint32_t step_ns = 0; // time inside tick()
   std::uint32_t late_ns = 0; // wake-up after its deadline

@@ -81,7 +81,6 @@ TEST(Help, FeelHasExactlyTheOptionsOfThisVersion) {
                                              "--magnet-strength",
                                              "--magnet-fades",
                                              "--contact",
-                                             "--history",
                                              "--tip-radius",
                                              "--force-limit",
                                              "--resolution",
