@@ -1,0 +1,138 @@
+// T-P5: a mass pressed into corners and grooves and onto edges, where contact has more than one
+// normal or hardly one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include "haptics/contact_fixture.h"
+#include "haptics/simulation.h"
+
+namespace patina {
+namespace {
+
+constexpr double kPress = 2, kPeriod = 1e-3; // [N], [s]
+
+// Free where every plane is behind: an inner corner of these outward normals at the origin.
+Field innerCorner(const std::vector<Vec3>& normals, double voxel = 0.4e-3) {
+  return cubeField(
+      [=](const Vec3& p) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Vec3& n : normals) least = std::min(least, n.dot(p));
+        return least;
+      },
+      voxel, 80);
+}
+
+struct Corner {
+  const char* name;
+  std::vector<Vec3> normals;
+};
+
+std::vector<Corner> corners() {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const auto groove = [](double half_angle) {
+    const double a = half_angle * std::numbers::pi / 180;
+    return std::vector<Vec3>{Vec3(std::cos(a), 0, std::sin(a)), Vec3(-std::cos(a), 0, std::sin(a))};
+  };
+  std::vector<Corner> all = {{"two planes", {Vec3::UnitX(), Vec3::UnitZ()}},
+                             {"three planes", {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}},
+                             {"groove of 60", groove(30)},
+                             {"groove of 30", groove(15)},
+                             {"groove of 140", groove(70)}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    Corner turned = all[i];
+    turned.name = "turned";
+    for (Vec3& n : turned.normals) n = turn * n;
+    all.push_back(turned);
+  }
+  return all;
+}
+
+SimulationSpec pressedInto(const Corner& corner, double device_damping) {
+  SimulationSpec spec;
+  Vec3 out = Vec3::Zero();
+  for (const Vec3& n : corner.normals) out += n;
+  spec.inward = -out.normalized();
+  spec.press = kPress;
+  spec.depth = -2e-3;
+  spec.device.damping = device_damping;
+  spec.seconds = 24; // at 300 N/m it calms down within 1.3 s
+  return spec;
+}
+
+Scene unlimited(double stiffness) {
+  Scene scene = sceneOf(stiffness);
+  scene.haptics.force_limit = std::numeric_limits<double>::infinity();
+  return scene;
+}
+
+void expectRest(const SimulationReport& run, const std::string& what, double deepest) {
+  EXPECT_LE(run.rms_velocity, 1e-6) << what;
+  EXPECT_TRUE(run.touches_late) << what;
+  EXPECT_EQ(run.fault_ticks, 0U) << what;
+  EXPECT_LE(run.max_depth, deepest) << what;
+}
+
+TEST(CornerLoop, RestsInEveryCornerOnADeviceWithTwiceTheDampingThatAPlaneNeeds) {
+  for (const Corner& corner : corners()) {
+    const Field field = innerCorner(corner.normals);
+    for (const double stiffness : {300.0, 700.0, 2000.0}) {
+      const SimulationSpec spec = pressedInto(corner, stiffness * kPeriod);
+      Progress progress;
+      const SimulationReport run =
+          simulate(*compileStages(unlimited(stiffness), field), spec, progress);
+      expectRest(run, corner.name + (" at " + std::to_string(stiffness)), 6 * kPress / stiffness);
+    }
+  }
+}
+
+TEST(CornerLoop, RestsAtAnyStiffnessWithTheAutomaticStabiliser) {
+  for (const Corner& corner : corners()) {
+    const Field field = innerCorner(corner.normals);
+    for (const double stiffness : {1e3, 1e5, 1e7}) {
+      Scene scene = unlimited(stiffness);
+      scene.device_model = DeviceModel{};
+      const SimulationSpec spec = pressedInto(corner, scene.device_model->damping);
+      Progress progress;
+      const SimulationReport run = simulate(*compileStages(scene, field), spec, progress);
+      expectRest(run, corner.name + (" at " + std::to_string(stiffness)), 20e-3);
+    }
+  }
+}
+
+// On a small ball and on an edge the tip stands only by friction (the frictionless equilibrium is
+// unstable: K d / (r - d) against nothing). Without it, it leaves, bounded and without a fault.
+TEST(CornerLoop, StandsOnASmallBallAndOnAnEdgeByFrictionAlone) {
+  const double r = 2e-3, stiffness = 1000, press = 0.15 * stiffness * r;
+  const Field ball = cubeField([=](const Vec3& p) { return p.norm() - r; }, 0.1e-3, 64);
+  const Vec3 half = Vec3::Constant(8e-3);
+  const Field block = cubeField([=](const Vec3& p) { return boxDistance(p, half); }, 0.25e-3, 96);
+  for (const bool on_ball : {true, false})
+    for (const bool rough : {true, false}) {
+      Scene scene = unlimited(stiffness);
+      scene.device_model = DeviceModel{};
+      if (rough) scene = withFriction(scene, 0.5, 0.4);
+      scene.haptics.force_limit = std::numeric_limits<double>::infinity();
+      SimulationSpec spec;
+      spec.press = press;
+      spec.depth = -0.2e-3;
+      spec.inward = on_ball ? Vec3(0.02, 0.01, -1).normalized() : Vec3(0.01, -1, -1).normalized();
+      spec.surface = on_ball ? Vec3(0, 0, r) : Vec3(0, half.y(), half.z());
+      Progress progress;
+      const SimulationReport run =
+          simulate(*compileStages(scene, on_ball ? ball : block), spec, progress);
+      std::printf("%s %s: rms %.2g m/s, touches %d, depth %.3g mm, faults %lu\n",
+                  on_ball ? "ball" : "edge", rough ? "rough" : "smooth", run.rms_velocity,
+                  run.touches_late, 1e3 * run.max_depth, run.fault_ticks);
+      EXPECT_EQ(run.fault_ticks, 0U);
+      EXPECT_LE(run.max_force, 10 * press);
+      EXPECT_LE(run.rms_velocity, rough ? 1e-6 : 10) << on_ball;
+    }
+}
+
+} // namespace
+} // namespace patina
