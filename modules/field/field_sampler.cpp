@@ -117,7 +117,7 @@ GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
   return sample;
 }
 
-SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q) const noexcept {
+SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own) const noexcept {
   SurfaceSample sample;
   Cell cell;
   if (!findCell(q, cell)) [[unlikely]] {
@@ -132,8 +132,8 @@ SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q) const noexcept {
   const float squared =
       value.sum[1] * value.sum[1] + value.sum[2] * value.sum[2] + value.sum[3] * value.sum[3];
   sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
-  if (std::abs(squared - 1) > kAgreed) [[unlikely]]
-    followCrease(cell, sample);
+  if (std::abs(squared - 1) > kAgreed || own > 0) [[unlikely]]
+    followCrease(cell, own, sample);
   return sample;
 }
 
@@ -163,7 +163,8 @@ float sumOf(Float4 value) {
 
 // The gradient's length alone does not tell: in a field with relief baked in it is not 1 on either
 // side.
-void FieldSampler::followCrease(const Cell& cell, SurfaceSample& sample) const noexcept {
+void FieldSampler::followCrease(const Cell& cell, double own,
+                                SurfaceSample& sample) const noexcept {
   const float fx = cell.fx, fy = cell.fy, fz = cell.fz, ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
   const Layer low = layerAt(cell.node), high = layerAt(cell.node + kLayer);
   const Float4 weight = {ex * ey, fx * ey, ex * fy, fx * fy};
@@ -172,11 +173,9 @@ void FieldSampler::followCrease(const Cell& cell, SurfaceSample& sample) const n
   const float squares = sumOf(weight * (ez * squares_low + fz * squares_high));
   if (!(squares > 0)) return;
   sample.spread = std::max(0.0, 1 - sample.gradient.squaredNorm() / static_cast<double>(squares));
-  const double share = std::clamp((sample.spread - kAgreed) / kCreaseWidth, 0.0, 1.0);
-  if (share == 0) {
-    sample.spread = 0;
-    return;
-  }
+  if (sample.spread < kAgreed) sample.spread = 0;
+  const double share = std::clamp((sample.spread - kAgreed) / kCreaseWidth, own, 1.0);
+  if (share == 0) return;
   Float4 v_low = low.phi, v_high = high.phi;
   Vec3 derivative = Vec3::Zero();
   if (sampler_ == Sampler::high) {

@@ -52,7 +52,8 @@ class FieldSampler {
   FieldSampler(const SurfaceField& field, Sampler sampler); // invalid_argument without samples
 
   GridSample atGrid(const Vec3& q) const noexcept; // q in grid coordinates
-  SurfaceSample surfaceAtGrid(const Vec3& q) const noexcept;
+  // own: share of the value's own derivative in the gradient also where the nodes agree, 0 .. 1.
+  SurfaceSample surfaceAtGrid(const Vec3& q, double own = 0) const noexcept;
   // Only the value, for root finding along a ray.
   double phiAtGrid(const Vec3& q) const noexcept;
   // In metres: phi [m].
@@ -78,7 +79,7 @@ class FieldSampler {
  private:
   struct Cell;
   bool findCell(const Vec3& q, Cell& cell) const noexcept;
-  void followCrease(const Cell& cell, SurfaceSample& sample) const noexcept;
+  void followCrease(const Cell& cell, double own, SurfaceSample& sample) const noexcept;
   GridSample beyondBand(const Vec3& q) const noexcept;
   GridSample deepSample(const Vec3& q) const noexcept;
   GridSample handOver(const Vec3& q, const GridSample& sample) const noexcept;

@@ -26,9 +26,9 @@ inline constexpr float kBeyondBand = 1e6f;
 
 // What the servo reads: one block look-up serves any point of its 8^3 cells. The 9^3 nodes are
 // those of the block and the first layer of its upper neighbours; each holds phi and the nodal
-// gradient (K04: central differences, one-sided beside a node beyond the band; dimensionless, |g|
-// about 1). Nodes beyond the band hold +-kBeyondBand and a zero gradient. Derived from the distance
-// layer.
+// gradient (K04: central differences; of its own side beside a crease, one-sided beside a node
+// beyond the band; dimensionless, |g| about 1). Nodes beyond the band hold +-kBeyondBand and a zero
+// gradient. Derived from the distance layer.
 struct alignas(16) SampleNode {
   float phi, gx, gy, gz;
 };

@@ -34,8 +34,8 @@ struct ContactMemory {
 
   bool slipping = false;            // until |p_s - c| < mu_d d
   Vec3 last_slipped = Vec3::Zero(); // c, a tick ago
-  Vec3 trail = Vec3::Zero();        // trails c closely over the surface: where it comes from
-  Vec3 last_slide = Vec3::Zero();   // from c to trail, a tick ago
+  Vec3 trail = Vec3::Zero();        // trails the tip closely over the surface: where it comes from
+  Vec3 last_slide = Vec3::Zero();   // from tip to trail, a tick ago
 
   bool attracted = false; // a magnet pulled
 

@@ -31,16 +31,14 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   }
   const Vec3& c = contact.candidate;
   if (!memory.has_stuck) {
-    memory.stuck = memory.trail = memory.last_slipped = c;
+    memory.stuck = memory.last_slipped = c;
+    memory.trail = contact.tip;
     memory.last_slide.setZero();
     memory.has_stuck = true;
     memory.slipping = false;
   }
   // What runs by itself does not slip: the stuck point goes with it.
-  if (contact.snap) {
-    memory.stuck += c - memory.last_slipped;
-    memory.trail += c - memory.last_slipped;
-  }
+  if (contact.snap) memory.stuck += c - memory.last_slipped;
   memory.last_slipped = c;
   const Vec3 against = slip_ == Friction::SlipDirection::displacement
                            ? againstMotion(contact, memory)
@@ -72,12 +70,12 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
 // while the trail is too short to say.
 Vec3 FrictionStage::againstMotion(const Contact& contact, ContactMemory& memory) const noexcept {
   const auto tangential = [&n = contact.normal](const Vec3& v) { return Vec3(v - v.dot(n) * n); };
-  const Vec3 behind = tangential(memory.trail - contact.candidate);
+  const Vec3 behind = tangential(memory.trail - contact.tip);
   const double length = behind.norm();
-  memory.trail = contact.candidate + behind;
+  memory.trail = contact.tip + behind;
   if (!(length > 0.5 * trail_)) return Vec3::Zero();
   const Vec3 direction = 1 / length * behind;
-  if (length > trail_) memory.trail = contact.candidate + trail_ * direction;
+  if (length > trail_) memory.trail = contact.tip + trail_ * direction;
 
   const Vec3 before = tangential(memory.last_slide);
   memory.last_slide = behind;

@@ -8,12 +8,10 @@
 
 namespace patina {
 
-// Follows a ContactStage whose iso-value is tip radius + offset, which gives magnitude and
-// direction: of a distance, the gradient at the tip is the direction from the closest point of the
-// original to the tip, also round an edge, where the normal that the field has at that point itself
-// is a blend of both faces' and would do work round a loop (T-ENER). This stage finds the closest
-// point, for what is seen and for properties: Contact::surface, brought onto phi = 0 by one Newton
-// step, lies there within O(h^2).
+// Follows a contact stage whose iso-value is tip radius + offset, which gives magnitude and
+// direction: the contact point keeps this distance from the model, also round an edge and in a
+// corner. This stage finds the closest point of the model itself, for what is seen and for
+// properties: Contact::surface, brought onto phi = 0 by one Newton step, lies there within O(h^2).
 class OffsetStage final : public ForceStage {
  public:
   OffsetStage(std::shared_ptr<const SurfaceField> field, Sampler sampler);

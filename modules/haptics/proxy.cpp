@@ -16,12 +16,13 @@ constexpr double kFlat = 0.2, kLeastSlope = 0.3;
 constexpr double kMostTrust = 2;
 constexpr double kTrust = 1; // how far a wall is believed from where the VCP is feasible
 constexpr double kSameWall = 0.97;
+constexpr double kTurnOfAWall = 0.06; // squared, of normals with that cosine
 constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
-constexpr double kMostLent = 2e-3; // voxels^2
-constexpr int kMostLooks = 8, kMostTightenings = 3, kMostShortenings = 4;
+constexpr double kMostLent = 8e-3, kForgotten = 0.99; // voxels^2, and what is left a tick later
+constexpr int kMostSlides = 3, kMostLooks = 8, kMostTightenings = 3, kMostShortenings = 4;
 constexpr double kLeastStep = 1.0 / 16;
 constexpr double kSeated = 1e-4, kGrazing = 0.02;
 constexpr int kMostMarch = 128, kMostSeek = 24;
@@ -41,8 +42,9 @@ struct ProxySearch::Aim {
   bool by_ball = false, by_trust = false;
 };
 
-ProxySearch::Seen ProxySearch::look(const Vec3& q) const noexcept {
-  const SurfaceSample sample = sampler_->surfaceAtGrid(q);
+ProxySearch::Seen ProxySearch::look(const Vec3& q, double own) const noexcept {
+  const SurfaceSample sample =
+      sampler_->surfaceAtGrid(q, sampler_->sampler() == Sampler::high ? own : 0);
   Seen seen;
   seen.height = sample.phi - iso_;
   seen.known = sample.region == FieldRegion::band;
@@ -53,6 +55,16 @@ ProxySearch::Seen ProxySearch::look(const Vec3& q) const noexcept {
 }
 
 namespace {
+
+// On a smooth surface blended normals are the more exact ones, but not those of the level set, so
+// that a move of c may give work: the mean depth times how far it went along the mean normal, which
+// is nothing on an exact surface. What it gave of late turns the normals to the level set's own.
+void lend(Proxy& proxy, double given) noexcept {
+  proxy.lent = std::max(0.0, kForgotten * proxy.lent + given);
+}
+double ownShare(const Proxy& proxy) noexcept {
+  return std::min(1.0, proxy.lent / kMostLent);
+}
 
 // A bounded move is the projection of a point nearer to the middle: cutting the way short instead
 // would leave the walls.
@@ -104,9 +116,51 @@ ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec
   return aim;
 }
 
+// The usual tick: one wall, smooth, and nearly where it was predicted. False: nothing was changed.
+bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy,
+                        ProxyMove& move) const noexcept {
+  const WallPlane& before = proxy.walls[0];
+  const Vec3& start = proxy.c;
+  const double most = std::min(ball, kTrust), own = ownShare(proxy);
+  WallPlane wall = before;
+  double load = -wall.height(x);
+  Vec3 c = x + load * wall.normal;
+  for (int looks = 0; looks < kMostSlides; ++looks) {
+    if (!(load > kOnSurface && (c - start).squaredNorm() < most * most)) return false;
+    const Vec3 z = c;
+    const Seen seen = look(z, own);
+    ++move.samples;
+    const double turned = (wall.normal - seen.normal).squaredNorm();
+    if (!seen.smooth || !seen.known || !(std::abs(seen.height) < kSmoothStep) ||
+        !(turned < kTurnOfAWall))
+      return false;
+    const double since = std::max((wall.seen - z).squaredNorm(), 1e-4);
+    wall = {seen.normal, seen.normal.dot(z) - seen.height / std::max(seen.slope, kLeastSlope), z};
+    load = -wall.height(x);
+    c = x + load * wall.normal;
+    const double step = (c - z).squaredNorm();
+    // What the step leaves undone is the share of it by which the surface turns under the depth.
+    const bool settled = step < kRestError * kRestError ||
+                         (step < kSmoothStep * kSmoothStep && load * load * turned < since &&
+                          load * load * turned * step < kRestError * kRestError * since);
+    if (!settled) continue;
+    if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
+    lend(proxy, 0.25 * (before.normal.dot(start - from) + load) *
+                    (before.normal + wall.normal).dot(c - start));
+    proxy.c = c;
+    proxy.walls[0] = wall;
+    move.touching = move.smooth = true;
+    move.held.count = 1;
+    move.held.load[0] = load;
+    return true;
+  }
+  return false;
+}
+
 ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
                               Proxy& proxy) const noexcept {
   ProxyMove move;
+  if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move)) return move;
   Walls& walls = proxy.walls;
   Vec3 start = proxy.c, anchor = proxy.c;
   double anchor_height = 0, trust = kTrust;
@@ -135,7 +189,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
       may_end = false;
     }
     const Vec3 z = aim.to.z;
-    const Seen seen = look(z);
+    const Seen seen = look(z, ownShare(proxy));
     ++move.samples;
     height = seen.height;
     c = z;
@@ -212,21 +266,14 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     }
     c = height >= -kOnSurface ? c : anchor;
   }
-  // By a move of c under the mean depth, along the mean normal: nothing on an exact surface.
-  const auto given = [&](const Vec3& to) {
-    const Vec3 before = start - from, after = to - x;
-    const double d0 = before.norm(), d1 = after.norm();
-    if (!(d0 > kOnSurface && d1 > kOnSurface)) return 0.0;
-    return 0.25 * (d0 + d1) * (1 / d0 * before + 1 / d1 * after).dot(to - start);
-  };
-  if (!smooth || proxy.lent + given(c) > kMostLent) {
+  if (!smooth) {
     const double from_start = (start - x).squaredNorm();
     if ((c - x).squaredNorm() > from_start)
       c = (anchor - x).squaredNorm() <= from_start ? anchor : start;
-    if (smooth && given(c) > 0) c = start;
+  } else if (const double d0 = (start - from).norm(), d1 = (c - x).norm();
+             d0 > kOnSurface && d1 > kOnSurface) {
+    lend(proxy, 0.25 * (d0 + d1) * (1 / d0 * (start - from) + 1 / d1 * (c - x)).dot(c - start));
   }
-  proxy.lent = std::max(0.0, proxy.lent + given(c));
-
   for (int i = walls.count - 1; i >= 0; --i)
     if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);
   proxy.c = c;

@@ -14,7 +14,7 @@ namespace patina {
 struct Proxy {
   Vec3 c = Vec3::Zero();
   Walls walls;
-  double lent = 0; // work that moves of c have given so far, over the stiffness [voxel^2]
+  double lent = 0; // work that moves of c gave of late, over the stiffness [voxel^2]
 };
 
 struct ProxyMove {
@@ -22,6 +22,7 @@ struct ProxyMove {
   bool snap = false; // the VCP ran by itself, as far as it may in a tick: past the axis of a limb
   int samples = 0;
   double clearance = 0; // phi - iso at x, out of contact
+  bool smooth = false;  // held by one wall, from which c is perpendicular to the tip
   WallProjection held;  // by which of the proxy's walls, and how hard
 };
 
@@ -29,9 +30,8 @@ struct ProxyMove {
 // surface's neighbourhood is read, whatever the depth of x.
 //
 // No shape creates energy (P11): about creases, where c depends on the way, |c - x| never grows by
-// a move of c. On a smooth surface c is that of x whatever came before, and the sampled normals
-// give and take a little; what they have given is kept count of, and beyond a bound they give no
-// more.
+// a move of c; on a smooth surface c is that of x whatever came before, and what the sampled
+// normals give is kept count of and taken back out of them.
 class ProxySearch {
  public:
   // steepness: how much faster than the distance to the surface phi may fall, >= 1.
@@ -63,7 +63,9 @@ class ProxySearch {
  private:
   struct Aim;
   struct Seen;
-  Seen look(const Vec3& q) const noexcept;
+  Seen look(const Vec3& q, double own = 0) const noexcept;
+  bool slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy,
+             ProxyMove& move) const noexcept;
   bool isFree(const Vec3& from, double height_from, const Vec3& to, double height_to,
               int& samples) const noexcept;
   Aim aimAt(const Vec3& x, const Walls& walls, const Vec3& start, double ball, const Vec3& anchor,

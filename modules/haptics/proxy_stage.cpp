@@ -12,6 +12,10 @@ constexpr double kUnlooked = 0.1;     // voxels of clearance that nobody needs t
 constexpr double kFarthest = 1e9;     // voxels
 constexpr double kNoDepth = 1e-9;     // voxels
 
+double sideOf(const FieldGrid& grid) {
+  return grid.voxel * (*std::max_element(grid.nodes.begin(), grid.nodes.end()) - 1);
+}
+
 void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Contact& contact) {
   contact.walls = held.count;
   for (int i = 0; i < held.count; ++i) {
@@ -29,7 +33,7 @@ ProxyStage::ProxyStage(std::shared_ptr<const SurfaceField> field, Sampler sample
     : field_(std::move(field)), sampler_(*field_, sampler),
       search_(sampler_, iso / field_->grid.voxel, steepness), voxel_(field_->grid.voxel),
       per_voxel_(1 / voxel_), iso_(iso * per_voxel_), steepness_(steepness),
-      per_steepness_(1 / steepness) {}
+      per_steepness_(1 / steepness), snap_speed_(kSnapSides * sideOf(field_->grid)) {}
 
 void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const Vec3 x = toGrid(contact.tip);
@@ -42,7 +46,7 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   }
   Proxy& proxy = memory.proxy;
   double ball =
-      (x - from).norm() + kSnapSpeed * per_voxel_ * std::clamp(contact.dt, 0.0, kLongestTick);
+      (x - from).norm() + snap_speed_ * per_voxel_ * std::clamp(contact.dt, 0.0, kLongestTick);
   if (memory.in_contact) {
     proxy.c = toGrid(memory.last_candidate);
     if (memory.reseat) proxy.walls.count = 0;
@@ -65,9 +69,22 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
     memory.clearance = per_steepness_ * move.clearance;
     return;
   }
+  contact.touching = true;
+  contact.candidate = sampler_.grid().origin + voxel_ * proxy.c;
+  contact.vcp = contact.candidate;
+  memory.in_contact = true;
+  memory.clearance = 0;
+  memory.last_candidate = contact.candidate;
+  if (move.smooth) {
+    contact.normal = proxy.walls[0].normal;
+    contact.depth = voxel_ * move.held.load[0];
+    contact.wall[0] = {contact.normal, contact.depth};
+    contact.walls = 1;
+    contact.surface = contact.candidate - iso_ * voxel_ * contact.normal;
+    return;
+  }
   const Vec3 out = proxy.c - x;
   const double depth = out.norm();
-  contact.touching = true;
   contact.snap = move.snap;
   contact.depth = voxel_ * depth;
   if (depth > kNoDepth) contact.normal = 1 / depth * out;
@@ -78,12 +95,7 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   } else if (contact.normal.isZero(0)) {
     contact.normal = contact.wall[0].normal;
   }
-  contact.candidate = sampler_.grid().origin + voxel_ * proxy.c;
-  contact.vcp = contact.candidate;
   contact.surface = contact.candidate - iso_ * voxel_ * contact.wall[0].normal;
-  memory.in_contact = true;
-  memory.clearance = 0;
-  memory.last_candidate = contact.candidate;
 }
 
 // Whether the tip has come into contact, and where.

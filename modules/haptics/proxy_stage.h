@@ -8,9 +8,10 @@
 
 namespace patina {
 
-// How fast the contact point may run while the tip stands still, as it does past the axis of a limb
-// [m/s]. With it a tick changes the spring's force by 2 K |dx| + K kSnapSpeed dt at most (P12).
-inline constexpr double kSnapSpeed = 0.1;
+// How fast the contact point may run while the tip stands still, as it does past the axis of a
+// limb: grid sides a second, 0.1 m/s on an object of 100 mm. With it a tick changes the spring's
+// force by 2 K |dx| + K v_s dt at most (P12).
+inline constexpr double kSnapSides = 0.9;
 
 // Sets touching, snap, normal, candidate, vcp (= candidate), depth, surface and walls.
 //
@@ -40,6 +41,7 @@ class ProxyStage final : public ForceStage {
   double per_voxel_; // [1/m]: a product is quicker than grid().toGrid()'s division
   double iso_;       // voxels
   double steepness_, per_steepness_;
+  double snap_speed_; // [m/s]
 };
 
 } // namespace patina

@@ -12,7 +12,7 @@ namespace patina {
 // Sets touching, normal, candidate, vcp (= candidate), depth and surface from the tip alone. Past
 // the middle of a part the force turns round (T-K12b); across creases the ray may miss the surface,
 // and loops may do work: ProxyStage does neither. Where the direction has no length the last one
-// holds; a ray that finds no surface takes one Newton step (F9). Deeper than the band the direction
+// holds; a ray that finds no surface takes the distance (F9). Deeper than the band the direction
 // is that of the coarse nodes.
 class RayStage final : public ForceStage {
  public:
