@@ -13,6 +13,13 @@ namespace {
 constexpr double kRadius = 0.05;    // [m]
 constexpr double kTipRadius = 0.02; // of it
 
+using Method = HapticProperties::Contact;
+constexpr Method kMethods[] = {Method::proxy, Method::ray};
+
+std::string nameOf(Method method) {
+  return method == Method::proxy ? "proxy" : "ray";
+}
+
 struct Surface {
   std::string name; // "analytic" or the number of triangles
   std::shared_ptr<const SurfaceField> field;
@@ -28,7 +35,8 @@ WorkPrecisionRow rowOf(const Surface& surface, const ContactTestSpec& spec, int 
   const ContactTestErrors errors = contactTestErrors(*snapshot, test);
   const ContactTestTiming timing = contactTestTiming(*snapshot, test, repeats);
   WorkPrecisionRow row;
-  row.knobs = {{"surface", surface.name},
+  row.knobs = {{"contact", nameOf(spec.contact)},
+               {"surface", surface.name},
                {"sampler", std::string(name(spec.sampler))},
                {"tip radius [R]", spec.tip_radius}};
   row.error = errors.direction_mean;
@@ -47,10 +55,12 @@ WorkPrecisionRow rowOf(const Surface& surface, const ContactTestSpec& spec, int 
 
 WorkPrecisionTable frictionless(const std::vector<Surface>& surfaces, int repeats) {
   WorkPrecisionTable table = tableOf("Contact without friction: direction, mean and max", "deg");
-  for (const Surface& surface : surfaces)
-    for (const Sampler sampler : {Sampler::kim, Sampler::high})
-      for (const double tip : {0.0, kTipRadius})
-        table.rows.push_back(rowOf(surface, {.tip_radius = tip, .sampler = sampler}, repeats));
+  for (const Method method : kMethods)
+    for (const Surface& surface : surfaces)
+      for (const Sampler sampler : {Sampler::kim, Sampler::high})
+        for (const double tip : {0.0, kTipRadius})
+          table.rows.push_back(
+              rowOf(surface, {.tip_radius = tip, .sampler = sampler, .contact = method}, repeats));
   return table;
 }
 
@@ -58,14 +68,16 @@ WorkPrecisionTable withFriction(const std::vector<Surface>& surfaces, int repeat
   WorkPrecisionTable table =
       tableOf("Contact with friction 0.5 / 0.3: direction, mean and max", "deg");
   using Slip = Friction::SlipDirection;
-  for (const Surface& surface : surfaces)
-    for (const Slip slip : {Slip::paper, Slip::displacement})
-      for (const double tip : {0.0, kTipRadius}) {
-        WorkPrecisionRow row =
-            rowOf(surface, {.tip_radius = tip, .friction = true, .slip = slip}, repeats);
-        row.knobs.emplace_back("slip", slip == Slip::paper ? "paper" : "displacement");
-        table.rows.push_back(std::move(row));
-      }
+  for (const Method method : kMethods)
+    for (const Surface& surface : surfaces)
+      for (const Slip slip : {Slip::paper, Slip::displacement})
+        for (const double tip : {0.0, kTipRadius}) {
+          WorkPrecisionRow row =
+              rowOf(surface, {.tip_radius = tip, .friction = true, .slip = slip, .contact = method},
+                    repeats);
+          row.knobs.emplace_back("slip", slip == Slip::paper ? "paper" : "displacement");
+          table.rows.push_back(std::move(row));
+        }
   return table;
 }
 
@@ -77,9 +89,11 @@ WorkPrecisionTable cracks(int frequency, int repeats, Progress& progress) {
     progress.throwIfCancelled();
     const Surface surface{std::to_string(20 * frequency * frequency),
                           meshSphere(kRadius, frequency, crack, build)};
-    WorkPrecisionRow row = rowOf(surface, {}, repeats);
-    row.knobs.emplace_back("shrunk by", crack);
-    table.rows.push_back(std::move(row));
+    for (const Method method : kMethods) {
+      WorkPrecisionRow row = rowOf(surface, {.contact = method}, repeats);
+      row.knobs.emplace_back("shrunk by", crack);
+      table.rows.push_back(std::move(row));
+    }
   }
   return table;
 }
@@ -89,15 +103,15 @@ WorkPrecisionTable scales(int repeats) {
   WorkPrecisionTable table =
       tableOf("The same test from 0.05 to 10 m: force against R = 0.05 m, mean and max", "1");
   std::vector<Vec3> reference;
-  for (const double radius : {0.05, 0.2, 1.0, 10.0}) {
-    const ContactTestSpec spec{.radius = radius, .tip_radius = kTipRadius};
+  const auto add = [&](double radius, Method method) {
+    const ContactTestSpec spec{.radius = radius, .tip_radius = kTipRadius, .contact = method};
     const auto field = analyticSphere(radius);
     const auto snapshot = compileStages(contactTestScene(spec), field);
     const ContactTest test = makeContactTest(spec);
     const std::vector<Vec3> force = contactTestErrors(*snapshot, test).force;
     if (reference.empty()) reference = force;
     WorkPrecisionRow row;
-    row.knobs = {{"R [m]", radius}};
+    row.knobs = {{"contact", nameOf(method)}, {"R [m]", radius}};
     for (std::size_t i = 0; i < force.size(); ++i) {
       const double relative = (force[i] - reference[i]).norm() / reference[i].norm();
       row.error += relative / static_cast<double>(force.size());
@@ -106,53 +120,69 @@ WorkPrecisionTable scales(int repeats) {
     row.ns = contactTestTiming(*snapshot, test, repeats).p50;
     row.bytes = static_cast<double>(field->bytes());
     table.rows.push_back(std::move(row));
+  };
+  for (const Method method : kMethods) {
+    reference.clear();
+    for (const double radius : {0.05, 0.2, 1.0, 10.0}) add(radius, method);
   }
   return table;
 }
 
 // T-K06b: tips 1 to 4 mm deep in a sphere of 30 mm; the VCP against the nearest point.
+constexpr double kBall = 0.03; // [m]
+
+WorkPrecisionRow vcpRow(const std::shared_ptr<const SurfaceField>& field, Sampler sampler,
+                        Method method) {
+  Scene scene;
+  scene.sampler = sampler;
+  scene.haptics.contact = method;
+  const auto snapshot = compileStages(scene, field);
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> depth(1e-3, 4e-3);
+  const int count = 4000;
+  std::vector<Vec3> tips;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 n = Vec3(normal(random), normal(random), normal(random)).normalized();
+    tips.push_back((kBall - depth(random)) * n);
+  }
+  const auto touch = [&](const Vec3& tip) {
+    ContactMemory memory;
+    return tick(*snapshot, memory, tip, kContactTestPeriod);
+  };
+  WorkPrecisionRow row;
+  double samples = 0;
+  for (const Vec3& tip : tips) {
+    const Contact contact = touch(tip);
+    const double error = (contact.vcp - kBall * tip.normalized()).norm();
+    row.error += error * error / count;
+    row.error_max = std::max(row.error_max, error);
+    samples += contact.samples;
+  }
+  row.error = std::sqrt(row.error);
+  row.ns = nsPerQuery(tips, [&](const Vec3& tip) { return touch(tip).depth; });
+  row.bytes = static_cast<double>(field->bytes());
+  row.more = {{"field samples a tick", samples / count}};
+  return row;
+}
+
 WorkPrecisionTable vcpOrder(const std::vector<int>& resolutions, Progress& progress) {
   WorkPrecisionTable table =
-      tableOf("VCP on a sphere (T-K06b), rms and max; order 2 with kim", "m");
-  const double radius = 0.03;
+      tableOf("VCP on a sphere (T-K06b), rms and max; order 2 with kim and ray", "m");
   OrderFit order;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();
-    const auto field = analyticSphere(radius, resolution);
-    for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
-      Scene scene;
-      scene.sampler = sampler;
-      const auto snapshot = compileStages(scene, field);
-      std::mt19937 random(2);
-      std::normal_distribution<double> normal;
-      std::uniform_real_distribution<double> depth(1e-3, 4e-3);
-      WorkPrecisionRow row;
-      row.knobs = {{"resolution", resolution}, {"sampler", std::string(name(sampler))}};
-      const int count = 4000;
-      std::vector<Vec3> tips;
-      for (int i = 0; i < count; ++i) {
-        const Vec3 n = Vec3(normal(random), normal(random), normal(random)).normalized();
-        tips.push_back((radius - depth(random)) * n);
+    const auto field = analyticSphere(kBall, resolution);
+    for (const Method method : kMethods)
+      for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
+        WorkPrecisionRow row = vcpRow(field, sampler, method);
+        row.knobs = {{"resolution", resolution},
+                     {"contact", nameOf(method)},
+                     {"sampler", std::string(name(sampler))}};
+        if (method == Method::ray && sampler == Sampler::kim)
+          order.add(field->grid.voxel, row.error);
+        table.rows.push_back(std::move(row));
       }
-      const auto touch = [&](const Vec3& tip) {
-        ContactMemory memory;
-        return tick(*snapshot, memory, tip, kContactTestPeriod);
-      };
-      double samples = 0;
-      for (const Vec3& tip : tips) {
-        const Contact contact = touch(tip);
-        const double error = (contact.vcp - radius * tip.normalized()).norm();
-        row.error += error * error / count;
-        row.error_max = std::max(row.error_max, error);
-        samples += contact.samples;
-      }
-      row.error = std::sqrt(row.error);
-      row.ns = nsPerQuery(tips, [&](const Vec3& tip) { return touch(tip).depth; });
-      row.bytes = static_cast<double>(field->bytes());
-      row.more = {{"field samples a tick", samples / count}};
-      if (sampler == Sampler::kim) order.add(field->grid.voxel, row.error);
-      table.rows.push_back(std::move(row));
-    }
   }
   order.into(table, 2);
   return table;

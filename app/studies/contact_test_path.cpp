@@ -71,6 +71,7 @@ ContactTest makeContactTest(const ContactTestSpec& spec) {
 Scene contactTestScene(const ContactTestSpec& spec) {
   Scene scene;
   scene.sampler = spec.sampler;
+  scene.haptics.contact = spec.contact;
   scene.haptics.stiffness = 50 / spec.radius;
   if (spec.tip_radius > 0) scene.haptics.tip_radius = spec.tip_radius * spec.radius;
   if (spec.friction) {

@@ -22,6 +22,7 @@ struct ContactTestSpec {
   bool friction = false; // static 0.5, dynamic 0.3
   Friction::SlipDirection slip = Friction::SlipDirection::paper;
   Sampler sampler = Sampler::high;
+  HapticProperties::Contact contact = HapticProperties::Contact::proxy;
 };
 
 struct ContactTest {

@@ -18,6 +18,7 @@ constexpr double kStiffness = 1000;
 constexpr double kPeriod = 1e-3;
 constexpr double kReach = 4.2e-3; // [m]: the deepest point of the loops
 
+using Method = HapticProperties::Contact;
 WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
   return {"surfaces", title, unit, {}, std::nullopt, std::nullopt};
 }
@@ -71,49 +72,68 @@ const std::vector<Mode>& modes() {
 }
 
 // T-K12a, T-K13a: the whole force vector on a sphere, fresh tips.
-WorkPrecisionTable force(const Mode& mode, const std::vector<int>& resolutions, int tips,
-                         Progress& progress) {
-  WorkPrecisionTable table =
-      tableOf("Force of " + mode.name + " on a sphere, rms and max; order 2 with kim", "N");
+WorkPrecisionRow forceRow(const Mode& mode, const HapticSnapshot& snapshot, int tips) {
+  WorkPrecisionRow row;
+  std::vector<Vec3> points;
+  double magnitude = 0;
+  for (int i = 0; i < tips; ++i) {
+    const Vec3 n = spiral(i, tips, 2);
+    const double up = 0.5 + 0.5 * std::sin(0.013 * i);
+    const double above = mode.low + up * (mode.high - mode.low);
+    points.push_back((kRadius + above) * n);
+    const Vec3 felt = touch(snapshot, points.back()).force;
+    const double error = (felt - mode.force(above) * n).norm();
+    row.error += error * error / tips;
+    row.error_max = std::max(row.error_max, error);
+    magnitude = std::max(magnitude, std::abs(felt.norm() - std::abs(mode.force(above))));
+  }
+  row.error = std::sqrt(row.error);
+  row.ns = nsPerQuery(points, [&](const Vec3& tip) { return touch(snapshot, tip).depth; });
+  row.more = {{"magnitude max [N]", magnitude}};
+  return row;
+}
+
+// A row for each resolution, contact and sampler; the order is that of the paper's, ray and kim.
+template <class Row>
+void addRows(WorkPrecisionTable& table, const std::vector<int>& resolutions, Progress& progress,
+             const Row& rowOf) {
   OrderFit order;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();
     const auto field = sphereField(resolution);
-    for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
-      Scene scene;
-      scene.sampler = sampler;
-      scene.haptics.stiffness = kStiffness;
-      scene.haptics.force_limit = 100;
-      mode.set(scene.haptics);
-      const auto snapshot = compileStages(scene, field);
-      WorkPrecisionRow row;
-      row.knobs = {
-          {"mode", mode.name}, {"resolution", resolution}, {"sampler", std::string(name(sampler))}};
-      std::vector<Vec3> points;
-      double magnitude = 0;
-      for (int i = 0; i < tips; ++i) {
-        const Vec3 n = spiral(i, tips, 2);
-        const double up = 0.5 + 0.5 * std::sin(0.013 * i);
-        const double above = mode.low + up * (mode.high - mode.low);
-        points.push_back((kRadius + above) * n);
-        const Vec3 felt = touch(*snapshot, points.back()).force;
-        const double error = (felt - mode.force(above) * n).norm();
-        row.error += error * error / tips;
-        row.error_max = std::max(row.error_max, error);
-        magnitude = std::max(magnitude, std::abs(felt.norm() - std::abs(mode.force(above))));
+    for (const Method method : {Method::proxy, Method::ray}) {
+      for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
+        Scene scene;
+        scene.sampler = sampler;
+        scene.haptics.contact = method;
+        scene.haptics.stiffness = kStiffness;
+        scene.haptics.force_limit = 100;
+        WorkPrecisionRow row = rowOf(std::move(scene), field);
+        row.knobs = {{"contact", method == Method::proxy ? "proxy" : "ray"},
+                     {"resolution", resolution},
+                     {"sampler", std::string(name(sampler))}};
+        row.bytes = static_cast<double>(field->bytes());
+        if (method == Method::ray && sampler == Sampler::kim)
+          order.add(field->grid.voxel, row.error);
+        table.rows.push_back(std::move(row));
       }
-      row.error = std::sqrt(row.error);
-      row.ns = nsPerQuery(points, [&](const Vec3& tip) { return touch(*snapshot, tip).depth; });
-      row.bytes = static_cast<double>(field->bytes());
-      row.more = {{"magnitude max [N]", magnitude}};
-      if (sampler == Sampler::kim) order.add(field->grid.voxel, row.error);
-      table.rows.push_back(std::move(row));
     }
   }
   order.into(table, 2);
+}
+
+WorkPrecisionTable force(const Mode& mode, const std::vector<int>& resolutions, int tips,
+                         Progress& progress) {
+  WorkPrecisionTable table =
+      tableOf("Force of " + mode.name + " on a sphere, rms and max; order 2 with ray and kim", "N");
+  addRows(table, resolutions, progress, [&](Scene scene, const auto& field) {
+    mode.set(scene.haptics);
+    return forceRow(mode, *compileStages(scene, field), tips);
+  });
   return table;
 }
 
+// What the surface gives.
 double loopWork(const HapticSnapshot& snapshot, const Vec3& centre, const Vec3& u, const Vec3& v) {
   constexpr int kCount = 2000;
   constexpr double kLoop = 1.5e-3; // [m]
@@ -128,43 +148,34 @@ double loopWork(const HapticSnapshot& snapshot, const Vec3& centre, const Vec3& 
     last_force = force;
     last_tip = tip;
   }
-  return std::abs(work);
+  return work;
 }
 
 // T-ENER on a sphere: loops of 1.5 mm about a depth of 2.5 mm.
 WorkPrecisionTable energy(const std::vector<int>& resolutions, int loops, Progress& progress) {
-  WorkPrecisionTable table = tableOf(
-      "Work round closed loops (T-ENER), K = 1000 N/m, 2.5 mm deep, rms and max; order 2", "J");
-  OrderFit order;
-  for (const int resolution : resolutions) {
-    progress.throwIfCancelled();
-    const auto field = sphereField(resolution);
-    for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
-      Scene scene;
-      scene.sampler = sampler;
-      scene.haptics.stiffness = kStiffness;
-      scene.haptics.force_limit = 100;
-      const auto snapshot = compileStages(scene, field);
-      std::mt19937 random(7);
-      WorkPrecisionRow row;
-      row.knobs = {{"resolution", resolution}, {"sampler", std::string(name(sampler))}};
-      std::vector<Vec3> points;
-      for (int i = 0; i < loops; ++i) {
-        const Vec3 centre = (kRadius - 2.5e-3) * randomDirection(random);
-        const Vec3 u = randomDirection(random);
-        const double work = loopWork(*snapshot, centre, u, u.unitOrthogonal());
-        row.error += work * work / loops;
-        row.error_max = std::max(row.error_max, work);
-        points.push_back(centre);
-      }
-      row.error = std::sqrt(row.error);
-      row.ns = nsPerQuery(points, [&](const Vec3& tip) { return touch(*snapshot, tip).depth; });
-      row.bytes = static_cast<double>(field->bytes());
-      if (sampler == Sampler::kim) order.add(field->grid.voxel, row.error);
-      table.rows.push_back(std::move(row));
+  WorkPrecisionTable table = tableOf("Work round closed loops (T-ENER), K = 1000 N/m, 2.5 mm deep, "
+                                     "rms and max; order 2 with ray and kim",
+                                     "J");
+  addRows(table, resolutions, progress, [&](const Scene& scene, const auto& field) {
+    const auto snapshot = compileStages(scene, field);
+    std::mt19937 random(7);
+    WorkPrecisionRow row;
+    std::vector<Vec3> points;
+    double given = 0;
+    for (int i = 0; i < loops; ++i) {
+      const Vec3 centre = (kRadius - 2.5e-3) * randomDirection(random);
+      const Vec3 u = randomDirection(random);
+      const double work = loopWork(*snapshot, centre, u, u.unitOrthogonal());
+      row.error += work * work / loops;
+      row.error_max = std::max(row.error_max, std::abs(work));
+      given = std::max(given, work);
+      points.push_back(centre);
     }
-  }
-  order.into(table, 2);
+    row.error = std::sqrt(row.error);
+    row.ns = nsPerQuery(points, [&](const Vec3& tip) { return touch(*snapshot, tip).depth; });
+    row.more = {{"given at most [J]", given}};
+    return row;
+  });
   return table;
 }
 

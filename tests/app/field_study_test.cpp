@@ -47,7 +47,10 @@ TEST(FieldStudy, FittedOrdersAreThoseOfTheTheory) {
     const WorkPrecisionTable& direction = tableNamed("Direction on a " + shape);
     EXPECT_NEAR(more(rowOf(value, "trilinear derivative"), "order"), 2, 0.1);
     EXPECT_NEAR(more(rowOf(value, "kim"), "order"), 2, 0.1);
-    EXPECT_NEAR(more(rowOf(value, "high"), "order"), 3, 0.35);
+    // On the torus's coarse grid some nodal slopes are one-sided, on the fine one hardly any.
+    EXPECT_GT(more(rowOf(value, "high"), "order"), 2.65);
+    EXPECT_LT(more(rowOf(value, "high"), "order"), shape == "sphere" ? 3.35 : 4.7);
+    EXPECT_LT(rowOf(value, "high").error, 1.2 * rowOf(value, "quadratic spline").error);
     EXPECT_NEAR(more(rowOf(direction, "trilinear derivative"), "order"), 1, 0.1);
     EXPECT_GE(more(rowOf(direction, "kim"), "order"), 1.9);
     EXPECT_GE(more(rowOf(direction, "quadratic spline"), "order"), 1.9);
@@ -86,12 +89,13 @@ TEST(FieldStudy, EveryRowIsMeasuredInAllItsColumns) {
 }
 
 // Facets set a floor that falls with the triangles. The spline follows them more closely than
-// central differences do: why it is not `high` (docs/studies.md).
+// nodal slopes do, the more so the finer they are: why it is not `high` (docs/studies.md).
 TEST(FieldStudy, FacetsLimitEverySamplerOnAMesh) {
   const WorkPrecisionTable& table = tableNamed("Direction on a sphere of triangles");
   ASSERT_EQ(table.rows.size(), 8U);
   EXPECT_GT(table.rows[1].error, 2 * table.rows[5].error);
-  EXPECT_GT(table.rows[3].error, 1.5 * table.rows[2].error);
+  EXPECT_GT(table.rows[3].error, 1.1 * table.rows[2].error);
+  EXPECT_GT(table.rows[7].error, 2 * table.rows[6].error);
   EXPECT_GT(more(table.rows[2], "value rms [m]"), 5 * more(table.rows[6], "value rms [m]"));
 }
 

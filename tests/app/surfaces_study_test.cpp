@@ -47,6 +47,19 @@ TEST(SurfacesStudy, ForceAndLoopEnergyAreOfOrderTwo) {
   EXPECT_EQ(judged, 4);
 }
 
+// Of 3.1 mJ that are stored. The rows are the coarse field's, kim and high, and the fine one's.
+TEST(SurfacesStudy, TheProxyGivesNothingRoundALoop) {
+  const WorkPrecisionTable& energy = quickTables()[3];
+  ASSERT_EQ(energy.rows.size(), 8u);
+  const WorkPrecisionRow &coarse = energy.rows[1], &fine = energy.rows[5];
+  for (const std::size_t row : {0, 1, 4, 5}) {
+    ASSERT_EQ(energy.rows[row].knobs[0].second.asString(), "proxy");
+    EXPECT_LT(more(energy.rows[row], "given at most [J]"), 1e-4 * 3.1e-3) << row;
+  }
+  ASSERT_EQ(fine.knobs[2].second.asString(), "high");
+  EXPECT_LT(fine.error, coarse.error / 3.5); // what it takes is of order 2 at least, 7.9 measured
+}
+
 TEST(SurfacesStudy, RedistancingMakesTheDepthOfAnOverlapRight) {
   const WorkPrecisionTable& overlap = quickTables()[4];
   ASSERT_EQ(overlap.rows.size(), 2u);
