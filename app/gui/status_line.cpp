@@ -16,7 +16,7 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
     return made;
   };
   fault_ = label("fault");
-  fault_->setText(tr("force faded after a jump: it comes back"));
+  fault_->setText(tr("force faded: it comes back by itself"));
   fault_->setStyleSheet(QStringLiteral("background: #a12a1a; color: white;"));
   fault_->setToolTip(tr("The force would have jumped, so it was faded to zero. It comes back when "
                         "the tip has left the surface."));
