@@ -138,22 +138,21 @@ TEST_F(TouchPanels, DeviceNumbersAreThereForASimulatedDeviceAndMakeTheLoopSafe) 
   find<QDoubleSpinBox>("device_mass")->setValue(60);
   find<QDoubleSpinBox>("device_encoder")->setValue(30);
   emit window_->haptics().findChild<ValueRow*>(QStringLiteral("stiffness"))->edited(8000);
-  wait(300);
+  // 8000 N/m on a device of 0.5 N s/m at 1 kHz is past 2b/T: automatic switches the coupling on.
+  ASSERT_TRUE(waitUntil(
+      [&] { return window_->status().stabilisersText().startsWith(QStringLiteral("coupling ")); }));
   ASSERT_TRUE(scene().device_model.has_value());
   EXPECT_NEAR(scene().device_model->mass, 0.06, 1e-12);
   EXPECT_NEAR(scene().device_model->encoder_step, 30e-6, 1e-15);
-  // 8000 N/m on a device of 0.5 N s/m at 1 kHz is past 2b/T: automatic switches the coupling on.
-  EXPECT_TRUE(window_->status().stabilisersText().startsWith(QStringLiteral("coupling ")));
   EXPECT_TRUE(window_->status().stabilisersText().endsWith(QStringLiteral(" N/m")));
   EXPECT_FALSE(find<QLabel>("stabilisers")->toolTip().isEmpty());
   find<QComboBox>("stabiliser")->setCurrentIndex(1); // none
-  wait(150);
-  EXPECT_TRUE(window_->status().stabilisersText().isEmpty());
+  EXPECT_TRUE(waitUntil([&] { return window_->status().stabilisersText().isEmpty(); }));
   find<QComboBox>("stabiliser")->setCurrentIndex(3); // passivity
-  wait(150);
-  EXPECT_EQ(window_->status().stabilisersText(), QStringLiteral("passivity"));
+  EXPECT_TRUE(waitUntil(
+      [&] { return window_->status().stabilisersText() == QStringLiteral("passivity"); }));
   click("device_numbers");
-  EXPECT_FALSE(scene().device_model.has_value());
+  EXPECT_TRUE(waitUntil([&] { return !scene().device_model.has_value(); }));
 }
 
 TEST_F(TouchPanels, EnergyGoesInAsTheTipDoes) {
