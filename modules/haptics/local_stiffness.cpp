@@ -12,7 +12,7 @@ namespace patina {
 namespace {
 
 constexpr double kForce = 1;         // [N]
-constexpr double kStep = 0.02;       // voxels
+constexpr double kStep = 0.25;       // voxels
 constexpr double kMinGradient = 0.1; // K05
 constexpr double kStart = 0.5;       // voxels outside, where the way in begins
 // The contact point settles: in how many ticks, and to what step [voxels].

@@ -34,9 +34,9 @@ struct LocalStiffness {
 // in the servo. Left out are what depends on the path or on time: friction, damping, magnet,
 // stabilisers and force limit; stability_map.h adds what they contribute.
 //
-// The step is 1/50 voxel to either side. Field values carry the rounding of a float, 2e-7 voxels,
-// so that K is good to 1e-5 of itself; at 1/1000 voxel it would be 3e-4. Nearer to the surface than
-// two steps it is half the depth.
+// The step is 1/4 voxel to either side: shorter ones see the edges of facets, over which the contact
+// point hops, and longer ones less than the field tells. Nearer to the surface than two steps it is
+// half the depth.
 class StiffnessProbe {
  public:
   // Throws as compileStages(). `coupling` [N/m]: of the loop that the wall will stand in; the same
