@@ -79,8 +79,9 @@ TEST(BakedTexture, ATickCostsWhatItCostsWithoutIt) {
   // The curvature is a little less; 2051 and 2048 measured.
   EXPECT_NEAR(static_cast<double>(with.samples), static_cast<double>(without.samples),
               0.01 * static_cast<double>(without.samples));
-  if (test::kSanitized) GTEST_SKIP() << "times say nothing under a sanitizer";
-  EXPECT_NEAR(least_with / least_without, 1, kApart);
+  if (!test::kSanitized) {
+    EXPECT_NEAR(least_with / least_without, 1, kApart);
+  }
 }
 
 } // namespace

@@ -14,7 +14,7 @@
 #include "app/editor.h"
 #include "app/session.h"
 #include "geometry/shapes.h"
-#include "support/sanitized.h"
+#include "support/least_time.h"
 
 namespace patina {
 namespace {
@@ -75,8 +75,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(SmoothedDab, CostsThreeTimesOneWithoutSmoothingOnAnyImage) {
-  if (test::kSanitized) GTEST_SKIP() << "times say nothing under a sanitizer";
+PATINA_TIMED_TEST(SmoothedDab, CostsThreeTimesOneWithoutSmoothingOnAnyImage) {
   // All of the work on one thread, whose time it is.
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   for (const int size : {512, 2048})

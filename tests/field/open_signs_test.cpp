@@ -10,23 +10,17 @@
 #include "geometry/mesh_io.h"
 #include "geometry/shapes.h"
 #include "geometry/triangle_tree.h"
+#include "support/changed_mesh.h"
 #include "support/shared_data.h"
 
 namespace patina {
 namespace {
 
+using test::inverted;
+using test::moved;
+
 constexpr double kHalf = 0.05; // of the terrain's side
 constexpr double kSag = 0.1;   // voxels; more than the facets of any mesh below
-
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  for (Vec3& p : mesh.positions) p += by;
-  return mesh;
-}
-
-TriangleMesh inverted(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
 
 // Level at the rim, so that what lies beyond is told by x and y.
 double terrainHeight(double x, double y) {

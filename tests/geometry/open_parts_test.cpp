@@ -11,20 +11,14 @@
 #include "geometry/mesh_io.h"
 #include "geometry/shapes.h"
 #include "geometry/triangle_tree.h"
+#include "support/changed_mesh.h"
 #include "support/shared_data.h"
 
 namespace patina {
 namespace {
 
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  for (Vec3& p : mesh.positions) p += by;
-  return mesh;
-}
-
-TriangleMesh inverted(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
+using test::inverted;
+using test::moved;
 
 // A sphere without what lies above z = height.
 TriangleMesh bowl(double radius, double height) {
