@@ -15,7 +15,7 @@
 #include "geometry/shapes.h"
 #include "support/contact_course.h"
 #include "support/contact_scenes.h"
-#include "support/shared_data.h"
+#include "support/judged_scenes.h"
 
 namespace patina::test {
 namespace {
@@ -49,7 +49,7 @@ CourseReport courseOn(const ContactScene& scene, int resolution, long contacts) 
 
 TEST(ContactCourse, IsPassedOnEveryShape) {
   CourseReport all;
-  for (const ContactScene& scene : contactScenes()) {
+  for (const ContactScene& scene : judgedScenes()) {
     const CourseReport report = courseOn(scene, 150, longer(2000));
     expectFaultless(report, scene.name);
     all.add(report);
@@ -83,7 +83,7 @@ TEST(ContactCourse, ErrorFallsWithTheVoxel) {
 }
 
 TEST(ContactCourse, NoLoopGivesEnergy) {
-  for (const ContactScene& scene : contactScenes()) {
+  for (const ContactScene& scene : judgedScenes()) {
     const ExactSurface surface(scene.meshes);
     for (const double iso : scene.isos) {
       const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");

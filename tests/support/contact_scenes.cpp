@@ -12,11 +12,7 @@
 #include "field/build_field.h"
 #include "field/merge_fields.h"
 #include "field/models.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_report.h"
-#include "geometry/mesh_unit.h"
 #include "geometry/shapes.h"
-#include "support/shared_data.h"
 
 namespace patina::test {
 namespace {
@@ -53,63 +49,51 @@ ContactScene one(TriangleMesh mesh) {
   return {"", {std::move(mesh)}};
 }
 
-ContactScene fromFile(const std::filesystem::path& path, std::vector<double> isos) {
-  return {"", {inMetres(cleaned(readMesh(path)).mesh, MeshUnit::fit).mesh}, std::move(isos)};
-}
-
 const std::vector<std::pair<std::string, Maker>>& makers() {
-  static const std::vector<std::pair<std::string, Maker>> all = [] {
-    std::vector<std::pair<std::string, Maker>> list = {
-        {"box", [] { return one(box(Vec3(0.1, 0.08, 0.06))); }},
-        {"L", [] { return one(lSolid()); }},
-        {"room", [] { return one(roomSolid()); }},
-        {"wedge",
-         [] {
-           return one(prism({{-0.05, -0.03}, {0.05, -0.03}, {0.05, 0.04}}, 0.08));
-         }},
-        {"plate1", [] { return one(plateSolid(0.001)); }},
-        {"plate2", [] { return one(plateSolid(0.002)); }},
-        {"plate4", [] { return one(plateSolid(0.004)); }},
-        {"plate2t", [] { return one(tilted(plateSolid(0.002))); }},
-        {"plate4t", [] { return one(tilted(plateSolid(0.004))); }},
-        {"bar", [] { return one(prism(disc(0.004, 64), 0.1)); }},
-        {"groove",
-         [] {
-           return one(prism({{0, 0},
-                             {-0.02, 0.02},
-                             {-0.05, 0.02},
-                             {-0.05, -0.02},
-                             {0.05, -0.02},
-                             {0.05, 0.02},
-                             {0.02, 0.02}},
-                            0.1));
-         }},
-        {"dent", [] { return one(dent()); }},
-        {"spheres",
-         [] {
-           return ContactScene{"",
-                               {moved(icosphere(0.03, 24), Vec3(-0.02, 0, 0)),
-                                moved(icosphere(0.025, 24), Vec3(0.025, 0.003, 0.002))}};
-         }},
-        {"torus", [] { return one(torus(0.035, 0.015, 96, 48)); }},
-        {"dinosaur", [] { return one(dinosaur(100)); }},
-        // Sheets: nothing of them is left at iso 0.
-        {"galleon",
-         [] {
-           ContactScene scene = one(galleon(0.1));
-           scene.isos = {1e-3, 2e-3};
-           return scene;
-         }},
-        {"pottery", [] { return one(vase()); }},
-        {"rough", [] { return one(roughSolid(5)); }},
-    };
-    // Masts and hull of the boat are thinner than a voxel, too.
-    if (const auto path = sharedData("meshes/goathead.obj"); std::filesystem::exists(path))
-      list.emplace_back("goathead", [path] { return fromFile(path, {0, 1e-3, 2e-3}); });
-    if (const auto path = sharedData("meshes/boat.obj"); std::filesystem::exists(path))
-      list.emplace_back("boat", [path] { return fromFile(path, {1e-3, 2e-3}); });
-    return list;
-  }();
+  static const std::vector<std::pair<std::string, Maker>> all = {
+      {"box", [] { return one(box(Vec3(0.1, 0.08, 0.06))); }},
+      {"L", [] { return one(lSolid()); }},
+      {"room", [] { return one(roomSolid()); }},
+      {"wedge",
+       [] {
+         return one(prism({{-0.05, -0.03}, {0.05, -0.03}, {0.05, 0.04}}, 0.08));
+       }},
+      {"plate1", [] { return one(plateSolid(0.001)); }},
+      {"plate2", [] { return one(plateSolid(0.002)); }},
+      {"plate4", [] { return one(plateSolid(0.004)); }},
+      {"plate2t", [] { return one(tilted(plateSolid(0.002))); }},
+      {"plate4t", [] { return one(tilted(plateSolid(0.004))); }},
+      {"bar", [] { return one(prism(disc(0.004, 64), 0.1)); }},
+      {"groove",
+       [] {
+         return one(prism({{0, 0},
+                           {-0.02, 0.02},
+                           {-0.05, 0.02},
+                           {-0.05, -0.02},
+                           {0.05, -0.02},
+                           {0.05, 0.02},
+                           {0.02, 0.02}},
+                          0.1));
+       }},
+      {"dent", [] { return one(dent()); }},
+      {"spheres",
+       [] {
+         return ContactScene{"",
+                             {moved(icosphere(0.03, 24), Vec3(-0.02, 0, 0)),
+                              moved(icosphere(0.025, 24), Vec3(0.025, 0.003, 0.002))}};
+       }},
+      {"torus", [] { return one(torus(0.035, 0.015, 96, 48)); }},
+      {"dinosaur", [] { return one(dinosaur(100)); }},
+      // Sheets: nothing of them is left at iso 0.
+      {"galleon",
+       [] {
+         ContactScene scene = one(galleon(0.1));
+         scene.isos = {1e-3, 2e-3};
+         return scene;
+       }},
+      {"pottery", [] { return one(vase()); }},
+      {"rough", [] { return one(roughSolid(5)); }},
+  };
   return all;
 }
 

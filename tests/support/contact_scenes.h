@@ -1,7 +1,6 @@
 // The shapes on which every contact method is judged: about 100 mm long, all but one closed.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,7 +17,7 @@ struct ContactScene {
   std::vector<double> isos = {0, 1e-3, 2e-3}; // [m]; without 0 where parts have no thickness
 };
 
-// All of them; the shared meshes where they are present. The same at every call.
+// All of them. The same at every call.
 std::vector<ContactScene> contactScenes();
 ContactScene contactScene(const std::string& name); // throws invalid_argument naming those known
 std::vector<std::string> contactSceneNames();

@@ -10,7 +10,7 @@
 
 #include "core/percentiles.h"
 #include "support/contact_course.h"
-#include "support/contact_scenes.h"
+#include "support/judged_scenes.h"
 
 namespace patina::test {
 namespace {
@@ -71,9 +71,10 @@ void run(const Options& options) {
               "ns p50/99/99.9");
   CourseReport total;
   double created = 0;
-  for (const std::string& name : contactSceneNames()) {
-    if (!options.scene.empty() && options.scene != name) continue;
-    const ContactScene scene = contactScene(name);
+  bool known = options.scene.empty();
+  for (const ContactScene& scene : judgedScenes()) {
+    if (!options.scene.empty() && options.scene != scene.name) continue;
+    known = true;
     const ExactSurface surface(scene.meshes);
     for (const double iso : scene.isos) {
       if (options.iso >= 0 && std::abs(iso - options.iso) > 1e-9) continue;
@@ -83,12 +84,12 @@ void run(const Options& options) {
       const CourseReport report = runCourse(methodOf(*snapshot), surface, iso, options.ticks, seed);
       const LoopReport loops =
           runLoops(methodOf(*snapshot), surface, iso, options.loops, seed + 1000);
-      printRow(name, iso, report, loops.created);
+      printRow(scene.name, iso, report, loops.created);
       total.add(report);
       created = std::max(created, loops.created);
     }
   }
-  if (!options.scene.empty()) contactScene(options.scene); // throws if there is none
+  if (!known) contactScene(options.scene); // throws, naming those there are
   printRow("total", 0, total, created);
 }
 
