@@ -7,14 +7,14 @@
 
 #include <gtest/gtest.h>
 
+#include "app/studies/contact/course.h"
+#include "app/studies/contact/scenes.h"
 #include "core/csv.h"
 #include "core/percentiles.h"
 #include "field/models.h"
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_unit.h"
 #include "geometry/shapes.h"
-#include "support/contact_course.h"
-#include "support/contact_scenes.h"
 #include "support/judged_scenes.h"
 
 namespace patina::test {

@@ -1,9 +1,9 @@
 // The course judged: it finds nothing against the exact proxy and sees each fault that is put in.
 #include <gtest/gtest.h>
 
+#include "app/studies/contact/course.h"
+#include "app/studies/contact/scenes.h"
 #include "core/percentiles.h"
-#include "support/contact_course.h"
-#include "support/contact_scenes.h"
 
 namespace patina::test {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "app/studies/contact/oracle.h"
+#include "app/studies/contact/scenes.h"
 #include "geometry/mesh_report.h"
 #include "geometry/shapes.h"
 #include "geometry/winding_number.h"
-#include "support/contact_oracle.h"
-#include "support/contact_scenes.h"
 
 namespace patina::test {
 namespace {

@@ -7,7 +7,7 @@
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_report.h"
 #include "geometry/mesh_unit.h"
-#include "support/contact_scenes.h"
+#include "app/studies/contact/scenes.h"
 #include "support/shared_data.h"
 
 namespace patina::test {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "app/studies/contact/course.h"
 #include "core/percentiles.h"
-#include "support/contact_course.h"
 #include "support/judged_scenes.h"
 
 namespace patina::test {

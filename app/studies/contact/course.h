@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/studies/contact/oracle.h"
 #include "geometry/winding_number.h"
 #include "haptics/snapshot.h"
-#include "support/contact_oracle.h"
 
 namespace patina::test {
 

@@ -1,12 +1,12 @@
-// Where the course goes: see contact_course.h.
+// Where the course goes: see course.h.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 
+#include "app/studies/contact/course.h"
 #include "geometry/mesh_report.h"
-#include "support/contact_course.h"
 
 namespace patina::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "support/contact_oracle.h"
+#include "app/studies/contact/oracle.h"
 
 #include <algorithm>
 #include <array>

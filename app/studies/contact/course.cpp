@@ -1,4 +1,4 @@
-#include "support/contact_course.h"
+#include "app/studies/contact/course.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "support/contact_scenes.h"
+#include "app/studies/contact/scenes.h"
 
 namespace patina::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "support/contact_scenes.h"
+#include "app/studies/contact/scenes.h"
 
 #include <algorithm>
 #include <array>
