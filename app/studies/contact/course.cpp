@@ -9,7 +9,7 @@
 
 #include "app/studies/contact/scenes.h"
 
-namespace patina::test {
+namespace patina {
 namespace {
 
 constexpr double kDeepest = 8e-3; // [m]
@@ -187,4 +187,4 @@ LoopReport runLoops(const ContactMethod& method, const ExactSurface& surface, do
   return report;
 }
 
-} // namespace patina::test
+} // namespace patina

@@ -13,7 +13,7 @@
 #include "geometry/winding_number.h"
 #include "haptics/snapshot.h"
 
-namespace patina::test {
+namespace patina {
 
 inline constexpr double kOwnSpeed = 0.1; // v_s of P04 [m/s]: how fast c may run by itself
 inline constexpr double kTick = 1e-3;    // [s]
@@ -139,4 +139,4 @@ struct LoopReport {
 LoopReport runLoops(const ContactMethod& method, const ExactSurface& surface, double iso, int loops,
                     unsigned seed);
 
-} // namespace patina::test
+} // namespace patina

@@ -12,7 +12,7 @@
 #include "geometry/mesh_report.h"
 #include "geometry/triangle_tree.h"
 
-namespace patina::test {
+namespace patina {
 namespace {
 
 constexpr double kOnFeature = 1e-10; // barycentric coordinate that counts as zero
@@ -360,4 +360,4 @@ ProxyAnswer proxyOracle(const ExactSurface& surface, double iso, const Vec3& tip
   return answer;
 }
 
-} // namespace patina::test
+} // namespace patina

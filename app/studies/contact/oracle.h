@@ -8,7 +8,7 @@
 
 #include "geometry/triangle_mesh.h"
 
-namespace patina::test {
+namespace patina {
 
 // Exact signed distance of the union of meshes in the world frame. Immutable, any thread.
 class ExactSurface {
@@ -71,4 +71,4 @@ inline bool surelyInside(const ExactSurface& surface, double iso, double margin,
   return surface.distance(tip) < iso - margin;
 }
 
-} // namespace patina::test
+} // namespace patina

@@ -8,7 +8,7 @@
 #include "app/studies/contact/course.h"
 #include "geometry/mesh_report.h"
 
-namespace patina::test {
+namespace patina {
 namespace {
 
 constexpr double kAbove = 3e-3; // [m], where a touch begins
@@ -202,4 +202,4 @@ std::vector<Vec3> TouchPaths::loop(const Place& place) {
   return path;
 }
 
-} // namespace patina::test
+} // namespace patina

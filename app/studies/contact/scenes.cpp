@@ -14,7 +14,7 @@
 #include "field/models.h"
 #include "geometry/shapes.h"
 
-namespace patina::test {
+namespace patina {
 namespace {
 
 void addQuad(TriangleMesh& mesh, std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
@@ -281,4 +281,4 @@ std::shared_ptr<const HapticSnapshot> contactSnapshot(std::shared_ptr<const Surf
   return compileStages(scene, std::move(field));
 }
 
-} // namespace patina::test
+} // namespace patina

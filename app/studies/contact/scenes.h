@@ -9,7 +9,7 @@
 #include "geometry/triangle_mesh.h"
 #include "haptics/snapshot.h"
 
-namespace patina::test {
+namespace patina {
 
 struct ContactScene {
   std::string name;
@@ -53,4 +53,4 @@ std::shared_ptr<const SurfaceField> contactField(const ContactScene& scene, doub
 std::shared_ptr<const HapticSnapshot> contactSnapshot(std::shared_ptr<const SurfaceField> field,
                                                       double iso, const std::string& contact);
 
-} // namespace patina::test
+} // namespace patina
