@@ -93,6 +93,13 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
        }},
       {"pottery", [] { return one(vase()); }},
       {"rough", [] { return one(roughSolid(5)); }},
+      // Judged where its holes do not let the tip in, for the judge knows no inside of it.
+      {"scan",
+       [] {
+         ContactScene scene = one(scanSolid(5));
+         scene.isos = {1e-3, 2e-3};
+         return scene;
+       }},
   };
   return all;
 }
@@ -215,6 +222,19 @@ TriangleMesh roughSolid(unsigned seed) {
     p = 0.045 * bumps * p + 0.15 * edge * (jitter - jitter.dot(p) * p) +
         0.15e-3 * normal(random) * p;
   }
+  return mesh;
+}
+
+TriangleMesh scanSolid(unsigned seed) {
+  TriangleMesh mesh = roughSolid(seed);
+  std::vector<Triangle> left;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+    const double inradius =
+        (b - a).cross(c - a).norm() / ((b - a).norm() + (c - b).norm() + (a - c).norm());
+    if (f % 40 != 0 || inradius > 0.9e-3) left.push_back(mesh.triangles[f]);
+  }
+  mesh.triangles = std::move(left);
   return mesh;
 }
 

@@ -1,4 +1,4 @@
-// The shapes on which every contact method is judged: about 100 mm long, all but one closed.
+// The shapes on which every contact method is judged: about 100 mm long, most of them closed.
 #pragma once
 
 #include <functional>
@@ -38,6 +38,8 @@ TriangleMesh tilted(const TriangleMesh& mesh); // by 40 degrees about (1, 2, 3)
 TriangleMesh lSolid();                         // inner edge along y at x = z = 0
 TriangleMesh roomSolid();                      // inner corner at 0, free where x, y, z > 0
 TriangleMesh roughSolid(unsigned seed);        // as a scan leaves it: noise, uneven triangles
+// The same with holes of one triangle each, all too narrow for a tip of 1 mm radius.
+TriangleMesh scanSolid(unsigned seed);
 
 // Differs from scene to scene and iso to iso, so that no two of them walk the same paths.
 unsigned courseSeed(const ContactScene& scene, double iso, unsigned seed);
