@@ -135,6 +135,7 @@ Command studyCommand() {
        }});
   command.output("FOLDER", "Where to; made if it is missing.", options->output);
   command.flag("--quick", "Coarser and fewer: seconds instead of minutes.", options->study.quick);
+  command.flag("--thorough", "Ten times as many random touches: minutes.", options->study.thorough);
   command.run = [options](Console& console) { return runStudy(*options, console); };
   return command;
 }

@@ -165,10 +165,11 @@ ContactTestTiming contactTestTiming(const HapticSnapshot& snapshot, const Contac
   return timing;
 }
 
-std::shared_ptr<const SurfaceField> analyticSphere(double radius, int resolution) {
+std::shared_ptr<const SurfaceField> analyticSphere(double radius, int resolution, double band) {
   const Box3 box(Vec3::Constant(-radius), Vec3::Constant(radius));
   FieldSpec spec;
   spec.resolution = resolution;
+  spec.band = band;
   return withSamples(std::make_shared<SurfaceField>(sampleFunction(
       [radius](const Vec3& p) { return p.norm() - radius; }, gridAround(box, spec), spec.band)));
 }

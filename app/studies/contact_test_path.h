@@ -57,8 +57,9 @@ struct ContactTestTiming {
 ContactTestTiming contactTestTiming(const HapticSnapshot& snapshot, const ContactTest& test,
                                     int repeats);
 
-// The sphere's exact distance on the grid of the fixed test: 150 cells, band 8.
-std::shared_ptr<const SurfaceField> analyticSphere(double radius, int resolution = 150);
+// The sphere's exact distance on the grid of the fixed test: 150 cells, band 8 [voxels].
+std::shared_ptr<const SurfaceField> analyticSphere(double radius, int resolution = 150,
+                                                   double band = 8);
 // The same grid rule around an icosphere of 20 frequency^2 triangles, each shrunk by the fraction
 // `crack`.
 std::shared_ptr<const SurfaceField> meshSphere(double radius, int frequency, double crack,

@@ -12,7 +12,8 @@ namespace patina {
 const std::vector<Study>& studies() {
   static const std::vector<Study> all = {
       {"field", "samplers and storage of the field on sphere, torus and box", fieldStudy},
-      {"contact", "the contact step against a closed form on the fixed test", contactStudy},
+      {"contact", "proxy and ray against closed forms, and on any shape against the exact proxy",
+       contactStudy},
       {"surfaces", "offset, magnetic and merged surfaces; work round closed loops", surfacesStudy},
       {"paint", "brush coverage; height and slope of baked and pulled relief", paintStudy},
       {"material", "painted stiffness: its value, and work round closed loops", materialStudy},

@@ -10,7 +10,8 @@
 namespace patina {
 
 struct StudyOptions {
-  bool quick = false; // fewer points and coarser grids: seconds, for the tests
+  bool quick = false;    // fewer points and coarser grids: seconds, for the tests
+  bool thorough = false; // ten times as much of what is drawn at random
 };
 
 struct Study {
