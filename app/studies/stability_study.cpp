@@ -1,11 +1,12 @@
 #include "app/studies/stability_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "app/studies/loop_on_surfaces.h"
+#include "app/studies/loop_run.h"
 #include "haptics/measured_limit.h"
 #include "haptics/plane.h"
 
@@ -24,27 +25,9 @@ HapticProperties wall(double stiffness, double damping = 0) {
   return haptics;
 }
 
-struct TimedRun {
-  SimulationReport report;
-  double seconds = 0; // wall
-  double ns = 0;      // of a tick
-};
-
 TimedRun timed(const HapticProperties& haptics, const StabiliserPlan& plan,
                const SimulationSpec& spec) {
-  using Clock = std::chrono::steady_clock;
-  const auto snapshot = planeSnapshot(haptics, plan);
-  Progress progress;
-  TimedRun run;
-  run.seconds = std::numeric_limits<double>::infinity();
-  for (int pass = 0; pass < 3; ++pass) { // what else the machine does can only add
-    const auto start = Clock::now();
-    run.report = simulate(*snapshot, spec, progress);
-    const std::chrono::duration<double> taken = Clock::now() - start;
-    run.seconds = std::min(run.seconds, taken.count());
-  }
-  run.ns = 1e9 * run.seconds / static_cast<double>(run.report.ticks);
-  return run;
+  return timedRun(*planeSnapshot(haptics, plan), spec);
 }
 
 void addBoundary(WorkPrecisionTable& table, const DeviceModel& device, double damping,
@@ -150,18 +133,16 @@ WorkPrecisionTable quantiser(Progress& progress) {
       spec.device = {.1, damping, friction, kStep, 1000, 0};
       spec.depth = kLevel * kStep;
       TimedRun run;
-      double low = 0.5 * expected, high = 1.5 * expected;
-      while (high - low > 1e-4 * high) {
-        const double middle = 0.5 * (low + high);
-        spec.press = kLevel * middle * kStep;
-        run = timed(wall(middle), {}, spec);
-        (run.report.rms_velocity == 0 ? low : high) = middle;
-      }
+      const double measured = bisected(0.5 * expected, 1.5 * expected, 1e-4, [&](double stiffness) {
+        spec.press = kLevel * stiffness * kStep;
+        run = timed(wall(stiffness), {}, spec);
+        return run.report.rms_velocity == 0;
+      });
       WorkPrecisionRow row;
       row.knobs = {{"fc [N]", friction}, {"b [N s/m]", damping}, {"step [m]", kStep}};
-      row.error = row.error_max = 100 * std::abs(0.5 * (low + high) / expected - 1);
+      row.error = row.error_max = 100 * std::abs(measured / expected - 1);
       row.ns = run.ns;
-      row.more = {{"measured [N/m]", 0.5 * (low + high)},
+      row.more = {{"measured [N/m]", measured},
                   {"2 fc / step [N/m]", expected},
                   {"2b/T [N/m]", 2 * damping * spec.device.rate}};
       table.rows.push_back(std::move(row));
@@ -224,12 +205,16 @@ std::vector<WorkPrecisionTable> stabilityStudy(const StudyOptions& options, Prog
   std::vector<WorkPrecisionTable> tables;
   progress.report(0, "boundary");
   tables.push_back(boundaries(options.quick, progress));
-  progress.report(0.4, "restitution");
+  progress.report(0.2, "restitution");
   tables.push_back(restitution(options.quick, progress));
-  progress.report(0.8, "encoder and dry friction");
+  progress.report(0.3, "encoder and dry friction");
   tables.push_back(quantiser(progress));
-  progress.report(0.9, "stabilisers");
+  progress.report(0.4, "stabilisers");
   tables.push_back(remedies(options.quick, progress));
+  progress.report(0.5, "curved surfaces, corners and relief");
+  tables.push_back(loopLimitsOnSurfaces(options, progress));
+  progress.report(0.6, "rest on surfaces");
+  tables.push_back(restOnSurfaces(options, progress));
   progress.report(1, "stability study");
   return tables;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace patina {
 namespace {
@@ -70,6 +71,47 @@ TEST(StabilityStudy, AThrownTipIsNotCountedAsSettled) {
       EXPECT_EQ(more(row, "settles"), calms ? 1 : 0) << name;
     }
   }
+}
+
+TEST(StabilityStudy, MeasuresTheLimitOnAnySurfaceWhereTheEigenvaluesPutIt) {
+  const WorkPrecisionTable& table = quickTables().at(4);
+  EXPECT_EQ(table.rows.size(), 5u);
+  for (const WorkPrecisionRow& row : table.rows) {
+    const std::string& surface = row.knobs.at(0).second.asString();
+    EXPECT_LT(row.error, surface.starts_with("relief") ? 3 : 0.1) << surface;
+    EXPECT_GT(row.ns, 0) << surface;
+    EXPECT_LT(more(row, "wall s per simulated s"), 0.1) << surface;
+  }
+}
+
+TEST(StabilityStudy, RestsInCornersAndOnRidgesWhereItShould) {
+  int leaving = 0;
+  for (const WorkPrecisionRow& row : quickTables().at(5).rows) {
+    const std::string& surface = row.knobs.at(0).second.asString();
+    EXPECT_EQ(more(row, "fault ticks"), 0) << surface;
+    const bool texture = surface.starts_with("relief") || surface.starts_with("roughness");
+    if (texture) continue; // measured, not promised
+    EXPECT_EQ(more(row, "rests"), more(row, "should rest")) << surface;
+    leaving += more(row, "touches") == 0;
+    const std::string& by = row.knobs.at(2).second.asString();
+    if (by == "b = K T") {
+      EXPECT_NEAR(more(row, "displayed [N/m]") / row.knobs.at(1).second.asNumber(), 1, 1e-3)
+          << surface;
+    }
+  }
+  EXPECT_EQ(leaving, 2); // the ball and the edge, held by nothing
+}
+
+TEST(StabilityStudy, HasRowsOfReliefAndRoughnessInClosedLoop) {
+  std::map<std::string, int> rows;
+  for (const WorkPrecisionRow& row : quickTables().at(5).rows) {
+    const std::string& surface = row.knobs.at(0).second.asString();
+    ++rows[surface.substr(0, surface.find(' '))];
+    EXPECT_TRUE(std::isfinite(row.error) && row.error < 10) << surface;
+    EXPECT_GT(row.ns, 0) << surface;
+  }
+  EXPECT_EQ(rows["relief"], 4);
+  EXPECT_EQ(rows["roughness"], 2);
 }
 
 } // namespace
