@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "app/compile_scene.h"
+#include "app/studies/bisection.h"
 #include "app/studies/loop_run.h"
 #include "app/studies/paint_shapes.h"
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "app/studies/bisection.h"
 #include "app/studies/loop_on_surfaces.h"
 #include "app/studies/loop_run.h"
 #include "haptics/measured_limit.h"

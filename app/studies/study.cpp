@@ -2,6 +2,7 @@
 
 #include "app/studies/contact_study.h"
 #include "app/studies/field_study.h"
+#include "app/studies/friction_study.h"
 #include "app/studies/material_study.h"
 #include "app/studies/paint_study.h"
 #include "app/studies/stability_study.h"
@@ -14,6 +15,8 @@ const std::vector<Study>& studies() {
       {"field", "samplers and storage of the field on sphere, torus and box", fieldStudy},
       {"contact", "proxy and ray against closed forms, and on any shape against the exact proxy",
        contactStudy},
+      {"friction", "energy of a stroke, stick and slip, direction, by period and speed",
+       frictionStudy},
       {"surfaces", "offset, magnetic and merged surfaces; work round closed loops", surfacesStudy},
       {"paint", "brush coverage; height and slope of baked and pulled relief", paintStudy},
       {"material", "painted stiffness: its value, and work round closed loops", materialStudy},
