@@ -45,6 +45,19 @@ TEST(Architecture, EveryIncludeKeepsToThePlan) {
     for (const std::string& violation : includeViolations(file)) ADD_FAILURE() << violation;
 }
 
+// What judges contact must not share a mistake with what it judges.
+TEST(Architecture, TheOracleOfContactKnowsNoFieldAndNoStage) {
+  int files = 0;
+  for (const SourceFile& file : filesUnder({"app/studies/contact"}, isCode)) {
+    if (file.path.find("/oracle.") == std::string::npos) continue;
+    ++files;
+    for (const char* room : {"field/", "haptics/"})
+      EXPECT_EQ(file.text.find(std::string("#include \"") + room), std::string::npos)
+          << file.path << " includes " << room;
+  }
+  EXPECT_EQ(files, 2);
+}
+
 // The checker itself: each made-up edge must be seen, each allowed one must pass.
 TEST(Architecture, TheCheckerSeesForbiddenEdges) {
   for (const auto& [path, line] : std::vector<std::pair<std::string, std::string>>{

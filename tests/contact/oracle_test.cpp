@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "app/studies/contact/oracle.h"
-#include "app/studies/contact/scenes.h"
 #include "geometry/mesh_report.h"
 #include "geometry/shapes.h"
 #include "geometry/winding_number.h"
+#include "support/judged_scenes.h"
 
 namespace patina::test {
 namespace {
@@ -24,9 +24,9 @@ Vec3 randomIn(std::mt19937& random, const Vec3& low, const Vec3& high) {
   return low + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(high - low);
 }
 
-TEST(ContactScenes, AreClosedAndFaceOutwardsButTheGalleon) {
-  for (const ContactScene& scene : contactScenes()) {
-    if (scene.name == "galleon") continue;
+TEST(ContactScenes, AreClosedAndFaceOutwardsButGalleonAndScan) {
+  for (const ContactScene& scene : judgedScenes()) {
+    if (scene.name == "galleon" || scene.name == "scan") continue;
     for (const TriangleMesh& mesh : scene.meshes) {
       EXPECT_TRUE(inspect(mesh).watertight) << scene.name;
       EXPECT_GT(volume(mesh), 0) << scene.name;
@@ -180,7 +180,7 @@ TEST(ProxyOracle, KeepsWithinItsBall) {
 
 // On any shape: the answer is feasible and nothing free close by is nearer to the tip.
 TEST(ProxyOracle, IsALocalMinimumOnEveryScene) {
-  for (const ContactScene& scene : contactScenes()) {
+  for (const ContactScene& scene : judgedScenes()) {
     const ExactSurface surface(scene.meshes);
     std::mt19937 random(8);
     std::normal_distribution<double> normal;
