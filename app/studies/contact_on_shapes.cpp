@@ -4,7 +4,9 @@
 #include <array>
 #include <chrono>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 #include "app/studies/contact/course.h"
 #include "app/studies/contact/scenes.h"
@@ -27,19 +29,18 @@ constexpr Shape kShapes[] = {{"inner corner, 2 planes", "L"},
                              {"two spheres united", "spheres", false},
                              {"scan with holes", "scan", false}};
 
-// The tips that a course gave, so that they can be felt again without the judge beside.
-struct Way {
-  struct Step {
-    Vec3 tip = Vec3::Zero();
-    bool fresh = false; // the first of a touch
-  };
-  std::vector<Step> steps;
+// A tip that a course gave, so that it can be felt again without the judge beside.
+struct Step {
+  Vec3 tip = Vec3::Zero();
+  bool fresh = false; // the first of a touch
 };
+using Way = std::vector<Step>;
 
+// Keeps a reference to the way.
 ContactMethod recorded(ContactMethod method, Way& way) {
   const auto fresh = std::make_shared<bool>(true);
   method.tick = [&way, fresh, feel = method.tick](const Vec3& tip, double dt) {
-    way.steps.push_back({tip, *fresh});
+    way.push_back({tip, *fresh});
     *fresh = false;
     return feel(tip, dt);
   };
@@ -50,26 +51,25 @@ ContactMethod recorded(ContactMethod method, Way& way) {
   return method;
 }
 
-struct TickTimes {
-  std::vector<double> ns; // of each tick, the least of all passes; infinite out of contact
-};
+// Of each tick the least of all passes [ns]; infinite out of contact.
+using TickTimes = std::vector<double>;
 
 void timePass(const HapticSnapshot& snapshot, const Way& way, TickTimes& times) {
   using Clock = std::chrono::steady_clock;
-  times.ns.resize(way.steps.size(), std::numeric_limits<double>::infinity());
+  times.resize(way.size(), std::numeric_limits<double>::infinity());
   ContactMemory memory;
-  for (std::size_t i = 0; i < way.steps.size(); ++i) {
-    if (way.steps[i].fresh) memory.reset();
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (way[i].fresh) memory.reset();
     const auto start = Clock::now();
-    const Contact contact = tick(snapshot, memory, way.steps[i].tip, kTick);
+    const Contact contact = tick(snapshot, memory, way[i].tip, kTick);
     const std::chrono::duration<double, std::nano> taken = Clock::now() - start;
-    if (contact.touching) times.ns[i] = std::min(times.ns[i], taken.count());
+    if (contact.touching) times[i] = std::min(times[i], taken.count());
   }
 }
 
 Percentiles inContact(TickTimes times) {
-  std::erase_if(times.ns, [](double ns) { return ns == std::numeric_limits<double>::infinity(); });
-  return percentiles(std::move(times.ns));
+  std::erase(times, std::numeric_limits<double>::infinity());
+  return percentiles(std::move(times));
 }
 
 struct Judged {
@@ -78,7 +78,7 @@ struct Judged {
   Percentiles ns;
 };
 
-// Everything but the first three columns, which have a place of their own for the proxy.
+// All but p99, p99.9 and median time, which have a place of their own for the proxy.
 void addColumns(WorkPrecisionRow& row, const std::string& method, const Judged& judged) {
   const CourseReport& course = judged.course;
   const auto contacts = static_cast<double>(std::max(1L, course.contacts));
