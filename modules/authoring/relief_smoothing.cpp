@@ -12,79 +12,97 @@
 #include <tbb/parallel_for.h>
 
 #include "authoring/relief_image.h"
+#include "authoring/relief_window.h"
 #include "authoring/texel_rows.h"
 
 namespace patina {
 namespace {
 
-constexpr double kMostTexels = 64; // deviation, in texels
-constexpr double kSqueezed = 4;    // texels a side that stand for one of mean size, at most
-constexpr double kLeastValue = 1e-7;
-constexpr double kTail = 1e-8; // of the series
+constexpr double kMostTexels = 64;       // deviation, in texels
+constexpr double kSqueezed = 4;          // texels a side that stand for one of mean size, at most
+constexpr double kLeastDeviation = 1.25; // in cells
+constexpr double kLargest = 0.01;        // of the surface, where texels may be larger than is asked
+constexpr float kLeastValue = 1e-7F;
+constexpr double kTail = 1e-4; // of the series: kLeastValue of a millimetre
 
-// Heat flow through a face: conductances to the neighbours along i, j and both diagonals, and the
-// area that a texel has [m^2]. The split keeps all four from being negative, unless a face is
-// sheared by more than 45 degrees.
-struct Conductance {
-  float along_i = 0, along_j = 0, rising = 0, falling = 0, area = 0;
-
-  // At which a texel amid its like cools [1/m^2].
-  double rate() const {
-    const float sum = 2 * (along_i + along_j + rising + falling);
-    return area > 0 ? static_cast<double>(sum / area) : 0.0;
-  }
-};
-
-// A squeezed texel is taken for a larger one, or it would set the pace for all.
-Conductance conductanceOf(const TexelMetric& metric, double most_rate) {
-  Conductance c;
-  if (!(metric.uu > 0)) return c;
-  const float root = std::sqrt(metric.determinant());
-  const float uv = -metric.uv / root, shear = std::abs(uv);
-  c.along_i = std::max(metric.vv / root - shear, 0.0F);
-  c.along_j = std::max(metric.uu / root - shear, 0.0F);
-  (uv > 0 ? c.rising : c.falling) = shear;
-  c.area = root;
-  c.area *= static_cast<float>(std::max(c.rate() / most_rate, 1.0));
-  return c;
+// What is left of a variance `half` * 2 [m^2] once the splines have had their share.
+Spread spreadOf(const TexelMetric& metric, double half, int side) {
+  if (!(metric.uu > 0)) return {};
+  const double scale = half / (side * side * static_cast<double>(metric.determinant()));
+  const double own = side > 1 ? 0.25 : 0;
+  const double ii = scale * static_cast<double>(metric.vv),
+               jj = scale * static_cast<double>(metric.uu),
+               ij = -scale * static_cast<double>(metric.uv);
+  const double mean = 0.5 * (ii + jj) - own, radius = std::hypot(0.5 * (ii - jj), ij);
+  const double low = std::max(mean - radius, 0.0), high = std::max(mean + radius, 0.0);
+  const double turn = radius > 0 ? 0.5 * (high - low) / radius : 0;
+  const double middle = 0.5 * (high + low), half_difference = 0.5 * (ii - jj) * turn;
+  return {static_cast<float>(middle + half_difference), static_cast<float>(ij * turn),
+          static_cast<float>(middle - half_difference)};
 }
 
-double mostRate(const TriangleMesh& mesh, const CornerUvs& uvs, const TexelMap& image,
-                double deviation) {
+double meanTexel(const TriangleMesh& mesh, const CornerUvs& uvs, const TexelMap& image) {
   double texels = 0;
   for (const auto& uv : uvs) {
     const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
     texels += 0.5 * std::abs(a[0] * b[1] - a[1] * b[0]) * image.width * image.height;
   }
-  const double side =
-      std::max(std::sqrt(area(mesh) / std::max(texels, 1.0)) / kSqueezed, deviation / kMostTexels);
-  return 4 / (side * side);
+  return std::sqrt(area(mesh) / std::max(texels, 1.0));
 }
 
-// e^-rho I_n(rho) for n = 0 .. until kTail, by Miller's downward recurrence.
-std::vector<double> besselWeights(double rho) {
-  const auto start = static_cast<std::size_t>(24 + std::sqrt(100 * rho));
-  std::vector<double> weight(start + 2);
-  weight[start] = 1e-200;
-  for (std::size_t n = start; n > 0; --n) {
-    weight[n - 1] = weight[n + 1] + 2 * static_cast<double>(n) / rho * weight[n];
-    if (weight[n - 1] > 1e100) // only the ratios matter
-      for (double& w : weight) w *= 1e-200;
+// Texels a side of the cells: as large as the deviation allows where texels are large.
+int cellSide(const TriangleMesh& mesh, const std::vector<TexelMetric>& metrics, double deviation) {
+  std::vector<std::pair<float, double>> by_size; // longest texel, area
+  double all = 0;
+  for (std::size_t f = 0; f < metrics.size(); ++f) {
+    const TexelMetric& m = metrics[f];
+    if (!(m.uu > 0)) continue;
+    const float longest = 0.5F * (m.uu + m.vv) + std::hypot(0.5F * (m.uu - m.vv), m.uv);
+    const Vec3 a = mesh.corner(f, 1) - mesh.corner(f, 0), b = mesh.corner(f, 2) - mesh.corner(f, 0);
+    by_size.emplace_back(longest, 0.5 * a.cross(b).norm());
+    all += by_size.back().second;
   }
-  double sum = -weight[0];
-  for (const double w : weight) sum += 2 * w;
-  for (double& w : weight) w /= sum;
-  while (weight.size() > 1 && weight.back() < kTail) weight.pop_back();
+  std::sort(by_size.begin(), by_size.end(), std::greater<>());
+  double larger = 0, longest = 0;
+  for (const auto& [size, own] : by_size) {
+    longest = std::sqrt(static_cast<double>(size));
+    larger += own;
+    if (larger > kLargest * all) break;
+  }
+  int side = 1;
+  while (side < kTileSide && deviation >= kLeastDeviation * 2 * side * longest) side *= 2;
+  return side;
+}
+
+// For the stencil's error of fourth order, k^4 / 12 of a cell, and that of the splines.
+double bendOf(double half_variance, int side) {
+  const double k = std::max(half_variance, 1e-3);
+  return std::max(1 / (12 * k) - (side > 1 ? 1 / (640 * k * k) : 0), 0.0);
+}
+
+// c_n of sum c_n T_n(lambda / rate - 1), until kTail, for what a flow for the time 1 does to waves:
+// exp(-lambda - bend lambda^2) on [0, 2 rate]. Keeps constants.
+std::vector<double> series(double rate, double bend) {
+  const auto count = static_cast<std::size_t>(32 + 4 * std::sqrt(100 * rate));
+  std::vector<double> value(count), weight;
+  const auto angle = [&](std::size_t j) {
+    return M_PI * (static_cast<double>(j) + 0.5) / static_cast<double>(count);
+  };
+  for (std::size_t j = 0; j < count; ++j) {
+    const double lambda = rate * (1 + std::cos(angle(j)));
+    value[j] = std::exp(-lambda - bend * lambda * lambda);
+  }
+  for (std::size_t n = 0; n < count / 2; ++n) {
+    double sum = 0;
+    for (std::size_t j = 0; j < count; ++j)
+      sum += value[j] * std::cos(static_cast<double>(n) * angle(j));
+    weight.push_back((n == 0 ? 1.0 : 2.0) * sum / static_cast<double>(count));
+  }
+  while (weight.size() > 1 && std::abs(weight.back()) < kTail) weight.pop_back();
+  double at_rest = 0;
+  for (std::size_t n = 0; n < weight.size(); ++n) at_rest += n % 2 ? -weight[n] : weight[n];
+  for (double& w : weight) w /= at_rest;
   return weight;
-}
-
-int width(const TexelBox& box) {
-  return box.i1 - box.i0;
-}
-
-TexelBox grown(const TexelBox& box, int by, const TexelMap& image) {
-  return {std::max(box.i0 - by, 0), std::max(box.j0 - by, 0), std::min(box.i1 + by, image.width),
-          std::min(box.j1 + by, image.height)};
 }
 
 TexelBox joined(const TexelBox& a, const TexelBox& b) {
@@ -92,7 +110,7 @@ TexelBox joined(const TexelBox& a, const TexelBox& b) {
 }
 
 // Boxes that cost less together than each by itself, once grown, as one.
-std::vector<TexelBox> gathered(const std::vector<TexelBox>& boxes, int by, const TexelMap& image) {
+std::vector<TexelBox> gathered(const std::vector<TexelBox>& boxes, int by, const TexelBox& image) {
   const auto cost = [&](const TexelBox& box) {
     const TexelBox all = grown(box, by, image);
     return static_cast<std::int64_t>(all.i1 - all.i0) * (all.j1 - all.j0);
@@ -113,30 +131,6 @@ std::vector<TexelBox> gathered(const std::vector<TexelBox>& boxes, int by, const
   }
   return result;
 }
-
-// Of a texel to its neighbours at (1,0), (0,1), (1,1), (-1,1); per_area is 0 where nothing is
-// shown.
-enum Part : std::size_t { kEast, kNorth, kRising, kFalling, kPerArea, kParts };
-using TileLinks = std::array<std::array<float, kTileSide * kTileSide>, kParts>;
-
-// The part of the image that a call looks at, with a border of nothing a texel wide.
-class Window {
- public:
-  explicit Window(const TexelBox& box)
-      : box_(box), stride_(static_cast<std::size_t>(width(box)) + 2),
-        size_(stride_ * static_cast<std::size_t>(box.j1 - box.j0 + 2)) {}
-  const TexelBox& box() const { return box_; }
-  std::size_t stride() const { return stride_; }
-  std::size_t size() const { return size_; }
-  std::size_t at(int i, int j) const { // texels of the image
-    return static_cast<std::size_t>(j - box_.j0 + 1) * stride_ +
-           static_cast<std::size_t>(i - box_.i0 + 1);
-  }
-
- private:
-  TexelBox box_;
-  std::size_t stride_, size_;
-};
 
 // next = a L now - b now - c before, for `count` texels of a row.
 struct Recurrence {
@@ -174,19 +168,6 @@ template <class Body> void inRows(const TexelBox& box, const Body& body) {
                     });
 }
 
-template <class Body> void forTiles(const TexelBox& box, const Body& body) {
-  for (int j = box.j0 / kTileSide; j * kTileSide < box.j1; ++j)
-    for (int i = box.i0 / kTileSide; i * kTileSide < box.i1; ++i) {
-      const int x = i * kTileSide, y = j * kTileSide;
-      body(TexelBox{std::max(box.i0, x), std::max(box.j0, y), std::min(box.i1, x + kTileSide),
-                    std::min(box.j1, y + kTileSide)});
-    }
-}
-
-std::size_t placeInTile(int i, int j) {
-  return static_cast<std::size_t>((j % kTileSide) * kTileSide + i % kTileSide);
-}
-
 } // namespace
 
 struct ReliefSmoother::Impl {
@@ -194,125 +175,93 @@ struct ReliefSmoother::Impl {
   std::shared_ptr<const CornerUvs> uvs;
   std::shared_ptr<const TexelMap> texels;
   std::vector<TexelMetric> metrics;
-  double most_rate = 0, rate = 0;
-  // exp(-time L) by Chebyshev's polynomials on the spectrum [0, 2 rate] of L: a series of weights
-  // e^-rho I_n(rho), rho = rate * time. Its degree is also how far a texel is seen. Empty: nothing
-  // is smoothed.
+  int side = 1; // of a cell [texels]
+  double rate = 0;
+  // exp(-L) by Chebyshev's polynomials on the spectrum [0, 2 rate] of L. Empty: nothing is
+  // smoothed.
   std::vector<double> weight;
-  mutable std::mutex mutex; // of what follows
-  mutable std::vector<std::unique_ptr<const TileLinks>> links;
+  mutable std::mutex mutex;
+  mutable std::unique_ptr<ReliefCells> cells;
 
-  int reach() const { return static_cast<int>(weight.size()) - 1; }
-  int across() const { return texels->width / kTileSide; }
-  std::size_t tileOf(const TexelBox& in) const {
-    return static_cast<std::size_t>(in.j0 / kTileSide) * static_cast<std::size_t>(across()) +
-           static_cast<std::size_t>(in.i0 / kTileSide);
-  }
+  int degree() const { return static_cast<int>(weight.size()) - 1; }
+  int splineReach() const { return side > 1 ? 1 : 0; }
+  int reach() const { return degree() + 2 * splineReach(); } // [cell]
+  TexelBox image() const { return {0, 0, texels->width / side, texels->height / side}; }
 
-  std::unique_ptr<const TileLinks> linksOf(std::size_t tile) const {
-    auto made = std::make_unique<TileLinks>();
-    const int i0 = static_cast<int>(tile) % across() * kTileSide,
-              j0 = static_cast<int>(tile) / across() * kTileSide;
-    const TexelRows rows(*mesh, *uvs, *texels, metrics);
-    std::vector<TexelOnSurface> here(kTileSide + 2), above(kTileSide + 2);
-    rows.read(i0 - 1, j0, here);
-    for (int j = 0; j < kTileSide; ++j, std::swap(here, above)) {
-      rows.read(i0 - 1, j0 + j + 1, above);
-      for (int i = 0; i < kTileSide; ++i) {
-        const auto n = static_cast<std::size_t>(i) + 1;
-        const TexelOnSurface& own = here[n];
-        if (!own.shown) continue;
-        const Conductance c = conductanceOf(own.metric, most_rate);
-        // The lesser of two: the faces' own rates bound the spectrum.
-        const auto link = [&](const TexelOnSurface& other, int di, int dj,
-                              float Conductance::*along) {
-          if (!TexelRows::joined(own, other, di, dj)) return 0.0F;
-          return std::min(c.*along, conductanceOf(other.metric, most_rate).*along);
-        };
-        const std::size_t at = placeInTile(i, j);
-        (*made)[kPerArea][at] = 1 / c.area;
-        (*made)[kEast][at] = link(here[n + 1], 1, 0, &Conductance::along_i);
-        (*made)[kNorth][at] = link(above[n], 0, 1, &Conductance::along_j);
-        (*made)[kRising][at] = link(above[n + 1], 1, 1, &Conductance::rising);
-        (*made)[kFalling][at] = link(above[n - 1], -1, 1, &Conductance::falling);
-      }
-    }
-    return made;
-  }
-
-  std::array<std::vector<float>, kParts> linksIn(const Window& window) const {
-    std::array<std::vector<float>, kParts> all;
-    for (std::vector<float>& part : all) part.resize(window.size());
-    std::vector<std::size_t> missing;
-    const std::lock_guard lock(mutex);
-    forTiles(window.box(), [&](const TexelBox& part) {
-      if (!links[tileOf(part)]) missing.push_back(tileOf(part));
-    });
-    tbb::parallel_for(std::size_t{0}, missing.size(),
-                      [&](std::size_t n) { links[missing[n]] = linksOf(missing[n]); });
-    forTiles(window.box(), [&](const TexelBox& part) {
-      const TileLinks& tile = *links[tileOf(part)];
-      for (std::size_t p = 0; p < kParts; ++p)
-        for (int j = part.j0; j < part.j1; ++j)
-          std::copy_n(&tile[p][placeInTile(part.i0, j)], width(part),
-                      &all[p][window.at(part.i0, j)]);
-    });
-    return all;
-  }
-
-  // Of the texels of `out`; the window is that, grown by reach(). What lies farther off an `out`
-  // by n is of no use n steps before the last.
-  std::vector<float> flow(std::vector<float> before, const Window& window,
+  // T_n of the values for n = 0 .. degree(), weighed. Of the cells of `out`; what lies farther off
+  // an `out` by n is of no use n steps before the last.
+  std::vector<float> flow(std::vector<float> before, const ReliefWindow& window,
                           const TexelBox& out) const {
-    const std::array<std::vector<float>, kParts> parts = linksIn(window);
-    std::vector<float> result(window.size()), now(window.size()), next(window.size());
+    std::vector<float> result(before.size()), now(before.size()), next(before.size());
+    const auto add = [&](double factor, const std::vector<float>& values, std::size_t from,
+                         std::size_t to) {
+      const auto w = static_cast<float>(factor);
+      for (std::size_t n = from; n < to; ++n) result[n] += w * values[n];
+    };
     for (int j = out.j0; j < out.j1; ++j)
-      for (std::size_t n = window.at(out.i0, j); n < window.at(out.i1, j); ++n)
-        result[n] = static_cast<float>(weight[0]) * before[n];
+      add(weight[0], before, window.at(out.i0, j), window.at(out.i1, j));
+    add(weight[0], before, window.grid(), window.size());
     // before, now and next are T_(n-2), T_(n-1) and T_n of the values, but at the first step.
-    for (int degree = 1; degree <= reach(); ++degree) {
-      const bool first = degree == 1;
+    for (int n = 1; n <= degree(); ++n) {
+      const bool first = n == 1;
       const Recurrence step{static_cast<float>((first ? 1 : 2) / rate), first ? 1.0F : 2.0F,
                             first ? 0.0F : 1.0F};
-      const auto w =
-          static_cast<float>((degree % 2 ? -2 : 2) * weight[static_cast<std::size_t>(degree)]);
+      const double w = weight[static_cast<std::size_t>(n)];
       const std::vector<float>& source = first ? before : now;
-      const TexelBox need = grown(out, reach() - degree, *texels);
+      const TexelBox need = grown(out, degree() - n, image());
+      const bool with_parts = window.size() > window.grid();
+      const auto addRow = [&](int j) {
+        if (j >= out.j0 && j < out.j1) add(w, next, window.at(out.i0, j), window.at(out.i1, j));
+      };
       inRows(need, [&](int j) {
         const std::size_t at = window.at(need.i0, j);
         std::array<const float*, kParts> links_here{};
-        for (std::size_t p = 0; p < kParts; ++p) links_here[p] = &parts[p][at];
+        for (std::size_t p = 0; p < kParts; ++p) links_here[p] = &window.parts()[p][at];
         stepRow(links_here, window.stride(), static_cast<std::size_t>(width(need)), &source[at],
                 &before[at], &next[at], step);
-        if (j < out.j0 || j >= out.j1) return;
-        for (std::size_t n = window.at(out.i0, j); n < window.at(out.i1, j); ++n)
-          result[n] += w * next[n];
+        if (!with_parts) addRow(j);
       });
+      if (with_parts) {
+        for (std::size_t cell = window.grid(); cell < window.size(); ++cell)
+          next[cell] = -step.b * source[cell] - step.c * before[cell];
+        const std::vector<float>& per_area = window.parts()[kPerArea];
+        for (const ReliefWindow::Link& link : window.links()) {
+          const float flow = step.a * link.conductance * (source[link.a] - source[link.b]);
+          next[link.a] += per_area[link.a] * flow;
+          next[link.b] -= per_area[link.b] * flow;
+        }
+        for (int j = out.j0; j < out.j1; ++j) addRow(j);
+        add(w, next, window.grid(), window.size());
+      }
       if (!first) std::swap(before, now);
       std::swap(now, next);
     }
     return result;
   }
 
-  // What `out` of the image becomes, into `result`.
+  // What the cells of `out` become, into `result`.
   void smooth(const TiledImage& relief, const TexelBox& out, TiledImage& result) const {
-    const Window window(grown(out, reach(), *texels));
-    std::vector<float> values(window.size());
-    forTiles(window.box(), [&](const TexelBox& part) {
-      if (const float* tile = relief.tile(tileOf(part)))
-        for (int j = part.j0; j < part.j1; ++j)
-          std::copy_n(tile + placeInTile(part.i0, j), width(part), &values[window.at(part.i0, j)]);
-    });
-    values = flow(std::move(values), window, out);
-    forTiles(out, [&](const TexelBox& part) {
-      const std::size_t index = tileOf(part);
+    const ReliefWindow window = [&] {
+      const TexelBox squares = grown(out, reach(), image());
+      const int across = cells->squares();
+      const std::lock_guard lock(mutex);
+      cells->make({squares.i0 / across, squares.j0 / across, (squares.i1 + across - 1) / across,
+                   (squares.j1 + across - 1) / across});
+      return ReliefWindow(*cells, squares);
+    }();
+    const std::vector<float> values =
+        flow(window.gathered(relief), window, grown(out, splineReach(), image()));
+    ReliefWindow::TileValues made;
+    forTiles(scaled(out, side), kTileSide, [&](const TexelBox& part) {
+      window.spread(values, part, made);
+      const std::size_t index = relief.tileOf(part.i0, part.j0);
       const float* source = relief.tile(index);
       const float* held = result.tile(index);
       float* own = nullptr;
       for (int j = part.j0; j < part.j1; ++j)
         for (int i = part.i0; i < part.i1; ++i) {
-          const std::size_t at = placeInTile(i, j);
-          float value = values[window.at(i, j)];
+          const std::size_t at = relief.offsetOf(i, j);
+          float value = made[at];
           if (std::abs(value) < kLeastValue) value = 0;
           if (texels->ownerAt(i, j) < 0) value = source ? source[at] : 0;
           const float old = held ? held[at] : 0.0F;
@@ -332,17 +281,33 @@ ReliefSmoother::ReliefSmoother(std::shared_ptr<const TriangleMesh> mesh,
     throw std::invalid_argument("ReliefSmoother: the deviation must not be negative");
   Impl& made = *impl_;
   made.metrics = texelMetrics(*mesh, *uvs, texels->width, texels->height);
-  made.most_rate = mostRate(*mesh, *uvs, *texels, deviation);
-  for (const TexelMetric& metric : made.metrics)
-    made.rate = std::max(made.rate, conductanceOf(metric, made.most_rate).rate());
+  made.side = cellSide(*mesh, made.metrics, deviation);
+  // A squeezed texel is taken for a larger one, or it would set the pace for all.
+  const double least =
+      made.side * std::max(meanTexel(*mesh, *uvs, *texels) / kSqueezed, deviation / kMostTexels);
+  const double most_rate = 2 * deviation * deviation / (least * least);
+  std::vector<Spread> spreads(made.metrics.size());
+  double mean = 0, faces = 0;
+  for (std::size_t f = 0; f < spreads.size(); ++f) {
+    Spread& spread = spreads[f];
+    spread = spreadOf(made.metrics[f], 0.5 * deviation * deviation, made.side);
+    const double rate = mostRate(spread);
+    const auto less = static_cast<float>(std::min(1.0, most_rate / std::max(rate, 1e-30)));
+    spread = {less * spread.ii, less * spread.ij, less * spread.jj};
+    made.rate = std::max(made.rate, std::min(rate, most_rate));
+    const Vec3 a = mesh->corner(f, 1) - mesh->corner(f, 0),
+               b = mesh->corner(f, 2) - mesh->corner(f, 0);
+    const double own = a.cross(b).norm();
+    mean += own * 0.5 * static_cast<double>(spread.ii + spread.jj);
+    faces += own;
+  }
   made.rate *= 1 + 1e-5; // rounding
-  const double rho = made.rate * 0.5 * deviation * deviation;
-  if (rho > 1e-6) made.weight = besselWeights(rho);
+  if (made.rate > 1e-6) made.weight = series(made.rate, bendOf(mean / faces, made.side));
   made.mesh = std::move(mesh);
   made.uvs = std::move(uvs);
-  made.links.resize(static_cast<std::size_t>(texels->width / kTileSide) *
-                    static_cast<std::size_t>(texels->height / kTileSide));
   made.texels = std::move(texels);
+  made.cells = std::make_unique<ReliefCells>(*made.mesh, *made.uvs, *made.texels, made.metrics,
+                                             std::move(spreads), made.side);
 }
 
 ReliefSmoother::~ReliefSmoother() = default;
@@ -361,9 +326,15 @@ TiledImage ReliefSmoother::resmoothed(const TiledImage& result, const TiledImage
       throw std::invalid_argument("ReliefSmoother: not an image that the texel map was made for");
   if (impl_->weight.empty()) return relief;
   TiledImage made = result;
-  const int reach = impl_->reach();
-  for (const TexelBox& box : gathered(changedTexels(before, relief), 2 * reach, texels))
-    impl_->smooth(relief, grown(box, reach, texels), made);
+  const int reach = impl_->reach(), side = impl_->side;
+  std::vector<TexelBox> squares;
+  for (const TexelBox& box : changedTexels(before, relief))
+    squares.push_back(
+        {box.i0 / side, box.j0 / side, (box.i1 + side - 1) / side, (box.j1 + side - 1) / side});
+  constexpr int kAtOnce = 512; // squares a side, which bounds the memory
+  for (const TexelBox& box : gathered(squares, 2 * reach, impl_->image()))
+    forTiles(grown(box, reach, impl_->image()), kAtOnce,
+             [&](const TexelBox& part) { impl_->smooth(relief, part, made); });
   return made;
 }
 
@@ -373,10 +344,7 @@ const std::shared_ptr<const TexelMap>& ReliefSmoother::texels() const {
 
 std::size_t ReliefSmoother::bytes() const {
   const std::lock_guard lock(impl_->mutex);
-  const auto tiles = std::count_if(impl_->links.begin(), impl_->links.end(),
-                                   [](const auto& tile) { return tile != nullptr; });
-  return static_cast<std::size_t>(tiles) * sizeof(TileLinks) +
-         impl_->metrics.size() * sizeof(TexelMetric) +
+  return impl_->cells->bytes() + impl_->metrics.size() * sizeof(TexelMetric) +
          impl_->texels->owner.size() * sizeof(impl_->texels->owner[0]);
 }
 
