@@ -13,8 +13,10 @@
 namespace patina {
 namespace {
 
-// A button that is let go before the tip has come down: so long the tip may take.
+// A button that is let go before the tip has come down: so long the tip may take. Ticks as well,
+// for it does not move while the machine has no time for it.
 constexpr int kLinger = 250; // [ms]
+constexpr std::size_t kLingerTicks = 250;
 
 QString number(double value) {
   return QString::fromStdString(formatNumber(std::round(value * 1e4) / 1e4));
@@ -139,6 +141,7 @@ void PaintDesk::follow(const Pointed& where) {
     down_ = false;
     lingers_ = true;
     released_.start();
+    lingered_ = 0;
   }
 }
 
@@ -161,7 +164,9 @@ void PaintDesk::feed(const std::vector<ToolSample>& ticks) {
   if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
   const double near = std::max(brush().radius, 0.02 * book_.extent());
   send(tracker_.feed(ticks, {down_ || lingers_, aim_, near}));
-  if (!lingers_ || !(arrived(ticks) || released_.elapsed() > kLinger)) return;
+  const bool over = lingered_ > kLingerTicks && released_.elapsed() > kLinger;
+  lingered_ += ticks.size(); // only after: the first of them may be from before the button
+  if (!lingers_ || !(arrived(ticks) || over)) return;
   lingers_ = false;
   send(tracker_.feed({}, {}));
   lift();

@@ -69,6 +69,7 @@ class PaintDesk : public QObject {
   double newtons_ = 0;      // with which it is pressed there; 0: it is not
   bool down_ = false, lingers_ = false;
   QElapsedTimer released_;
+  std::size_t lingered_ = 0; // ticks since then
   ToolSample last_;
   int refreshes_ = 0;
 };

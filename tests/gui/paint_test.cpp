@@ -1,5 +1,6 @@
 // Painting in the window: one gesture feels and paints, and every step can be taken back.
 #include <cmath>
+#include <utility>
 
 #include <QAction>
 #include <QComboBox>
@@ -11,6 +12,7 @@
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
 #include "haptics/run_queue_wait.h"
+#include "support/least_time.h"
 
 namespace patina {
 namespace {
@@ -130,7 +132,12 @@ TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
 TEST_F(Painting, AQuickClickPaintsToo) {
   choose(Tool::color);
   send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
-  wait(200 + static_cast<int>(4000 * view().frameSeconds())); // the tip hovers there
+  Vec3 tip = Vec3::Constant(NAN);
+  ASSERT_TRUE(waitUntil([&] { // the tip hovers there
+    wait(50);
+    const Vec3 before = std::exchange(tip, window_->lastSample().tip);
+    return (tip - before).norm() < 1e-5 && tip.norm() > kRadius && tip.norm() < 1.1 * kRadius;
+  }));
   send(QEvent::MouseButtonPress, middle(), Qt::LeftButton, Qt::LeftButton);
   send(QEvent::MouseButtonRelease, middle(), Qt::LeftButton, Qt::NoButton);
   EXPECT_TRUE(strokeDone(1));
@@ -319,13 +326,20 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
   choose(Tool::stiffness);
   QElapsedTimer clock;
   const RunQueueWait queue; // what other programs take of the processor is not the window's
-  double longest = 0, frame = 0, before = 0; // [ms]
+  // Its work by its own processor time, its waiting by what the edit takes beside it: both of them
+  // hold on a machine that does other things.
+  double longest = 0, most_work = 0, frame = 0, before = 0, worked = 0; // [ms]
   QTimer beat;
   QObject::connect(&beat, &QTimer::timeout, [&] {
     const double now = 1e-6 * static_cast<double>(clock.nsecsElapsed() - queue.total().value_or(0));
-    if (before != 0) longest = std::max(longest, now - before);
+    const double work = 1000 * test::threadSeconds();
+    if (before != 0) {
+      longest = std::max(longest, now - before);
+      most_work = std::max(most_work, work - worked);
+    }
     frame = std::max(frame, 1000 * view().frameSeconds());
     before = now;
+    worked = work;
   });
   // A field of 300 cells takes a second or more.
   bool done = false;
@@ -346,11 +360,11 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
   }));
   const double took =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::printf("edit %.0f ms, longest gap of the window %.0f ms, longest frame %.0f ms\n",
-              1000 * took, longest, frame);
+  std::printf("edit %.0f ms, longest gap of the window %.0f ms, most work in one %.0f ms, longest "
+              "frame %.0f ms\n",
+              1000 * took, longest, most_work, frame);
   EXPECT_GT(1000 * took, 5 * longest);
-  EXPECT_LT(longest,
-            5 * std::max(frame, 40.0)); // frames of software OpenGL; 117 to 148 ms measured
+  EXPECT_LT(most_work, 5 * std::max(frame, 40.0)); // frames of software OpenGL
 }
 
 TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
