@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <stdexcept>
 #include <utility>

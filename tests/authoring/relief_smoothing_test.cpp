@@ -94,6 +94,36 @@ TEST(SmoothedRelief, DampsEachWaveAsAGaussianDoesHoweverWide) {
   }
 }
 
+// Texels that are twice as long in one half of the image as in the other.
+TEST(SmoothedRelief, DampsWavesWhereTexelsDifferAsWell) {
+  const Sheet sheet;
+  CornerUvs uvs = *sheet.layout.uvs; // u = 1/2 stays, the left half takes a third of the image
+  constexpr double kMiddle = 1.0 / 3;
+  for (auto& corners : uvs)
+    for (Vec2& uv : corners)
+      uv[0] = uv[0] < 0.5 ? 2 * kMiddle * uv[0] : kMiddle + (1 - kMiddle) * (2 * uv[0] - 1);
+  const auto along = [&](double u) { // [m] from the middle
+    return kWidth * (u < kMiddle ? 0.5 * u / kMiddle - 0.5 : 0.5 * (u - kMiddle) / (1 - kMiddle));
+  };
+  const auto shared = std::make_shared<const CornerUvs>(uvs);
+  for (const double texels : {2.0, 4.0, 8.0, 12.0}) {
+    const double deviation = texels * kTexel;
+    const ReliefSmoother smooth = smoother(sheet.mesh, shared, kSize, deviation);
+    for (const double waves : {3.0, 4.5, 8.0}) {
+      const double k = 2 * M_PI / (waves * deviation);
+      const double kept = std::exp(-0.5 * k * k * deviation * deviation);
+      const auto image =
+          reliefImage(kSize, [&](double u, double) { return std::cos(k * along(u)); });
+      const TiledImage after = smooth.smoothed(*image);
+      double worst = 0;
+      for (int i = 40; i < 200; ++i)
+        worst = std::max(worst, std::abs(static_cast<double>(after.at(i, 128, 0)) -
+                                         kept * static_cast<double>(image->at(i, 128, 0))));
+      EXPECT_LE(worst, texels < 4 ? 0.07 : 0.03) << texels << " texels, " << waves << " deviations";
+    }
+  }
+}
+
 // Two charts side by side in the image that show places far apart.
 TEST(SmoothedRelief, PassesNothingFromChartToChart) {
   Sheet sheet;
