@@ -42,6 +42,7 @@ void CourseReport::add(const CourseReport& other) {
   append(snap_error, other.snap_error);
   append(free_error, other.free_error);
   append(samples, other.samples);
+  append(entry_samples, other.entry_samples);
   append(ns, other.ns);
 }
 
@@ -105,6 +106,11 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
     report.excesses += !(excess <= 0.05);
   }
 
+  if (last_.touching)
+    report.samples.push_back(now.samples);
+  else if (now.touching || now.samples > 1)
+    report.entry_samples.push_back(now.samples);
+
   Vec3 seed = own_;
   if (last_.touching) {
     if (surface_.distance(last_.candidate) > iso_ - voxel_) seed = last_.candidate;
@@ -124,7 +130,6 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
     report.snaps += snapped(now);
     report.lost += now.force.squaredNorm() == 0;
     report.pulls += answer.found && now.force.dot(answer.point - tip) < 0;
-    report.samples.push_back(now.samples);
     report.ns.push_back(time.count());
   }
   if (answer.found && (in_contact || now.touching)) {

@@ -29,10 +29,11 @@ struct CourseReport {
   double worst_excess = 0;   // [N], of |dF| beyond 2 K |dx| + K v_s dt, where no snap is announced
   long excesses = 0;         // ticks with more than 0.05 N of it
   std::vector<double> error; // [N], |F - K (c - x)| with c continued from the method's own
-  std::vector<double> snap_error; // the same where either of the two ran as far as it may
-  std::vector<double> free_error; // [N], with c continued from the oracle's own
-  std::vector<double> samples;    // of the field, a contact tick
-  std::vector<double> ns;         // of tick(), wall, a contact tick
+  std::vector<double> snap_error;    // the same where either of the two ran as far as it may
+  std::vector<double> free_error;    // [N], with c continued from the oracle's own
+  std::vector<double> samples;       // of the field, a tick that began in contact
+  std::vector<double> entry_samples; // one that did not and ended in it, or looked about for it
+  std::vector<double> ns;            // of tick(), wall, a contact tick
 
   void add(const CourseReport& other);
 };

@@ -1,0 +1,39 @@
+// What contact must hold to on any shape.
+#pragma once
+
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/percentiles.h"
+#include "support/contact_course.h"
+
+namespace patina::test {
+
+inline constexpr double kWorstStep = 0.05; // [N] beyond 2 K |dx| + K v_s dt
+inline constexpr double kMostOf = 1e-6;    // of the ticks in contact
+
+// PATINA_LONG=1 in the environment: ten times as many ticks and loops (docs/contributing.md).
+inline long longer(long count) {
+  return std::getenv("PATINA_LONG") ? 10 * count : count;
+}
+
+inline void expectFaultless(const CourseReport& report, const std::string& what) {
+  const double most = kMostOf * static_cast<double>(report.contacts);
+  EXPECT_LE(static_cast<double>(report.lost), most) << what << ": of " << report.contacts;
+  EXPECT_LE(static_cast<double>(report.pulls), most) << what << ": of " << report.contacts;
+  EXPECT_EQ(report.faults, 0) << what;
+  EXPECT_LE(report.worst_excess, kWorstStep) << what;
+  EXPECT_EQ(report.unjudged, 0) << what;
+}
+
+// [N], at 500 N/m on 100 mm and 150 voxels.
+inline void expectExact(const CourseReport& report, const std::string& what) {
+  const Percentiles error = percentiles(report.error);
+  EXPECT_LE(error.p50, 0.01) << what;
+  EXPECT_LE(error.p99, 0.10) << what;
+  EXPECT_LE(error.p999, 0.40) << what;
+}
+
+} // namespace patina::test
