@@ -1,9 +1,10 @@
 #include "haptics/spring_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
-#include <Eigen/LU>
+#include "haptics/half_spaces.h"
 
 namespace patina {
 
@@ -34,37 +35,57 @@ void dampSticking(Contact& contact, const Vec3& damper) noexcept {
   if (magnitude > bearable) contact.force -= (1 - bearable / magnitude) * tangential;
 }
 
-void dampWalls(Contact& contact, double damping, bool magnetic) noexcept {
-  if (contact.attracted)
-    contact.force -=
-        contact.attraction * damping * contact.velocity.dot(contact.normal) * contact.normal;
-  if (!contact.touching) return;
-  // The velocity's part across the walls, told apart by wall.
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+namespace {
+
+// Of walls that differ by less than this (about 12 degrees) only the one that bears most counts.
+constexpr double kApart = 0.2;
+
+// The part of v across the walls.
+Vec3 acrossWalls(const Contact& contact, const Vec3& v) noexcept {
+  if (contact.walls == 1) return v.dot(contact.wall[0].normal) * contact.wall[0].normal;
+  std::array<Vec3, 3> axis;
+  std::size_t axes = 0;
   Vec3 across = Vec3::Zero();
-  const auto press = [&](const Contact::WallLoad& wall, double speed) {
-    across += speed * wall.normal;
-    const double push = -damping * speed;
-    contact.force +=
-        (magnetic ? push : std::max(push, -contact.stiffness * wall.load)) * wall.normal;
-  };
-  if (contact.walls == 1) {
-    press(contact.wall[0], contact.velocity.dot(contact.wall[0].normal));
-  } else if (contact.walls > 1) {
-    const int n = contact.walls;
-    Matrix gram(n, n);
-    Vector speed(n);
-    for (int i = 0; i < n; ++i) {
-      const Vec3& normal = contact.wall[static_cast<std::size_t>(i)].normal;
-      speed[i] = normal.dot(contact.velocity);
-      for (int j = 0; j < n; ++j)
-        gram(i, j) = normal.dot(contact.wall[static_cast<std::size_t>(j)].normal);
-    }
-    speed = gram.inverse() * speed;
-    for (int i = 0; i < n; ++i) press(contact.wall[static_cast<std::size_t>(i)], speed[i]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.walls); ++i) {
+    Vec3 own = contact.wall[i].normal;
+    for (std::size_t j = 0; j < axes; ++j) own -= own.dot(axis[j]) * axis[j];
+    const double length = own.norm();
+    if (i > 0 && length < kApart) continue;
+    axis[axes] = own / length;
+    across += v.dot(axis[axes]) * axis[axes];
+    ++axes;
   }
-  dampSticking(contact, -damping * (contact.velocity - across));
+  return across;
+}
+
+// What of a damper's force is left where the walls that hold the tip only push: the nearest to the
+// sum with the spring's that they can bear, less the spring's.
+Vec3 besideSpring(const Contact& contact, const Vec3& damper) noexcept {
+  if (contact.walls == 1) {
+    const auto& [normal, load] = contact.wall[0];
+    return std::max(damper.dot(normal), -contact.stiffness * load) * normal;
+  }
+  Walls walls;
+  Vec3 spring = Vec3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.walls); ++i) {
+    const auto& [normal, load] = contact.wall[i];
+    walls.add({normal, 0, Vec3::Zero()});
+    spring += contact.stiffness * load * normal;
+  }
+  // What holds a point in front of the walls into which the sum pushes (Moreau).
+  return projectOntoWalls(walls, -(spring + damper)).z + damper;
+}
+
+} // namespace
+
+void dampWalls(Contact& contact, double damping, bool magnetic) noexcept {
+  const Vec3 damper = -damping * contact.velocity;
+  if (contact.attracted)
+    contact.force += contact.attraction * damper.dot(contact.normal) * contact.normal;
+  if (!contact.touching || damper.isZero(0)) return;
+  const Vec3 across = acrossWalls(contact, damper);
+  contact.force += magnetic ? across : besideSpring(contact, damper);
+  dampSticking(contact, damper - across);
 }
 
 void DampingStage::apply(Contact& contact, ContactMemory&) const noexcept {

@@ -28,11 +28,12 @@ class VelocityFilterStage final : public ForceStage {
 // (section 2.6).
 void dampSticking(Contact& contact, const Vec3& damper) noexcept;
 
-// Damps the tip's motion across the walls that hold its contact point: F -= B v across all of them,
-// told apart by wall, so that none pulls (K08) unless the surface is magnetic; then the pull of a
-// magnet is damped as well. It is the tip that is damped, not the way to the contact point: a point
-// that turns round a crease must not become a push. While the VCP sticks, the tip's motion along
-// the walls is damped as well (section 2.6), within what sticking can bear.
+// Damps the tip's motion across the walls that hold its contact point: F -= B v as far as these can
+// bear the whole of it, so that none pulls (K08) and the damper's part is at most B |v|, however
+// nearly two walls are one. A magnetic surface bears pulls too; then that of a magnet is damped as
+// well. It is the tip that is damped, not the way to the contact point: a point that turns round a
+// crease must not become a push. While the VCP sticks, the tip's motion along the walls is damped
+// as well (section 2.6), within what sticking can bear.
 void dampWalls(Contact& contact, double damping, bool magnetic) noexcept;
 
 // dampWalls() with B of the contact's material, of the scene where a magnet pulls.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
+#include "haptics/spring_stage.h"
 
 namespace patina {
 namespace {
@@ -39,6 +40,60 @@ TEST(Damping, DoesNotChangeTheStaticForce) {
     second = tick(*without, b, tip, 1e-3);
   }
   EXPECT_EQ(first.force, second.force);
+}
+
+// Against walls that only push, however nearly two of them are one: at most B |v|, never with the
+// motion, and no pull on any of them.
+TEST(Damping, OfSeveralWallsIsBoundedTakesEnergyAndDoesNotPull) {
+  const double damping = 2, stiffness = 500;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    Contact contact;
+    contact.touching = true;
+    contact.stiffness = stiffness;
+    contact.velocity = 0.2 * randomDirection(random);
+    contact.walls = 1 + i % 3;
+    const double spread = std::pow(10.0, -3 * unit(random));
+    const Vec3 middle = randomDirection(random);
+    Vec3 way = Vec3::Zero(); // from tip to contact point
+    for (int k = 0; k < contact.walls; ++k) {
+      const Vec3 normal = (middle + spread * randomDirection(random)).normalized();
+      contact.wall[static_cast<std::size_t>(k)] = {normal, 2e-3 * unit(random)};
+      way += contact.wall[static_cast<std::size_t>(k)].load * normal;
+    }
+    contact.normal = way.normalized();
+    const Vec3 spring = contact.force = stiffness * way;
+    dampWalls(contact, damping, false);
+    const Vec3 damper = contact.force - spring;
+    ASSERT_LE(damper.norm(), damping * 0.2 * (1 + 1e-6)) << i;
+    ASSERT_LE(damper.dot(contact.velocity), 1e-9) << i;
+    // Whatever goes into no wall is not hindered by the force, nor drawn towards them.
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 free = randomDirection(random);
+      bool goes = true;
+      for (int w = 0; w < contact.walls; ++w)
+        goes = goes && contact.wall[static_cast<std::size_t>(w)].normal.dot(free) >= 0;
+      if (goes) {
+        ASSERT_GE(contact.force.dot(free), -1e-6) << i;
+      }
+    }
+  }
+}
+
+// Across two walls at right angles each has its own share.
+TEST(Damping, InACornerEachWallIsDampedByItself) {
+  Contact contact;
+  contact.touching = true;
+  contact.stiffness = 500;
+  contact.velocity = Vec3(-0.1, 0.3, 0.5);
+  contact.walls = 2;
+  contact.wall[0] = {Vec3::UnitX(), 2e-3};
+  contact.wall[1] = {Vec3::UnitZ(), 1e-3};
+  contact.normal = Vec3(2, 0, 1).normalized();
+  contact.force = Vec3(1, 0, 0.5);
+  dampWalls(contact, 2, false);
+  EXPECT_LT((contact.force - Vec3(1.2, 0, 0)).norm(), 1e-12); // it leaves the floor too fast
 }
 
 TEST(Damping, SeesTheBackwardDifference) {

@@ -1,0 +1,122 @@
+// Pressing fast over edges with the coupling, whose damper sees the tip and not the contact point:
+// a point that turns round an edge must not become a push.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "support/contact_course.h"
+#include "support/contact_scenes.h"
+
+namespace patina::test {
+namespace {
+
+constexpr double kSpeed = 0.2;      // [m/s]
+constexpr double kMostBeyond = 0.4; // [N], the damper's B v, which begins with contact
+constexpr double kOwnStep = 0.05;   // [N] of the spring alone, beyond 2 k |dx| + k v_s dt
+
+struct Edge {
+  const char* name;
+  ContactScene scene;
+  Vec3 at;  // on the edge
+  Vec3 out; // away from it into the open, unit
+  Vec3 along;
+};
+
+std::vector<Edge> edges() {
+  return {
+      {"box edge", contactScene("box"), Vec3(0.05, 0, 0.03), Vec3(1, 0, 1).normalized(),
+       Vec3::UnitY()},
+      {"L corner", contactScene("L"), Vec3(0, 0, 0), Vec3(-1, 0, 1).normalized(), Vec3::UnitY()},
+      {"L edge", contactScene("L"), Vec3(0, 0, 0.05), Vec3(-1, 0, 1).normalized(), Vec3::UnitY()},
+      {"plate edge", contactScene("plate2"), Vec3(0.05, 0, 0.001), Vec3(1, 0, 1).normalized(),
+       Vec3::UnitY()}};
+}
+
+// In from a free place, across below the edge, and out again, at one speed.
+std::vector<Vec3> stroke(const Edge& edge, double iso, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const Vec3 side = edge.along.cross(edge.out);
+  const auto about = [&](double across, double height) {
+    return Vec3(edge.at + across * side + (height + iso) * edge.out +
+                3e-3 * unit(random) * edge.along);
+  };
+  const std::vector<Vec3> corners = {
+      about(6e-3 * unit(random), 9e-3), about(4e-3 * unit(random), -1e-3 + 2e-3 * unit(random)),
+      about(4e-3 * unit(random), -1e-3 + 2e-3 * unit(random)), about(6e-3 * unit(random), 9e-3)};
+  std::vector<Vec3> tips = {corners[0]};
+  for (const Vec3& to : corners) {
+    const Vec3 from = tips.back();
+    const int count = static_cast<int>((to - from).norm() / (kSpeed * kTick));
+    for (int i = 1; i <= count; ++i)
+      tips.push_back(from + i * kSpeed * kTick * (to - from).normalized());
+  }
+  return tips;
+}
+
+Vec3 springOf(const Contact& contact) {
+  return contact.stiffness * (contact.vcp - contact.tip);
+}
+
+TEST(CoupledPress, OverAnEdgeStepsNoMoreThanSpringAndDamperExplain) {
+  std::map<double, double> worst; // by stiffness, at constant velocity [N]
+  double worst_beyond = 0;
+  for (const Edge& edge : edges())
+    for (const double iso : {0.0, 1e-3, 2e-3}) {
+      const auto field = contactField(edge.scene, iso, 150);
+      for (const bool chosen : {false, true})
+        for (const double stiffness : {500.0, 1000.0, 2000.0}) {
+          Scene scene;
+          scene.haptics.stiffness = stiffness;
+          scene.haptics.force_limit = 1e3;
+          if (iso > 0) scene.haptics.tip_radius = iso;
+          scene.device_model = DeviceModel{};
+          if (chosen) scene.stabilisers = Stabilisers{true, false};
+          const auto snapshot = compileStages(scene, field);
+          const auto& plan = snapshot->stabilisers.coupling;
+          const double damping = plan ? plan->damping : 0;
+          std::mt19937 random(7);
+          double straight = 0, beyond = 0, own = 0, damped = 0;
+          long contacts = 0, faults = 0;
+          for (int k = 0; k < 60; ++k) {
+            ContactMemory memory;
+            Contact last;
+            bool first = true;
+            for (const Vec3& tip : stroke(edge, iso, random)) {
+              const Contact now = tick(*snapshot, memory, tip, kTick);
+              if (!first) {
+                const double turned = (now.velocity - last.velocity).norm();
+                const double law = std::max(now.stiffness, last.stiffness) *
+                                   (2 * (tip - last.tip).norm() + kOwnSpeed * kTick);
+                const double step = (now.force - last.force).norm();
+                if (turned < 1e-6) straight = std::max(straight, step);
+                beyond = std::max(beyond, step - law - damping * turned);
+                if (!now.snap) own = std::max(own, (springOf(now) - springOf(last)).norm() - law);
+              }
+              damped = std::max(damped, (now.force - springOf(now)).norm());
+              contacts += now.touching;
+              faults += now.fault;
+              first = false;
+              last = now;
+            }
+          }
+          worst[stiffness] = std::max(worst[stiffness], straight);
+          worst_beyond = std::max(worst_beyond, beyond);
+          const std::string what = edge.name + (" " + std::to_string(iso)) + " K " +
+                                   std::to_string(stiffness) + (chosen ? " chosen" : "");
+          EXPECT_GT(contacts, 500);
+          EXPECT_EQ(faults, 0) << what;
+          EXPECT_LE(beyond, kMostBeyond) << what;
+          EXPECT_LE(own, kOwnStep) << what;
+          EXPECT_LE(damped, damping * kSpeed * (1 + 1e-6)) << what;
+        }
+    }
+  for (const auto& [stiffness, step] : worst)
+    std::printf("K %.0f: step %.3f N at constant velocity\n", stiffness, step);
+  std::printf("beyond what spring and damper explain: %.3f N\n", worst_beyond);
+}
+
+} // namespace
+} // namespace patina::test
