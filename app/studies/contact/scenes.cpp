@@ -278,14 +278,15 @@ std::shared_ptr<const SurfaceField> contactField(const ContactScene& scene, doub
   const FieldGrid grid = gridAround(box, spec);
   Progress progress;
   if (scene.meshes.size() == 1)
-    return withSamples(buildField(scene.meshes[0], grid, spec.band, progress).field);
+    return withSamples(buildField(scene.meshes[0], grid, spec.band, progress, scene.sides).field);
   const BlockLattice lattice{grid.origin, grid.voxel};
   std::vector<FieldPart> parts;
   std::int32_t first_face = 0;
   for (const TriangleMesh& mesh : scene.meshes) {
     const BlockBox blocks = blocksAround(lattice, fieldBounds(mesh), spec.band);
-    parts.push_back({buildField(mesh, gridOf(lattice, blocks), spec.band, progress).field,
-                     blocks.low, first_face});
+    parts.push_back(
+        {buildField(mesh, gridOf(lattice, blocks), spec.band, progress, scene.sides).field,
+         blocks.low, first_face});
     first_face += static_cast<std::int32_t>(mesh.triangles.size());
   }
   return withSamples(std::make_shared<const SurfaceField>(mergeFields(parts, lattice)));

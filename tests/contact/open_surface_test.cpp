@@ -1,0 +1,194 @@
+// Open surfaces: a terrain, a sheet, scans with holes, pressed from their front away from the rim.
+// There they are the surface of a body, and the exact proxy on that body is the judge.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "contact/course_limits.h"
+#include "field/build_field.h"
+#include "geometry/shapes.h"
+#include "support/contact_course.h"
+#include "support/contact_scenes.h"
+
+namespace patina::test {
+namespace {
+
+constexpr double kSide = 0.1, kBelow = 3e-3; // [m]
+constexpr double kFromRim = 6e-3;            // [m], what a hole says of the surface ends before
+constexpr int kFine = 160;                   // 51,200 triangles
+constexpr int kCoarse = 80;                  // so that a voxel does not swallow the noise
+
+struct OpenSurface {
+  std::string name;
+  TriangleMesh felt; // open
+  TriangleMesh body; // the same, closed
+};
+
+// Hills of some 20 degrees, and the noise of a scanner.
+TriangleMesh terrainBody(int cells, double noise) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  return reliefBlock(kSide, -0.03, cells, [&](double x, double y) {
+    return 4e-3 * std::sin(90 * x + 0.4) * std::cos(80 * y) + noise * normal(random);
+  });
+}
+// The upper face of a reliefBlock.
+TriangleMesh topOf(TriangleMesh block, int cells) {
+  std::erase_if(block.triangles, [=](const Triangle& t) {
+    return *std::max_element(t.begin(), t.end()) >= (cells + 1) * (cells + 1);
+  });
+  return block;
+}
+
+std::vector<OpenSurface> openSurfaces() {
+  const TriangleMesh terrain = terrainBody(kFine, 0), scanned = terrainBody(kCoarse, 0.03e-3);
+  const TriangleMesh flat =
+      tilted(reliefBlock(kSide, -0.03, 4, [](double, double) { return 0.0; }));
+  const TriangleMesh rough = roughSolid(5);
+  return {{"terrain", topOf(terrain, kFine), terrain},
+          {"sheet", topOf(flat, 4), flat},
+          {"scan", withHoles(topOf(scanned, kCoarse), 6, 2e-3, 4), scanned},
+          {"body with holes", withHoles(rough, 5, 3e-3, 4), rough}};
+}
+
+// Both ends of edges with one face.
+std::vector<std::pair<Vec3, Vec3>> rims(const TriangleMesh& mesh) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> faces;
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++faces[std::minmax({t[k], t[(k + 1) % 3]})];
+  std::vector<std::pair<Vec3, Vec3>> rim;
+  for (const auto& [edge, count] : faces)
+    if (count == 1)
+      rim.emplace_back(mesh.positions[static_cast<std::size_t>(edge.first)],
+                       mesh.positions[static_cast<std::size_t>(edge.second)]);
+  return rim;
+}
+double distanceTo(const std::vector<std::pair<Vec3, Vec3>>& rim, const Vec3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b] : rim) {
+    const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (a + t * (b - a) - p).norm());
+  }
+  return least;
+}
+
+// Down onto a random place, 3 mm into it, 10 mm along it and up again; from behind with side = -1.
+// Empty where that comes near the rim.
+std::vector<Vec3> touch(const OpenSurface& surface, const ExactSurface& body,
+                        const std::vector<std::pair<Vec3, Vec3>>& rim, double iso, double side,
+                        std::mt19937& random) {
+  std::uniform_int_distribution<std::size_t> any(0, surface.felt.triangles.size() - 1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const std::size_t f = any(random);
+  const Vec3 place =
+      (surface.felt.corner(f, 0) + surface.felt.corner(f, 1) + surface.felt.corner(f, 2)) / 3;
+  const Vec3 out = side * faceNormal(surface.felt, f);
+  const Vec3 along = Eigen::AngleAxisd(6.28 * unit(random), out) * out.unitOrthogonal();
+  const double speed = 0.01 + 0.19 * unit(random), step = speed * kTick;
+  std::vector<Vec3> tips;
+  for (double h = 3e-3; h > -kBelow; h -= 0.05e-3) tips.push_back(place + (iso + h) * out);
+  for (double s = 0; s < 10e-3; s += step) {
+    const Vec3 foot = body.nearest(place + s * along).point;
+    if (distanceTo(rim, foot) < kFromRim) return {};
+    tips.push_back(foot + (iso - kBelow) * out);
+  }
+  const Vec3 last = tips.back();
+  for (double h = 0; h < kBelow + 3e-3; h += 0.05e-3) tips.push_back(last + h * out);
+  return tips;
+}
+
+CourseReport pressed(const OpenSurface& surface, const ExactSurface& body, double iso,
+                     OpenSides sides, double side) {
+  ContactScene scene{surface.name, {surface.felt}};
+  scene.sides = sides;
+  const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");
+  const auto rim = rims(surface.felt);
+  ContactJudge judge(methodOf(*snapshot), body, iso);
+  CourseReport report;
+  std::mt19937 random(11);
+  for (int touches = 0; touches < 30;) {
+    const std::vector<Vec3> tips = touch(surface, body, rim, iso, side, random);
+    if (tips.empty()) continue;
+    ++touches;
+    judge.restart();
+    for (const Vec3& tip : tips) judge.feel(tip, report);
+  }
+  return report;
+}
+
+void expectHeld(const CourseReport& report, const std::string& what) {
+  EXPECT_GT(report.contacts, 3000) << what;
+  expectFaultless(report, what);
+  const Percentiles error = percentiles(report.error);
+  std::printf("%-18s %ld ticks in contact, %ld lost, %ld pulls, step %.3f N, error p50 %.4f p99 "
+              "%.3f p99.9 %.3f N\n",
+              what.c_str(), report.contacts, report.lost, report.pulls, report.worst_excess,
+              error.p50, error.p99, error.p999);
+}
+
+TEST(OpenSurface, IsHeldFromItsFrontLikeTheBodyItBounds) {
+  CourseReport all;
+  for (const OpenSurface& surface : openSurfaces()) {
+    const ExactSurface body({surface.body});
+    for (const double iso : {0.0, 1e-3}) {
+      const CourseReport report = pressed(surface, body, iso, OpenSides::one, 1);
+      expectHeld(report, surface.name + (iso > 0 ? " with a tip" : ""));
+      all.add(report);
+    }
+  }
+  expectExact(all, "one-sided");
+}
+
+// The triangles themselves are the judge: a sheet without a thickness, about which the tip rolls.
+TEST(OpenSurface, OfTwoSidesIsHeldFromBoth) {
+  CourseReport all;
+  for (const OpenSurface& surface : openSurfaces()) {
+    if (surface.name == "body with holes") continue; // closed: it has one side
+    const ExactSurface sheet({surface.felt});
+    for (const double side : {1.0, -1.0}) {
+      const CourseReport report = pressed(surface, sheet, 1e-3, OpenSides::two, side);
+      expectHeld(report, surface.name + (side > 0 ? " front" : " back"));
+      all.add(report);
+    }
+  }
+  expectExact(all, "two-sided");
+}
+
+// Nodes within two voxels of the rim.
+std::size_t nodesNear(const std::vector<std::pair<Vec3, Vec3>>& rim, const FieldGrid& grid) {
+  std::set<std::array<int, 3>> nodes;
+  for (const auto& [a, b] : rim) {
+    const Vec3 p = grid.toGrid(a), q = grid.toGrid(b);
+    const Vec3 low = p.cwiseMin(q).array() - 2, high = p.cwiseMax(q).array() + 2;
+    for (int k = static_cast<int>(std::ceil(low[2])); k <= high[2]; ++k)
+      for (int j = static_cast<int>(std::ceil(low[1])); j <= high[1]; ++j)
+        for (int i = static_cast<int>(std::ceil(low[0])); i <= high[0]; ++i)
+          if (distanceTo({{p, q}}, Vec3(i, j, k)) < 2.01) nodes.insert({i, j, k});
+  }
+  return nodes.size();
+}
+
+TEST(OpenSurface, IsUnsureNowhereButAtItsRims) {
+  for (const OpenSurface& surface : openSurfaces()) {
+    FieldSpec spec;
+    spec.resolution = 150;
+    Progress progress;
+    const BuiltField built = buildField(surface.felt, spec, progress);
+    const std::size_t near = nodesNear(rims(surface.felt), built.field->grid);
+    std::printf("%-18s %zu unsure nodes, %zu within two voxels of a rim\n", surface.name.c_str(),
+                built.report.ambiguous_signs, near);
+    EXPECT_LE(built.report.ambiguous_signs, near) << surface.name;
+    EXPECT_GT(built.report.ambiguous_signs, 0U) << surface.name;
+  }
+}
+
+} // namespace
+} // namespace patina::test
