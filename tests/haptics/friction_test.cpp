@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "haptics/device.h"
+#include "haptics/friction_stage.h"
 
 namespace patina {
 namespace {
@@ -283,6 +284,74 @@ TEST(Friction, DampingActsOnTheStuckPoint) {
     force = tick(*snapshot, memory, tip, kPeriod).force;
   }
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);
+}
+
+// In a groove both walls bear more than they bear together: mu N / sin(alpha) at half an opening of
+// alpha, wherever across the groove the tip is.
+TEST(Friction, TwoWallsGripByTheWedgeFactor) {
+  const double mu = 0.3, d = 2e-3;
+  for (const double opening : {90.0, 60.0})
+    for (const double aside : {0.0, 0.4e-3}) {
+      const double alpha = 0.5 * opening * kPi / 180;
+      const Vec3 left(std::cos(alpha), 0, std::sin(alpha)), right(-left.x(), 0, left.z());
+      Contact contact;
+      contact.touching = true;
+      contact.dt = kPeriod;
+      contact.tip = Vec3(aside, 0, -d);
+      contact.depth = contact.tip.norm();
+      contact.normal = -contact.tip / contact.depth;
+      const double both = d / left.z(), more = -aside / left.x();
+      contact.walls = 2;
+      contact.wall = {{{left, 0.5 * (both + more)}, {right, 0.5 * (both - more)}}};
+      ASSERT_LT((contact.wall[0].load * left + contact.wall[1].load * right + contact.tip).norm(),
+                1e-12);
+      contact.material.static_friction = contact.material.dynamic_friction = mu;
+      const Field groove =
+          cubeField([=](const Vec3& p) { return std::min(left.dot(p), right.dot(p)); }, 0.4e-3, 80);
+      const FrictionStage stage(groove, Sampler::high, 0, Friction{}, false);
+      const double reach = mu * d / std::sin(alpha);
+      for (const double dragged : {0.99 * reach, 1.01 * reach, 5 * reach}) {
+        ContactMemory memory;
+        memory.has_stuck = true;
+        memory.stuck = Vec3(0, -dragged, 0);
+        Contact now = contact;
+        stage.apply(now, memory);
+        EXPECT_EQ(memory.slipping, dragged > reach) << opening;
+        EXPECT_NEAR(now.vcp.norm(), std::min(dragged, reach), 1e-9) << opening;
+      }
+    }
+}
+
+// Pressed past the axis of a bar the contact point runs round it by itself. That is no slip of the
+// hand's: the stuck point goes along, and the drag is what it was.
+TEST(Friction, ASnapCarriesTheStuckPointAlong) {
+  const double radius = 3e-3;
+  const Field bar =
+      cubeField([=](const Vec3& p) { return std::hypot(p.x(), p.z()) - radius; }, 0.25e-3, 96);
+  const auto snapshot = compileStages(withFriction(sceneOf(500), 3, 3), bar);
+  ContactMemory memory;
+  glide(*snapshot, memory, Vec3(0.4e-3, 0, 4e-3));
+  glide(*snapshot, memory, Vec3(0.4e-3, 0, 2e-3), 0.05e-3);
+  glide(*snapshot, memory, Vec3(0.4e-3, 0.3e-3, 2e-3), 0.05e-3); // stuck 0.3 mm behind
+  const Vec3 tip(0.4e-3, 0.3e-3, -1.5e-3);
+  Contact last = glide(*snapshot, memory, tip, 0.1e-3);
+  int snaps = 0;
+  double way = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Contact now = tick(*snapshot, memory, tip, kPeriod);
+    ASSERT_FALSE(now.fault);
+    ASSERT_FALSE(memory.slipping);
+    if (now.snap) {
+      ++snaps;
+      way += (now.candidate - last.candidate).norm();
+      ASSERT_LT(((now.vcp - now.candidate) - (last.vcp - last.candidate)).norm(), 1e-12) << i;
+    }
+    last = now;
+  }
+  EXPECT_GT(snaps, 20);
+  EXPECT_GT(way, radius);
+  EXPECT_LT(last.normal.z(), -0.9); // it came out on the far side
+  EXPECT_NEAR(last.force.y(), -500 * 0.3e-3, 2e-3);
 }
 
 } // namespace

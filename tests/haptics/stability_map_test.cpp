@@ -264,6 +264,27 @@ TEST(StabilityMap, OfASphereIsTheSameEverywhere) {
   EXPECT_EQ(stiff.buzzing, mesh.positions.size());
 }
 
+// Pressed to the axis of a bar the contact point may be anywhere round it: there is no stiffness to
+// judge, and the map says so.
+TEST(StabilityMap, WhereTheForceJumpsItIsUnknownAndCounted) {
+  const double stiffness = 500, depth = 1 / stiffness; // of 1 N
+  for (const double radius : {depth, 1.5 * depth}) {
+    const Field bar =
+        cubeField([=](const Vec3& p) { return std::hypot(p.x(), p.z()) - radius; }, 0.25e-3, 96);
+    TriangleMesh mesh;
+    for (int i = 0; i < 90; ++i)
+      mesh.positions.emplace_back(radius * std::cos(0.07 * i), 1e-4 * i,
+                                  radius * std::sin(0.07 * i));
+    Progress progress;
+    const StabilityMap map = stabilityMap(bare(stiffness), bar, mesh, progress);
+    const bool axis = radius == depth;
+    EXPECT_EQ(map.jumping, axis ? mesh.positions.size() : 0U);
+    EXPECT_EQ(map.buzzing, 0U);
+    for (const float ratio : map.ratio) EXPECT_EQ(std::isnan(ratio), axis);
+    EXPECT_EQ(std::isnan(map.worst_ratio), axis);
+  }
+}
+
 TEST(StabilityMap, StopsWhenCancelled) {
   Progress progress;
   progress.cancel();
