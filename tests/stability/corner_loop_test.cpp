@@ -104,6 +104,56 @@ TEST(CornerLoop, RestsAtAnyStiffnessWithTheAutomaticStabiliser) {
   }
 }
 
+// The disturbances of a plane's loop, where contact has more than one normal.
+TEST(CornerLoop, RestsAfterAnImpactUnderJitterAMissedTickAndATeleport) {
+  for (const Corner& corner : corners()) {
+    const Field field = innerCorner(corner.normals);
+    for (const double stiffness : {1e3, 1e5}) {
+      Scene scene = unlimited(stiffness);
+      scene.device_model = DeviceModel{};
+      const auto snapshot = compileStages(scene, field);
+      const SimulationSpec calm = pressedInto(corner, scene.device_model->damping);
+      SimulationSpec impact = calm, jitter = calm, missed = calm, teleport = calm;
+      impact.speed = 1; // [m/s]
+      jitter.jitter = PeriodRange{0.5e-3, 2e-3};
+      missed.missed = MissedTick{5, 0.02};
+      teleport.teleport = Teleport{5, -0.05 * calm.inward};
+      const std::string what = corner.name + (" at " + std::to_string(stiffness));
+      Progress progress;
+      expectRest(simulate(*snapshot, impact, progress), what + " impact", 40e-3);
+      expectRest(simulate(*snapshot, jitter, progress), what + " jitter", 20e-3);
+      expectRest(simulate(*snapshot, missed, progress), what + " missed", 20e-3);
+      // Out of contact in one tick is a fault, and it lets the hand back in.
+      const SimulationReport back = simulate(*snapshot, teleport, progress);
+      EXPECT_LE(back.rms_velocity, 1e-6) << what;
+      EXPECT_TRUE(back.touches_late) << what;
+      EXPECT_TRUE(std::isfinite(back.max_force)) << what;
+    }
+  }
+}
+
+// A tip at rest has the same force after 200,000 ticks, bit for bit, also where walls meet.
+TEST(CornerLoop, DoesNotDrift) {
+  for (const Corner& corner : corners()) {
+    Scene scene = withFriction(sceneOf(500), 0.5, 0.3);
+    scene.haptics.damping = 2;
+    const auto snapshot = compileStages(scene, innerCorner(corner.normals));
+    Vec3 out = Vec3::Zero();
+    for (const Vec3& n : corner.normals) out += n;
+    out.normalize();
+    ContactMemory memory;
+    glide(*snapshot, memory, 3e-3 * out);
+    glide(*snapshot, memory, -2e-3 * out);
+    const Vec3 tip = -2e-3 * out + 0.2e-3 * Vec3(1, -2, 0.5);
+    glide(*snapshot, memory, tip, 0.01e-3);
+    for (int i = 0; i < 1000; ++i) tick(*snapshot, memory, tip, kPeriod);
+    const Vec3 first = tick(*snapshot, memory, tip, kPeriod).force;
+    for (int i = 0; i < 200000; ++i) tick(*snapshot, memory, tip, kPeriod);
+    EXPECT_EQ(tick(*snapshot, memory, tip, kPeriod).force, first) << corner.name;
+    EXPECT_GT(first.norm(), 0.5) << corner.name;
+  }
+}
+
 // On a small ball and on an edge the tip stands only by friction (the frictionless equilibrium is
 // unstable: K d / (r - d) against nothing). Without it, it leaves, bounded and without a fault.
 TEST(CornerLoop, StandsOnASmallBallAndOnAnEdgeByFrictionAlone) {

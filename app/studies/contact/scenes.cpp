@@ -43,6 +43,13 @@ TriangleMesh dent() {
   });
 }
 
+// Tilted against the grid, and 0.1 m long again.
+TriangleMesh turned(const TriangleMesh& mesh) {
+  const TriangleMesh whole = tilted(mesh);
+  const double scale = 0.1 / bounds(whole).sizes().maxCoeff();
+  return transformed(whole, Eigen::Affine3d(Eigen::Scaling(scale)));
+}
+
 using Maker = std::function<ContactScene()>;
 
 ContactScene one(TriangleMesh mesh) {
@@ -54,6 +61,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"box", [] { return one(box(Vec3(0.1, 0.08, 0.06))); }},
       {"L", [] { return one(lSolid()); }},
       {"room", [] { return one(roomSolid()); }},
+      {"roomt", [] { return one(turned(roomSolid())); }},
       {"wedge",
        [] {
          return one(prism({{-0.05, -0.03}, {0.05, -0.03}, {0.05, 0.04}}, 0.08));
@@ -64,17 +72,8 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"plate2t", [] { return one(tilted(plateSolid(0.002))); }},
       {"plate4t", [] { return one(tilted(plateSolid(0.004))); }},
       {"bar", [] { return one(prism(disc(0.004, 64), 0.1)); }},
-      {"groove",
-       [] {
-         return one(prism({{0, 0},
-                           {-0.02, 0.02},
-                           {-0.05, 0.02},
-                           {-0.05, -0.02},
-                           {0.05, -0.02},
-                           {0.05, 0.02},
-                           {0.02, 0.02}},
-                          0.1));
-       }},
+      {"groove", [] { return one(grooveSolid(90)); }},
+      {"groove60t", [] { return one(turned(grooveSolid(60))); }},
       {"dent", [] { return one(dent()); }},
       {"spheres",
        [] {
@@ -207,6 +206,18 @@ TriangleMesh roomSolid() {
   const std::vector<double> lines = {-0.03, 0, 0.07};
   return cellSolid(lines, lines, lines,
                    [](int i, int j, int k) { return i == 0 || j == 0 || k == 0; });
+}
+
+TriangleMesh grooveSolid(double opening) {
+  const double deep = 0.02, wide = deep * std::tan(opening * std::numbers::pi / 360);
+  return prism({{0, 0},
+                {-wide, deep},
+                {-0.05, deep},
+                {-0.05, -0.02},
+                {0.05, -0.02},
+                {0.05, deep},
+                {wide, deep}},
+               0.1);
 }
 
 TriangleMesh roughSolid(unsigned seed) {

@@ -39,6 +39,7 @@ TriangleMesh plateSolid(double thickness);     // 100 mm x 100 mm, across z
 TriangleMesh tilted(const TriangleMesh& mesh); // by 40 degrees about (1, 2, 3)
 TriangleMesh lSolid();                         // inner edge along y at x = z = 0
 TriangleMesh roomSolid();                      // inner corner at 0, free where x, y, z > 0
+TriangleMesh grooveSolid(double opening);      // in degrees; its bottom along y at x = z = 0
 TriangleMesh roughSolid(unsigned seed);        // as a scan leaves it: noise, uneven triangles
 // The same with holes of one triangle each, all too narrow for a tip of 1 mm radius.
 TriangleMesh scanSolid(unsigned seed);
