@@ -13,6 +13,8 @@ namespace patina::test {
 
 inline constexpr double kWorstStep = 0.05; // [N] beyond 2 K |dx| + K v_s dt
 inline constexpr double kMostOf = 1e-6;    // of the ticks in contact
+inline constexpr double kMostSamples = 12; // of the field, a tick that began in contact
+inline constexpr double kMostEntrySamples = 40;
 
 // PATINA_LONG=1 in the environment: ten times as many ticks and loops (docs/contributing.md).
 inline long longer(long count) {
@@ -26,6 +28,8 @@ inline void expectFaultless(const CourseReport& report, const std::string& what)
   EXPECT_EQ(report.faults, 0) << what;
   EXPECT_LE(report.worst_excess, kWorstStep) << what;
   EXPECT_EQ(report.unjudged, 0) << what;
+  EXPECT_LE(percentiles(report.samples).max, kMostSamples) << what;
+  EXPECT_LE(percentiles(report.entry_samples).max, kMostEntrySamples) << what;
 }
 
 // [N], at 500 N/m on 100 mm and 150 voxels.
