@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "support/contact_course.h"
-#include "support/contact_scenes.h"
+#include "app/studies/contact/course.h"
+#include "app/studies/contact/scenes.h"
 
 namespace patina::test {
 namespace {

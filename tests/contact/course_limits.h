@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/studies/contact/course.h"
 #include "core/percentiles.h"
-#include "support/contact_course.h"
 
 namespace patina::test {
 

@@ -12,11 +12,11 @@
 
 #include <gtest/gtest.h>
 
+#include "app/studies/contact/course.h"
+#include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
 #include "field/build_field.h"
 #include "geometry/shapes.h"
-#include "support/contact_course.h"
-#include "support/contact_scenes.h"
 
 namespace patina::test {
 namespace {
