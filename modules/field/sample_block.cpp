@@ -113,12 +113,40 @@ Float4 difference(const float* node, int step, Float4 here) {
                  : central;
 }
 
+// A slope as its neighbours across see it: nine differences, weighted as a spline weighs them, so
+// that less of the mesh's facets is in it. Where one of them is another slope than the node's own a
+// crease or a finer relief is near, and the node's own it is.
+Float4 across(const Float4* about, int step, int u, int v, Float4 own, Int4 stored) {
+  constexpr float kOther = 0.03F;
+  const Float4 half = {0.5F, 0.5F, 0.5F, 0.5F}, other = {kOther, kOther, kOther, kOther};
+  Float4 sum = {};
+  for (int i = -1; i <= 1; ++i)
+    for (int j = -1; j <= 1; ++j) {
+      const Float4* at = about + i * u + j * v;
+      const Float4 slope = half * (at[step] - at[-step]);
+      stored &= magnitude(slope - own) < other;
+      sum += slope * ((i == 0 ? 2.F / 3 : 1.F / 6) * (j == 0 ? 2.F / 3 : 1.F / 6));
+    }
+  return stored ? sum : own;
+}
+
 void fillFour(const float* node, SampleNode* out) {
-  const Float4 phi = load(node), none = {};
+  std::array<Float4, 27> about;
+  Int4 all = {-1, -1, -1, -1};
+  for (int z = -1, n = 0; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x, ++n) {
+        about[static_cast<std::size_t>(n)] = load(node + (z * kPadded + y) * kPadded + x);
+        all &= isStored(about[static_cast<std::size_t>(n)]);
+      }
+  const Float4 *middle = &about[13], phi = *middle, none = {};
   const Int4 stored = isStored(phi);
-  const Float4 gx = stored ? difference(node, 1, phi) : none;
-  const Float4 gy = stored ? difference(node, kPadded, phi) : none;
-  const Float4 gz = stored ? difference(node, kPadded * kPadded, phi) : none;
+  const auto slope = [&](int step, int in_about, int u, int v) {
+    const Float4 own = difference(node, step, phi);
+    return stored ? across(middle, in_about, u, v, own, all) : none;
+  };
+  const Float4 gx = slope(1, 1, 3, 9), gy = slope(kPadded, 3, 1, 9),
+               gz = slope(kPadded * kPadded, 9, 1, 3);
   const Float4 a = __builtin_shufflevector(phi, gx, 0, 4, 1, 5);
   const Float4 b = __builtin_shufflevector(gy, gz, 0, 4, 1, 5);
   const Float4 c = __builtin_shufflevector(phi, gx, 2, 6, 3, 7);
