@@ -22,55 +22,15 @@ std::string_view name(Sampler sampler) {
 
 namespace {
 
-// One node, {phi, gx, gy, gz}: the compiler's portable vectors, SSE or NEON alike.
-using Float4 = float __attribute__((vector_size(16)));
-
-Float4 load(const SampleNode& node) {
-  Float4 value;
-  __builtin_memcpy(&value, __builtin_assume_aligned(&node, 16), sizeof(value));
-  return value;
-}
-
-constexpr std::size_t kRow = kSampleSide, kLayer = kSampleSide * kSampleSide;
-
 // Depth at which every cell is still complete is band - sqrt(3); the hand-over ends before it.
 constexpr double kHandOverEnd = 1.75, kHandOverWidth = 1;
 // However narrow the band, values at the surface stay those of the nodes.
 constexpr double kShallowestHandOver = -0.25;
 
-// Spread of the nodes' directions up to which they are one, and from there on until the derivative
-// alone is taken.
-constexpr double kAgreed = 0.0006, kCreaseWidth = 0.001;
-
-struct Blend {
-  Float4 sum;        // trilinear phi and gradient
-  float taylor_half; // 1/2 sum w_i g_i . (x - x_i), F15; zero if not asked for
-};
-
-template <bool kHigh> inline Blend blend(const SampleNode* node, float fx, float fy, float fz) {
-  const float ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
-  const float a = ex * ey, b = fx * ey, c = ex * fy, d = fx * fy;
-  const Float4 t0 = load(node[0]) * (a * ez), t1 = load(node[1]) * (b * ez);
-  const Float4 t2 = load(node[kRow]) * (c * ez), t3 = load(node[kRow + 1]) * (d * ez);
-  const SampleNode* up = node + kLayer;
-  const Float4 t4 = load(up[0]) * (a * fz), t5 = load(up[1]) * (b * fz);
-  const Float4 t6 = load(up[kRow]) * (c * fz), t7 = load(up[kRow + 1]) * (d * fz);
-  const Float4 odd = (t1 + t3) + (t5 + t7), s23 = t2 + t3, s67 = t6 + t7, upper = (t4 + t5) + s67;
-  const Float4 sum = ((t0 + t1) + s23) + upper;
-  if constexpr (!kHigh) return {sum, 0};
-  // sum w_i g_i . (f - c_i): the corners c_i with a coordinate of 1 are the upper half along it.
-  const Float4 y_upper = s23 + s67;
-  const float moment =
-      (fx * sum[1] - odd[1]) + (fy * sum[2] - y_upper[2]) + (fz * sum[3] - upper[3]);
-  return {sum, 0.5F * moment};
-}
+// Spread over which the derivative takes over.
+constexpr double kCreaseWidth = 0.001;
 
 } // namespace
-
-struct FieldSampler::Cell {
-  const SampleNode* node; // the lowest of its eight
-  float fx, fy, fz;
-};
 
 FieldSampler::FieldSampler(const SurfaceField& field, Sampler sampler)
     : field_(&field), grid_(field.grid), sampler_(sampler),
@@ -82,58 +42,17 @@ FieldSampler::FieldSampler(const SurfaceField& field, Sampler sampler)
                    : std::min(-(field.band - kHandOverEnd - kHandOverWidth), kShallowestHandOver);
 }
 
-// False unless all eight nodes are stored. NaN and infinity fail the comparisons, so that nothing
-// is converted that does not fit.
-inline bool FieldSampler::findCell(const Vec3& q, Cell& cell) const noexcept {
-  const double x = q[0], y = q[1], z = q[2];
-  if (!(x >= 0 && y >= 0 && z >= 0 && x < last_node_[0] && y < last_node_[1] && z < last_node_[2]))
-    return false;
-  const int i = static_cast<int>(x), j = static_cast<int>(y), k = static_cast<int>(z);
-  const std::int32_t slot = field_->slotOf(i / kBlockSide, j / kBlockSide, k / kBlockSide);
-  if (slot < 0) return false;
-  const SampleBlock& block = *field_->sample[static_cast<std::size_t>(slot)];
-  const int bi = i % kBlockSide, bj = j % kBlockSide, bk = k % kBlockSide;
-  if (!block.cellComplete(bi, bj, bk)) return false;
-  cell.node = &block.node[static_cast<std::size_t>((bk * kSampleSide + bj) * kSampleSide + bi)];
-  cell.fx = static_cast<float>(x - i);
-  cell.fy = static_cast<float>(y - j);
-  cell.fz = static_cast<float>(z - k);
-  return true;
-}
-
 GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
-  Cell cell;
-  if (!findCell(q, cell)) [[unlikely]]
+  BandCell cell;
+  if (!findCell(*field_, last_node_, q, cell)) [[unlikely]]
     return beyondBand(q);
-  const Blend value = sampler_ == Sampler::high
-                          ? blend<true>(cell.node, cell.fx, cell.fy, cell.fz)
-                          : blend<false>(cell.node, cell.fx, cell.fy, cell.fz);
+  const Blend value = sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
   GridSample sample;
   sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
   sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
   sample.region = FieldRegion::band;
   if (sample.phi < hand_over_) [[unlikely]]
     return handOver(q, sample);
-  return sample;
-}
-
-SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own) const noexcept {
-  SurfaceSample sample;
-  Cell cell;
-  if (!findCell(q, cell)) [[unlikely]] {
-    const GridSample beyond = beyondBand(q);
-    return {beyond.phi, beyond.gradient, 0, beyond.region};
-  }
-  const Blend value = sampler_ == Sampler::high
-                          ? blend<true>(cell.node, cell.fx, cell.fy, cell.fz)
-                          : blend<false>(cell.node, cell.fx, cell.fy, cell.fz);
-  sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
-  sample.region = FieldRegion::band;
-  const float squared =
-      value.sum[1] * value.sum[1] + value.sum[2] * value.sum[2] + value.sum[3] * value.sum[3];
-  sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
-  if (std::abs(squared - 1) > kAgreed || own > 0) [[unlikely]]
-    followCrease(cell, own, sample);
   return sample;
 }
 
@@ -163,7 +82,7 @@ float sumOf(Float4 value) {
 
 // The gradient's length alone does not tell: in a field with relief baked in it is not 1 on either
 // side.
-void FieldSampler::followCrease(const Cell& cell, double own,
+void FieldSampler::followCrease(const BandCell& cell, double own,
                                 SurfaceSample& sample) const noexcept {
   const float fx = cell.fx, fy = cell.fy, fz = cell.fz, ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
   const Layer low = layerAt(cell.node), high = layerAt(cell.node + kLayer);
@@ -173,8 +92,8 @@ void FieldSampler::followCrease(const Cell& cell, double own,
   const float squares = sumOf(weight * (ez * squares_low + fz * squares_high));
   if (!(squares > 0)) return;
   sample.spread = std::max(0.0, 1 - sample.gradient.squaredNorm() / static_cast<double>(squares));
-  if (sample.spread < kAgreed) sample.spread = 0;
-  const double share = std::clamp((sample.spread - kAgreed) / kCreaseWidth, own, 1.0);
+  if (sample.spread < kAgreedSpread) sample.spread = 0;
+  const double share = std::clamp((sample.spread - kAgreedSpread) / kCreaseWidth, own, 1.0);
   if (share == 0) return;
   Float4 v_low = low.phi, v_high = high.phi;
   Vec3 derivative = Vec3::Zero();
@@ -192,12 +111,10 @@ void FieldSampler::followCrease(const Cell& cell, double own,
 }
 
 double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {
-  Cell cell;
-  if (!findCell(q, cell)) [[unlikely]]
+  BandCell cell;
+  if (!findCell(*field_, last_node_, q, cell)) [[unlikely]]
     return beyondBand(q).phi;
-  const Blend value = sampler_ == Sampler::high
-                          ? blend<true>(cell.node, cell.fx, cell.fy, cell.fz)
-                          : blend<false>(cell.node, cell.fx, cell.fy, cell.fz);
+  const Blend value = sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
   const auto phi = static_cast<double>(value.sum[0] + value.taylor_half);
   if (phi < hand_over_) [[unlikely]]
     return atGrid(q).phi;

@@ -1,11 +1,12 @@
 // Value and direction of a field at any point, in constant time and without allocation.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
-#include "field/surface_field.h"
+#include "field/band_cell.h"
 
 namespace patina {
 
@@ -40,6 +41,9 @@ struct SurfaceSample {
   double spread = 0; // of the nodes' directions: 0 = one, 1 = opposite ones; 0 where they agree
   FieldRegion region = FieldRegion::outside;
 };
+
+// Spread of the nodes' directions up to which they are one.
+inline constexpr double kAgreedSpread = 0.0006;
 
 // A view: the field must outlive it and must have its sample layer. Any thread.
 //
@@ -77,9 +81,7 @@ class FieldSampler {
   Sampler sampler() const noexcept { return sampler_; }
 
  private:
-  struct Cell;
-  bool findCell(const Vec3& q, Cell& cell) const noexcept;
-  void followCrease(const Cell& cell, double own, SurfaceSample& sample) const noexcept;
+  void followCrease(const BandCell& cell, double own, SurfaceSample& sample) const noexcept;
   GridSample beyondBand(const Vec3& q) const noexcept;
   GridSample deepSample(const Vec3& q) const noexcept;
   GridSample handOver(const Vec3& q, const GridSample& sample) const noexcept;
@@ -90,5 +92,23 @@ class FieldSampler {
   Vec3 last_node_;   // grid coordinates; cells lie in [0, last_node_)
   double hand_over_; // phi below which the coarse nodes are blended in
 };
+
+inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own) const noexcept {
+  SurfaceSample sample;
+  BandCell cell;
+  if (!findCell(*field_, last_node_, q, cell)) [[unlikely]] {
+    const GridSample beyond = beyondBand(q);
+    return {beyond.phi, beyond.gradient, 0, beyond.region};
+  }
+  const Blend value = sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
+  sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
+  sample.region = FieldRegion::band;
+  const float squared =
+      value.sum[1] * value.sum[1] + value.sum[2] * value.sum[2] + value.sum[3] * value.sum[3];
+  sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
+  if (std::abs(squared - 1) > kAgreedSpread || own > 0) [[unlikely]]
+    followCrease(cell, own, sample);
+  return sample;
+}
 
 } // namespace patina
