@@ -1,5 +1,6 @@
 #include "haptics/half_spaces.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace patina {
@@ -7,90 +8,81 @@ namespace {
 
 constexpr double kFeasible = 1e-9;               // voxels
 constexpr double kParallel = 1e-9, kFlat = 1e-6; // determinants of pairs and of triples
+constexpr int kMost = Walls::kMost;
 
 // All that is needed of the walls about one x: how far each is violated there, and their angles.
-struct Problem {
-  int count;
-  std::array<double, Walls::kMost> violated;
-  std::array<std::array<double, Walls::kMost>, Walls::kMost> gram;
-
-  Problem(const Walls& walls, const Vec3& x) noexcept : count(walls.count) {
-    for (int i = 0; i < count; ++i) {
-      violated[at(i)] = -walls[i].height(x);
-      for (int j = 0; j <= i; ++j)
-        gram[at(i)][at(j)] = gram[at(j)][at(i)] =
-            i == j ? 1.0 : walls[i].normal.dot(walls[j].normal);
-    }
-  }
-  static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  double g(int i, int j) const noexcept { return gram[at(i)][at(j)]; }
-  double v(int i) const noexcept { return violated[at(i)]; }
-};
-
 class Search {
  public:
-  explicit Search(const Problem& problem) noexcept : p_(problem) {}
+  Search(const Walls& walls, const Vec3& x) noexcept : count_(walls.count) {
+    for (int i = 0; i < count_; ++i) {
+      violated_[i] = -walls[i].height(x);
+      for (int j = 0; j < i; ++j) gram_[i][j] = gram_[j][i] = walls[i].normal.dot(walls[j].normal);
+      gram_[i][i] = 1;
+    }
+  }
 
-  // True if this set of active walls is the answer.
-  bool offer(std::array<int, 3> active, std::array<double, 3> load, int count) noexcept {
-    for (int k = 0; k < count; ++k)
-      if (!(load[Problem::at(k)] >= 0)) return false;
+  // The answer is the one set of walls whose loads push and leave no wall violated.
+  void run() noexcept {
+    if (offer<0>({}, {}) || singles() || pairs()) return;
+    triples();
+  }
+  const WallProjection& best() const noexcept { return best_; }
+
+ private:
+  // True if these active walls are the answer.
+  template <int kActive>
+  bool offer(const std::array<int, 3>& active, const std::array<double, 3>& load) noexcept {
     double worst = 0;
-    for (int j = 0; j < p_.count; ++j) {
-      double left = p_.v(j);
-      for (int k = 0; k < count; ++k)
-        left -= load[Problem::at(k)] * p_.g(active[Problem::at(k)], j);
+    for (int j = 0; j < count_; ++j) {
+      double left = violated_[j];
+      for (int k = 0; k < kActive; ++k)
+        left -= load[static_cast<std::size_t>(k)] * gram_[active[static_cast<std::size_t>(k)]][j];
       worst = std::max(worst, left);
     }
     if (worst < least_) {
       least_ = worst;
       best_.active = active;
       best_.load = load;
-      best_.count = count;
+      best_.count = kActive;
     }
     return worst <= kFeasible;
   }
 
   bool singles() noexcept {
-    for (int i = p_.count - 1; i >= 0; --i)
-      if (offer({i}, {p_.v(i)}, 1)) return true;
+    for (int i = count_ - 1; i >= 0; --i)
+      if (violated_[i] >= 0 && offer<1>({i}, {violated_[i]})) return true;
     return false;
   }
 
   bool pairs() noexcept {
-    for (int i = p_.count - 1; i >= 0; --i)
+    for (int i = count_ - 1; i >= 0; --i)
       for (int j = i - 1; j >= 0; --j) {
-        const double g = p_.g(i, j), det = 1 - g * g;
-        if (det < kParallel) continue;
-        if (offer({i, j}, {(p_.v(i) - g * p_.v(j)) / det, (p_.v(j) - g * p_.v(i)) / det}, 2))
-          return true;
+        const double g = gram_[i][j], u = violated_[i] - g * violated_[j],
+                     v = violated_[j] - g * violated_[i], det = 1 - g * g;
+        if (!(u >= 0 && v >= 0) || det < kParallel) continue;
+        if (offer<2>({i, j}, {u / det, v / det})) return true;
       }
     return false;
   }
 
-  bool triples() noexcept {
-    for (int i = p_.count - 1; i >= 0; --i)
+  void triples() noexcept {
+    for (int i = count_ - 1; i >= 0; --i)
       for (int j = i - 1; j >= 0; --j)
         for (int k = j - 1; k >= 0; --k) {
-          const double a = p_.g(j, k), b = p_.g(i, k), c = p_.g(i, j);
+          const double a = gram_[j][k], b = gram_[i][k], c = gram_[i][j];
+          const double u = violated_[i], v = violated_[j], w = violated_[k];
+          const double p = (1 - a * a) * u + (a * b - c) * v + (a * c - b) * w,
+                       q = (a * b - c) * u + (1 - b * b) * v + (b * c - a) * w,
+                       r = (a * c - b) * u + (b * c - a) * v + (1 - c * c) * w;
           // The square of the volume that the three normals span.
           const double det = 1 + 2 * a * b * c - a * a - b * b - c * c;
-          if (det < kFlat * kFlat) continue;
-          const double u = p_.v(i), v = p_.v(j), w = p_.v(k);
-          if (offer({i, j, k},
-                    {((1 - a * a) * u + (a * b - c) * v + (a * c - b) * w) / det,
-                     ((a * b - c) * u + (1 - b * b) * v + (b * c - a) * w) / det,
-                     ((a * c - b) * u + (b * c - a) * v + (1 - c * c) * w) / det},
-                    3))
-            return true;
+          if (!(p >= 0 && q >= 0 && r >= 0) || det < kFlat * kFlat) continue;
+          if (offer<3>({i, j, k}, {p / det, q / det, r / det})) return;
         }
-    return false;
   }
 
-  const WallProjection& best() const noexcept { return best_; }
-
- private:
-  const Problem& p_;
+  int count_;
+  double violated_[kMost], gram_[kMost][kMost];
   WallProjection best_;
   double least_ = std::numeric_limits<double>::infinity();
 };
@@ -128,13 +120,13 @@ WallProjection projectOntoWalls(const Walls& walls, const Vec3& x) noexcept {
     result.count = 1;
     return result;
   }
-  const Problem problem(walls, x);
-  Search search(problem);
-  if (!search.offer({}, {}, 0) && !search.singles() && !search.pairs()) search.triples();
+  Search search(walls, x);
+  search.run();
   result = search.best();
   result.z = x;
   for (int k = 0; k < result.count; ++k)
-    result.z += result.load[Problem::at(k)] * walls[result.active[Problem::at(k)]].normal;
+    result.z += result.load[static_cast<std::size_t>(k)] *
+                walls[result.active[static_cast<std::size_t>(k)]].normal;
   return result;
 }
 

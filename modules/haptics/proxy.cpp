@@ -7,9 +7,11 @@ namespace patina {
 namespace {
 
 // Lengths in voxels, cosines, and slopes of phi, which is about 1.
-constexpr double kOnSurface = 1e-5;
-constexpr double kAtRest = 3e-3;    // a step that is the last one
-constexpr double kRestError = 3e-4; // what a step may leave undone where the surface is smooth
+constexpr double kOnSurface = 1e-5, kHeld = 1e-4;
+constexpr double kAtRest = 3e-3;      // a step that is the last one
+constexpr double kRestError = 3e-4;   // what a step may leave undone where the surface is smooth
+constexpr double kTurnedError = 1e-3; // and before the turn of the surface is taken out of it
+constexpr double kCreaseStep = 0.03, kCreaseHeight = 0.01; // the last ones beside a crease
 constexpr double kSmoothStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
 constexpr double kFlat = 0.2, kLeastSlope = 0.3;
@@ -21,8 +23,8 @@ constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
-constexpr double kMostLent = 8e-3, kForgotten = 0.99; // voxels^2, and what is left a tick later
-constexpr int kMostSlides = 3, kMostLooks = 8, kMostTightenings = 3, kMostShortenings = 4;
+constexpr double kLent = 4e-3; // voxel^2, from where on it is taken back
+constexpr int kMostSlides = 2, kFewLooks = 3, kMostLooks = 8, kMostShortenings = 4;
 constexpr double kLeastStep = 1.0 / 16;
 constexpr double kSeated = 1e-4, kGrazing = 0.02;
 constexpr int kMostMarch = 128, kMostSeek = 24;
@@ -60,28 +62,28 @@ namespace {
 // that a move of c may give work: the mean depth times how far it went along the mean normal, which
 // is nothing on an exact surface. What it gave of late turns the normals to the level set's own.
 void lend(Proxy& proxy, double given) noexcept {
-  proxy.lent = std::max(0.0, kForgotten * proxy.lent + given);
+  proxy.lent = std::max(0.0, proxy.lent + given);
 }
 double ownShare(const Proxy& proxy) noexcept {
-  return std::min(1.0, proxy.lent / kMostLent);
+  return std::clamp((proxy.lent - kLent) / kLent, 0.0, 1.0);
 }
 
 // A bounded move is the projection of a point nearer to the middle: cutting the way short instead
 // would leave the walls.
 bool shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
              WallProjection& to) noexcept {
+  double squared = (to.z - middle).squaredNorm();
+  const double most = radius * radius * (1 + 1e-6);
+  if (squared <= most) return false;
   const Vec3 whole = target - middle;
   double share = 1;
-  bool shortened = false;
-  for (int k = 0; k < kMostShortenings; ++k) {
-    const double squared = (to.z - middle).squaredNorm();
-    if (squared <= radius * radius * (1 + 1e-6)) break;
-    shortened = true;
+  for (int k = 0; k < kMostShortenings && squared > most; ++k) {
     share *= radius / std::sqrt(squared);
     target = middle + share * whole;
     to = projectOntoWalls(walls, target);
+    squared = (to.z - middle).squaredNorm();
   }
-  return shortened;
+  return true;
 }
 
 // Drops or mends what a look at z refutes (P08). Of a convex obstacle a wall seen elsewhere claims
@@ -104,7 +106,21 @@ void reviewWalls(Walls& walls, const Vec3& z, double height, const Vec3& normal,
   }
 }
 
+// The active wall that was seen too far from z to be believed there, or -1.
+int stalest(const Walls& walls, const WallProjection& held, const Vec3& z) noexcept {
+  int stale = -1;
+  for (int k = 0; k < held.count; ++k) {
+    const int i = held.active[static_cast<std::size_t>(k)];
+    if ((walls[i].seen - z).squaredNorm() > kStale * kStale) stale = i;
+  }
+  return stale;
+}
+
 } // namespace
+
+WallPlane ProxySearch::wallAt(const Vec3& z, const Seen& seen) noexcept {
+  return {seen.normal, seen.normal.dot(z) - seen.height / std::max(seen.slope, kLeastSlope), z};
+}
 
 ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec3& start,
                                     double ball, const Vec3& anchor, double trust) const noexcept {
@@ -116,9 +132,10 @@ ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec
   return aim;
 }
 
-// The usual tick: one wall, smooth, and nearly where it was predicted. False: nothing was changed.
-bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy,
-                        ProxyMove& move) const noexcept {
+// The usual tick: one wall, nearly where it was predicted. False: nothing was changed; `first` is
+// what was seen at the first place, if there alone.
+bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy, ProxyMove& move,
+                        std::optional<Seen>& first) const noexcept {
   const WallPlane& before = proxy.walls[0];
   const Vec3& start = proxy.c;
   const double most = std::min(ball, kTrust), own = ownShare(proxy);
@@ -130,23 +147,44 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     const Vec3 z = c;
     const Seen seen = look(z, own);
     ++move.samples;
-    const double turned = (wall.normal - seen.normal).squaredNorm();
-    if (!seen.smooth || !seen.known || !(std::abs(seen.height) < kSmoothStep) ||
-        !(turned < kTurnOfAWall))
+    first.reset();
+    if (looks == 0) first = seen;
+    const Vec3 turn = seen.normal - wall.normal;
+    const double turned = turn.squaredNorm();
+    if (!seen.known || !(std::abs(seen.height) < kSmoothStep) || !(turned < kTurnOfAWall))
       return false;
-    const double since = std::max((wall.seen - z).squaredNorm(), 1e-4);
-    wall = {seen.normal, seen.normal.dot(z) - seen.height / std::max(seen.slope, kLeastSlope), z};
+    const Vec3 way = z - wall.seen;
+    const double since = std::max(way.squaredNorm(), 1e-4);
+    wall = wallAt(z, seen);
     load = -wall.height(x);
     c = x + load * wall.normal;
-    const double step = (c - z).squaredNorm();
-    // What the step leaves undone is the share of it by which the surface turns under the depth.
-    const bool settled = step < kRestError * kRestError ||
-                         (step < kSmoothStep * kSmoothStep && load * load * turned < since &&
-                          load * load * turned * step < kRestError * kRestError * since);
-    if (!settled) continue;
+    const Vec3 step = c - z;
+    const double step_squared = step.squaredNorm();
+    if (!seen.smooth) {
+      // In a hollow narrower than the depth one wall would swing from side to side.
+      const bool settles = step_squared < kRestError * kRestError || load * load * turned < since;
+      if (!(settles && step_squared < kCreaseStep * kCreaseStep &&
+            std::abs(seen.height) < kCreaseHeight && load > kOnSurface &&
+            (c - start).squaredNorm() < ball * ball && load * load <= (start - x).squaredNorm()))
+        return false;
+    } else if (!(step_squared < kRestError * kRestError)) {
+      // What the step leaves undone is the share of it by which the surface turns under the depth;
+      // as it turned on the way here it is taken to turn on.
+      const double undone = load * load * turned * step_squared;
+      if (!(step_squared < kSmoothStep * kSmoothStep && load * load * turned < since &&
+            undone < kTurnedError * kTurnedError * since))
+        continue;
+      if (undone > kRestError * kRestError * since) {
+        wall.normal = (wall.normal + step.dot(way) / since * turn).normalized();
+        wall.offset = wall.normal.dot(c);
+        load = -wall.height(x);
+        c = x + load * wall.normal;
+      }
+    }
     if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
-    lend(proxy, 0.25 * (before.normal.dot(start - from) + load) *
-                    (before.normal + wall.normal).dot(c - start));
+    if (seen.smooth)
+      lend(proxy, 0.25 * (before.normal.dot(start - from) + load) *
+                      (before.normal + wall.normal).dot(c - start));
     proxy.c = c;
     proxy.walls[0] = wall;
     move.touching = move.smooth = true;
@@ -160,7 +198,8 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
 ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
                               Proxy& proxy) const noexcept {
   ProxyMove move;
-  if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move)) return move;
+  std::optional<Seen> first;
+  if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move, first)) return move;
   Walls& walls = proxy.walls;
   Vec3 start = proxy.c, anchor = proxy.c;
   double anchor_height = 0, trust = kTrust;
@@ -168,16 +207,17 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     const Seen seen = look(start);
     ++move.samples;
     anchor_height = std::max(seen.height, 0.0);
-    if (seen.slope > kFlat)
-      walls.add({seen.normal,
-                 seen.normal.dot(start) - seen.height / std::max(seen.slope, kLeastSlope), start});
+    if (seen.slope > kFlat) walls.add(wallAt(start, seen));
   }
 
-  bool may_end = true, converged = false, smooth = false;
+  // Walls of blended normals meet nowhere on the surface: with several, each has the derivative.
+  bool may_end = true, converged = false, smooth = false, crease = walls.count > 1;
   Vec3 c = start;
-  double height = 0;
+  Seen seen;
+  // One more for each voxel that c may have to go; what is left is the next tick's.
+  const int most_looks = std::min(kFewLooks + static_cast<int>(std::min(ball, 9.0)), kMostLooks);
   Aim aim = aimAt(x, walls, start, ball, anchor, trust);
-  for (int looks = 0; looks < kMostLooks && !converged; ++looks) {
+  for (int looks = 0; looks < most_looks && !converged; ++looks) {
     // Beyond every wall and near enough: contact has ended, unless there is another wall.
     if (may_end && aim.to.count == 0 && !aim.by_ball) {
       const double at_x = heightAt(x);
@@ -189,16 +229,27 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
       may_end = false;
     }
     const Vec3 z = aim.to.z;
-    const Seen seen = look(z, ownShare(proxy));
-    ++move.samples;
-    height = seen.height;
+    if (first) {
+      seen = *first;
+      first.reset();
+    } else {
+      seen = look(z, crease ? 1.0 : ownShare(proxy));
+      ++move.samples;
+    }
+    crease = crease || !seen.smooth;
     c = z;
-    if (height < -kDeep || (seen.slope < kFlat && height < 0)) {
-      const double share = std::clamp(anchor_height / (anchor_height - height), 0.1, 0.5);
+    if (seen.height < -kDeep || (seen.slope < kFlat && seen.height < 0)) {
+      const double share = std::clamp(anchor_height / (anchor_height - seen.height), 0.1, 0.5);
       aim.to.z = anchor + share * (z - anchor);
       trust = (aim.to.z - anchor).norm();
       if (trust < 1e-9) break;
       continue;
+    }
+    // Where walls meet on the surface itself another look could only take one of them away.
+    if (std::abs(seen.height) < kHeld && aim.to.count > 1 && !aim.by_ball && !aim.by_trust &&
+        stalest(walls, aim.to, z) < 0) {
+      converged = true;
+      break;
     }
     double turned = 0, since = 1;
     const bool lone = walls.count == 1;
@@ -206,21 +257,21 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
       turned = (walls[0].normal - seen.normal).norm();
       since = (walls[0].seen - z).norm();
     }
-    reviewWalls(walls, z, height, seen.normal, seen.smooth);
-    if (seen.slope >= kFlat && seen.known)
-      walls.add({seen.normal, seen.normal.dot(z) - height / std::max(seen.slope, kLeastSlope), z});
-    if (height >= -kOnSurface) {
+    reviewWalls(walls, z, seen.height, seen.normal, !crease);
+    if (seen.slope >= kFlat && seen.known) walls.add(wallAt(z, seen));
+    if (seen.height >= -kOnSurface) {
       anchor = z;
-      anchor_height = std::max(height, 0.0);
-      trust = std::max({std::min(kMostTrust, 2 * trust), kStaleTrust, per_steepness_ * height});
+      anchor_height = std::max(seen.height, 0.0);
+      trust =
+          std::max({std::min(kMostTrust, 2 * trust), kStaleTrust, per_steepness_ * seen.height});
     }
     const Aim next = aimAt(x, walls, start, ball, anchor, trust);
     const double step = (next.to.z - z).norm();
     const bool bounded = next.by_ball || next.by_trust;
-    if (next.to.count == 0 && next.by_ball && !next.by_trust && height >= 0 && step < kAtRest) {
-      c = z; // on its way through free space
-      converged = true;
-    } else if (seen.smooth && walls.count == 1 && next.to.count == 1 && !bounded &&
+    if (next.to.count == 0 && next.by_ball && !next.by_trust && seen.height >= 0 &&
+        step < kAtRest) {
+      converged = true; // on its way through free space
+    } else if (!crease && walls.count == 1 && next.to.count == 1 && !bounded &&
                step < kSmoothStep) {
       // What the step leaves undone is the share of it by which the surface turns under the depth.
       const double share = std::min(1.0, next.to.load[0] * turned / std::max(since, 1e-2));
@@ -228,15 +279,15 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
         c = next.to.z;
         converged = smooth = true;
       }
-    } else if (std::abs(height) < kOnSurface &&
-               step < (next.by_ball ? std::max(kAtRest, 0.1 * ball) : kAtRest) && !next.by_trust) {
-      int stale = -1;
-      for (int k = 0; k < next.to.count; ++k) {
-        const int i = next.to.active[static_cast<std::size_t>(k)];
-        if ((walls[i].seen - z).squaredNorm() > kStale * kStale) stale = i;
-      }
+    } else if ((crease || looks > 0) && !next.by_trust && next.to.count > 0 &&
+               step < (next.by_ball ? std::max(kCreaseStep, 0.3 * ball) : kCreaseStep) &&
+               std::abs(seen.height) < kCreaseHeight) {
+      c = next.to.z;
+      converged = true;
+    } else if (std::abs(seen.height) < kHeld &&
+               step < (next.by_ball ? std::max(kAtRest, 0.3 * ball) : kAtRest) && !next.by_trust) {
+      const int stale = stalest(walls, next.to, z);
       if (stale < 0) {
-        c = z;
         converged = true;
       } else {
         walls.remove(stale);
@@ -248,23 +299,11 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     aim = next;
   }
 
-  if (!converged) {
-    // The feasible end of the last step.
-    for (int k = 0; height < -kOnSurface && k < kMostTightenings; ++k) {
-      const double share = std::clamp(anchor_height / (anchor_height - height), 0.05, 0.95);
-      const Vec3 z = anchor + share * (c - anchor);
-      const double at = heightAt(z);
-      ++move.samples;
-      if (at >= -kOnSurface) {
-        anchor = z;
-        anchor_height = std::max(at, 0.0);
-        if (at < kOnSurface) break;
-      } else {
-        c = z;
-        height = at;
-      }
-    }
-    c = height >= -kOnSurface ? c : anchor;
+  if (!converged && seen.height < 0) {
+    // Out to the surface; farther in than a step of Newton's tells, back to where c was feasible.
+    c = seen.height > -kSmoothStep
+            ? Vec3(c - seen.height / std::max(seen.slope, kLeastSlope) * seen.normal)
+            : anchor;
   }
   if (!smooth) {
     const double from_start = (start - x).squaredNorm();
@@ -274,12 +313,16 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
              d0 > kOnSurface && d1 > kOnSurface) {
     lend(proxy, 0.25 * (d0 + d1) * (1 / d0 * (start - from) + 1 / d1 * (c - x)).dot(c - start));
   }
+  bool held = !aim.by_ball && !aim.by_trust;
   for (int i = walls.count - 1; i >= 0; --i)
-    if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);
+    if ((walls[i].seen - c).squaredNorm() > kForget * kForget) {
+      walls.remove(i);
+      held = false;
+    }
   proxy.c = c;
   move.touching = true;
   move.snap = aim.by_ball;
-  move.held = projectOntoWalls(walls, x);
+  move.held = held ? aim.to : projectOntoWalls(walls, x);
   return move;
 }
 

@@ -65,8 +65,9 @@ class ProxySearch {
   struct Aim;
   struct Seen;
   Seen look(const Vec3& q, double own = 0) const noexcept;
-  bool slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy,
-             ProxyMove& move) const noexcept;
+  static WallPlane wallAt(const Vec3& z, const Seen& seen) noexcept;
+  bool slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy, ProxyMove& move,
+             std::optional<Seen>& first) const noexcept;
   bool isFree(const Vec3& from, double height_from, const Vec3& to, double height_to,
               int& samples) const noexcept;
   Aim aimAt(const Vec3& x, const Walls& walls, const Vec3& start, double ball, const Vec3& anchor,

@@ -101,7 +101,8 @@ double growth(const Scene& scene, const Field& field, const Vec3& rest, const Ve
   const double period = 1 / device.rate;
   const HeldForceStep step = heldForceStep(device.mass, device.damping, period);
   ContactMemory memory;
-  const Vec3 press = -tick(*snapshot, memory, rest, period).force;
+  Vec3 press = Vec3::Zero();
+  for (int i = 0; i < 20; ++i) press = -tick(*snapshot, memory, rest, period).force; // settled
   Vec3 x = rest, v = nudge;
   double early = 0, late = 0;
   const int second = static_cast<int>(std::lround(device.rate));

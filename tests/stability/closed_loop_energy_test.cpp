@@ -102,8 +102,10 @@ TEST(ClosedLoopEnergy, OfASmoothSurfaceIsSmallAndFallsWithTheSquareOfTheVoxel) {
       std::printf("%-10s %s: %.2g J at 75, %.2g J at 150, order %.2f\n", mode.name,
                   std::string(name(sampler)).c_str(), coarse.worst, fine.worst, order);
       EXPECT_LE(fine.worst, 3e-6) << mode.name;
-      // 2, and what 24 places scatter; of a proxy what a tick leaves undone, too, which is nothing.
-      EXPECT_GE(order, fine.worst > 1e-6 ? 1.9 : 1) << mode.name;
+      // 2, and what 24 places scatter; below it is what a tick leaves undone, at any voxel.
+      if (fine.worst > 5e-7) {
+        EXPECT_GE(order, 1.9) << mode.name;
+      }
     }
   }
 }
