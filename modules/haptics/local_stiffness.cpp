@@ -116,8 +116,11 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
   result.normal = force / result.force;
   const double length = std::min(step * voxel, 0.5 * result.depth);
   result.matrix = differenced(memory, result.tip, length);
-  result.uncertainty =
-      (result.matrix - differenced(memory, result.tip, 0.5 * length)).cwiseAbs().maxCoeff();
+  const Eigen::Matrix3d change = differenced(memory, result.tip, 0.5 * length) - result.matrix;
+  result.uncertainty = change.cwiseAbs().maxCoeff();
+  // A texture is smooth, but as fine as the step: its differences are extrapolated to none. Not
+  // those of facets, whose edges are no matter of the step's square.
+  if (raised_ > 0) result.matrix += 4.0 / 3 * change;
   if (!result.matrix.allFinite()) return std::nullopt;
   const Vec3 values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
                           0.5 * (result.matrix + result.matrix.transpose()), Eigen::EigenvaluesOnly)

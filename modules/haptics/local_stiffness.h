@@ -34,9 +34,10 @@ struct LocalStiffness {
 // in the servo. Left out are what depends on the path or on time: friction, damping, magnet,
 // stabilisers and force limit; stability_map.h adds what they contribute.
 //
-// The step is 1/4 voxel to either side: shorter ones see the edges of facets, over which the contact
-// point hops, and longer ones less than the field tells. Nearer to the surface than two steps it is
-// half the depth.
+// The step is 1/4 voxel to either side: shorter ones see the edges of facets, over which the
+// contact point hops, and longer ones less than the field tells. Nearer to the surface than two
+// steps it is half the depth. Where relief or roughness is felt, differences over the step s and
+// over half of it are extrapolated: a wave of number k is off by (k s)^4 / 480 of itself.
 class StiffnessProbe {
  public:
   // Throws as compileStages(). `coupling` [N/m]: of the loop that the wall will stand in; the same
