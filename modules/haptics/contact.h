@@ -47,6 +47,8 @@ struct ContactMemory {
     Vec3 slope = Vec3::Zero();
   };
   Leaning relief, roughness;
+  // Of the lateral stage, a tick ago: Contact::aside and the surface's point that it is from.
+  Vec3 aside = Vec3::Zero(), aside_of = Vec3::Zero();
   std::int32_t relief_object = -1, relief_face = -1; // where the next look-up begins
   double sideways = 0;                               // [N], of the stiffness slope
 
@@ -106,8 +108,11 @@ struct Contact {
   // As the tip moves (pull_back.h); zero unless painted and conservative.
   Vec3 stiffness_gradient = Vec3::Zero(); // [N/m^2]
   Vec3 roughness_gradient = Vec3::Zero(); // over the surface, dimensionless
-  Vec3 slope = Vec3::Zero();              // of the relief: normal is along n - slope
-  double relief_step = 0;                 // [m], by which relief moved the VCP this tick, at most
+  // [m], over the surface: relief and roughness are read at surface + aside (lateral_stage.h).
+  Vec3 aside = Vec3::Zero();
+  double lateral = 0;        // [N/m], of the spring that ties it so; 0 = none, aside is 0
+  Vec3 slope = Vec3::Zero(); // of the relief: normal is along n - slope
+  double relief_step = 0;    // [m], by which relief moved the VCP this tick, at most
   double stiffness = 0;    // K at the contact [N/m]; of the whole law, where a coupling softens it
   double stick_radius = 0; // [m], how far p may be from c while it sticks; 0 = it does not
   double slip_step = 0;    // [m], how far the VCP let go this tick by a rule of its own

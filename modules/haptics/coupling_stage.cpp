@@ -1,6 +1,7 @@
 #include "haptics/coupling_stage.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "haptics/spring_stage.h"
 
@@ -8,6 +9,7 @@ namespace patina {
 
 double inSeries(double stiffness, double coupling) noexcept {
   if (!(stiffness > 0 && coupling > 0)) return 0;
+  if (std::isinf(coupling)) return stiffness;
   return 1 / (1 / stiffness + 1 / coupling);
 }
 

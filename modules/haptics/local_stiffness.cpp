@@ -28,8 +28,14 @@ Scene wallOf(const Scene& scene) {
   wall.haptics.damping.reset();
   wall.haptics.magnet.reset();
   wall.haptics.force_limit = std::numeric_limits<double>::infinity();
-  wall.stabilisers = Stabilisers{};
   return wall;
+}
+
+// A lateral coupling changes what the texture itself is; the rest is the loop's.
+StabiliserPlan lateralOf(StabiliserPlan plan) {
+  plan.coupling.reset();
+  plan.passivity.reset();
+  return plan;
 }
 
 } // namespace
@@ -40,12 +46,15 @@ struct StiffnessProbe::WayIn {
 };
 
 StiffnessProbe::StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field,
-                               std::span<const FeltObject> objects, std::optional<double> coupling)
-    : wall_(compileStages(wallOf(scene), std::move(field), objects)),
+                               std::span<const FeltObject> objects)
+    : wall_(compileStages(wallOf(scene), std::move(field), objects,
+                          lateralOf(planOf(scene, objects)))),
       sampler_(*wall_->field, scene.sampler),
       reach_(scene.haptics.tip_radius.value_or(0) + scene.haptics.offset.value_or(0)),
       raised_(raisedBy(objects)), press_(std::min(kForce, scene.haptics.force_limit)),
-      coupling_(coupling), painted_(!objects.empty()) {}
+      painted_(!objects.empty()) {
+  if (const auto coupling = planOf(scene, objects).coupling) coupling_ = coupling->stiffness;
+}
 
 // Painted friction and damping are in the wall's stages, but a contact that begins has neither slid
 // nor, with kRest, a velocity.
@@ -101,13 +110,14 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
       way.surface =
           below + contact.depth / std::sqrt(1 + contact.slope.squaredNorm()) * way.outward;
   }
-  if (coupling_) stiffness = inSeries(stiffness, *coupling_);
+  stiffness = inSeries(stiffness, coupling_);
   LocalStiffness result;
   result.depth = depth.value_or(press_ / stiffness);
   result.tip = way.surface - result.depth * way.outward;
   ContactMemory memory = way.memory;
   const Contact contact = settled(memory, result.tip);
   result.material = contact.material;
+  result.lateral = contact.lateral;
   const Vec3 ran = contact.surface - point;
   result.slips = (ran - ran.dot(way.outward) * way.outward).norm() > kSlips * result.depth;
   const Vec3& force = contact.force;

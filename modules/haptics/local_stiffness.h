@@ -2,6 +2,7 @@
 // to bear there (MATH 2.1.7).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -15,6 +16,7 @@ struct LocalStiffness {
   double depth = 0;           // [m], beneath the surface that is felt, along the way in
   double force = 0;           // [N], magnitude there
   Material material;          // there
+  double lateral = 0;         // k_l [N/m] there; 0 = no lateral coupling
   // -dF/dx [N/m] of the frictionless wall. Not symmetric where the interpolated direction is not
   // the gradient of the interpolated depth: beside creases and near a medial axis.
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
@@ -32,7 +34,9 @@ struct LocalStiffness {
 // Presses the tip into a scene's surface and differences the force of the scene's own stages, each
 // tick with the memory of a straight way in from outside, so that thin parts are held as they are
 // in the servo. Left out are what depends on the path or on time: friction, damping, magnet,
-// stabilisers and force limit; stability_map.h adds what they contribute.
+// stabilisers and force limit; stability_map.h adds what they contribute. Two things of the
+// stabilisers are in: how texture yields by the lateral coupling, and that behind a coupling the
+// same force presses deeper.
 //
 // The step is 1/4 voxel to either side: shorter ones see the edges of facets, over which the
 // contact point hops, and longer ones less than the field tells. Nearer to the surface than two
@@ -40,10 +44,9 @@ struct LocalStiffness {
 // over half of it are extrapolated: a wave of number k is off by (k s)^4 / 480 of itself.
 class StiffnessProbe {
  public:
-  // Throws as compileStages(). `coupling` [N/m]: of the loop that the wall will stand in; the same
-  // force then presses deeper.
+  // Throws as compileStages().
   StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field,
-                 std::span<const FeltObject> objects = {}, std::optional<double> coupling = {});
+                 std::span<const FeltObject> objects = {});
 
   // `point` on or near the surface, no further than the band; pressed in against the field's
   // direction there, by `depth` [m] beneath what is felt, relief included, or, without, by 1 N over
@@ -65,7 +68,7 @@ class StiffnessProbe {
   double reach_;  // [m], from the surface out to where it is felt
   double raised_; // [m], of which the most that relief may be
   double press_;  // [N]
-  std::optional<double> coupling_;
+  double coupling_ = std::numeric_limits<double>::infinity(); // k_c
   bool painted_;
 };
 

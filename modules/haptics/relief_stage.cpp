@@ -66,22 +66,30 @@ Reliefs::Reliefs(std::shared_ptr<const SurfaceField> field, Sampler sampler,
     parts_.push_back({object.first_face, object.relief, object.highest});
 }
 
-ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory) const noexcept {
+ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory,
+                     Eigen::Matrix3d* bend) const noexcept {
   ReliefAt at;
+  if (bend) bend->setZero();
   const auto i = static_cast<std::size_t>(object);
   if (i >= parts_.size() || !parts_[i].relief) return at;
   const Part& part = parts_[i];
-  if (memory.relief_object == object) at = reliefAt(*part.relief, c, memory.relief_face);
+  if (memory.relief_object == object) at = reliefAt(*part.relief, c, memory.relief_face, bend);
   if (at.face < 0 || at.distance > lost_) {
     const std::int32_t near = sampler_.faceNear(c);
-    const ReliefAt afresh = reliefAt(*part.relief, c, near < 0 ? -1 : near - part.first_face);
-    if (afresh.face >= 0 && (at.face < 0 || afresh.distance < at.distance)) at = afresh;
+    Eigen::Matrix3d bent;
+    const ReliefAt afresh =
+        reliefAt(*part.relief, c, near < 0 ? -1 : near - part.first_face, bend ? &bent : nullptr);
+    if (afresh.face >= 0 && (at.face < 0 || afresh.distance < at.distance)) {
+      at = afresh;
+      if (bend) *bend = bent;
+    }
   }
   memory.relief_object = object;
   memory.relief_face = at.face;
   if (std::abs(at.height) > part.highest) { // between texels a cubic overshoots
     at.height = std::copysign(part.highest, at.height);
     at.slope.setZero();
+    if (bend) bend->setZero();
   }
   return at;
 }
@@ -99,7 +107,7 @@ void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
     if (contact.touching) lower(contact, shell_, Vec3::Zero());
     return;
   }
-  const ReliefAt at = reliefs_->at(contact.object, contact.surface, memory);
+  const ReliefAt at = reliefs_->at(contact.object, contact.surface + contact.aside, memory);
   const Vec3 slope = form_ == ForceForm::literal
                          ? Vec3::Zero()
                          : pulledBack(reliefs_->sampler(), contact, at.slope);
@@ -107,7 +115,7 @@ void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
   announceStep(contact, memory.relief, at.height, slope);
 }
 
-RoughPattern roughPattern(const Vec3& p) noexcept {
+RoughPattern roughPattern(const Vec3& p, Eigen::Matrix3d* bend) noexcept {
   // Directions of a tetrahedron, turned; wavelengths about 1 mm whose ratios are no small
   // fractions.
   struct Wave {
@@ -119,11 +127,13 @@ RoughPattern roughPattern(const Vec3& p) noexcept {
                                                   {-5377.3, 2988.1, -1902.7, 5.2}}};
   const double amplitude = std::numbers::sqrt2 / 2; // 4 a^2 / 2 = 1
   RoughPattern pattern;
+  if (bend) bend->setZero();
   for (const Wave& wave : kWaves) {
     const Vec3 k(wave.x, wave.y, wave.z); // [rad/m]
     const double angle = k.dot(p) + wave.phase;
     pattern.height += amplitude * std::cos(angle);
     pattern.slope -= amplitude * std::sin(angle) * k;
+    if (bend) *bend -= amplitude * std::cos(angle) * k * k.transpose();
   }
   return pattern;
 }
@@ -146,7 +156,8 @@ void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexce
   const bool rough = roughness > 0 && i < object_from_world_.size() && !contact.normal.isZero(0);
   if (rough) {
     const Pose& object_from_world = object_from_world_[i];
-    const RoughPattern pattern = roughPattern(object_from_world * contact.surface);
+    const RoughPattern pattern =
+        roughPattern(object_from_world * (contact.surface + contact.aside));
     height = roughness * pattern.height;
     if (form_ == ForceForm::conservative)
       slope = pulledBack(sampler_, contact,

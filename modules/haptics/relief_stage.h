@@ -19,7 +19,9 @@ class Reliefs {
           std::span<const FeltObject> objects);
   // At the closest point c [m, world] of the object, cut off at `highest`; flat where the object
   // has none. The walk over its faces goes on from memory.relief_face.
-  ReliefAt at(std::int32_t object, const Vec3& c, ContactMemory& memory) const noexcept;
+  // bend: as of reliefAt().
+  ReliefAt at(std::int32_t object, const Vec3& c, ContactMemory& memory,
+              Eigen::Matrix3d* bend = nullptr) const noexcept;
   const FieldSampler& sampler() const noexcept { return sampler_; }
   std::size_t bytes() const; // of the packed faces
 
@@ -80,11 +82,13 @@ class RoughnessStage final : public ForceStage {
   ForceForm form_;
 };
 
-// w of the pattern and its gradient [1/m] at p [m, object frame].
+// w of the pattern and its gradient [1/m] at p [m, object frame]; bend, where asked for, becomes
+// its second derivative [1/m^2], nowhere above kRoughnessBend.
 struct RoughPattern {
   double height = 0;
   Vec3 slope = Vec3::Zero();
 };
-RoughPattern roughPattern(const Vec3& p) noexcept;
+RoughPattern roughPattern(const Vec3& p, Eigen::Matrix3d* bend = nullptr) noexcept;
+inline constexpr double kRoughnessBend = 5.08e7; // [1/m^2], of the sum of a k k^T
 
 } // namespace patina

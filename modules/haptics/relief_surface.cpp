@@ -115,7 +115,7 @@ Foot walk(const ReliefFaces& mesh, const Vec3& p, std::int32_t start) noexcept {
 
 struct Cubic {
   int first = 0; // of four texels
-  std::array<double, 4> weight{}, slope{};
+  std::array<double, 4> weight{}, slope{}, bend{};
 };
 
 Cubic cubicAt(double x) noexcept { // in texels, centres at whole numbers
@@ -124,27 +124,35 @@ Cubic cubicAt(double x) noexcept { // in texels, centres at whole numbers
           {0.5 * f * ((2 - f) * f - 1), 1 + 0.5 * g * (3 * f - 5), 0.5 * f * (1 + (4 - 3 * f) * f),
            0.5 * g * (f - 1)},
           {0.5 * ((4 - 3 * f) * f - 1), 0.5 * f * (9 * f - 10), 0.5 * (1 + (8 - 9 * f) * f),
-           0.5 * f * (3 * f - 2)}};
+           0.5 * f * (3 * f - 2)},
+          {2 - 3 * f, 9 * f - 5, 4 - 9 * f, 3 * f - 1}};
 }
 
 struct Texels {
   double value = 0, du = 0, dv = 0; // du, dv: over a texel
+  double uu = 0, uv = 0, vv = 0;    // second derivatives, only with kBends
 };
 
-Texels texelsAt(const TiledImage& image, double u, double v) noexcept {
+template <bool kBends> Texels texelsAt(const TiledImage& image, double u, double v) noexcept {
   const int width = image.width(), height = image.height();
   const Cubic x = cubicAt(std::clamp(u, 0.0, 1.0) * width - 0.5);
   const Cubic y = cubicAt(std::clamp(v, 0.0, 1.0) * height - 0.5);
   Texels sum;
   const auto addRow = [&](std::size_t j, const std::array<float, 4>& row) {
-    double value = 0, slope = 0;
+    double value = 0, slope = 0, bend = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       value += x.weight[i] * static_cast<double>(row[i]);
       slope += x.slope[i] * static_cast<double>(row[i]);
+      if constexpr (kBends) bend += x.bend[i] * static_cast<double>(row[i]);
     }
     sum.value += y.weight[j] * value;
     sum.du += y.weight[j] * slope;
     sum.dv += y.slope[j] * value;
+    if constexpr (kBends) {
+      sum.uu += y.weight[j] * bend;
+      sum.uv += y.slope[j] * slope;
+      sum.vv += y.bend[j] * value;
+    }
   };
   const int i = x.first, j = y.first;
   const bool one_tile = i >= 0 && j >= 0 && i + 3 < width && j + 3 < height &&
@@ -170,8 +178,10 @@ Texels texelsAt(const TiledImage& image, double u, double v) noexcept {
 
 } // namespace
 
-ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face) noexcept {
+ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
+                  Eigen::Matrix3d* bend) noexcept {
   ReliefAt at;
+  if (bend) bend->setZero();
   const ReliefFaces& mesh = *relief.faces;
   if (near_face < 0 || static_cast<std::size_t>(near_face) >= mesh.faces.size() || !c.allFinite())
     return at;
@@ -183,7 +193,8 @@ ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_
   const Vec2 uv0 = face.uvAt(0), along1 = face.uvAt(1) - uv0, along2 = face.uvAt(2) - uv0;
   const Vec2 uv = uv0 + foot.barycentric[1] * along1 + foot.barycentric[2] * along2;
   const TiledImage& image = *relief.image;
-  const Texels g = texelsAt(image, uv.x(), uv.y());
+  const Texels g =
+      bend ? texelsAt<true>(image, uv.x(), uv.y()) : texelsAt<false>(image, uv.x(), uv.y());
   at.height = relief.height * g.value;
   const Vec2 per_uv(relief.height * g.du * image.width(), relief.height * g.dv * image.height());
   const Vec3 edge1 = face.at(1) - face.at(0), edge2 = face.at(2) - face.at(0);
@@ -194,6 +205,13 @@ ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_
     at.slope =
         (per_uv.dot(along1) * edge2.cross(normal) + per_uv.dot(along2) * normal.cross(edge1)) /
         squared;
+  if (bend && squared > 0) {
+    const Vec3 dual1 = edge2.cross(normal) / squared, dual2 = normal.cross(edge1) / squared;
+    const Vec3 of_u = image.width() * (along1.x() * dual1 + along2.x() * dual2);
+    const Vec3 of_v = image.height() * (along1.y() * dual1 + along2.y() * dual2);
+    *bend = relief.height * (g.uu * of_u * of_u.transpose() + g.vv * of_v * of_v.transpose() +
+                             g.uv * (of_u * of_v.transpose() + of_v * of_u.transpose()));
+  }
   return at;
 }
 

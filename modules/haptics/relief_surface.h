@@ -42,6 +42,9 @@ inline constexpr double kReliefOvershoot = 1.265625; // (9/8)^2
 // continuous, and still the derivative of the height. Error O(texel^3), against O(texel^2). Between
 // texels that differ it may overshoot, by an eighth of a step at most along each axis. Beyond a
 // chart's gutter it reads with a weight of half a per cent.
-ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face) noexcept;
+// bend, where asked for, becomes the second derivative of the height along the surface [1/m]; at
+// texels' centres it steps.
+ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
+                  Eigen::Matrix3d* bend = nullptr) noexcept;
 
 } // namespace patina

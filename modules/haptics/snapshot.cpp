@@ -8,6 +8,7 @@
 #include "core/numbers.h"
 #include "haptics/force_law.h"
 #include "haptics/friction_stage.h"
+#include "haptics/lateral_stage.h"
 #include "haptics/limit_stage.h"
 #include "haptics/magnet_stage.h"
 #include "haptics/material_stage.h"
@@ -92,7 +93,7 @@ enum class Unneeded { left_out, present };
 std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticProperties& haptics,
                                                std::shared_ptr<const SurfaceField> field,
                                                std::span<const FeltObject> objects,
-                                               Unneeded unneeded) {
+                                               const StabiliserPlan& plan, Unneeded unneeded) {
   auto snapshot = std::make_shared<HapticSnapshot>();
   snapshot->base = baseMaterial(haptics);
   const PaintedRange range = paintedRange(snapshot->base, objects);
@@ -128,12 +129,24 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
     add(std::make_unique<MaterialStage>(field, scene.sampler, objects, slopes), namesOf(range),
         bytesOf(objects, [](const FeltObject& o) { return o.material ? o.material->bytes() : 0; }));
   }
-  if (shell.relief > 0 || all) {
-    auto reliefs = std::make_shared<const Reliefs>(field, scene.sampler, objects);
+  std::shared_ptr<const Reliefs> reliefs;
+  if (shell.relief > 0 || all)
+    reliefs = std::make_shared<const Reliefs>(field, scene.sampler, objects);
+  if (plan.lateral || all) {
+    std::vector<bool> stiff;
+    for (const FeltObject& object : objects)
+      stiff.push_back(plan.lateral && !isSteadyAlong(textureStiffness(object),
+                                                     scene.device_model.value_or(DeviceModel{})));
+    add(std::make_unique<LateralStage>(reliefs, objects, std::move(stiff),
+                                       shell.relief + shell.roughness,
+                                       plan.lateral.value_or(LateralPlan{})),
+        plan.lateral ? plan.lateral_why : "neutral");
+  }
+  if (reliefs) {
     add(std::make_unique<ReliefStage>(reliefs, shell.relief, scene.relief.form),
         shell.relief > 0 ? "relief up to " + formatLength(shell.relief) : "neutral",
         reliefs->bytes());
-    if (shell.relief > 0) raised.reliefs = std::move(reliefs);
+    if (shell.relief > 0) raised.reliefs = reliefs;
   }
   if (shell.roughness > 0 || all) {
     add(std::make_unique<RoughnessStage>(field, scene.sampler, objects, shell.roughness,
@@ -153,12 +166,7 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
   const MagnetMaker magnet = [&](const Magnet& spec) {
     return std::make_unique<MagnetStage>(field, scene.sampler, radius, spec, raised);
   };
-  const std::optional<double> most_damping =
-      range.has(MaterialChannel::damping) ? std::optional(range.most.damping) : std::nullopt;
-  addForceLaw(
-      *snapshot, haptics, range,
-      planStabilisers(hardest(haptics, range), scene.device_model, scene.stabilisers, most_damping),
-      magnet, maxSpeed(field->grid), slopes || all);
+  addForceLaw(*snapshot, haptics, range, plan, magnet, maxSpeed(field->grid), slopes || all);
   snapshot->field = std::move(field);
   return snapshot;
 }
@@ -175,15 +183,32 @@ double raisedBy(std::span<const FeltObject> objects) {
   return shell.relief + shell.roughness;
 }
 
+StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects) {
+  const PaintedRange range = paintedRange(baseMaterial(scene.haptics), objects);
+  const std::optional<double> most_damping =
+      range.has(MaterialChannel::damping) ? std::optional(range.most.damping) : std::nullopt;
+  // The literal force has no part along the surface.
+  const bool leans = scene.relief.form == ForceForm::conservative;
+  return planStabilisers(hardest(scene.haptics, range), scene.device_model, scene.stabilisers,
+                         most_damping, leans ? range.texture : 0);
+}
+
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
-                                                    std::span<const FeltObject> objects) {
+                                                    std::span<const FeltObject> objects,
+                                                    const StabiliserPlan& plan) {
   HapticProperties needed = scene.haptics;
   if (needed.friction && needed.friction->static_coefficient == 0) needed.friction.reset();
   if (needed.damping == 0.0) needed.damping.reset();
   if (needed.offset == 0.0) needed.offset.reset();
   if (needed.magnet && needed.magnet->range * needed.magnet->strength == 0) needed.magnet.reset();
-  return compiled(scene, needed, std::move(field), objects, Unneeded::left_out);
+  return compiled(scene, needed, std::move(field), objects, plan, Unneeded::left_out);
+}
+
+std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
+                                                    std::shared_ptr<const SurfaceField> field,
+                                                    std::span<const FeltObject> objects) {
+  return compileStages(scene, std::move(field), objects, planOf(scene, objects));
 }
 
 std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
@@ -193,7 +218,7 @@ std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
   if (!all.friction) all.friction = Friction{};
   if (!all.damping) all.damping = 0;
   if (!all.magnet) all.magnet = Magnet{};
-  return compiled(scene, all, std::move(field), objects, Unneeded::present);
+  return compiled(scene, all, std::move(field), objects, planOf(scene, objects), Unneeded::present);
 }
 
 Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,

@@ -43,6 +43,15 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
                                                     std::span<const FeltObject> objects = {});
 
+// What planStabilisers() gives a scene with what is painted on it.
+StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects = {});
+
+// compileStages() with stabilisers of another plan than planOf().
+std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
+                                                    std::shared_ptr<const SurfaceField> field,
+                                                    std::span<const FeltObject> objects,
+                                                    const StabiliserPlan& plan);
+
 // For the proof that pruning changes nothing: every stage that has a neutral value is present with
 // it where the scene has none. (A cut-off and an offset have none: they are other laws.)
 std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,

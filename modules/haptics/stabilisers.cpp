@@ -1,6 +1,7 @@
 #include "haptics/stabilisers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "core/numbers.h"
@@ -16,12 +17,17 @@ constexpr double kDampingMargin = 5;    // of the damping that buzzes over B
 constexpr double kPassivityNoise = 0.3; // [N] a step of the encoder, of the passivity controller
 constexpr double kEncoderNoise = 0.03;  // [N] that one step of the encoder may make
 constexpr double kLeastCoupling = 0.4;  // of the rule of thumb
+constexpr double kLeastLateral = 0.1;   // of k_c, on a device without damping
+
+std::string limitText(double limit) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g N/m", limit);
+  return text;
+}
 
 // "stiffness = 1e+05, limit 1001 N/m".
 std::string reasonFor(double stiffest, double limit, const std::optional<Stabilisers>& chosen) {
-  char limit_text[32];
-  std::snprintf(limit_text, sizeof limit_text, "%.4g N/m", limit);
-  const std::string facts = formatNumber(stiffest) + " N/m, limit " + limit_text;
+  const std::string facts = formatNumber(stiffest) + " N/m, limit " + limitText(limit);
   return chosen ? "chosen; stiffness " + facts : "stiffness " + facts;
 }
 
@@ -53,10 +59,21 @@ CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& de
           std::max(damping, too_much / kDampingMargin)};
 }
 
+LateralPlan planLateral(const HapticProperties& haptics, const DeviceModel& device) {
+  const CouplingPlan normal = planCoupling(haptics, device);
+  const double held = (0.5 + device.delay) / device.rate; // mean age of what is applied
+  const double steady = std::sqrt(2 * device.damping * normal.damping) / held;
+  return {std::clamp(steady, kLeastLateral * normal.stiffness, normal.stiffness), normal.damping};
+}
+
+bool isSteadyAlong(double stiffness, const DeviceModel& device) {
+  return kMargin * stiffness <= stiffnessLimit(sampledLoop(device));
+}
+
 StabiliserPlan planStabilisers(const HapticProperties& haptics,
                                const std::optional<DeviceModel>& device,
                                const std::optional<Stabilisers>& chosen,
-                               std::optional<double> most_damping) {
+                               std::optional<double> most_damping, double texture) {
   StabiliserPlan plan;
   if (!device && !chosen) return plan;
   const DeviceModel model = device.value_or(DeviceModel{});
@@ -70,10 +87,17 @@ StabiliserPlan planStabilisers(const HapticProperties& haptics,
   const double stiffest = stiffestLaw(haptics);
   const bool safe = kMargin * stiffest <= *plan.predicted_limit;
   const Stabilisers wanted = chosen.value_or(Stabilisers{!safe, false});
+  if ((!chosen || chosen->coupling) && !isSteadyAlong(texture, model)) {
+    plan.lateral = planLateral(haptics, model);
+    plan.lateral_why = "texture " + formatNumber(std::round(texture)) +
+                       " N/m along the surface at 1 N, limit " +
+                       limitText(stiffnessLimit(sampledLoop(model)));
+  }
   if (!wanted.coupling && !wanted.passivity) return plan;
 
   plan.why = reasonFor(stiffest, *plan.predicted_limit, chosen);
   if (wanted.coupling) plan.coupling = planCoupling(haptics, model);
+  if (plan.coupling && plan.lateral) plan.lateral->coupling = plan.coupling->stiffness;
   if (wanted.passivity) {
     PassivitySpec spec;
     spec.delay = model.delay;

@@ -1,6 +1,7 @@
 // Which safety nets a scene needs on a device, and how strong (F13, MATH 2.3).
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -17,12 +18,21 @@ struct CouplingPlan {
   double most_damping = 0; // where the surface itself has more, up to here
 };
 
+// Of relief and roughness along the surface (lateral_stage.h).
+struct LateralPlan {
+  double stiffness = 0;                                      // k_l [N/m]
+  double damping = 0;                                        // B [N s/m], beside it
+  double coupling = std::numeric_limits<double>::infinity(); // k_c [N/m] of the coupling, if any
+};
+
 struct StabiliserPlan {
   std::optional<CouplingPlan> coupling;   // absent: no stage
+  std::optional<LateralPlan> lateral;     // absent: no stage
   std::optional<PassivitySpec> passivity; // absent: no stage
   // K* of the loop without these, with the scene's own damping [N/m]; absent without a device.
   std::optional<double> predicted_limit;
-  std::string why; // "stiffness 1e+05 N/m, limit 1001 N/m"; empty without any
+  std::string why; // "stiffness 1e+05 N/m, limit 1001 N/m"; empty without coupling and passivity
+  std::string lateral_why; // "texture 1974 N/m along the surface at 1 N, limit 1001 N/m"; or empty
 };
 
 // The stiffest law of the scene in one direction: spring (and with it sticking friction) or magnet.
@@ -38,13 +48,25 @@ SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device
 // B. So b_eff >= (b + B)/2, and what is left of a touch halves within some 0.2 s.
 CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& device);
 
+// For a texture that is stiffer along the surface than the loop bears: B and k_c of planCoupling(),
+// the latter no more than what keeps the damping b + B s^2 over that which sampling k_l s takes by
+// b/2, at any share s of the tip's motion that a texture of any stiffness leaves to the spring:
+// k_l <= sqrt(2 b B) / (T/2 + n T).
+LateralPlan planLateral(const HapticProperties& haptics, const DeviceModel& device);
+
+inline constexpr double kTexturePress = 1; // [N], at which the stiffness of textures is told
+// Whether a stiffness along the surface [N/m], where the device alone damps, has a margin of two.
+bool isSteadyAlong(double stiffness, const DeviceModel& device);
+
 // chosen absent = automatic: nothing without a device model, nothing where the scene is stable with
 // a margin of two, else the coupling. A chosen stabiliser without a device model takes
 // DeviceModel{}. Of painted surfaces `haptics` are the hardest (painted_range.h), and most_damping
-// [N s/m] the most damped; it must be as stable there.
+// [N s/m] the most damped; it must be as stable there. texture: the stiffest of the scene's, P h''
+// under kTexturePress [N/m]; above what the device bears with a margin of two there is the lateral
+// coupling, unless the choice leaves couplings out.
 StabiliserPlan planStabilisers(const HapticProperties& haptics,
                                const std::optional<DeviceModel>& device,
                                const std::optional<Stabilisers>& chosen,
-                               std::optional<double> most_damping = {});
+                               std::optional<double> most_damping = {}, double texture = 0);
 
 } // namespace patina

@@ -33,10 +33,24 @@ double loadOf(const std::complex<double>& eigenvalue, double whirl) {
   return a / u;
 }
 
+// What the loop bears along the surface. A lateral coupling's damper moves by the share of the
+// tip's motion that the texture leaves to its spring, and so damps by that share's square.
+double borneAlong(const LocalStiffness& at, const LoopLimits& limits) {
+  if (!(at.lateral > 0)) return limits.plain;
+  const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - at.normal * at.normal.transpose();
+  const Eigen::Matrix3d along = flat * at.matrix * flat;
+  const double stiffest = limits.softening(at.material.stiffness) *
+                          Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+                              0.5 * (along + along.transpose()), Eigen::EigenvaluesOnly)
+                              .eigenvalues()[2];
+  const double share = std::clamp(stiffest / at.lateral, 0.0, 1.0);
+  return limits.plain + (limits.tied - limits.plain) * share * share;
+}
+
 // How many times over the wall asks for what the loop bears, in the worst direction.
 double wallLoad(const LocalStiffness& at, const LoopLimits& limits) {
   const double least = kNegligible * at.matrix.cwiseAbs().maxCoeff();
-  const double across = 1 / std::sqrt(std::max(limits.plain, least));
+  const double across = 1 / std::sqrt(std::max(borneAlong(at, limits), least));
   const double along = 1 / std::sqrt(std::max(limits.damped, least));
   const Eigen::Matrix3d normal = at.normal * at.normal.transpose();
   const Eigen::Matrix3d scale = across * (Eigen::Matrix3d::Identity() - normal) + along * normal;
@@ -66,8 +80,8 @@ LoopLimits loopLimits(const Scene& scene, std::span<const FeltObject> objects) {
   HapticProperties haptics = hardest(scene.haptics, range);
   const DeviceModel device = scene.device_model.value_or(DeviceModel{});
   LoopLimits limits;
-  const auto plan =
-      planStabilisers(haptics, scene.device_model, scene.stabilisers, range.most.damping).coupling;
+  const StabiliserPlan stabilisers = planOf(scene, objects);
+  const std::optional<CouplingPlan>& plan = stabilisers.coupling;
   const auto borne = [&](double damping) {
     SampledLoop loop = sceneLoop(haptics, device);
     loop.virtual_damping = damping;
@@ -84,6 +98,12 @@ LoopLimits loopLimits(const Scene& scene, std::span<const FeltObject> objects) {
   limits.damped = borne(least);
   if (most > least) limits.damped = std::min(limits.damped, borne(most));
   limits.plain = stiffnessLimit(sampledLoop(device));
+  limits.tied = limits.plain;
+  if (stabilisers.lateral) {
+    SampledLoop loop = sampledLoop(device);
+    loop.virtual_damping = stabilisers.lateral->damping;
+    limits.tied = stiffnessLimit(loop);
+  }
   if (limits.plain > 0)
     limits.whirl = device.damping * device.damping / (device.mass * limits.plain);
   return limits;
@@ -111,9 +131,7 @@ StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField
   StabilityMap map;
   map.limits = loopLimits(scene, objects);
   // A softer surface is pressed deeper by the same force, and what bends counts by depth.
-  const StiffnessProbe probe(scene, std::move(field), objects,
-                             map.limits.coupled ? std::optional(map.limits.coupling)
-                                                : std::nullopt);
+  const StiffnessProbe probe(scene, std::move(field), objects);
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   map.ratio.assign(mesh.positions.size(), unknown);
   map.least.assign(mesh.positions.size(), unknown);
