@@ -13,7 +13,7 @@ namespace {
 using Mat32 = Eigen::Matrix<double, 3, 2>;
 
 constexpr int kMostTries = 6;       // looks at the height a tick
-constexpr double kBalanced = 1e-9;  // [N], what is left along the surface
+constexpr double kBalanced = 1e-4;  // [N] along the surface: left to the next tick
 constexpr double kShorter = 0.25;   // of a step that led uphill
 constexpr double kLeastBowl = 0.05; // of k_l + B/T: what a step takes the curvature for at least
 constexpr double kOwnSpeed = 0.1;   // [m/s]: faster than it is drawn by this, u runs by itself
@@ -96,7 +96,10 @@ void LateralStage::apply(Contact& contact, ContactMemory& memory) const noexcept
     const double deep = std::max(depth + at.h, 0.0);
     const Vec2 slope = free.transpose() * at.slope;
     const Vec2 force = -plan_.stiffness * u - viscous * (u - before) - stiffness * deep * slope;
-    if (!(force.squaredNorm() > kBalanced * kBalanced)) break;
+    // A step from near balance costs no look, and where a tip rests it must not be left out: what
+    // does not yield is stiff.
+    if (tries > 1 && !(force.squaredNorm() > kBalanced * kBalanced)) break;
+    if (force.isZero(0)) break;
     Eigen::Matrix2d curvature = bowl * Eigen::Matrix2d::Identity();
     if (deep > 0)
       curvature +=
