@@ -113,6 +113,26 @@ struct Maker {
     relief.felt_range = rangeOf(relief.felt, nullptr, nullptr);
   }
 
+  // Worst |h''| [1/m] of what is felt, where a lateral coupling may be planned by it.
+  double bend(std::size_t i, FeltRelief& relief) const {
+    const Scene& scene = compiled.scene;
+    if (!(scene.device_model || scene.stabilisers)) return 0;
+    const std::shared_ptr<const CornerUvs>& uvs = paintOf(scene, i)->layout.uvs;
+    const TiledImage& image = *relief.felt;
+    const FeltRelief* old = knownRelief(before, i);
+    const bool keeps =
+        old && old->bend_map && old->bend_map->fits(*uvs, image.width(), image.height());
+    relief.bend_map = keeps ? old->bend_map
+                            : std::make_shared<const BendMap>(compiled.objects[i]->mesh, uvs,
+                                                              image.width(), image.height());
+    relief.bends = keeps && old->felt == relief.felt
+                       ? old->bends
+                       : relief.bend_map->byTile(image, keeps ? old->felt.get() : nullptr,
+                                                 keeps ? &old->bends : nullptr);
+    return std::abs(scene.relief.height) *
+           static_cast<double>(*std::max_element(relief.bends.begin(), relief.bends.end()));
+  }
+
   std::shared_ptr<const ReliefSurface> pulled(std::size_t i) const {
     const ObjectPaint& paint = *paintOf(compiled.scene, i);
     auto surface = std::make_shared<ReliefSurface>();
@@ -225,6 +245,7 @@ std::size_t FeltPaint::bytes() const {
   for (const FeltRelief& image : relief) {
     if (image.grey.grey) bytes += image.grey.grey->bytes();
     if (image.smoother) bytes += image.smoother->bytes();
+    if (image.bend_map) bytes += image.bend_map->bytes();
     if (image.felt && image.felt != image.source) bytes += image.felt->bytes();
   }
   return bytes;
@@ -281,8 +302,10 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
       maker.smooth(i, made.relief[i]);
       object.highest = overshoot(scene) * std::abs(scene.relief.height) *
                        static_cast<double>(made.relief[i].felt_range->all.highest());
-      if (scene.relief.mode == ReliefMode::pulled && object.highest > 0)
+      if (scene.relief.mode == ReliefMode::pulled && object.highest > 0) {
         object.relief = maker.pulled(i);
+        object.bend = maker.bend(i, made.relief[i]);
+      }
     }
     first += static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
     made.objects.push_back(std::move(object));

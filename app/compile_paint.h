@@ -6,6 +6,7 @@
 
 #include "authoring/painter.h"
 #include "authoring/relief_bake.h"
+#include "authoring/relief_limits.h"
 #include "authoring/relief_smoothing.h"
 #include "haptics/felt_object.h"
 #include "scene/grey_relief.h"
@@ -21,6 +22,8 @@ struct FeltRelief {
   std::shared_ptr<const TiledImage> source, felt; // the same unless it is smoothed
   std::shared_ptr<const ImageRange> source_range, felt_range;
   std::shared_ptr<const ReliefSmoother> smoother; // absent: not smoothed
+  std::shared_ptr<const BendMap> bend_map;        // absent: nothing asks how steady it is
+  std::vector<float> bends;                       // of `felt`, by tile
 };
 
 // Absent wherever nothing is painted. Immutable; versions share what did not change.

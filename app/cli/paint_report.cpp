@@ -73,6 +73,7 @@ std::vector<LayerBytes> paintLayers(const CompiledScene& compiled) {
     if (relief.grey.grey) add(layers, "grey of colour", relief.grey.grey->bytes());
     if (relief.felt != relief.source) add(layers, "smoothed relief", relief.felt->bytes());
     if (relief.smoother) add(layers, "relief smoothing", relief.smoother->bytes());
+    if (relief.bend_map) add(layers, "relief curvature", relief.bend_map->bytes());
   }
   if (felt.bake) {
     add(layers, "relief bake", felt.bake->bytes());

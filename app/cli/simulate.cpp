@@ -78,7 +78,6 @@ void addValue(Command& command, const std::string& names, const std::string& val
 
 struct Felt {
   Scene scene;
-  StabiliserPlan plan;
   std::shared_ptr<const HapticSnapshot> snapshot;
   std::shared_ptr<const CompiledScene> compiled; // keeps a model's field; null for the plane
   SimulationStart start{Vec3::Zero(), -Vec3::UnitZ()};
@@ -96,9 +95,9 @@ Felt feltBy(const SimulateOptions& options, Console& console) {
   if (!felt.scene.device_model) felt.scene.device_model = DeviceModel{};
   if (options.naive) felt.scene.stabilisers = Stabilisers{};
   const Scene& scene = felt.scene;
-  felt.plan = planStabilisers(scene.haptics, scene.device_model, scene.stabilisers);
   if (options.plane) {
-    felt.snapshot = planeSnapshot(scene.haptics, felt.plan);
+    felt.snapshot = planeSnapshot(
+        scene.haptics, planStabilisers(scene.haptics, scene.device_model, scene.stabilisers));
   } else {
     felt.compiled = compileFor(scene, console);
     felt.snapshot = felt.compiled->snapshot;
@@ -166,9 +165,12 @@ Json reportJson(const Felt& felt, const SimulationSpec& spec, const SimulationRe
   json.set("rule_of_thumb", ruleOfThumb(loop));
   json.set("stiffness", felt.scene.haptics.stiffness);
   json.set("stiffness_displayed", orNull(run.stiffness_displayed));
-  const auto& coupling = felt.plan.coupling;
+  const auto& coupling = felt.snapshot->stabilisers.coupling;
+  const auto& lateral = felt.snapshot->stabilisers.lateral;
   json.set("coupling_stiffness", coupling ? Json(coupling->stiffness) : Json());
   json.set("coupling_damping", coupling ? Json(coupling->damping) : Json());
+  json.set("lateral_stiffness", lateral ? Json(lateral->stiffness) : Json());
+  json.set("lateral_damping", lateral ? Json(lateral->damping) : Json());
   json.set("restitution", orNull(run.restitution));
   Json stages = Json::array();
   for (const StageInfo& stage : felt.snapshot->why) stages.push(stage.name);
@@ -201,10 +203,13 @@ TextRows reportRows(const Felt& felt, const SimulationSpec& spec, const Simulati
            (run.stiffness_displayed ? ", " + rounded(*run.stiffness_displayed) + " N/m displayed"
                                     : "")},
       {"stages", stages}};
-  if (const auto& coupling = felt.plan.coupling)
-    rows.emplace_back("coupling", rounded(coupling->stiffness) + " N/m, " +
-                                      rounded(coupling->damping) + " N s/m (" + felt.plan.why +
-                                      ")");
+  const StabiliserPlan& plan = felt.snapshot->stabilisers;
+  const auto told = [](const auto& coupling, const std::string& why) {
+    return rounded(coupling.stiffness) + " N/m, " + rounded(coupling.damping) + " N s/m (" + why +
+           ")";
+  };
+  if (plan.coupling) rows.emplace_back("coupling", told(*plan.coupling, plan.why));
+  if (plan.lateral) rows.emplace_back("lateral coupling", told(*plan.lateral, plan.lateral_why));
   if (run.restitution) rows.emplace_back("restitution", rounded(*run.restitution));
   rows.emplace_back("largest depth", formatLength(run.max_depth));
   rows.emplace_back("largest force", rounded(run.max_force) + " N");
@@ -321,7 +326,9 @@ Command simulateCommand() {
       "Settled means: the rms velocity of the last second is below 0.9 times that of the second "
       "second, or below 1e-9 m/s. A loop that does not settle is a result, not an error.\n"
       "--stabiliser auto leaves everything out where the limit K* is twice the stiffness or more; "
-      "else it ties the tip to the contact point by a coupling as stiff as the device bears. naive "
+      "else it ties the tip to the contact point by a coupling as stiff as the device bears. "
+      "Relief and "
+      "roughness that are stiffer along the surface than half of it are tied likewise. naive "
       "limits the change of the force a tick to (2b/T)|dx| and is there to show that this makes "
       "matters worse. On the plane the force has no limit unless --force-limit or --saturation "
       "sets "
@@ -334,8 +341,8 @@ Command simulateCommand() {
       "energy_absorbed_min "
       "and energy_credited_min (the least of each), predicted_limit [N/m] (K* of the loop without "
       "stabilisers), rule_of_thumb [N/m], stiffness, stiffness_displayed, coupling_stiffness, "
-      "coupling_damping, restitution (null where there is none), stages, ticks, contact_ticks, "
-      "fault_ticks, press [N], wall_seconds.";
+      "coupling_damping, lateral_stiffness, lateral_damping, restitution (null where there is "
+      "none), stages, ticks, contact_ticks, fault_ticks, press [N], wall_seconds.";
   command.examples = {
       "patina simulate --plane --stiffness 1e5 --delay 1 --press 1",
       "patina simulate --plane --stiffness 3000 --stabiliser none --start-speed 0.2 -o run.csv",

@@ -87,14 +87,16 @@ void StatusLine::showScene(const CompiledScene* scene) {
 }
 
 void StatusLine::showStabilisers(const CompiledScene& scene) {
-  const auto plan =
-      planStabilisers(scene.scene.haptics, scene.scene.device_model, scene.scene.stabilisers);
+  const StabiliserPlan& plan = scene.snapshot->stabilisers;
   QStringList on, why;
   for (const StageInfo& stage : scene.snapshot->why) {
-    if (stage.name != "coupling" && stage.name != "passivity") continue;
+    if (stage.name != "coupling" && stage.name != "lateral coupling" && stage.name != "passivity")
+      continue;
     QString words = QString::fromStdString(stage.name);
     if (stage.name == "coupling" && plan.coupling)
       words += QStringLiteral(" %1 N/m").arg(plan.coupling->stiffness, 0, 'f', 0);
+    if (stage.name == "lateral coupling" && plan.lateral)
+      words += QStringLiteral(" %1 N/m").arg(plan.lateral->stiffness, 0, 'f', 0);
     on << words;
     why << QStringLiteral("%1: %2").arg(words, QString::fromStdString(stage.why));
   }

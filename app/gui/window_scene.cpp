@@ -15,8 +15,7 @@ QString newtonsPerMetre(double value) {
 }
 
 // What follows from the device's numbers, in words.
-QString stabilityNote(const Scene& scene) {
-  const StabiliserPlan plan = planStabilisers(scene.haptics, scene.device_model, scene.stabilisers);
+QString stabilityNote(const StabiliserPlan& plan) {
   QString words;
   if (plan.predicted_limit)
     words = MainWindow::tr("A plain wall is stable up to %1 on this device.")
@@ -25,6 +24,10 @@ QString stabilityNote(const Scene& scene) {
     words += MainWindow::tr(" Coupling: %1, %2 N s/m.")
                  .arg(newtonsPerMetre(plan.coupling->stiffness))
                  .arg(plan.coupling->damping, 0, 'g', 2);
+  if (plan.lateral)
+    words += MainWindow::tr(" Along the texture: %1, %2 N s/m.")
+                 .arg(newtonsPerMetre(plan.lateral->stiffness))
+                 .arg(plan.lateral->damping, 0, 'g', 2);
   return words.trimmed();
 }
 
@@ -221,7 +224,7 @@ void MainWindow::showValues() {
   const auto band = touchBand(scene.haptics);
   view_->view().setBand(band);
   display_->setBand(band.has_value());
-  device_->setNote(stabilityNote(scene));
+  device_->setNote(stabilityNote(current_->snapshot->stabilisers));
   status_->showScene(current_.get());
   askStability();
 }

@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_for.h>
 
 #include "authoring/texel_rows.h"
 
@@ -13,12 +12,6 @@ namespace patina {
 namespace {
 
 using Row = std::vector<TexelOnSurface>;
-
-bool rowIsEmpty(const TiledImage& image, int j) {
-  for (int i = 0; i < image.width(); i += kTileSide)
-    if (image.tile(image.tileOf(i, j))) return false;
-  return true;
-}
 
 // All nine texels show one piece of the surface.
 bool isWhole(const std::array<Row, 3>& rows, std::size_t i) {
@@ -45,37 +38,92 @@ double curvatureAt(const TiledImage& image, const TexelMetric& metric, int i, in
   return std::abs(mean) + std::sqrt(std::max(mean * mean - product, 0.0));
 }
 
-double worstCurvature(const TriangleMesh& mesh, const CornerUvs& uvs, const TiledImage& image) {
-  const TexelMap texels = texelMap(uvs, image.width(), image.height());
-  const std::vector<TexelMetric> metrics = texelMetrics(mesh, uvs, texels.width, texels.height);
-  const TexelRows source(mesh, uvs, texels, metrics);
-  const auto rows_of = [&](const tbb::blocked_range<int>& range, double worst) {
-    std::array<Row, 3> rows;
-    for (Row& row : rows) row.resize(static_cast<std::size_t>(image.width()));
-    int next = -1; // of the rows to read
-    for (int j = range.begin(); j < range.end(); ++j) {
-      if (rowIsEmpty(image, j - 1) && rowIsEmpty(image, j) && rowIsEmpty(image, j + 1)) continue;
-      if (next != j + 1) {
-        source.read(0, j - 1, rows[1]);
-        source.read(0, j, rows[2]);
-      }
-      std::rotate(rows.begin(), rows.begin() + 1, rows.end());
-      source.read(0, j + 1, rows[2]);
-      next = j + 2;
-      for (int i = 1; i + 1 < image.width(); ++i) {
-        const TexelOnSurface& texel = rows[1][static_cast<std::size_t>(i)];
-        if (!texel.inside) continue;
-        const double curvature = curvatureAt(image, texel.metric, i, j);
-        if (curvature > worst && isWhole(rows, static_cast<std::size_t>(i))) worst = curvature;
-      }
+bool isEmptyAbout(const TiledImage& image, int across, int up) {
+  for (int j = std::max(0, up - 1); j * kTileSide < image.height() && j <= up + 1; ++j)
+    for (int i = std::max(0, across - 1); i < image.tilesAcross() && i <= across + 1; ++i)
+      if (image.tile(image.tileOf(i * kTileSide, j * kTileSide))) return false;
+  return true;
+}
+
+bool isSameAbout(const TiledImage& a, const TiledImage& b, int across, int up) {
+  for (int j = std::max(0, up - 1); j * kTileSide < a.height() && j <= up + 1; ++j)
+    for (int i = std::max(0, across - 1); i < a.tilesAcross() && i <= across + 1; ++i) {
+      const std::size_t tile = a.tileOf(i * kTileSide, j * kTileSide);
+      if (a.sharedTile(tile) != b.sharedTile(tile)) return false;
     }
-    return worst;
-  };
-  return tbb::parallel_reduce(tbb::blocked_range<int>(1, image.height() - 1, 32), 0.0, rows_of,
-                              [](double a, double b) { return std::max(a, b); });
+  return true;
+}
+
+double worstOfTile(const TexelRows& source, const TiledImage& image, int across, int up) {
+  // A texel at the image's border has no nine.
+  const int i0 = std::max(1, across * kTileSide), j0 = std::max(1, up * kTileSide);
+  const int i1 = std::min(image.width() - 1, (across + 1) * kTileSide);
+  const int j1 = std::min(image.height() - 1, (up + 1) * kTileSide);
+  std::array<Row, 3> rows;
+  for (Row& row : rows) row.resize(static_cast<std::size_t>(i1 - i0) + 2);
+  source.read(i0 - 1, j0 - 1, rows[1]);
+  source.read(i0 - 1, j0, rows[2]);
+  double worst = 0;
+  for (int j = j0; j < j1; ++j) {
+    std::rotate(rows.begin(), rows.begin() + 1, rows.end());
+    source.read(i0 - 1, j + 1, rows[2]);
+    for (int i = i0; i < i1; ++i) {
+      const auto n = static_cast<std::size_t>(i - i0) + 1;
+      const TexelOnSurface& texel = rows[1][n];
+      if (!texel.inside) continue;
+      const double curvature = curvatureAt(image, texel.metric, i, j);
+      if (curvature > worst && isWhole(rows, n)) worst = curvature;
+    }
+  }
+  return worst;
 }
 
 } // namespace
+
+struct BendMap::Impl {
+  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const CornerUvs> uvs;
+  TexelMap texels;
+  std::vector<TexelMetric> metrics;
+};
+
+BendMap::BendMap(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const CornerUvs> uvs,
+                 int width, int height)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->texels = texelMap(*uvs, width, height);
+  impl_->metrics = texelMetrics(*mesh, *uvs, width, height);
+  impl_->mesh = std::move(mesh);
+  impl_->uvs = std::move(uvs);
+}
+
+BendMap::~BendMap() = default;
+
+bool BendMap::fits(const CornerUvs& uvs, int width, int height) const {
+  return impl_->uvs.get() == &uvs && impl_->texels.width == width && impl_->texels.height == height;
+}
+
+std::size_t BendMap::bytes() const {
+  return impl_->texels.owner.capacity() * sizeof(std::int32_t) +
+         impl_->metrics.capacity() * sizeof(TexelMetric);
+}
+
+std::vector<float> BendMap::byTile(const TiledImage& image, const TiledImage* before,
+                                   const std::vector<float>* known) const {
+  std::vector<float> bends(image.tileCount(), 0);
+  const bool knows =
+      before && known && known->size() == bends.size() && before->tileCount() == image.tileCount();
+  const TexelRows source(*impl_->mesh, *impl_->uvs, impl_->texels, impl_->metrics);
+  tbb::parallel_for(std::size_t{0}, bends.size(), [&](std::size_t tile) {
+    const auto tiles_across = static_cast<std::size_t>(image.tilesAcross());
+    const int across = static_cast<int>(tile % tiles_across);
+    const int up = static_cast<int>(tile / tiles_across);
+    if (isEmptyAbout(image, across, up)) return;
+    bends[tile] = knows && isSameAbout(image, *before, across, up)
+                      ? (*known)[tile]
+                      : static_cast<float>(worstOfTile(source, image, across, up));
+  });
+  return bends;
+}
 
 ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
                         const TiledImage& relief, double height,
@@ -91,7 +139,10 @@ ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
   ReliefLimit limit;
   limit.highest = scale * std::max(high, -low);
   if (limit.highest == 0) return limit;
-  limit.curvature = scale * worstCurvature(mesh, *layout.uvs, relief);
+  const std::shared_ptr<const TriangleMesh> borrowed(std::shared_ptr<void>(), &mesh);
+  const BendMap map(borrowed, layout.uvs, relief.width(), relief.height());
+  const std::vector<float> bends = map.byTile(relief);
+  limit.curvature = scale * static_cast<double>(*std::max_element(bends.begin(), bends.end()));
   if (limit.curvature == 0) return limit;
   limit.wavelength = 2 * M_PI * std::sqrt(0.5 * scale * (high - low) / limit.curvature);
   if (device) {

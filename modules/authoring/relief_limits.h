@@ -1,7 +1,9 @@
 // How high a relief may be before touching it buzzes (F7).
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "geometry/texel_map.h"
 #include "scene/device_model.h"
@@ -27,6 +29,26 @@ struct ReliefLimit {
   // without a device and for a relief without curvature.
   std::optional<double> admissible;
 };
+// The h'' of ReliefLimit for images of one size on one layout, kept by tile: a version that shares
+// tiles with a known one costs what it changed and the tiles about it.
+class BendMap {
+ public:
+  BendMap(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const CornerUvs> uvs, int width,
+          int height);
+  ~BendMap();
+
+  // Worst |h''| [1/m] by tile for a height of 1 m at g = 1; `image` of one channel. `known` is that
+  // of `before`, both null: every texel is looked at. The result does not depend on them. Parallel.
+  std::vector<float> byTile(const TiledImage& image, const TiledImage* before = nullptr,
+                            const std::vector<float>* known = nullptr) const;
+  bool fits(const CornerUvs& uvs, int width, int height) const; // the same coordinates, by address
+  std::size_t bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 // `mesh` in metres, `relief` of one channel. Parallel.
 ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
                         const TiledImage& relief, double height,

@@ -16,8 +16,8 @@ struct FeltObject {
   std::shared_ptr<const MaterialSamples> material; // absent: the scene's own values
   std::shared_ptr<const ReliefSurface> relief;     // absent: none, or it is baked into the field
   double highest = 0;                              // [m], of |height| of the relief
-  // [1/m], of |h''| of the relief along the surface: no less than the largest. It decides whether a
-  // loop is steady on it (F7); 0 = as if flat.
+  // [1/m], the largest |h''| of the relief along the surface, by its second differences. It decides
+  // whether a loop is steady on it (F7).
   double bend = 0;
 };
 

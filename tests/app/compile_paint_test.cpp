@@ -70,6 +70,28 @@ TEST_F(FeltPaints, MadeStepByStepTheyAreWhatCompileMakesAtOnce) {
   }
 }
 
+// F7: what decides about a lateral coupling, dab by dab, and only where one may be planned.
+TEST_F(FeltPaints, CurvatureOfReliefIsKnownWhereThereIsADevice) {
+  Editor editor(ballScene(), progress);
+  editor.apply(dabAt(Tool::relief, 5e-4, 0.006, Vec3(kBall, 0, 0)), progress);
+  EXPECT_EQ(editor.compiled()->paint.objects[0].bend, 0);
+  EXPECT_FALSE(editor.compiled()->paint.relief[0].bend_map);
+  editor.apply(ValueEdit{{{"device.mass", "0.1"}}}, progress);
+  for (const double angle : {0.0, 0.1, 2.0}) {
+    const Vec3 place = kBall * Vec3(std::cos(angle), std::sin(angle), 0);
+    editor.apply(dabAt(Tool::relief, 5e-4, 0.004, place), progress);
+    const CompiledScene& compiled = *editor.compiled();
+    const SceneObject& object = compiled.scene.objects[0];
+    const ReliefLimit limit = reliefLimit(
+        *compiled.objects[0]->mesh, object.paint->layout, *compiled.paint.relief[0].felt,
+        compiled.scene.relief.height, compiled.scene.device_model);
+    EXPECT_GT(limit.curvature, 0);
+    EXPECT_EQ(compiled.paint.objects[0].bend, limit.curvature);
+    EXPECT_EQ(compiled.snapshot->stabilisers.lateral.has_value(),
+              !isSteadyAlong(limit.curvature, *compiled.scene.device_model));
+  }
+}
+
 TEST_F(FeltPaints, SmoothedReliefIsLowerAndTheImageStays) {
   Editor editor(ballScene(), progress);
   editor.apply(dabAt(Tool::relief, 5e-4, 0.004, Vec3(0, 0, kBall)), progress);

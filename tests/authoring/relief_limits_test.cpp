@@ -1,6 +1,7 @@
 #include "authoring/relief_limits.h"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -51,6 +52,29 @@ TEST(ReliefLimit, DoesNotDependOnTheLayout) {
     EXPECT_NEAR(limit.curvature / (1e-3 * k * k), 1, 0.02) << m;
     EXPECT_FALSE(limit.admissible);
   }
+}
+
+// A texel changed on the corner of a tile is seen from all four.
+TEST(BendMap, FromAKnownVersionIsThatOfTheWholeImage) {
+  const Sheet sheet(matrix(0.6, 0.3, 0, 0.6));
+  const BendMap map(std::make_shared<const TriangleMesh>(sheet.mesh), sheet.layout.uvs, kSize,
+                    kSize);
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> tile(2, kSize / kTileSide - 3), within(0, kTileSide - 1);
+  TiledImage image = *reliefImage(kSize, [](double u, double v) { return std::sin(20 * u * v); });
+  std::vector<float> known = map.byTile(image);
+  int seen = 0;
+  for (int i = 0; i < 20; ++i) {
+    const TiledImage before = image.published();
+    const int at = i < 4 ? 0 : within(random);
+    const int x = kTileSide * tile(random) + at, y = kTileSide * tile(random) + at;
+    image.writable(image.tileOf(x, y))[image.offsetOf(x, y)] += 1;
+    const std::vector<float> whole = map.byTile(image);
+    seen += whole != known;
+    known = map.byTile(image, &before, &known);
+    EXPECT_EQ(known, whole);
+  }
+  EXPECT_GT(seen, 10); // not where the sheet is not shown
 }
 
 TEST(ReliefLimit, OfFlatReliefIsNone) {
