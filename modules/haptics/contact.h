@@ -49,6 +49,8 @@ struct ContactMemory {
   Leaning relief, roughness;
   // Of the lateral stage, a tick ago: Contact::aside and the surface's point that it is from.
   Vec3 aside = Vec3::Zero(), aside_of = Vec3::Zero();
+  Vec3 damped = Vec3::Zero(); // of the coupling: last_candidate a tick ago
+  bool has_damped = false;
   std::int32_t relief_object = -1, relief_face = -1; // where the next look-up begins
   double sideways = 0;                               // [N], of the stiffness slope
 

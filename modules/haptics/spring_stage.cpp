@@ -40,7 +40,8 @@ namespace {
 // Of walls that differ by less than this (about 12 degrees) only the one that bears most counts.
 constexpr double kApart = 0.2;
 
-// The part of v across the walls.
+} // namespace
+
 Vec3 acrossWalls(const Contact& contact, const Vec3& v) noexcept {
   if (contact.walls == 1) return v.dot(contact.wall[0].normal) * contact.wall[0].normal;
   std::array<Vec3, 3> axis;
@@ -57,6 +58,8 @@ Vec3 acrossWalls(const Contact& contact, const Vec3& v) noexcept {
   }
   return across;
 }
+
+namespace {
 
 // What of a damper's force is left where the walls that hold the tip only push: the nearest to the
 // sum with the spring's that they can bear, less the spring's.

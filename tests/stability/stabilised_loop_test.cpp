@@ -197,5 +197,32 @@ TEST(StabilisedLoop, RestsOnASphere) {
               inSeries(1e5, snapshot->stabilisers.coupling->stiffness), 5);
 }
 
+// A tip that nearly fills a bowl: R is what its centre may move. Its walls are nearly one, and K d /
+// (R + d) along them is above what the device alone damps.
+TEST(StabilisedLoop, RestsInABowlHardlyWiderThanTheTip) {
+  double worst = 0;
+  for (const double room : {0.2e-3, 0.5e-3, 1e-3})
+    for (const double stiffness : {2000.0, 1e5, 1e7}) {
+      const double tip = 1e-3;
+      Scene scene = sceneOf(stiffness);
+      scene.device_model = DeviceModel{};
+      scene.haptics.tip_radius = tip;
+      const auto snapshot = compileStages(
+          scene,
+          cubeField([=](const Vec3& p) { return room + tip - p.norm(); }, 0.05e-3, 96, 30));
+      SimulationSpec spec;
+      spec.surface = Vec3(1e-5, 2e-5, 0);
+      spec.press = 1;
+      spec.seconds = 16;
+      Progress progress;
+      const SimulationReport run = simulate(*snapshot, spec, progress);
+      EXPECT_LE(run.rms_velocity, 1e-5) << room << " " << stiffness;
+      EXPECT_EQ(run.fault_ticks, 0u);
+      EXPECT_LT(run.max_depth, 4e-3);
+      worst = std::max(worst, run.rms_velocity);
+    }
+  std::printf("narrow bowl: at rest to %.2g m/s\n", worst);
+}
+
 } // namespace
 } // namespace patina
