@@ -33,17 +33,21 @@ double loadOf(const std::complex<double>& eigenvalue, double whirl) {
   return a / u;
 }
 
-// What the loop bears along the surface. A lateral coupling's damper moves by the share of the
-// tip's motion that the texture leaves to its spring, and so damps by that share's square.
+// What the loop bears along the surface. The damper of a coupling moves by the share of the tip's
+// motion that the surface's curvature or texture leaves to its spring, and so damps by that share's
+// square.
 double borneAlong(const LocalStiffness& at, const LoopLimits& limits) {
-  if (!(at.lateral > 0)) return limits.plain;
+  const double softening = limits.softening(at.material.stiffness);
+  const double spring = at.lateral > 0   ? at.lateral
+                        : limits.coupled ? softening * at.material.stiffness
+                                         : 0;
+  if (!(spring > 0)) return limits.plain;
   const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - at.normal * at.normal.transpose();
   const Eigen::Matrix3d along = flat * at.matrix * flat;
-  const double stiffest = limits.softening(at.material.stiffness) *
-                          Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
-                              0.5 * (along + along.transpose()), Eigen::EigenvaluesOnly)
-                              .eigenvalues()[2];
-  const double share = std::clamp(stiffest / at.lateral, 0.0, 1.0);
+  const double stiffest = softening * Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+                                          0.5 * (along + along.transpose()), Eigen::EigenvaluesOnly)
+                                          .eigenvalues()[2];
+  const double share = std::clamp(stiffest / spring, 0.0, 1.0);
   return limits.plain + (limits.tied - limits.plain) * share * share;
 }
 
@@ -99,9 +103,9 @@ LoopLimits loopLimits(const Scene& scene, std::span<const FeltObject> objects) {
   if (most > least) limits.damped = std::min(limits.damped, borne(most));
   limits.plain = stiffnessLimit(sampledLoop(device));
   limits.tied = limits.plain;
-  if (stabilisers.lateral) {
+  if (plan || stabilisers.lateral) {
     SampledLoop loop = sampledLoop(device);
-    loop.virtual_damping = stabilisers.lateral->damping;
+    loop.virtual_damping = plan ? plan->damping : stabilisers.lateral->damping;
     limits.tied = stiffnessLimit(loop);
   }
   if (limits.plain > 0)

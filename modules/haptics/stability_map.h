@@ -16,7 +16,7 @@ namespace patina {
 // and the worse one counts everywhere.
 struct LoopLimits {
   double plain = 0;  // where nothing but the device damps: along the surface
-  double tied = 0;   // along a texture so stiff that its lateral coupling damps in full
+  double tied = 0;   // along what holds the tip so that the coupling damps it in full
   double damped = 0; // where damping helps: along the normal, and while friction sticks
   double whirl = 0;  // b^2 / (m K*): what the device's damping holds against a whirl
   bool coupled = false;

@@ -195,6 +195,20 @@ TEST(StabilityRatio, TheCouplingTakesItBelowTheLimitWhereverTheWallAloneIsNot) {
   EXPECT_TRUE(loopLimits(scene).coupled);
 }
 
+// K d / (R + d) along a narrow bowl, behind a coupling: damped by the square of d / (R + d).
+TEST(StabilityRatio, TheCouplingDampsWhatABowlHoldsAlongItself) {
+  Scene scene = sceneOf(1e5);
+  scene.device_model = DeviceModel{};
+  const double radius = 1e-3;
+  const Field narrow = cubeField([=](const Vec3& p) { return radius - p.norm(); }, 0.1e-3, 80, 30);
+  const CouplingPlan plan = planCoupling(scene.haptics, DeviceModel{});
+  const double k = inSeries(1e5, plan.stiffness), depth = 1 / k, share = depth / (radius + depth);
+  const double along =
+      (limitWith(0) + (limitWith(plan.damping) - limitWith(0)) * share * share) / (k * share);
+  const double expected = std::min(along, limitWith(plan.damping) / k);
+  EXPECT_NEAR(ratioAt(scene, narrow, radius * kSlanted), expected, 0.05 * expected);
+}
+
 // A force that goes round: two directions of stiffness a, coupled by c and -c.
 TEST(StabilityRatio, AWhirlNeedsDampingEvenWhereEachDirectionIsSoft) {
   Scene scene = bare(500);
