@@ -115,6 +115,31 @@ TEST(TextureLoop, RestsAtAnyStiffnessByItselfInAHandAndWithJitter) {
   std::printf("texture: at rest to %.2g m/s\n", worst);
 }
 
+// k_l and B are planned from the device: heavy and light, quick and late.
+TEST(TextureLoop, CalmsDownOnAnyDeviceThatDamps) {
+  Progress progress;
+  for (const double mass : {0.02, 0.1, 0.5})
+    for (const double damping : {0.1, 0.5, 5.0})
+      for (const double rate : {500.0, 1000.0, 4000.0})
+        for (const int delay : {0, 2, 5})
+          for (const double amplitude : {50e-6, 200e-6}) {
+            Scene scene = automatic(1000);
+            scene.device_model = DeviceModel{mass, damping, 0, 0, rate, delay};
+            const FeltObject object = waves(amplitude, true);
+            const auto snapshot = compileStages(scene, fineSlab().field, std::span(&object, 1));
+            SimulationSpec spec = comesDown(scene);
+            spec.press = 0.5;
+            spec.seconds = 12;
+            const SimulationReport run = simulate(*snapshot, spec, progress);
+            const std::string what = "m " + std::to_string(mass) + " b " + std::to_string(damping) +
+                                     " rate " + std::to_string(rate) + " n " +
+                                     std::to_string(delay);
+            EXPECT_TRUE(run.verdict == Verdict::kAtRest || run.verdict == Verdict::kCalmingDown)
+                << what << ": " << run.rms_velocity << ", early " << run.rms_early;
+            EXPECT_EQ(run.fault_ticks, 0u) << what;
+          }
+}
+
 // An encoder alone lets nothing rest that is stiffer than nothing: between two of its steps there
 // is no force, and the tip wanders from one to the other, on a plane too. That is as still as it
 // gets.
