@@ -35,7 +35,7 @@ void CouplingStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   const double damping = std::max(damping_, std::min(contact.material.damping, most_damping_));
   dampWalls(contact, damping, magnetic_);
   const Vec3& c = memory.last_candidate;
-  if (contact.touching && memory.has_damped && contact.walls > 0 && !(contact.stick_radius > 0))
+  if (contact.touching && memory.has_damped && contact.walls == 1 && !(contact.stick_radius > 0))
     contact.force -= damping * heldBack(contact, c - memory.damped);
   memory.damped = c;
   memory.has_damped = contact.touching;
