@@ -103,9 +103,8 @@ TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
           one_sided += std::abs(field->phiAt(i + 1, j, k)) >= kBeyondBand;
           ASSERT_LT((Vec3(node.gx, node.gy, node.gz) - central).norm(), 0.2);
           ++nodes;
-          central_ones += node.gx == static_cast<float>(central.x()) &&
-                          node.gy == static_cast<float>(central.y()) &&
-                          node.gz == static_cast<float>(central.z());
+          // Their neighbours across have nearly the same slopes, and a share in these.
+          central_ones += (Vec3(node.gx, node.gy, node.gz) - central).norm() < 5e-3;
         }
   }
   EXPECT_GT(one_sided, 100U);
