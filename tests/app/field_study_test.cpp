@@ -104,7 +104,11 @@ TEST(FieldStudy, LayoutsOfTheSameNodesAgree) {
   const WorkPrecisionRow& stored = rowOf(table, "9^3 blocks, gradient stored");
   EXPECT_EQ(table.rows.size(), 6U);
   for (const WorkPrecisionRow& row : table.rows) {
-    EXPECT_NEAR(row.error, stored.error, 0.05 * stored.error) << row.knobs[0].second.asString();
+    // Made on the fly a slope is one difference, stored it is the mean of nine.
+    const std::string layout = row.knobs[0].second.asString();
+    const bool stored_slopes = layout.find("on the fly") == std::string::npos;
+    EXPECT_LT(row.error, (stored_slopes ? 1.05 : 1.3) * stored.error) << layout;
+    EXPECT_GT(row.error, (stored_slopes ? 0.95 : 1.1) * stored.error) << layout;
     EXPECT_NEAR(more(row, "value rms [m]"), more(stored, "value rms [m]"), 1e-8);
   }
 }

@@ -57,7 +57,9 @@ TEST(SurfacesStudy, TheProxyGivesNothingRoundALoop) {
     EXPECT_LT(more(energy.rows[row], "given at most [J]"), 1e-3 * 3.1e-3) << row; // 5e-4 measured
   }
   ASSERT_EQ(fine.knobs[2].second.asString(), "high");
-  EXPECT_LT(fine.error, coarse.error / 3.5); // what it takes is of order 2 at least, 7.9 measured
+  // What the field gives falls with the voxel; what a tick leaves undone, .3 uJ, does not.
+  EXPECT_LT(fine.error, std::max(coarse.error / 3.5, 5e-7));
+  EXPECT_LT(coarse.error, 5e-6);
 }
 
 TEST(SurfacesStudy, RedistancingMakesTheDepthOfAnOverlapRight) {

@@ -197,8 +197,8 @@ TEST(StabilisedLoop, RestsOnASphere) {
               inSeries(1e5, snapshot->stabilisers.coupling->stiffness), 5);
 }
 
-// A tip that nearly fills a bowl: R is what its centre may move. Its walls are nearly one, and K d /
-// (R + d) along them is above what the device alone damps.
+// A tip that nearly fills a bowl: R is what its centre may move. Its walls are nearly one, and K d
+// / (R + d) along them is above what the device alone damps.
 TEST(StabilisedLoop, RestsInABowlHardlyWiderThanTheTip) {
   double worst = 0;
   for (const double room : {0.2e-3, 0.5e-3, 1e-3})
@@ -208,8 +208,7 @@ TEST(StabilisedLoop, RestsInABowlHardlyWiderThanTheTip) {
       scene.device_model = DeviceModel{};
       scene.haptics.tip_radius = tip;
       const auto snapshot = compileStages(
-          scene,
-          cubeField([=](const Vec3& p) { return room + tip - p.norm(); }, 0.05e-3, 96, 30));
+          scene, cubeField([=](const Vec3& p) { return room + tip - p.norm(); }, 0.05e-3, 96, 30));
       SimulationSpec spec;
       spec.surface = Vec3(1e-5, 2e-5, 0);
       spec.press = 1;
