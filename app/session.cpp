@@ -76,13 +76,13 @@ std::optional<std::string> thinSheetWarning(const MeshReport& report) {
   if (report.boundary_edges == 0) return std::nullopt;
   return formatCount(report.boundary_edges) + (report.boundary_edges == 1 ? " edge" : " edges") +
          " of one triangle: what is open has no inside and is felt from its front; set "
-         "tip.radius and surface.sides=two to feel both sides";
+         "surface.sides=two and tip.radius or offset to feel both sides";
 }
 
 namespace {
 
 void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMesh& mesh,
-                 bool has_tip_radius) {
+                 bool both_sides) {
   const MeshReport report = inspect(mesh);
   if (report.non_finite + report.degenerate == report.triangles)
     throw FileError(where, 0,
@@ -92,7 +92,7 @@ void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMe
   for (const std::string& line : meshWarnings(report))
     opened.warnings.push_back(where + ": " + line);
   const auto thin = thinSheetWarning(report);
-  if (thin && !has_tip_radius) opened.warnings.push_back(where + ": " + *thin);
+  if (thin && !both_sides) opened.warnings.push_back(where + ": " + *thin);
 }
 
 void openFolder(const std::filesystem::path& folder, OpenedScene& opened) {
@@ -136,10 +136,11 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
     openFolder(path, opened);
     if (options.unit_chosen) warnOf("--unit", "workspace");
     if (options.iso) warnOf("--iso", "workspace");
-    const bool has_radius =
-        options.tip_radius_chosen || opened.scene.haptics.tip_radius.value_or(0.0) > 0;
+    const bool both_sides = opened.scene.field.sides == OpenSides::two ||
+                            options.tip_radius_chosen ||
+                            opened.scene.haptics.tip_radius.value_or(0.0) > 0;
     for (const SceneObject& object : opened.scene.objects)
-      addWarnings(opened, path.string() + ": " + object.name, *object.mesh, has_radius);
+      addWarnings(opened, path.string() + ": " + object.name, *object.mesh, both_sides);
     return opened;
   }
   bool in_metres = false;

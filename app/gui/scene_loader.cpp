@@ -101,13 +101,15 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
   if (made.editor->unsaved() && !made.autosave)
     made.warnings << tr("Edits that were made after the last save are here again; they are not "
                         "saved yet.");
-  const bool has_radius = made.editor->scene().haptics.tip_radius.value_or(0) > 0;
+  const Scene& scene = made.editor->scene();
+  const bool both_sides =
+      scene.field.sides == OpenSides::two || scene.haptics.tip_radius.value_or(0) > 0;
   for (const auto& object : made.editor->compiled()->objects) {
     const QString name = QString::fromStdString(object->object.name);
     for (const std::string& line : meshWarnings(object->mesh_report))
       made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(line));
     const auto thin = thinSheetWarning(object->mesh_report);
-    if (thin && !has_radius)
+    if (thin && !both_sides)
       made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(*thin));
   }
 }

@@ -26,6 +26,9 @@ void CrossFade::turnTo(const HapticSnapshot* next) noexcept {
   next_memory_.has_last_raw = false;
   next_memory_.clearance = std::numeric_limits<double>::infinity();
   next_memory_.relief.known = next_memory_.roughness.known = false;
+  // A stage that only the new law has begins afresh.
+  next_memory_.aside.setZero();
+  next_memory_.has_damped = false;
 }
 
 Contact CrossFade::tick(const Vec3& tip, double dt) noexcept {

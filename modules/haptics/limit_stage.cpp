@@ -24,7 +24,7 @@ void LimitStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const double left = memory.since_fault - kFaultFadeTime;
   if (left < 0) {
     contact.force = -left / kFaultFadeTime * memory.fault_force;
-  } else if (left < kFaultReturnTime && contact.touching) {
+  } else if (left < kFaultReturnTime && (contact.touching || contact.attracted)) {
     contact.force *= left / kFaultReturnTime;
   } else {
     memory.faulted = false;

@@ -118,7 +118,7 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optiona
   const Contact contact = settled(memory, result.tip);
   result.material = contact.material;
   result.lateral = contact.lateral;
-  const Vec3 ran = contact.surface - point;
+  const Vec3 ran = contact.candidate - way.surface;
   result.slips = (ran - ran.dot(way.outward) * way.outward).norm() > kSlips * result.depth;
   const Vec3& force = contact.force;
   result.force = force.norm();

@@ -11,6 +11,7 @@ constexpr double kLongestTick = 0.05; // [s], of those that a proxy may run on i
 constexpr double kUnlooked = 0.1;     // voxels of clearance that nobody needs to look at
 constexpr double kFarthest = 1e9;     // voxels
 constexpr double kNoDepth = 1e-9;     // voxels
+constexpr double kSamePlace = 0.1;    // voxels, of a surface before and after an edit
 
 double sideOf(const FieldGrid& grid) {
   return grid.voxel * (*std::max_element(grid.nodes.begin(), grid.nodes.end()) - 1);
@@ -49,11 +50,17 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
       (x - from).norm() + snap_speed_ * per_voxel_ * std::clamp(contact.dt, 0.0, kLongestTick);
   if (memory.in_contact) {
     proxy.c = toGrid(memory.last_candidate);
-    if (memory.reseat) proxy.walls.count = 0;
-    if (memory.reseat && !search_.seat(x, proxy.c, contact.samples)) {
-      memory.leaveContact();
-      memory.clearance = std::numeric_limits<double>::infinity();
-      return;
+    if (memory.reseat) {
+      proxy.walls.count = 0;
+      proxy.lent = 0;
+      if (!search_.seat(x, proxy.c, contact.samples)) {
+        memory.leaveContact();
+        memory.clearance = std::numeric_limits<double>::infinity();
+        return;
+      }
+      // What stuck to a surface that is elsewhere now would hold the old one's force.
+      if ((proxy.c - toGrid(memory.last_candidate)).squaredNorm() > kSamePlace * kSamePlace)
+        memory.has_stuck = false;
     }
   } else {
     if (!enter(x, from, contact, memory, proxy.c)) return;

@@ -12,7 +12,7 @@
 namespace patina {
 namespace {
 
-constexpr double kStillVelocity = 1e-9; // [m/s] rms
+constexpr double kStillVelocity = 1e-8; // [m/s] rms
 constexpr double kSettling = 0.9;       // of the second second's rms velocity
 // Of the middle second's: a bounce that goes on for ever varies less, and nears its rms from above.
 constexpr double kStillSettling = 0.95;

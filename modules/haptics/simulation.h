@@ -69,7 +69,7 @@ using RowSink = std::function<void(const SimulationRow&)>;
 // What became of the tip, in this order of precedence.
 enum class Verdict {
   kLeftSurface, // not touching in the last second, though it had touched or began inside
-  kAtRest,      // rms of the last second below 1e-9 m/s
+  kAtRest,      // rms of the last second below 1e-8 m/s
   kCalmingDown, // stable, calmer still over the second half (or all but still), fed by nothing
   kUnsettled
 };
@@ -78,7 +78,7 @@ const char* name(Verdict verdict);
 
 struct SimulationReport {
   // From the trajectory alone: the last second's rms velocity is below 0.9 times the second
-  // second's, or below 1e-9 m/s.
+  // second's, or below 1e-8 m/s.
   bool stable = false;
   double rms_velocity = 0; // [m/s], last second
   double rms_early = 0;    // [m/s], from 1 s to 2 s
