@@ -65,7 +65,7 @@ TEST_F(Session, WarnsOfEveryKindOfTriangleThatIsLeftOut) {
 TEST_F(Session, AdvisesATipRadiusForSheetsUntilThereIsOne) {
   const auto advice = [](const OpenedScene& opened) {
     return std::count_if(opened.warnings.begin(), opened.warnings.end(), [](const auto& line) {
-      return line.find("set tip.radius") != std::string::npos;
+      return line.find("set surface.sides") != std::string::npos;
     });
   };
   writeMesh(folder / "ship.ply", galleon(100));
@@ -79,6 +79,11 @@ TEST_F(Session, AdvisesATipRadiusForSheetsUntilThereIsOne) {
   scene.haptics.tip_radius = 0.001;
   saveWorkspace(scene, folder / "round");
   EXPECT_EQ(advice(openScene(folder / "round", {})), 0);
+  scene.haptics.tip_radius.reset();
+  scene.haptics.offset = 0.001;
+  scene.field.sides = OpenSides::two;
+  saveWorkspace(scene, folder / "both");
+  EXPECT_EQ(advice(openScene(folder / "both", {})), 0);
 }
 
 TEST_F(Session, OpensAWorkspaceAsItWasSaved) {

@@ -53,8 +53,8 @@ TEST_P(ContactBenchmark, AnalyticSphere) {
 
 TEST_P(ContactBenchmark, SphereOf100kTriangles) {
   const ContactTestErrors high = errorsOf(k100k, {.tip_radius = GetParam()});
-  EXPECT_LE(high.direction_mean, 0.03);
-  EXPECT_LE(high.direction_max, 0.13);
+  EXPECT_LE(high.direction_mean, 0.017);
+  EXPECT_LE(high.direction_max, 0.08);
   EXPECT_LE(high.magnitude_mean, 0.17); // the facets' own floor
   EXPECT_LE(high.magnitude_max, 0.58);
 }
@@ -81,7 +81,7 @@ TEST_P(ContactBenchmark, FrictionFollowsCoulomb) {
                            .slip = Friction::SlipDirection::displacement});
     EXPECT_NEAR(displacement.coulomb_ratio, 0.3, 0.002);
     EXPECT_LE(displacement.direction_mean, 0.10);
-    EXPECT_LE(displacement.direction_max, 0.40); // .33 measured over facets
+    EXPECT_LE(displacement.direction_max, 0.30);
   }
 }
 
