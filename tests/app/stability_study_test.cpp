@@ -89,8 +89,6 @@ TEST(StabilityStudy, RestsInCornersAndOnRidgesWhereItShould) {
   for (const WorkPrecisionRow& row : quickTables().at(5).rows) {
     const std::string& surface = row.knobs.at(0).second.asString();
     EXPECT_EQ(more(row, "fault ticks"), 0) << surface;
-    const bool texture = surface.starts_with("relief") || surface.starts_with("roughness");
-    if (texture) continue; // measured, not promised
     EXPECT_EQ(more(row, "rests"), more(row, "should rest")) << surface;
     leaving += more(row, "touches") == 0;
     const std::string& by = row.knobs.at(2).second.asString();
