@@ -57,7 +57,8 @@ namespace {
 
 // On a smooth surface blended normals are the more exact ones, but not those of the level set, so
 // that a move of c may give work: the mean depth times how far it went along the mean normal, which
-// is nothing on an exact surface. What it gave of late turns the normals to the level set's own.
+// is nothing on an exact surface. What it gave in this contact turns the normals to the level set's
+// own.
 void lend(Proxy& proxy, double given) noexcept {
   proxy.lent = std::max(0.0, proxy.lent + given);
 }

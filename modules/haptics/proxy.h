@@ -14,7 +14,7 @@ namespace patina {
 struct Proxy {
   Vec3 c = Vec3::Zero();
   Walls walls;
-  double lent = 0; // work that moves of c gave of late, over the stiffness [voxel^2]
+  double lent = 0; // work that moves of c gave since contact began, over the stiffness [voxel^2]
 };
 
 struct ProxyMove {
