@@ -42,10 +42,10 @@ double stiffestLaw(const HapticProperties& haptics);
 SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device,
                       const HandModel& hand = {});
 
-// The coupling for a device, whatever the surface: B = 0.02 m/T, less where the encoder would make
-// it felt as noise (0.03 N a step), more where the scene itself has more, at most a fifth of the
-// damping that buzzes by itself; k_c half of K* with that
-// B. So b_eff >= (b + B)/2, and what is left of a touch halves within some 0.2 s.
+// The coupling for a device, whatever the surface: B = 0.02 m/T and at least 12 m/s, less where the
+// encoder would make it felt as noise (0.03 N a step), more where the scene itself has more, at
+// most a fifth of the damping that buzzes by itself; k_c half of K* with that B, but no less than
+// 0.4 of the rule of thumb, where the margin is below two.
 CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& device);
 
 // For a texture that is stiffer along the surface than the loop bears: B and k_c of planCoupling(),
