@@ -10,8 +10,10 @@ namespace {
 constexpr double kOnSurface = 1e-5, kHeld = 1e-4;
 constexpr double kAtRest = 3e-3;      // a step that is the last one
 constexpr double kRestError = 3e-4;   // what a step may leave undone where the surface is smooth
-constexpr double kTurnedError = 1e-3; // and before the turn of the surface is taken out of it
-constexpr double kCreaseStep = 0.03, kCreaseHeight = 0.01; // the last ones beside a crease
+constexpr double kTurnedError = 5e-3; // and before the turn of the surface is taken out of it
+constexpr double kCreaseStep = 0.1;   // the last one beside a crease
+constexpr double kAloneStep = 0.03;   // and where one wall is known, beside which may be another
+constexpr double kMostRate = 0.8;
 constexpr double kSmoothStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
 constexpr double kFlat = 0.2, kLeastSlope = 0.3;
@@ -23,7 +25,8 @@ constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
-constexpr double kLent = 4e-3; // voxel^2, from where on it is taken back
+constexpr double kLent = 4e-3;                     // voxel^2, from where on it is taken back
+constexpr double kRoom = 1 + 1e-6, kNearly = 1.02; // of the square of a bound
 constexpr int kMostSlides = 2, kFewLooks = 3, kMostLooks = 8, kMostShortenings = 4;
 
 } // namespace
@@ -68,20 +71,18 @@ double ownShare(const Proxy& proxy) noexcept {
 
 // A bounded move is the projection of a point nearer to the middle: cutting the way short instead
 // would leave the walls.
-bool shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
+void shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
              WallProjection& to) noexcept {
   double squared = (to.z - middle).squaredNorm();
-  const double most = radius * radius * (1 + 1e-6);
-  if (squared <= most) return false;
+  const double most = radius * radius;
   const Vec3 whole = target - middle;
   double share = 1;
-  for (int k = 0; k < kMostShortenings && squared > most; ++k) {
+  for (int k = 0; k < kMostShortenings && squared > kNearly * most; ++k) {
     share *= radius / std::sqrt(squared);
     target = middle + share * whole;
     to = projectOntoWalls(walls, target);
     squared = (to.z - middle).squaredNorm();
   }
-  return true;
 }
 
 // Drops or mends what a look at z refutes (P08). Of a convex obstacle a wall seen elsewhere claims
@@ -125,8 +126,10 @@ ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec
   Aim aim;
   Vec3 target = x;
   aim.to = projectOntoWalls(walls, target);
-  aim.by_ball = shorten(walls, start, ball, target, aim.to);
-  aim.by_trust = shorten(walls, anchor, trust, target, aim.to);
+  aim.by_ball = (aim.to.z - start).squaredNorm() > ball * ball * kRoom;
+  if (aim.by_ball) shorten(walls, start, ball, target, aim.to);
+  aim.by_trust = (aim.to.z - anchor).squaredNorm() > trust * trust * kRoom;
+  if (aim.by_trust) shorten(walls, anchor, trust, target, aim.to);
   return aim;
 }
 
@@ -161,19 +164,20 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     if (!seen.smooth) {
       // In a hollow narrower than the depth one wall would swing from side to side.
       const bool settles = step_squared < kRestError * kRestError || load * load * turned < since;
-      if (!(settles && step_squared < kCreaseStep * kCreaseStep &&
-            std::abs(seen.height) < kCreaseHeight && load > kOnSurface &&
+      if (!(settles && step_squared < kCreaseStep * kCreaseStep && load > kOnSurface &&
             (c - start).squaredNorm() < ball * ball && load * load <= (start - x).squaredNorm()))
         return false;
     } else if (!(step_squared < kRestError * kRestError)) {
       // What the step leaves undone is the share of it by which the surface turns under the depth;
-      // as it turned on the way here it is taken to turn on.
+      // as it turned on the way here it is taken to turn on, under what this adds to the step too.
       const double undone = load * load * turned * step_squared;
       if (!(step_squared < kSmoothStep * kSmoothStep && load * load * turned < since &&
             undone < kTurnedError * kTurnedError * since))
         continue;
       if (undone > kRestError * kRestError * since) {
-        wall.normal = (wall.normal + step.dot(way) / since * turn).normalized();
+        const double rate = load / since * turn.dot(way);
+        wall.normal = (wall.normal + step.dot(way) / since / (1 - std::min(rate, kMostRate)) * turn)
+                          .normalized();
         wall.offset = wall.normal.dot(c);
         load = -wall.height(x);
         c = x + load * wall.normal;
@@ -277,9 +281,10 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
         c = next.to.z;
         converged = smooth = true;
       }
-    } else if ((crease || looks > 0) && !next.by_trust && next.to.count > 0 &&
-               step < (next.by_ball ? std::max(kCreaseStep, 0.3 * ball) : kCreaseStep) &&
-               std::abs(seen.height) < kCreaseHeight) {
+    } else if ((crease || looks > 0 || next.by_ball) && !next.by_trust && next.to.count > 0 &&
+               step < std::max(next.to.count > 1 ? kCreaseStep : kAloneStep,
+                               next.by_ball ? 0.3 * ball : 0) &&
+               std::abs(seen.height) < kSmoothStep) {
       c = next.to.z;
       converged = true;
     } else if (std::abs(seen.height) < kHeld &&
