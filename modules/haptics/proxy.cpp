@@ -11,8 +11,8 @@ constexpr double kOnSurface = 1e-5, kHeld = 1e-4;
 constexpr double kAtRest = 3e-3;      // a step that is the last one
 constexpr double kRestError = 3e-4;   // what a step may leave undone where the surface is smooth
 constexpr double kTurnedError = 5e-3; // and before the turn of the surface is taken out of it
-constexpr double kCreaseStep = 0.1;   // the last one beside a crease
-constexpr double kAloneStep = 0.03;   // and where one wall is known, beside which may be another
+constexpr double kCreaseStep = 0.1;   // the last one of a wall alone, beside a crease
+constexpr double kWallsStep = 0.03;   // and of several, or where there may be another
 constexpr double kMostRate = 0.8;
 constexpr double kSmoothStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
@@ -282,8 +282,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
         converged = smooth = true;
       }
     } else if ((crease || looks > 0 || next.by_ball) && !next.by_trust && next.to.count > 0 &&
-               step < std::max(next.to.count > 1 ? kCreaseStep : kAloneStep,
-                               next.by_ball ? 0.3 * ball : 0) &&
+               step < std::max(kWallsStep, next.by_ball ? 0.3 * ball : 0) &&
                std::abs(seen.height) < kSmoothStep) {
       c = next.to.z;
       converged = true;
