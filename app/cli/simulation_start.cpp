@@ -19,10 +19,12 @@ SimulationStart simulationStart(const CompiledScene& compiled) {
   const Vec3 above(box.center().x(), box.center().y(), box.max().z() + 0.01 * height);
   const TriangleTree tree(mesh);
   const std::optional<RayHit> hit = tree.firstHit(above, -Vec3::UnitZ(), 2 * height);
-  Vec3 p = hit ? Vec3(above - hit->t * Vec3::UnitZ()) : tree.closestPoint(above).point;
+  const Vec3 foot = hit ? Vec3(above - hit->t * Vec3::UnitZ()) : tree.closestPoint(above).point;
 
   const HapticProperties& haptics = compiled.scene.haptics;
   const double iso = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
+  // A sheet that is felt from both sides has no direction in itself.
+  Vec3 p = foot + iso * (above - foot).normalized();
   const FieldSampler sampler(*compiled.built.field, compiled.scene.sampler);
   Vec3 direction = Vec3::Zero();
   for (int i = 0; i < kNewtonSteps; ++i) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "core/csv.h"
+#include "geometry/mesh_io.h"
+#include "geometry/shapes.h"
 #include "integration/program.h"
 
 namespace patina::test {
@@ -155,6 +157,21 @@ TEST(Simulate, RunsOnAModel) {
   EXPECT_NEAR(number(report, "stiffness_displayed"), 1e5 * coupling / (1e5 + coupling),
               0.01 * coupling);
   EXPECT_EQ(report.at("stages").asArray().at(1).asString(), "coupling");
+}
+
+TEST(Simulate, RunsOnASheetFeltFromBothSides) {
+  const ScratchFolder folder;
+  const std::string mesh = folder / "sheet.ply";
+  writeMesh(mesh, sheet(0.1, 0.1, 10));
+  for (const char* radius : {"0.5mm", "2mm"}) {
+    const Json report =
+        runJson({"simulate", mesh, "--unit", "m", "--set", "surface.sides=two", "--set",
+                 std::string("tip.radius=") + radius, "--set", "stiffness=800"});
+    EXPECT_TRUE(report.at("stable").asBool()) << radius;
+    // Pressed by 1 N, it is held: by the spring and the coupling in series.
+    EXPECT_NEAR(number(report, "max_depth"), 1 / number(report, "stiffness_displayed"), 2e-4)
+        << radius;
+  }
 }
 
 TEST(Simulate, BadValuesAreOneLine) {
