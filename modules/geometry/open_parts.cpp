@@ -1,5 +1,6 @@
 #include "geometry/open_parts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -40,6 +41,7 @@ bool isBalanced(const std::vector<Triangle>& triangles) {
 struct Part {
   std::vector<std::int32_t> faces;
   bool rim = false, open = false;
+  double told = 0, before = 0; // area about which an inside is told; of it, where that is in front
 };
 
 std::vector<Part> connectedParts(const std::vector<Triangle>& triangles) {
@@ -78,7 +80,7 @@ struct Sample {
   std::size_t part;
   std::int32_t face;
   double area = 0;
-  bool told = false;
+  bool told = false, before = false;
 };
 
 Sample sampleOf(const TriangleMesh& mesh, const WindingNumber& winding, std::size_t part,
@@ -88,11 +90,11 @@ Sample sampleOf(const TriangleMesh& mesh, const WindingNumber& winding, std::siz
   const Vec3 normal = (b - a).cross(c - a);
   const double doubled = normal.norm();
   const Vec3 off = 1e-3 / std::sqrt(doubled) * normal; // of the face's size
-  const auto clear = [&](const Vec3& p) {
-    return std::abs(std::abs(winding.at(p)) - 0.5) >= kTells;
-  };
   const Vec3 centre = (a + b + c) / 3;
-  return {part, face, doubled, clear(centre + off) && clear(centre - off)};
+  const double before = std::abs(winding.at(centre + off)) - 0.5,
+               behind = std::abs(winding.at(centre - off)) - 0.5;
+  const bool told = std::abs(before) >= kTells && std::abs(behind) >= kTells;
+  return {part, face, doubled, told, told && before > 0};
 }
 
 // Of the parts asked: whether the winding number tells less than half of their area.
@@ -108,12 +110,27 @@ void judge(const TriangleMesh& mesh, const WindingNumber& winding, std::vector<P
     for (std::size_t i = range.begin(); i < range.end(); ++i)
       samples[i] = sampleOf(mesh, winding, samples[i].part, samples[i].face);
   });
-  std::vector<double> told(parts.size()), area(parts.size());
+  std::vector<double> area(parts.size());
+  for (const std::size_t p : asked) parts[p].told = parts[p].before = 0;
   for (const Sample& sample : samples) {
     area[sample.part] += sample.area;
-    if (sample.told) told[sample.part] += sample.area;
+    if (sample.told) parts[sample.part].told += sample.area;
+    if (sample.before) parts[sample.part].before += sample.area;
   }
-  for (const std::size_t p : asked) parts[p].open = 2 * told[p] < area[p];
+  for (const std::size_t p : asked) parts[p].open = 2 * parts[p].told < area[p];
+}
+
+// Pieces that close a body together turn the same way. Two sheets one above the other do not: of
+// one the inside that they seem to have is in front, of the other behind. Told over half its area
+// by the other, neither is more than twice as large.
+bool turnBothWays(const std::vector<Part>& parts, const std::vector<std::size_t>& asked) {
+  double before = 0, told = 0;
+  for (const std::size_t p : asked) {
+    if (parts[p].open) continue;
+    before += parts[p].before;
+    told += parts[p].told;
+  }
+  return 4 * std::min(before, told - before) > told;
 }
 
 // Corners are not shared.
@@ -139,10 +156,27 @@ OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding) {
   for (std::size_t p = 0; p < parts.size(); ++p)
     if (parts[p].rim) asked.push_back(p);
   judge(mesh, winding, parts, asked);
+  if (turnBothWays(parts, asked))
+    for (const std::size_t p : asked) parts[p].open = true;
   // What else is there may hide that a part has an inside of its own: a terrain beneath it, say.
   for (const std::size_t p : asked) {
     if (!parts[p].open || parts[p].faces.size() < kFewestFaces || parts.size() == 1) continue;
     judge(mesh, WindingNumber(onlyFaces(mesh, parts[p].faces)), parts, {p});
+  }
+  // Or pretend it: of what is open nothing is left when the closed ones are signed.
+  for (bool opened = true; opened;) {
+    std::vector<std::int32_t> closed;
+    std::vector<std::size_t> doubtful;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (parts[p].open) continue;
+      closed.insert(closed.end(), parts[p].faces.begin(), parts[p].faces.end());
+      if (parts[p].rim) doubtful.push_back(p);
+    }
+    opened = doubtful.size() > 0 && closed.size() < mesh.triangles.size();
+    if (!opened) break;
+    judge(mesh, WindingNumber(onlyFaces(mesh, closed)), parts, doubtful);
+    opened =
+        std::any_of(doubtful.begin(), doubtful.end(), [&](std::size_t p) { return parts[p].open; });
   }
   for (const Part& part : parts) {
     if (!part.open) continue;

@@ -26,8 +26,9 @@ struct OpenParts {
 // rim (an edge with one face) and neither the winding number of the whole mesh nor its own tells
 // its front from its back over half its area: on both sides it would have to be 0.35 off 1/2. A
 // sphere is open from where less than half of it is there. So a closed scan with holes stays
-// closed, and so do loose pieces that close a body together. Degenerate triangles must be left out,
-// corners be finite. `winding`: of `mesh`. Parallel, and the same for any number of threads.
+// closed, and so do loose pieces that close a body together: they all face out of it, or into it.
+// Degenerate triangles must be left out, corners be finite. `winding`: of `mesh`. Parallel, and the
+// same for any number of threads.
 OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding);
 
 // The same for a mesh as read: unusable triangles count nowhere, misoriented ones are turned.

@@ -61,6 +61,21 @@ TEST(OpenParts, SheetsAndBowlsAreOpen) {
   EXPECT_EQ(openParts(one).triangles, 1U);
 }
 
+// To a winding number two sheets look like the upper face of one body and the lower one of another.
+TEST(OpenParts, SheetsOneAboveTheOtherAreOpen) {
+  for (const double gap : {0.0005, 0.005})
+    for (const double size : {0.03, 0.06, 0.09, 0.1, 0.3}) {
+      const TriangleMesh lower = sheet(0.1, 0.1, 10),
+                         upper = moved(sheet(size, size, 10), Vec3(1e-3, 2e-3, gap));
+      for (const TriangleMesh& mesh : {joined(lower, upper), inverted(joined(lower, upper))})
+        EXPECT_EQ(openParts(mesh).triangles, 400U) << gap << ' ' << size;
+      const TriangleMesh ball = withHoles(icosphere(0.02, 20), 3, 0.003, 1);
+      EXPECT_EQ(openParts(joined(joined(lower, upper), moved(ball, Vec3(0, 0, 0.06)))).triangles,
+                400U)
+          << gap << ' ' << size;
+    }
+}
+
 TEST(OpenParts, AreToldApartInOneMesh) {
   const TriangleMesh ball = withHoles(icosphere(0.02, 20), 3, 0.003, 1);
   for (const double height : {0.0205, 0.05}) {
