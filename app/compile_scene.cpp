@@ -357,7 +357,7 @@ std::size_t mergeBytes(const CompiledScene& compiled) {
     bytes += own.bytes() + object->mesh->positions.size() * sizeof(Vec3) +
              object->mesh->triangles.size() * sizeof(Triangle);
     for (const auto& block : own.distance)
-      if (shared.contains(block.get())) bytes -= sizeof(*block);
+      if (shared.contains(block.get())) bytes -= block->bytes();
     for (const auto& block : own.face)
       if (shared.contains(block.get())) bytes -= block->bytes();
   }

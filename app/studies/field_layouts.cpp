@@ -5,6 +5,7 @@
 
 #include "app/studies/node_gather.h"
 #include "field/field_sampler.h"
+#include "field/node_reader.h"
 
 namespace patina {
 namespace {
@@ -84,20 +85,22 @@ class Dense : public FieldLayout {
 
 class PlainBlocks : public FieldLayout {
  public:
-  explicit PlainBlocks(const SurfaceField& field) : field_(&field) {}
+  explicit PlainBlocks(const SurfaceField& field) : nodes_(field) {
+    for (std::size_t slot = 0; slot < field.blockCount(); ++slot) nodes_.block(slot); // unpacked
+  }
   std::string name() const override { return "8^3 blocks, gradient on the fly"; }
   std::size_t bytes() const override {
-    return field_->blockCount() * sizeof(DistanceBlock) + topBytes(*field_);
+    return nodes_.field().blockCount() * sizeof(DistanceNodes) + topBytes(nodes_.field());
   }
   CandidateSample atGrid(const Vec3& q) const noexcept override {
     const Cell cell = cellOf(q);
     return differencesAt(cell, [&](int x, int y, int z) {
-      return field_->phiAt(cell.i + x, cell.j + y, cell.k + z);
+      return nodes_.phiAt(cell.i + x, cell.j + y, cell.k + z);
     });
   }
 
  private:
-  const SurfaceField* field_;
+  NodeReader nodes_;
 };
 
 template <class Number> class ApronBlocks : public FieldLayout {

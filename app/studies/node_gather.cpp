@@ -12,22 +12,20 @@ DenseNodes denseNodes(const SurfaceField& field) {
     count *= static_cast<std::size_t>(nodes.size[axis]);
   }
   nodes.phi.resize(count);
+  DistanceNodes block;
   for (int bz = 0; bz < field.blocks[2]; ++bz)
     for (int by = 0; by < field.blocks[1]; ++by)
       for (int bx = 0; bx < field.blocks[0]; ++bx) {
         const std::int32_t slot = field.slotOf(bx, by, bz);
-        const float fill = slot == SurfaceField::kInside ? -kBeyondBand : kBeyondBand;
+        if (slot < 0)
+          block.phi.fill(phiBeyond(slot));
+        else
+          field.distance[static_cast<std::size_t>(slot)]->unpack(block);
         for (int z = 0; z < kBlockSide; ++z)
-          for (int y = 0; y < kBlockSide; ++y) {
-            float* row =
-                &nodes.phi[nodes.index(bx * kBlockSide, by * kBlockSide + y, bz * kBlockSide + z)];
-            if (slot < 0)
-              std::fill_n(row, kBlockSide, fill);
-            else
-              std::copy_n(field.distance[static_cast<std::size_t>(slot)]->phi.data() +
-                              (z * kBlockSide + y) * kBlockSide,
-                          kBlockSide, row);
-          }
+          for (int y = 0; y < kBlockSide; ++y)
+            std::copy_n(
+                &block.phi[static_cast<std::size_t>((z * kBlockSide + y) * kBlockSide)], kBlockSide,
+                &nodes.phi[nodes.index(bx * kBlockSide, by * kBlockSide + y, bz * kBlockSide + z)]);
       }
   return nodes;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include <tbb/blocked_range.h>
@@ -24,10 +23,6 @@ std::vector<ReliefImage> imagesOf(std::span<const ReliefSource> sources, double 
   images.reserve(sources.size());
   for (const ReliefSource& source : sources) images.emplace_back(source, voxel);
   return images;
-}
-
-bool same(const DistanceBlock& a, const DistanceBlock& b) {
-  return std::memcmp(&a, &b, sizeof(a)) == 0;
 }
 
 bool meet(const BlockFeet& feet, const UvBox& box) {
@@ -74,19 +69,19 @@ struct ReliefBake::Impl {
     return range;
   }
 
-  void move(std::size_t slot, const std::vector<ReliefImage>& images, DistanceBlock& out) const {
+  // Distances of the base, moved in place.
+  void move(std::size_t slot, const std::vector<ReliefImage>& images, DistanceNodes& nodes) const {
     const BlockFeet& block = feet.block[slot];
-    const std::array<float, kBlockNodes>& phi = base->distance[slot]->phi;
+    std::array<float, kBlockNodes>& phi = nodes.phi;
     const NodeUv* uv = feet.uv.data() + block.first;
     const auto each = [&](const auto& image_of) {
       std::size_t entry = 0;
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
-        out.phi[n] = phi[n];
         if (!(std::abs(phi[n]) < kBeyondBand)) continue;
         const ReliefImage* image = image_of(entry);
         const float fall = image ? image->at(uv[entry]) : 0.0F;
         ++entry;
-        if (fall != 0) out.phi[n] = phi[n] - fall; // -0 less -0 would lose its sign
+        if (fall != 0) phi[n] -= fall; // -0 less -0 would lose its sign
       }
     };
     const auto felt = [&](std::int32_t source) -> const ReliefImage* {
@@ -99,8 +94,6 @@ struct ReliefBake::Impl {
       each([&](std::size_t entry) { return felt(source[entry]); });
     } else if (const ReliefImage* image = felt(block.source)) {
       each([&](std::size_t) { return image; });
-    } else {
-      out = *base->distance[slot];
     }
   }
 
@@ -110,16 +103,18 @@ struct ReliefBake::Impl {
     std::vector<std::uint8_t> differs(which.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, which.size(), 16),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                        DistanceBlock moved;
+                        DistanceNodes nodes;
                         for (std::size_t i = range.begin(); i < range.end(); ++i) {
                           const auto slot = static_cast<std::size_t>(which[i]);
                           std::shared_ptr<const DistanceBlock>& held = field.distance[slot];
-                          move(slot, images, moved);
-                          differs[i] = !same(moved, *held);
+                          base->distance[slot]->unpack(nodes);
+                          move(slot, images, nodes);
+                          DistanceBlock moved(nodes);
+                          differs[i] = !(moved == *held);
                           if (!differs[i]) continue;
-                          held = same(moved, *base->distance[slot])
+                          held = moved == *base->distance[slot]
                                      ? base->distance[slot]
-                                     : std::make_shared<const DistanceBlock>(moved);
+                                     : std::make_shared<const DistanceBlock>(std::move(moved));
                         }
                       });
     std::vector<std::int32_t> changed;

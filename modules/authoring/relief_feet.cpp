@@ -84,10 +84,11 @@ class FeetMaker {
   // Whose faces a block names; `first` holds the count of its nodes for now.
   void survey(std::size_t slot) {
     BlockFeet& feet = feet_.block[slot];
+    const std::array<float, kBlockNodes> phi = field_.distance[slot]->phi();
     bool any = false;
     std::int32_t last = -1, source = BlockFeet::kNone;
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      if (!isStored(field_.distance[slot]->phi[n])) continue;
+      if (!isStored(phi[n])) continue;
       const std::int32_t face = field_.face[slot]->at(n);
       if (face != last || !any) source = sources_.of(face);
       last = face;
@@ -114,9 +115,10 @@ class FeetMaker {
     BlockFeet& feet = feet_.block[slot];
     if (feet.source == BlockFeet::kNone) return;
     const Index3& at = field_.block_at[slot];
+    const std::array<float, kBlockNodes> phi = field_.distance[slot]->phi();
     std::size_t entry = 0;
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      if (!isStored(field_.distance[slot]->phi[n])) continue;
+      if (!isStored(phi[n])) continue;
       const auto i = static_cast<int>(n);
       const std::int32_t face = field_.face[slot]->at(n);
       std::int32_t source = feet.source;

@@ -141,16 +141,16 @@ std::vector<CoarseNode> coarseNodes(const TriangleMesh& mesh, const TriangleTree
 }
 
 struct Block {
-  std::shared_ptr<DistanceBlock> distance;
-  std::shared_ptr<FaceNodes> face;
+  std::unique_ptr<DistanceNodes> distance;
+  std::unique_ptr<FaceNodes> face;
 };
 
 // Null if no node is within the band. The search is in float, in places that depend on the scale by
 // their last bit; the distance that is stored is the winner's own in double, which does not.
 Block blockAt(const TriangleMesh& mesh, const TriangleTree& tree, const FieldGrid& grid,
               double band, const Index3& at) {
-  Block block{std::make_shared_for_overwrite<DistanceBlock>(),
-              std::make_shared_for_overwrite<FaceNodes>()};
+  Block block{std::make_unique_for_overwrite<DistanceNodes>(),
+              std::make_unique_for_overwrite<FaceNodes>()};
   const Index3 first{kBlockSide * at[0], kBlockSide * at[1], kBlockSide * at[2]};
   const Vec3 corner = grid.toWorld(Vec3(first[0], first[1], first[2]));
   auto& phi = block.distance->phi;
@@ -168,7 +168,7 @@ Block blockAt(const TriangleMesh& mesh, const TriangleTree& tree, const FieldGri
     const double d = distanceTo(mesh, face[i], p) / grid.voxel;
     phi[i] = static_cast<float>(std::min(d, band));
   }
-  return any >= 0 ? block : Block{};
+  return any >= 0 ? std::move(block) : Block{};
 }
 
 } // namespace

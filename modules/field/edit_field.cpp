@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "field/node_reader.h"
 #include "field/sample_block.h"
 
 namespace patina {
@@ -36,6 +37,7 @@ void renewSamples(SurfaceField& field, std::span<const std::int32_t> changed,
       seen[other] = 1;
       return true;
     });
+  const NodeReader nodes(field);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, affected.size(), 8),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i < range.end(); ++i) {
@@ -44,7 +46,7 @@ void renewSamples(SurfaceField& field, std::span<const std::int32_t> changed,
                           return field.distance[other] == original.distance[other];
                         });
                         field.sample[slot] =
-                            as_original ? original.sample[slot] : sampleBlock(field, slot);
+                            as_original ? original.sample[slot] : sampleBlock(nodes, slot);
                       }
                     });
 }

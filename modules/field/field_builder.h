@@ -14,16 +14,16 @@ struct FieldBuilder {
   // frozen(). top marks every block that is not stored kOutside until the signs are known.
   SurfaceField field;
   // By slot. phi >= 0 in voxels (exact where <= band, kBeyondBand elsewhere) until signed.
-  std::vector<std::shared_ptr<DistanceBlock>> distance;
+  std::vector<std::unique_ptr<DistanceNodes>> distance;
   // By slot. Faces of the mesh that the distances were taken from; -1 beyond the band.
-  std::vector<std::shared_ptr<FaceNodes>> face;
+  std::vector<std::unique_ptr<FaceNodes>> face;
   std::vector<std::int32_t> coarse_face; // nearest face of each coarse node
   // Coarse nodes, too, hold unsigned phi >= 0 and the gradient of the unsigned distance until
   // signed: a negative sign flips all four numbers. Nodes of padding blocks that reach past the
   // grid's last node are real points with real distances.
 };
 
-// Immutable from here on; the face blocks take their small form. Parallel.
+// Immutable from here on; the blocks take their small form. Parallel.
 SurfaceField frozen(FieldBuilder&& builder);
 
 } // namespace patina

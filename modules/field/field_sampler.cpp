@@ -151,8 +151,14 @@ bool isInside(const SurfaceField& field, const Vec3& q) {
     const double x = q[static_cast<Eigen::Index>(axis)];
     if (!(x >= 0 && x <= n[axis] - 1)) return false;
   }
-  return field.phiAt(static_cast<int>(std::lround(q[0])), static_cast<int>(std::lround(q[1])),
-                     static_cast<int>(std::lround(q[2]))) < 0;
+  const auto i = static_cast<int>(std::lround(q[0])), j = static_cast<int>(std::lround(q[1])),
+             k = static_cast<int>(std::lround(q[2]));
+  const std::int32_t slot = field.slotOf(i / kBlockSide, j / kBlockSide, k / kBlockSide);
+  if (slot < 0) return slot == SurfaceField::kInside;
+  const int x = i % kBlockSide, y = j % kBlockSide, z = k % kBlockSide;
+  return field.sample[static_cast<std::size_t>(slot)]
+             ->node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)]
+             .phi < 0;
 }
 
 } // namespace

@@ -5,7 +5,8 @@
 
 namespace patina {
 
-CellPhi gatherCells(const SurfaceField& field, std::int32_t slot) {
+CellPhi gatherCells(const NodeReader& nodes, std::int32_t slot) {
+  const SurfaceField& field = nodes.field();
   CellPhi cells;
   const std::array<int, 3>& at = field.block_at[static_cast<std::size_t>(slot)];
   for (int dz = 0; dz < 2; ++dz)
@@ -14,9 +15,8 @@ CellPhi gatherCells(const SurfaceField& field, std::int32_t slot) {
         const int bx = at[0] + dx, by = at[1] + dy, bz = at[2] + dz;
         const bool in_table = bx < field.blocks[0] && by < field.blocks[1] && bz < field.blocks[2];
         const std::int32_t from = in_table ? field.slotOf(bx, by, bz) : SurfaceField::kOutside;
-        const float fill = from == SurfaceField::kInside ? -kBeyondBand : kBeyondBand;
         const float* phi =
-            from >= 0 ? field.distance[static_cast<std::size_t>(from)]->phi.data() : nullptr;
+            from >= 0 ? nodes.block(static_cast<std::size_t>(from)).phi.data() : nullptr;
         const int nx = dx ? 1 : kBlockSide, ny = dy ? 1 : kBlockSide, nz = dz ? 1 : kBlockSide;
         for (int z = 0; z < nz; ++z)
           for (int y = 0; y < ny; ++y) {
@@ -26,7 +26,7 @@ CellPhi gatherCells(const SurfaceField& field, std::int32_t slot) {
             if (phi)
               std::copy_n(phi + (z * kBlockSide + y) * kBlockSide, nx, row);
             else
-              std::fill_n(row, nx, fill);
+              std::fill_n(row, nx, phiBeyond(from));
           }
       }
   return cells;

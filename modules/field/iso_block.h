@@ -8,14 +8,14 @@
 #include <cstdint>
 
 #include "field/iso_cases.h"
-#include "field/surface_field.h"
+#include "field/node_reader.h"
 
 namespace patina {
 
 // phi of the block's nodes and the first layer of its upper neighbours, voxels, x fastest.
 using CellPhi = std::array<float, kSampleSide * kSampleSide * kSampleSide>;
 
-CellPhi gatherCells(const SurfaceField& field, std::int32_t slot);
+CellPhi gatherCells(const NodeReader& nodes, std::int32_t slot);
 
 class IsoBlock {
  public:

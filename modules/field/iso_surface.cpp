@@ -87,7 +87,7 @@ TriangleMesh isoSurfaceOfBlock(const SurfaceField& field, std::int32_t slot, dou
   if (slot < 0 || static_cast<std::size_t>(slot) >= field.blockCount())
     throw std::invalid_argument("isoSurfaceOfBlock: no such block");
   const float level = isoInVoxels(field, iso);
-  const CellPhi cells = gatherCells(field, slot);
+  const CellPhi cells = gatherCells(NodeReader(field), slot);
   const IsoBlock block(cells, level);
 
   TriangleMesh mesh;
@@ -110,9 +110,10 @@ TriangleMesh isoSurfaceOfBlock(const SurfaceField& field, std::int32_t slot, dou
 TriangleMesh isoSurface(const SurfaceField& field, double iso) {
   const float level = isoInVoxels(field, iso);
   const std::size_t count = field.blockCount();
+  const NodeReader nodes(field);
   std::vector<IsoBlock> blocks(count);
   parallelFor(count, [&](std::size_t slot) {
-    blocks[slot] = IsoBlock(gatherCells(field, static_cast<std::int32_t>(slot)), level);
+    blocks[slot] = IsoBlock(gatherCells(nodes, static_cast<std::int32_t>(slot)), level);
   });
 
   std::vector<std::int32_t> first_vertex(count), first_triangle(count);
@@ -132,7 +133,7 @@ TriangleMesh isoSurface(const SurfaceField& field, double iso) {
   parallelFor(count, [&](std::size_t slot) {
     if (blocks[slot].empty()) return;
     const std::array<int, 3>& at = field.block_at[slot];
-    const CellPhi cells = gatherCells(field, static_cast<std::int32_t>(slot));
+    const CellPhi cells = gatherCells(nodes, static_cast<std::int32_t>(slot));
     Vec3* position = mesh.positions.data() + first_vertex[slot];
     blocks[slot].forVertices([&](int x, int y, int z, int axis) {
       *position++ = vertexOn(field, cells, level, at, x, y, z, axis);

@@ -72,21 +72,23 @@ Block shared(const FieldPart& part, std::int32_t slot) {
 
 // +-kBeyondBand lie beyond every stored value, so that min does with them what it must.
 Block least(std::span<const FieldPart> parts, const std::vector<Share>& shares, bool with_faces) {
-  auto distance = std::make_shared_for_overwrite<DistanceBlock>();
+  std::vector<DistanceNodes> held(shares.size());
+  for (std::size_t s = 0; s < shares.size(); ++s)
+    parts[static_cast<std::size_t>(shares[s].part)]
+        .field->distance[static_cast<std::size_t>(shares[s].slot)]
+        ->unpack(held[s]);
+  DistanceNodes distance;
   FaceNodes faces;
   bool any = false;
   for (std::size_t n = 0; n < kBlockNodes; ++n) {
     float phi = std::numeric_limits<float>::infinity();
     const Share* owner = nullptr;
-    for (const Share& share : shares) {
-      const SurfaceField& field = *parts[static_cast<std::size_t>(share.part)].field;
-      const float other = field.distance[static_cast<std::size_t>(share.slot)]->phi[n];
-      if (other < phi) {
-        phi = other;
-        owner = &share;
+    for (std::size_t s = 0; s < shares.size(); ++s)
+      if (held[s].phi[n] < phi) {
+        phi = held[s].phi[n];
+        owner = &shares[s];
       }
-    }
-    distance->phi[n] = phi;
+    distance.phi[n] = phi;
     const bool stored = std::abs(phi) < kBeyondBand;
     any = any || stored;
     if (!with_faces) continue;
@@ -97,7 +99,8 @@ Block least(std::span<const FieldPart> parts, const std::vector<Share>& shares, 
     if (face >= 0) faces.face[n] = face + part.first_face;
   }
   if (!any) return {};
-  return {std::move(distance), with_faces ? std::make_shared<const FaceBlock>(faces) : nullptr};
+  return {std::make_shared<const DistanceBlock>(distance),
+          with_faces ? std::make_shared<const FaceBlock>(faces) : nullptr};
 }
 
 // Distance [voxel] from a point of the part's grid to where its surface can be: a lower bound.
@@ -204,7 +207,7 @@ std::int32_t ownerOf(std::int32_t face, std::span<const FieldPart> parts) {
   return static_cast<std::int32_t>(after - parts.begin()) - 1;
 }
 
-double phiOfPart(const FieldPart& part, const Vec3& q) {
+double phiOfPart(const FieldPart& part, const NodeReader& nodes, const Vec3& q) {
   constexpr double kCompleteTo = 1.75; // voxels before the band's end: all nodes about are stored
   const SurfaceField& field = *part.field;
   const Vec3 in =
@@ -221,7 +224,7 @@ double phiOfPart(const FieldPart& part, const Vec3& q) {
   bool complete = true;
   for (int c = 0; c < 8; ++c) {
     const Vec3 node(cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2));
-    const auto phi = static_cast<double>(field.phiAt(
+    const auto phi = static_cast<double>(nodes.phiAt(
         static_cast<int>(node[0]), static_cast<int>(node[1]), static_cast<int>(node[2])));
     const Vec3 away = (in - node).cwiseAbs();
     complete = complete && std::abs(phi) < static_cast<double>(kBeyondBand);

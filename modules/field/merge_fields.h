@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "field/block_lattice.h"
-#include "field/surface_field.h"
+#include "field/node_reader.h"
 
 namespace patina {
 
@@ -37,8 +37,9 @@ SurfaceField mergeFields(std::span<const FieldPart> parts, const BlockLattice& l
 // first_face ascends.
 std::int32_t ownerOf(std::int32_t face, std::span<const FieldPart> parts);
 
-// phi [voxel] of one part at a point in grid coordinates of the lattice: trilinear in the band,
-// beyond it a bound of the right sign that is nearer to zero. Not for the servo.
-double phiOfPart(const FieldPart& part, const Vec3& q);
+// phi [voxel] of one part, whose field's nodes are given, at a point in grid coordinates of the
+// lattice: trilinear in the band, beyond it a bound of the right sign that is nearer to zero. Not
+// for the servo.
+double phiOfPart(const FieldPart& part, const NodeReader& nodes, const Vec3& q);
 
 } // namespace patina

@@ -20,8 +20,9 @@ class Redistancer {
  public:
   Redistancer(const SurfaceField& merged, std::span<const FieldPart> parts,
               const BlockLattice& lattice, const TriangleMesh& joint, const Progress& progress)
-      : merged_(merged), parts_(parts), lattice_(lattice), joint_(joint), progress_(progress),
-        surface_(unionSurface(parts, lattice, joint, progress)), tree_(surface_.mesh) {
+      : merged_(merged), parts_(parts), nodes_(nodesOf(parts)), lattice_(lattice), joint_(joint),
+        progress_(progress), surface_(unionSurface(parts, lattice, joint, progress)),
+        tree_(surface_.mesh) {
     BlockBox all;
     for (const FieldPart& part : parts) all.extend(part.blocks());
     low_ = all.low;
@@ -63,9 +64,9 @@ class Redistancer {
 
   // False if no node stays within the band.
   bool keep(std::size_t slot) {
-    const DistanceBlock& old = *merged_.distance[slot];
     const FaceBlock& old_faces = *merged_.face[slot];
-    std::shared_ptr<DistanceBlock> distance;
+    DistanceNodes distance;
+    merged_.distance[slot]->unpack(distance);
     FaceNodes faces;
     std::size_t count = 0;
     bool any = false;
@@ -73,34 +74,31 @@ class Redistancer {
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
       const std::int32_t face = old_faces.at(n);
       any = any || face >= 0;
-      if (face < 0 || !(old.phi[n] < 0)) continue;
+      if (face < 0 || !(distance.phi[n] < 0)) continue;
       const Index3& at = merged_.block_at[slot];
       const auto i = static_cast<int>(n);
       const Vec3 p = merged_.grid.toWorld(Vec3(kBlockSide * at[0] + i % kBlockSide,
                                                kBlockSide * at[1] + i / kBlockSide % kBlockSide,
                                                kBlockSide * at[2] + i / (kBlockSide * kBlockSide)));
       const Vec3 foot = (footOn(face, p) - lattice_.anchor) / lattice_.voxel;
-      if (!isHidden(parts_, ownerOf(face, parts_), foot)) continue;
+      if (!isHidden(parts_, nodes_, ownerOf(face, parts_), foot)) continue;
       const auto found = tree_.closestPointWithin(p, merged_.band * lattice_.voxel, warm);
       const float phi =
           found ? -static_cast<float>(std::min(found->distance / lattice_.voxel, merged_.band))
                 : -kBeyondBand;
-      if (!(phi < old.phi[n])) continue; // min is a lower bound of the depth
-      if (!distance) {
-        distance = std::make_shared<DistanceBlock>(old);
+      if (!(phi < distance.phi[n])) continue; // min is a lower bound of the depth
+      if (count++ == 0)
         for (std::size_t k = 0; k < kBlockNodes; ++k) faces.face[k] = old_faces.at(k);
-      }
-      distance->phi[n] = phi;
+      distance.phi[n] = phi;
       faces.face[n] = -1;
       if (found) {
         warm = found->surface.face;
         faces.face[n] = surface_.face[static_cast<std::size_t>(warm)];
       }
-      ++count;
     }
-    if (!distance) return any;
+    if (count == 0) return any;
     changed_ += count;
-    result_.field.distance[slot] = std::move(distance);
+    result_.field.distance[slot] = std::make_shared<const DistanceBlock>(distance);
     result_.field.face[slot] = std::make_shared<const FaceBlock>(faces);
     return std::any_of(faces.face.begin(), faces.face.end(), [](std::int32_t f) { return f >= 0; });
   }
@@ -150,6 +148,7 @@ class Redistancer {
 
   const SurfaceField& merged_;
   std::span<const FieldPart> parts_;
+  const std::deque<NodeReader> nodes_;
   const BlockLattice& lattice_;
   const TriangleMesh& joint_;
   const Progress& progress_;

@@ -28,7 +28,9 @@ struct Neighbours {
   std::array<float, 27> fill{};
 };
 
-Neighbours neighboursOf(const SurfaceField& field, const std::array<int, 3>& at) {
+Neighbours neighboursOf(const NodeReader& nodes, std::size_t middle) {
+  const SurfaceField& field = nodes.field();
+  const std::array<int, 3>& at = field.block_at[middle];
   Neighbours result;
   std::size_t n = 0;
   for (int bz = at[2] - 1; bz <= at[2] + 1; ++bz)
@@ -37,8 +39,8 @@ Neighbours neighboursOf(const SurfaceField& field, const std::array<int, 3>& at)
         const bool in_grid = bx >= 0 && by >= 0 && bz >= 0 && bx < field.blocks[0] &&
                              by < field.blocks[1] && bz < field.blocks[2];
         const std::int32_t slot = in_grid ? field.slotOf(bx, by, bz) : SurfaceField::kOutside;
-        result.fill[n] = slot == SurfaceField::kInside ? -kBeyondBand : kBeyondBand;
-        if (slot >= 0) result.phi[n] = field.distance[static_cast<std::size_t>(slot)]->phi.data();
+        result.fill[n] = phiBeyond(slot);
+        if (slot >= 0) result.phi[n] = nodes.block(static_cast<std::size_t>(slot)).phi.data();
       }
   return result;
 }
@@ -192,9 +194,9 @@ void fillComplete(const PaddedPhi& padded, SampleBlock& block) {
 
 } // namespace
 
-std::shared_ptr<const SampleBlock> sampleBlock(const SurfaceField& field, std::size_t slot) {
+std::shared_ptr<const SampleBlock> sampleBlock(const NodeReader& nodes, std::size_t slot) {
   PaddedPhi padded;
-  gather(neighboursOf(field, field.block_at[slot]), padded);
+  gather(neighboursOf(nodes, slot), padded);
   auto block = std::make_shared_for_overwrite<SampleBlock>();
   fillNodes(padded, *block);
   fillComplete(padded, *block);

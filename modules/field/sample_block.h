@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <memory>
 
-#include "field/surface_field.h"
+#include "field/node_reader.h"
 
 namespace patina {
 
 // From the distances of the block and the 26 about it.
-std::shared_ptr<const SampleBlock> sampleBlock(const SurfaceField& field, std::size_t slot);
+std::shared_ptr<const SampleBlock> sampleBlock(const NodeReader& nodes, std::size_t slot);
 
 } // namespace patina

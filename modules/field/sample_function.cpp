@@ -27,9 +27,9 @@ std::shared_ptr<const DistanceBlock> sampleBlock(const Function& phi, const Surf
   top = centre < 0 ? SurfaceField::kInside : SurfaceField::kOutside;
   if (std::abs(centre) > (field.band + half.norm()) * (1 + 1e-12)) return nullptr;
 
-  auto block = std::make_shared_for_overwrite<DistanceBlock>();
+  DistanceNodes nodes;
   bool any = false;
-  float* out = block->phi.data();
+  float* out = nodes.phi.data();
   for (int z = 0; z < kBlockSide; ++z)
     for (int y = 0; y < kBlockSide; ++y)
       for (int x = 0; x < kBlockSide; ++x, ++out) {
@@ -39,7 +39,7 @@ std::shared_ptr<const DistanceBlock> sampleBlock(const Function& phi, const Surf
         *out = stored ? static_cast<float>(value) : value < 0 ? -kBeyondBand : kBeyondBand;
         any |= stored;
       }
-  return any ? block : nullptr;
+  return any ? std::make_shared<const DistanceBlock>(nodes) : nullptr;
 }
 
 CoarseNode coarseNode(const Function& phi, const FieldGrid& grid, const Vec3& q) {

@@ -3,33 +3,14 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "field/node_reader.h"
 #include "field/sample_block.h"
 
 namespace patina {
 namespace {
 
-// Slot and index inside the block of a node; slot < 0 outside.
-struct NodePlace {
-  std::int32_t slot;
-  std::size_t index;
-};
-
-NodePlace placeOf(const SurfaceField& field, int i, int j, int k) {
-  const auto& n = field.grid.nodes;
-  if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2])
-    return {SurfaceField::kOutside, 0};
-  const int mask = kBlockSide - 1;
-  return {
-      field.slotOf(i / kBlockSide, j / kBlockSide, k / kBlockSide),
-      static_cast<std::size_t>(((k & mask) * kBlockSide + (j & mask)) * kBlockSide + (i & mask))};
-}
-
 template <class Block>
 std::size_t layerSize(const std::vector<std::shared_ptr<const Block>>& layer) {
-  return layer.size() * (sizeof(Block) + sizeof(layer[0]));
-}
-
-std::size_t layerSize(const std::vector<std::shared_ptr<const FaceBlock>>& layer) {
   std::size_t sum = layer.size() * sizeof(layer[0]);
   for (const auto& block : layer) sum += block->bytes();
   return sum;
@@ -37,14 +18,23 @@ std::size_t layerSize(const std::vector<std::shared_ptr<const FaceBlock>>& layer
 
 } // namespace
 
+SurfaceField::Place SurfaceField::placeOf(int i, int j, int k) const {
+  const auto& n = grid.nodes;
+  if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2]) return {kOutside, 0};
+  const int mask = kBlockSide - 1;
+  return {
+      slotOf(i / kBlockSide, j / kBlockSide, k / kBlockSide),
+      static_cast<std::size_t>(((k & mask) * kBlockSide + (j & mask)) * kBlockSide + (i & mask))};
+}
+
 float SurfaceField::phiAt(int i, int j, int k) const {
-  const NodePlace place = placeOf(*this, i, j, k);
-  if (place.slot >= 0) return distance[static_cast<std::size_t>(place.slot)]->phi[place.index];
-  return place.slot == kInside ? -kBeyondBand : kBeyondBand;
+  const Place place = placeOf(i, j, k);
+  return place.slot < 0 ? phiBeyond(place.slot)
+                        : distance[static_cast<std::size_t>(place.slot)]->at(place.index);
 }
 
 std::int32_t SurfaceField::faceAt(int i, int j, int k) const {
-  const NodePlace place = placeOf(*this, i, j, k);
+  const Place place = placeOf(i, j, k);
   if (place.slot < 0 || face.empty()) return -1;
   return face[static_cast<std::size_t>(place.slot)]->at(place.index);
 }
@@ -57,7 +47,7 @@ std::vector<LayerBytes> SurfaceField::layerBytes() const {
   add("top", top.size() * sizeof(top[0]) + block_at.size() * sizeof(block_at[0]));
   add("distance", layerSize(distance));
   add("face", layerSize(face));
-  add("sample", layerSize(sample));
+  add("sample", sample.size() * (sizeof(SampleBlock) + sizeof(sample[0])));
   add("coarse", coarse.size() * sizeof(CoarseNode));
   return layers;
 }
@@ -72,10 +62,11 @@ std::shared_ptr<const SurfaceField> withSamples(std::shared_ptr<const SurfaceFie
   if (field->sample.size() == field->blockCount()) return field;
   auto result = std::make_shared<SurfaceField>(*field);
   result->sample.resize(result->blockCount());
+  const NodeReader nodes(*field);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result->blockCount(), 16),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t slot = range.begin(); slot < range.end(); ++slot)
-                        result->sample[slot] = sampleBlock(*field, slot);
+                        result->sample[slot] = sampleBlock(nodes, slot);
                     });
   return result;
 }

@@ -13,16 +13,9 @@
 #include "core/types.h"
 #include "field/face_block.h"
 #include "field/field_grid.h"
+#include "field/packed_distance.h"
 
 namespace patina {
-
-// Signed distance in voxels (so that nothing depends on the scale), negative inside. A node farther
-// than the band holds +-kBeyondBand with the right sign; one that relief moved out of it keeps its
-// value.
-struct DistanceBlock {
-  std::array<float, kBlockNodes> phi;
-};
-inline constexpr float kBeyondBand = 1e6f;
 
 // What the servo reads: one block look-up serves any point of its 8^3 cells. The 9^3 nodes are
 // those of the block and the first layer of its upper neighbours; each holds phi and the nodal
@@ -73,12 +66,25 @@ struct SurfaceField {
   std::int32_t slotOf(int bx, int by, int bz) const {
     return top[static_cast<std::size_t>((bz * blocks[1] + by) * blocks[0] + bx)];
   }
-  // Node values; outside the grid or in a block that is not stored: +-kBeyondBand and -1.
+  // Where a node is held: slot and index in its block; slot < 0 where none is, kOutside outside the
+  // grid.
+  struct Place {
+    std::int32_t slot;
+    std::size_t index;
+  };
+  Place placeOf(int i, int j, int k) const;
+  // Node values; outside the grid or in a block that is not stored: +-kBeyondBand and -1. phiAt
+  // unpacks a block: NodeReader is for more than a few.
   float phiAt(int i, int j, int k) const;
   std::int32_t faceAt(int i, int j, int k) const;
   std::vector<LayerBytes> layerBytes() const; // only layers that exist
   std::size_t bytes() const;
 };
+
+// phi of a block that is not stored, by its value in the top table.
+inline float phiBeyond(std::int32_t slot) {
+  return slot == SurfaceField::kInside ? -kBeyondBand : kBeyondBand;
+}
 
 // Adds the layer that samplers read. Idempotent; shares all other blocks with `field`.
 std::shared_ptr<const SurfaceField> withSamples(std::shared_ptr<const SurfaceField> field);

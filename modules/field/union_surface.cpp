@@ -42,7 +42,8 @@ void cut(const Corners& t, const std::array<double, 3>& f, Pieces& left) {
   for (std::size_t i = 2; i < count; ++i) left.push_back({polygon[0], polygon[i - 1], polygon[i]});
 }
 
-void outsideOf(const FieldPart& part, const Corners& triangle, Pieces& left) {
+void outsideOf(const FieldPart& part, const NodeReader& nodes, const Corners& triangle,
+               Pieces& left) {
   Pieces todo{triangle};
   while (!todo.empty()) {
     const Corners t = todo.back();
@@ -56,7 +57,7 @@ void outsideOf(const FieldPart& part, const Corners& triangle, Pieces& left) {
         length = side;
         longest = i;
       }
-      f[i] = phiOfPart(part, t[i]) + kHiddenFrom;
+      f[i] = phiOfPart(part, nodes, t[i]) + kHiddenFrom;
     }
     const auto [least, most] = std::minmax({f[0], f[1], f[2]});
     if (most > length + kAllowance) {
@@ -74,9 +75,17 @@ void outsideOf(const FieldPart& part, const Corners& triangle, Pieces& left) {
 
 } // namespace
 
-bool isHidden(std::span<const FieldPart> parts, std::int32_t owner, const Vec3& q) {
+std::deque<NodeReader> nodesOf(std::span<const FieldPart> parts) {
+  std::deque<NodeReader> nodes;
+  for (const FieldPart& part : parts) nodes.emplace_back(*part.field);
+  return nodes;
+}
+
+bool isHidden(std::span<const FieldPart> parts, const std::deque<NodeReader>& nodes,
+              std::int32_t owner, const Vec3& q) {
   for (std::size_t p = 0; p < parts.size(); ++p)
-    if (static_cast<std::int32_t>(p) != owner && phiOfPart(parts[p], q) < -kHiddenFrom) return true;
+    if (static_cast<std::int32_t>(p) != owner && phiOfPart(parts[p], nodes[p], q) < -kHiddenFrom)
+      return true;
   return false;
 }
 
@@ -85,6 +94,7 @@ UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& 
   const std::vector<std::int32_t> usable = usableTriangles(joint);
   std::vector<Box3> boxes;
   for (const FieldPart& part : parts) boxes.push_back(boxOf(part));
+  const std::deque<NodeReader> nodes = nodesOf(parts);
   std::vector<Pieces> visible(usable.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, usable.size(), 256), [&](const auto& range) {
     if (progress.cancelled()) return;
@@ -101,7 +111,7 @@ UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& 
       for (std::size_t p = 0; p < parts.size(); ++p) {
         if (p == owner || !boxes[p].intersects(box)) continue;
         Pieces left;
-        for (const Corners& piece : visible[i]) outsideOf(parts[p], piece, left);
+        for (const Corners& piece : visible[i]) outsideOf(parts[p], nodes[p], piece, left);
         visible[i] = std::move(left);
       }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,13 @@ namespace patina {
 // coincide stay.
 inline constexpr double kHiddenFrom = 0.02;
 
-// Whether a point that belongs to `owner` is hidden. q in grid coordinates of the lattice.
-bool isHidden(std::span<const FieldPart> parts, std::int32_t owner, const Vec3& q);
+// Of each part's field.
+std::deque<NodeReader> nodesOf(std::span<const FieldPart> parts);
+
+// Whether a point that belongs to `owner` is hidden; `nodes` are those of the parts. q in grid
+// coordinates of the lattice.
+bool isHidden(std::span<const FieldPart> parts, const std::deque<NodeReader>& nodes,
+              std::int32_t owner, const Vec3& q);
 
 struct UnionSurface {
   TriangleMesh mesh;              // corners are not shared

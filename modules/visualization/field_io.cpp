@@ -15,6 +15,7 @@
 #include <vtkSmartPointer.h>
 
 #include "core/error.h"
+#include "field/node_reader.h"
 #include "visualization/volume_file.h"
 #include "visualization/xml_file.h"
 
@@ -97,7 +98,7 @@ struct BlockReader {
   std::array<int, 3> first{};
 
   // False if every node is beyond the band; `inside` is then the sign that the nodes share.
-  bool read(DistanceBlock& distance, FaceNodes& faces, bool& inside) const {
+  bool read(DistanceNodes& distance, FaceNodes& faces, bool& inside) const {
     bool stored = false;
     std::size_t at = 0;
     for (int k = first[2]; k < first[2] + kBlockSide; ++k)
@@ -134,11 +135,12 @@ void writeField(const std::filesystem::path& path, const SurfaceField& field) {
   const bool has_face = !field.face.empty();
   const auto face = namedArray<vtkIntArray>(kFace, 1, has_face ? count : 0);
   const float band_metres = static_cast<float>(field.band * grid.voxel);
+  const NodeReader nodes(field);
   vtkIdType node = 0;
   for (int k = 0; k < grid.nodes[2]; ++k)
     for (int j = 0; j < grid.nodes[1]; ++j)
       for (int i = 0; i < grid.nodes[0]; ++i, ++node) {
-        const float value = field.phiAt(i, j, k);
+        const float value = nodes.phiAt(i, j, k);
         if (has_face) face->SetValue(node, field.faceAt(i, j, k));
         if (std::abs(value) >= kBeyondBand) {
           phi->SetValue(node, std::copysign(band_metres, value));
@@ -202,16 +204,16 @@ SurfaceField readField(const std::filesystem::path& path) {
     for (int by = 0; by < field.blocks[1]; ++by)
       for (int bx = 0; bx < field.blocks[0]; ++bx) {
         reader.first = {bx * kBlockSide, by * kBlockSide, bz * kBlockSide};
-        auto distance = std::make_shared<DistanceBlock>();
+        DistanceNodes distance;
         FaceNodes faces{};
         bool inside = false;
-        if (!reader.read(*distance, faces, inside)) {
+        if (!reader.read(distance, faces, inside)) {
           field.top.push_back(inside ? SurfaceField::kInside : SurfaceField::kOutside);
           continue;
         }
         field.top.push_back(static_cast<std::int32_t>(field.block_at.size()));
         field.block_at.push_back({bx, by, bz});
-        field.distance.push_back(std::move(distance));
+        field.distance.push_back(std::make_shared<const DistanceBlock>(distance));
         if (has_face) field.face.push_back(std::make_shared<const FaceBlock>(faces));
       }
 

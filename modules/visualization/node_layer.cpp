@@ -8,6 +8,7 @@
 #include <vtkPoints.h>
 #include <vtkProperty.h>
 
+#include "field/node_reader.h"
 #include "visualization/distance_map.h"
 
 namespace patina {
@@ -29,11 +30,12 @@ std::vector<FieldNode> nodesNear(const SurfaceField& field, const Vec3& point,
     low[a] = static_cast<int>(std::clamp(std::ceil(q[axis] - radius_voxels), 0.0, last));
     high[a] = static_cast<int>(std::clamp(std::floor(q[axis] + radius_voxels), 0.0, last));
   }
+  const NodeReader reader(field);
   for (int k = low[2]; k <= high[2]; ++k)
     for (int j = low[1]; j <= high[1]; ++j)
       for (int i = low[0]; i <= high[0]; ++i) {
         const Vec3 node(i, j, k);
-        const float phi = field.phiAt(i, j, k);
+        const float phi = reader.phiAt(i, j, k);
         if ((node - q).norm() <= radius_voxels && std::abs(phi) < kBeyondBand)
           nodes.push_back({field.grid.toWorld(node), phi});
       }

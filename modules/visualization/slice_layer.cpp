@@ -8,6 +8,7 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 
+#include "field/node_reader.h"
 #include "visualization/distance_map.h"
 #include "visualization/painted_value.h"
 #include "visualization/palette.h"
@@ -127,13 +128,14 @@ FieldPlane planeOf(const SurfaceField& field, const SlicePlace& place) {
   plane.columns = field.grid.nodes[across];
   plane.rows = field.grid.nodes[up];
   plane.phi.reserve(static_cast<std::size_t>(plane.columns) * static_cast<std::size_t>(plane.rows));
+  const NodeReader nodes(field);
   std::array<int, 3> node{};
   for (node[up] = 0; node[up] < plane.rows; ++node[up])
     for (node[across] = 0; node[across] < plane.columns; ++node[across]) {
       node[along] = below;
-      const float low = field.phiAt(node[0], node[1], node[2]);
+      const float low = nodes.phiAt(node[0], node[1], node[2]);
       node[along] = below + 1;
-      const float high = field.phiAt(node[0], node[1], node[2]);
+      const float high = nodes.phiAt(node[0], node[1], node[2]);
       const bool stored = std::abs(low) < kBeyondBand && std::abs(high) < kBeyondBand;
       plane.phi.push_back(stored ? (1 - weight) * low + weight * high
                                  : std::numeric_limits<float>::quiet_NaN());

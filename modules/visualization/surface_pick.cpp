@@ -5,13 +5,15 @@
 #include <limits>
 #include <set>
 
+#include "field/node_reader.h"
 #include "geometry/triangle_tree.h"
 
 namespace patina {
 namespace {
 
 // Trilinear, voxels; a node that is not stored counts as the band, which phi there exceeds.
-double phiAtGrid(const SurfaceField& field, const Vec3& q) {
+double phiAtGrid(const NodeReader& nodes, const Vec3& q) {
+  const SurfaceField& field = nodes.field();
   std::array<int, 3> cell{};
   Vec3 w;
   for (int axis = 0; axis < 3; ++axis) {
@@ -24,7 +26,7 @@ double phiAtGrid(const SurfaceField& field, const Vec3& q) {
   for (int corner = 0; corner < 8; ++corner) {
     const int x = corner & 1, y = (corner >> 1) & 1, z = corner >> 2;
     const double weight = (x ? w[0] : 1 - w[0]) * (y ? w[1] : 1 - w[1]) * (z ? w[2] : 1 - w[2]);
-    const double phi = field.phiAt(cell[0] + x, cell[1] + y, cell[2] + z);
+    const double phi = nodes.phiAt(cell[0] + x, cell[1] + y, cell[2] + z);
     sum += weight * std::clamp(phi, -field.band, field.band);
   }
   return sum;
@@ -48,14 +50,15 @@ std::optional<Vec3> firstSurfaceAlong(const SurfaceField& field, const Vec3& ori
     from = std::max(from, std::min(a, b));
     to = std::min(to, std::max(a, b));
   }
+  const NodeReader nodes(field);
   double previous = from;
   for (double t = from; t <= to;) {
-    const double phi = phiAtGrid(field, start + t * direction);
+    const double phi = phiAtGrid(nodes, start + t * direction);
     if (phi <= 0) {
       double outside = previous, inside = t;
       while (inside - outside > 0.01) {
         const double middle = 0.5 * (outside + inside);
-        (phiAtGrid(field, start + middle * direction) > 0 ? outside : inside) = middle;
+        (phiAtGrid(nodes, start + middle * direction) > 0 ? outside : inside) = middle;
       }
       return field.grid.toWorld(start + outside * direction);
     }

@@ -120,7 +120,7 @@ TEST(CompileScene, AnEditThereAndBackIsTheSameFieldBitForBit) {
   const auto back = recompile(*there, old->scene, progress);
   ASSERT_EQ(back->built.field->top, old->built.field->top);
   for (std::size_t s = 0; s < old->built.field->blockCount(); ++s)
-    ASSERT_EQ(back->built.field->distance[s]->phi, old->built.field->distance[s]->phi);
+    ASSERT_EQ(back->built.field->distance[s]->phi(), old->built.field->distance[s]->phi());
 }
 
 TEST(CompileScene, OneObjectIsAsItIsWithoutMerging) {
@@ -133,7 +133,7 @@ TEST(CompileScene, OneObjectIsAsItIsWithoutMerging) {
   EXPECT_EQ(one->built.field->grid.origin, alone.field->grid.origin);
   EXPECT_EQ(one->built.field->grid.nodes, alone.field->grid.nodes);
   for (std::size_t s = 0; s < alone.field->blockCount(); ++s)
-    ASSERT_EQ(one->built.field->distance[s]->phi, alone.field->distance[s]->phi);
+    ASSERT_EQ(one->built.field->distance[s]->phi(), alone.field->distance[s]->phi());
   EXPECT_EQ(mergeBytes(*one), 0u);
 
   // It stays when another comes and goes.

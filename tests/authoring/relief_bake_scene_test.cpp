@@ -100,11 +100,11 @@ TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
     for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
       shared += field->sample[slot] == m.field->sample[slot];
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
-        const float before = m.field->distance[slot]->phi[n];
+        const float before = m.field->distance[slot]->at(n);
         const std::int32_t face = m.field->face[slot]->at(n);
         const bool moves = face >= first && std::abs(before) < kBeyondBand;
         moved += moves;
-        const float after = field->distance[slot]->phi[n];
+        const float after = field->distance[slot]->at(n);
         const double z = m.field->grid.origin.z() +
                          m.field->grid.voxel * (kBlockSide * m.field->block_at[slot][2] +
                                                 static_cast<int>(n) / (kBlockSide * kBlockSide));

@@ -141,8 +141,8 @@ TEST(ReliefBake, NoSeamShowsThroughPaintThatCoversTheSurface) {
   std::size_t nodes = 0, low = 0;
   for (std::size_t slot = 0; slot < field->blockCount(); ++slot)
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      const float before = sphere.field->distance[slot]->phi[n];
-      const float after = field->distance[slot]->phi[n];
+      const float before = sphere.field->distance[slot]->at(n);
+      const float after = field->distance[slot]->at(n);
       if (!(std::abs(before) < kBeyondBand)) {
         EXPECT_EQ(before, after);
         continue;
@@ -294,8 +294,8 @@ TEST(ReliefBake, HoldsExtremesOfAnImage) {
     std::size_t moved = 0;
     for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
-        const float before = sphere.field->distance[slot]->phi[n];
-        const float by = before - field->distance[slot]->phi[n];
+        const float before = sphere.field->distance[slot]->at(n);
+        const float by = before - field->distance[slot]->at(n);
         moved += by != 0;
         ASSERT_LE(std::abs(by), most);
       }

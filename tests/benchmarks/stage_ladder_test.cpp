@@ -156,7 +156,7 @@ TEST(StageLadder, ABandStoresFewOfTheGridsNodes) {
   const SurfaceField field = sampleFunction([](const Vec3& p) { return p.norm() - 0.05; }, grid, 4);
   std::size_t in_band = 0;
   for (const auto& block : field.distance)
-    for (const float phi : block->phi) in_band += std::abs(phi) <= 4.0F;
+    for (const float phi : block->phi()) in_band += std::abs(phi) <= 4.0F;
   std::printf("%zu of %zu nodes in the band, %zu stored in blocks\n", in_band, grid.nodeCount(),
               field.blockCount() * kBlockNodes);
   EXPECT_NEAR(static_cast<double>(in_band), 2.5e5, 0.05e5);

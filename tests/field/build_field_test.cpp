@@ -158,7 +158,7 @@ TEST(BuildField, StoresOnlyBlocksWithANodeInTheBand) {
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     int in_band = 0;
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      const float phi = std::abs(field.distance[slot]->phi[n]);
+      const float phi = std::abs(field.distance[slot]->at(n));
       in_band += phi <= field.band;
       EXPECT_EQ(field.face[slot]->at(n) >= 0, phi <= field.band);
     }
@@ -214,7 +214,7 @@ TEST(BuildField, IsTheSameForAnyNumberOfThreads) {
   const BuiltField single = build(mesh, 60);
   ASSERT_EQ(many.field->top, single.field->top);
   for (std::size_t slot = 0; slot < many.field->blockCount(); ++slot) {
-    EXPECT_EQ(many.field->distance[slot]->phi, single.field->distance[slot]->phi);
+    EXPECT_EQ(many.field->distance[slot]->phi(), single.field->distance[slot]->phi());
     for (std::size_t n = 0; n < kBlockNodes; ++n)
       ASSERT_EQ(many.field->face[slot]->at(n), single.field->face[slot]->at(n));
   }
@@ -233,7 +233,7 @@ TEST(BuildField, DropsAndCountsTrianglesThatAreNone) {
   EXPECT_EQ(clean.report.dropped_triangles, 0u);
   ASSERT_EQ(built.field->blockCount(), clean.field->blockCount());
   for (std::size_t slot = 0; slot < built.field->blockCount(); ++slot) {
-    EXPECT_EQ(built.field->distance[slot]->phi, clean.field->distance[slot]->phi);
+    EXPECT_EQ(built.field->distance[slot]->phi(), clean.field->distance[slot]->phi());
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
       const std::int32_t face = clean.field->face[slot]->at(n);
       EXPECT_EQ(built.field->face[slot]->at(n), face < 0 ? -1 : face + 2);

@@ -107,10 +107,11 @@ TEST(RenewSamples, GivesThoseOfTheWholeFieldAndSharesTheRest) {
   for (int edit = 0; edit < 20; ++edit) {
     const SurfaceField before = field;
     const auto slot = static_cast<std::int32_t>(random() % field.blockCount());
-    auto block = std::make_shared<DistanceBlock>(*field.distance[static_cast<std::size_t>(slot)]);
-    for (float& phi : block->phi)
+    auto& block = field.distance[static_cast<std::size_t>(slot)];
+    DistanceNodes nodes{block->phi()};
+    for (float& phi : nodes.phi)
       if (isStored(phi)) phi += 0.25F;
-    field.distance[static_cast<std::size_t>(slot)] = block;
+    block = std::make_shared<const DistanceBlock>(nodes);
     renewSamples(field, std::array{slot}, *original);
     SurfaceField bare = field;
     bare.sample.clear();

@@ -322,7 +322,7 @@ TEST(FieldSampler, FaceNearIsTheFaceOfTheNearestStoredNode) {
       const int i = 8 * at[0] + n % 8, j = 8 * at[1] + n / 8 % 8, k = 8 * at[2] + n / 64;
       const auto index = static_cast<std::size_t>(n);
       faces.face[index] =
-          std::abs(field.distance[slot]->phi[index]) < kBeyondBand ? (k * 64 + j) * 64 + i : -1;
+          std::abs(field.distance[slot]->at(index)) < kBeyondBand ? (k * 64 + j) * 64 + i : -1;
     }
     field.face.push_back(std::make_shared<const FaceBlock>(faces));
   }

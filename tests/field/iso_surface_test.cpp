@@ -120,21 +120,17 @@ TEST(IsoSurface, OfNoiseIsClosedAndManifold) {
   std::uniform_real_distribution<float> noise(-1, 1);
   const FieldGrid grid{Vec3::Zero(), 1, {33, 33, 33}};
   SurfaceField field = sampleFunction([](const Vec3&) { return 0.0; }, grid, 8);
-  for (auto& block : field.distance) {
-    auto noisy = std::make_shared<DistanceBlock>();
-    for (float& phi : noisy->phi) phi = noise(random);
-    block = noisy;
-  }
-  // A wall of outside nodes around, so that nothing leaves the field.
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
-    auto walled = std::make_shared<DistanceBlock>(*field.distance[slot]);
+    DistanceNodes nodes;
+    for (float& phi : nodes.phi) phi = noise(random);
+    // A wall of outside nodes around, so that nothing leaves the field.
     for (int n = 0; n < kBlockNodes; ++n) {
       const auto& at = field.block_at[slot];
       const int i = 8 * at[0] + n % 8, j = 8 * at[1] + n / 8 % 8, k = 8 * at[2] + n / 64;
       if (std::min({i, j, k}) < 1 || std::max({i, j, k}) > 31)
-        walled->phi[static_cast<std::size_t>(n)] = 1;
+        nodes.phi[static_cast<std::size_t>(n)] = 1;
     }
-    field.distance[slot] = walled;
+    field.distance[slot] = std::make_shared<const DistanceBlock>(nodes);
   }
   const TriangleMesh mesh = isoSurface(field, 0);
   EXPECT_GT(mesh.triangles.size(), 50000U);

@@ -101,7 +101,7 @@ TEST(MergeFields, IdenticalObjectsAreOneBitForBit) {
   const MergedShapes one = mergedShapes({ball}), two = mergedShapes({ball, ball});
   ASSERT_EQ(two.field->top, one.field->top);
   for (std::size_t s = 0; s < one.field->blockCount(); ++s)
-    ASSERT_EQ(two.field->distance[s]->phi, one.field->distance[s]->phi);
+    ASSERT_EQ(two.field->distance[s]->phi(), one.field->distance[s]->phi());
   forNodes(*two.field, [&](int i, int j, int k) { // the first owns every tie
     ASSERT_EQ(two.field->faceAt(i, j, k), one.field->faceAt(i, j, k));
   });
@@ -116,7 +116,7 @@ TEST(MergeFields, ObjectInsideAnotherIsNotThere) {
   const MergedShapes one = mergedShapes({big}), two = mergedShapes({big, small});
   ASSERT_EQ(two.field->top, one.field->top);
   for (std::size_t s = 0; s < one.field->blockCount(); ++s)
-    ASSERT_EQ(two.field->distance[s]->phi, one.field->distance[s]->phi);
+    ASSERT_EQ(two.field->distance[s]->phi(), one.field->distance[s]->phi());
 }
 
 TEST(MergeFields, BlocksOfOneObjectAreShared) {

@@ -203,8 +203,8 @@ TEST(OpenSigns, TwoSidedSheetsHaveNoInside) {
   std::size_t inside = 0;
   for (std::size_t slot = 0; slot < one.blockCount(); ++slot)
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      ASSERT_EQ(std::abs(one.distance[slot]->phi[n]), std::abs(two.field->distance[slot]->phi[n]));
-      inside += two.field->distance[slot]->phi[n] < 0;
+      ASSERT_EQ(std::abs(one.distance[slot]->at(n)), std::abs(two.field->distance[slot]->at(n)));
+      inside += two.field->distance[slot]->at(n) < 0;
     }
   EXPECT_NEAR(static_cast<double>(inside), 4.0 / 3 * std::numbers::pi * std::pow(ball_voxels, 3),
               0.05 * static_cast<double>(inside));
@@ -216,7 +216,7 @@ TEST(OpenSigns, AreTheSameEveryTime) {
   const BuiltField first = built(mesh), second = built(mesh);
   EXPECT_EQ(first.report.ambiguous_signs, second.report.ambiguous_signs);
   for (std::size_t slot = 0; slot < first.field->blockCount(); ++slot)
-    ASSERT_EQ(first.field->distance[slot]->phi, second.field->distance[slot]->phi);
+    ASSERT_EQ(first.field->distance[slot]->phi(), second.field->distance[slot]->phi());
 }
 
 // Of coarse nodes behind the sheet contact takes its direction where the band ends.

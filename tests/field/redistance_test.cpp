@@ -124,9 +124,9 @@ TEST(Redistance, LeavesEveryNodeThatMinHadRight) {
     const auto& at = before.block_at[s];
     const std::int32_t now = after.slotOf(at[0], at[1], at[2]);
     if (now < 0) continue;
-    const auto& new_phi = after.distance[static_cast<std::size_t>(now)]->phi;
+    const auto& new_phi = after.distance[static_cast<std::size_t>(now)]->phi();
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      const float phi = before.distance[s]->phi[n];
+      const float phi = before.distance[s]->at(n);
       if (phi > 0) {
         ASSERT_EQ(new_phi[n], phi);
       } else {

@@ -243,7 +243,7 @@ TEST(Signs, LargeFlippedFacesAreOutvoted) {
   std::size_t different = 0;
   for (std::size_t slot = 0; slot < sound->blockCount(); ++slot)
     for (std::size_t n = 0; n < kBlockNodes; ++n)
-      different += (sound->distance[slot]->phi[n] < 0) != (flipped->distance[slot]->phi[n] < 0);
+      different += (sound->distance[slot]->at(n) < 0) != (flipped->distance[slot]->at(n) < 0);
   EXPECT_EQ(different, 0U);
 }
 
@@ -287,7 +287,7 @@ TEST(Signs, NodesOnTheSurfaceArePositiveZeros) {
   const BuiltField built = buildField(box(Vec3(0.125, 0.125, 0.125), 2), spec, progress);
   std::size_t zeros = 0;
   for (const auto& block : built.field->distance)
-    for (float phi : block->phi) {
+    for (float phi : block->phi()) {
       if (std::abs(phi) > 1e-6F) continue;
       ++zeros;
       EXPECT_FALSE(std::signbit(phi));
@@ -336,7 +336,7 @@ TEST(Signs, AreTheSameEveryTime) {
   EXPECT_EQ(first.report.ambiguous_signs, second.report.ambiguous_signs);
   EXPECT_EQ(first.field->top, second.field->top);
   for (std::size_t slot = 0; slot < first.field->blockCount(); ++slot)
-    ASSERT_EQ(first.field->distance[slot]->phi, second.field->distance[slot]->phi);
+    ASSERT_EQ(first.field->distance[slot]->phi(), second.field->distance[slot]->phi());
 }
 
 TEST(Signs, CanBeCancelled) {

@@ -46,7 +46,7 @@ TEST(SampledFunction, StoresNoBlockWithoutABandNodeAndSkipsWhatItProvesFar) {
   EXPECT_LT(calls.load(), grid.nodeCount() / 2);
   for (const auto& block : field.distance) {
     bool any = false;
-    for (const float phi : block->phi) any |= std::abs(phi) <= 4;
+    for (const float phi : block->phi()) any |= std::abs(phi) <= 4;
     EXPECT_TRUE(any);
   }
   std::size_t stored = 0;

@@ -159,7 +159,7 @@ TEST(FieldExtremes, ZeroAreaFacesAreDroppedAndCounted) {
   EXPECT_EQ(dirty.report.dropped_triangles, 2U);
   ASSERT_EQ(clean.field->top, dirty.field->top);
   for (std::size_t slot = 0; slot < clean.field->blockCount(); ++slot) {
-    ASSERT_EQ(clean.field->distance[slot]->phi, dirty.field->distance[slot]->phi);
+    ASSERT_EQ(clean.field->distance[slot]->phi(), dirty.field->distance[slot]->phi());
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
       const std::int32_t face = clean.field->face[slot]->at(n);
       ASSERT_EQ(dirty.field->face[slot]->at(n), face < 0 ? -1 : face + 1); // as given
@@ -299,7 +299,7 @@ TEST(FieldExtremes, MeshWithItsOwnInverseIsTheMesh) {
     ASSERT_EQ(once->top, field->top);
     for (std::size_t slot = 0; slot < once->blockCount(); ++slot)
       for (std::size_t n = 0; n < kBlockNodes; ++n)
-        ASSERT_NEAR(once->distance[slot]->phi[n], field->distance[slot]->phi[n], 1e-4);
+        ASSERT_NEAR(once->distance[slot]->at(n), field->distance[slot]->at(n), 1e-4);
   }
 }
 

@@ -53,7 +53,7 @@ void addFaces(SurfaceField& field) {
   for (const auto& distance : field.distance) {
     FaceNodes faces{};
     for (std::size_t n = 0; n < faces.face.size(); ++n)
-      faces.face[n] = std::abs(distance->phi[n]) < kBeyondBand ? next++ : -1;
+      faces.face[n] = std::abs(distance->at(n)) < kBeyondBand ? next++ : -1;
     field.face.push_back(std::make_shared<const FaceBlock>(faces));
   }
 }
@@ -140,7 +140,7 @@ TEST_F(FieldIo, DamagedBytesNeverCrashAndNeverGiveAnInfiniteField) {
     try {
       const SurfaceField field = readField(file("bad.vti"));
       for (const auto& block : field.distance)
-        for (const float phi : block->phi) ASSERT_TRUE(std::isfinite(phi));
+        for (const float phi : block->phi()) ASSERT_TRUE(std::isfinite(phi));
     } catch (const FileError&) {
       ++refused;
     }
