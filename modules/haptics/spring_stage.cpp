@@ -63,7 +63,7 @@ void dampWalls(Contact& contact, double damping, bool magnetic) noexcept {
     contact.force += contact.attraction * damper.dot(contact.normal) * contact.normal;
   if (!contact.touching || damper.isZero(0)) return;
   const Vec3 across = Hold(contact).across(damper);
-  contact.force += magnetic ? across : besideSpring(contact, damper);
+  contact.force += magnetic ? across : besideSpring(contact, across);
   dampSticking(contact, damper - across);
 }
 
