@@ -7,17 +7,14 @@ constexpr double kApart = 0.2; // sine of the angle from which on a wall is anot
 
 } // namespace
 
-Hold::Hold(const Contact& contact) noexcept {
-  for (int i = 0; i < contact.walls; ++i) {
-    const Vec3& normal = contact.wall[static_cast<std::size_t>(i)].normal;
-    if (i == 0) {
-      axis_[0] = normal;
-      count_ = 1;
-      continue;
-    }
+Hold::Hold(const Contact& contact) noexcept : contact_(&contact) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.walls); ++i) {
+    const Vec3& normal = contact.wall[i].normal;
     const Vec3 own = normal - across(normal);
     const double length = own.norm();
-    if (length >= kApart) axis_[static_cast<std::size_t>(count_++)] = own / length;
+    if (i > 0 && length < kApart) continue;
+    wall_[static_cast<std::size_t>(count_)] = i;
+    axis_[static_cast<std::size_t>(count_++)] = i > 0 ? Vec3(own / length) : normal;
   }
 }
 

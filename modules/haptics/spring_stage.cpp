@@ -39,17 +39,16 @@ namespace {
 
 // What of a damper's force is left where the walls that hold the tip only push: the nearest to the
 // sum with the spring's that they can bear, less the spring's.
-Vec3 besideSpring(const Contact& contact, const Vec3& damper) noexcept {
-  if (contact.walls == 1) {
-    const auto& [normal, load] = contact.wall[0];
+Vec3 besideSpring(const Contact& contact, const Hold& hold, const Vec3& damper) noexcept {
+  if (hold.count() == 1) {
+    const auto& [normal, load] = hold[0];
     return std::max(damper.dot(normal), -contact.stiffness * load) * normal;
   }
   Walls walls;
   Vec3 spring = Vec3::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.walls); ++i) {
-    const auto& [normal, load] = contact.wall[i];
-    walls.add({normal, 0, Vec3::Zero()});
-    spring += contact.stiffness * load * normal;
+  for (int i = 0; i < hold.count(); ++i) {
+    walls.add({hold[i].normal, 0, Vec3::Zero()});
+    spring += contact.stiffness * hold[i].load * hold[i].normal;
   }
   // What holds a point in front of the walls into which the sum pushes (Moreau).
   return projectOntoWalls(walls, -(spring + damper)).z + damper;
@@ -62,8 +61,9 @@ void dampWalls(Contact& contact, double damping, bool magnetic) noexcept {
   if (contact.attracted)
     contact.force += contact.attraction * damper.dot(contact.normal) * contact.normal;
   if (!contact.touching || damper.isZero(0)) return;
-  const Vec3 across = Hold(contact).across(damper);
-  contact.force += magnetic ? across : besideSpring(contact, across);
+  const Hold hold(contact);
+  const Vec3 across = hold.across(damper);
+  contact.force += magnetic ? across : besideSpring(contact, hold, across);
   dampSticking(contact, damper - across);
 }
 
