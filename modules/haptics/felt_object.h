@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/types.h"
-#include "haptics/material_samples.h"
-#include "haptics/relief_surface.h"
+#include "scene/material_samples.h"
+#include "scene/relief_surface.h"
 
 namespace patina {
 

@@ -5,8 +5,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/run_queue_wait.h"
 #include "haptics/realtime.h"
-#include "haptics/run_queue_wait.h"
 
 namespace patina {
 namespace {

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "haptics/coupling_stage.h"
+#include "haptics/hold.h"
 
 namespace patina {
 namespace {
@@ -17,21 +18,6 @@ constexpr double kBalanced = 1e-4;  // [N] along the surface: left to the next t
 constexpr double kShorter = 0.25;   // of a step that led uphill
 constexpr double kLeastBowl = 0.05; // of k_l + B/T: what a step takes the curvature for at least
 constexpr double kOwnSpeed = 0.1;   // [m/s]: faster than it is drawn by this, u runs by itself
-
-// Where u may go: the plane across the normal, the line that two walls have in common, or nowhere.
-Mat32 freedom(const Contact& contact) noexcept {
-  Mat32 free = Mat32::Zero();
-  if (contact.walls == 2) {
-    free.col(0) = contact.wall[0].normal.cross(contact.wall[1].normal).normalized();
-  } else if (contact.walls < 2) {
-    const Vec3& n = contact.normal;
-    int least = 0;
-    n.cwiseAbs().minCoeff(&least);
-    free.col(0) = n.cross(Vec3(Vec3::Unit(least))).normalized();
-    free.col(1) = n.cross(Vec3(free.col(0)));
-  }
-  return free;
-}
 
 } // namespace
 
@@ -80,7 +66,7 @@ void LateralStage::apply(Contact& contact, ContactMemory& memory) const noexcept
   const double viscous = contact.dt > 0 ? plan_.damping / contact.dt : 0;
   const double bowl = plan_.stiffness + viscous; // of spring and damper
   const double depth = contact.depth - shell_;
-  const Mat32 free = freedom(contact);
+  const Mat32 free = Hold(contact).free();
   const Vec2 before = free.transpose() * memory.aside;
 
   const auto heightOf = [&](const Vec2& u) { return heightAt(contact, free * u, memory); };

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "haptics/relief_stage.h"
-#include "haptics/stabilisers.h"
 
 namespace patina {
 
@@ -11,17 +10,17 @@ bool PaintedRange::any() const {
   return std::find(painted.begin(), painted.end(), true) != painted.end();
 }
 
-double textureStiffness(const FeltObject& object) {
+double textureBend(const FeltObject& object) {
   double bend = object.relief ? object.bend : 0;
   if (object.material) bend += kRoughnessBend * object.material->most.roughness;
-  return kTexturePress * bend;
+  return bend;
 }
 
 PaintedRange paintedRange(const Material& base, std::span<const FeltObject> objects) {
   PaintedRange range;
   range.least = range.most = base;
   for (const FeltObject& object : objects) {
-    range.texture = std::max(range.texture, textureStiffness(object));
+    range.bend = std::max(range.bend, textureBend(object));
     if (object.relief)
       range.relief = std::max(range.relief, object.highest);
     else

@@ -14,14 +14,14 @@ struct PaintedRange {
   Material least, most;                          // the scene's own values included
   double relief = 0;                             // H [m], of |height| of pulled relief
   bool baked = false;                            // relief is in the field
-  double texture = 0;                            // [N/m], of the stiffest textureStiffness()
+  double bend = 0;                               // [1/m], of the sharpest textureBend()
 
   bool has(MaterialChannel channel) const { return painted[static_cast<std::size_t>(channel)]; }
   bool any() const;
 };
-// P h'' along the surface under kTexturePress [N/m], of an object's pulled relief and roughness at
-// most (F7). Baked relief is the field's.
-double textureStiffness(const FeltObject& object);
+// h'' of an object's pulled relief and roughness at most [1/m]: under a normal force P they are
+// P h'' stiff along the surface (F7). Baked relief is the field's.
+double textureBend(const FeltObject& object);
 PaintedRange paintedRange(const Material& base, std::span<const FeltObject> objects);
 
 // How far roughness can raise what is felt [m]: for the band a field must have, before there are

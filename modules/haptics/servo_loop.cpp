@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "core/timing_window.h"
 #include "haptics/cross_fade.h"
 #include "haptics/realtime.h"
 #include "haptics/tick_record.h"
-#include "haptics/timing_window.h"
 
 namespace patina {
 namespace {

@@ -135,7 +135,7 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
   if (plan.lateral || all) {
     std::vector<bool> stiff;
     for (const FeltObject& object : objects)
-      stiff.push_back(plan.lateral && !isSteadyAlong(textureStiffness(object),
+      stiff.push_back(plan.lateral && !isSteadyAlong(textureBend(object), haptics.force_limit,
                                                      scene.device_model.value_or(DeviceModel{})));
     add(std::make_unique<LateralStage>(reliefs, objects, std::move(stiff),
                                        shell.relief + shell.roughness,
@@ -190,7 +190,7 @@ StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects) {
   // The literal force has no part along the surface.
   const bool leans = scene.relief.form == ForceForm::conservative;
   return planStabilisers(hardest(scene.haptics, range), scene.device_model, scene.stabilisers,
-                         most_damping, leans ? range.texture : 0);
+                         most_damping, leans ? range.bend : 0);
 }
 
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,

@@ -1,10 +1,10 @@
 #include "haptics/spring_stage.h"
 
 #include <algorithm>
-#include <array>
 #include <numbers>
 
 #include "haptics/half_spaces.h"
+#include "haptics/hold.h"
 
 namespace patina {
 
@@ -37,43 +37,18 @@ void dampSticking(Contact& contact, const Vec3& damper) noexcept {
 
 namespace {
 
-// Of walls that differ by less than this (about 12 degrees) only the one that bears most counts.
-constexpr double kApart = 0.2;
-
-} // namespace
-
-Vec3 acrossWalls(const Contact& contact, const Vec3& v) noexcept {
-  if (contact.walls == 1) return v.dot(contact.wall[0].normal) * contact.wall[0].normal;
-  std::array<Vec3, 3> axis;
-  std::size_t axes = 0;
-  Vec3 across = Vec3::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.walls); ++i) {
-    Vec3 own = contact.wall[i].normal;
-    for (std::size_t j = 0; j < axes; ++j) own -= own.dot(axis[j]) * axis[j];
-    const double length = own.norm();
-    if (i > 0 && length < kApart) continue;
-    axis[axes] = own / length;
-    across += v.dot(axis[axes]) * axis[axes];
-    ++axes;
-  }
-  return across;
-}
-
-namespace {
-
 // What of a damper's force is left where the walls that hold the tip only push: the nearest to the
 // sum with the spring's that they can bear, less the spring's.
-Vec3 besideSpring(const Contact& contact, const Vec3& damper) noexcept {
-  if (contact.walls == 1) {
-    const auto& [normal, load] = contact.wall[0];
+Vec3 besideSpring(const Contact& contact, const Hold& hold, const Vec3& damper) noexcept {
+  if (hold.count() == 1) {
+    const auto& [normal, load] = hold[0];
     return std::max(damper.dot(normal), -contact.stiffness * load) * normal;
   }
   Walls walls;
   Vec3 spring = Vec3::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.walls); ++i) {
-    const auto& [normal, load] = contact.wall[i];
-    walls.add({normal, 0, Vec3::Zero()});
-    spring += contact.stiffness * load * normal;
+  for (int i = 0; i < hold.count(); ++i) {
+    walls.add({hold[i].normal, 0, Vec3::Zero()});
+    spring += contact.stiffness * hold[i].load * hold[i].normal;
   }
   // What holds a point in front of the walls into which the sum pushes (Moreau).
   return projectOntoWalls(walls, -(spring + damper)).z + damper;
@@ -86,8 +61,9 @@ void dampWalls(Contact& contact, double damping, bool magnetic) noexcept {
   if (contact.attracted)
     contact.force += contact.attraction * damper.dot(contact.normal) * contact.normal;
   if (!contact.touching || damper.isZero(0)) return;
-  const Vec3 across = acrossWalls(contact, damper);
-  contact.force += magnetic ? across : besideSpring(contact, damper);
+  const Hold hold(contact);
+  const Vec3 across = hold.across(damper);
+  contact.force += magnetic ? across : besideSpring(contact, hold, across);
   dampSticking(contact, damper - across);
 }
 

@@ -28,9 +28,6 @@ class VelocityFilterStage final : public ForceStage {
 // (section 2.6).
 void dampSticking(Contact& contact, const Vec3& damper) noexcept;
 
-// The part of v across the contact's walls, one or more; of two that are nearly one, across one.
-Vec3 acrossWalls(const Contact& contact, const Vec3& v) noexcept;
-
 // Damps the tip's motion across the walls that hold its contact point: F -= B v as far as these can
 // bear the whole of it, so that none pulls (K08) and the damper's part is at most B |v|, however
 // nearly two walls are one. A magnetic surface bears pulls too; then that of a magnet is damped as

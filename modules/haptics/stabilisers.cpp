@@ -66,14 +66,14 @@ LateralPlan planLateral(const HapticProperties& haptics, const DeviceModel& devi
   return {std::clamp(steady, kLeastLateral * normal.stiffness, normal.stiffness), normal.damping};
 }
 
-bool isSteadyAlong(double stiffness, const DeviceModel& device) {
-  return kMargin * stiffness <= stiffnessLimit(sampledLoop(device));
+bool isSteadyAlong(double bend, double force_limit, const DeviceModel& device) {
+  return bend == 0 || kMargin * force_limit * bend <= stiffnessLimit(sampledLoop(device));
 }
 
 StabiliserPlan planStabilisers(const HapticProperties& haptics,
                                const std::optional<DeviceModel>& device,
                                const std::optional<Stabilisers>& chosen,
-                               std::optional<double> most_damping, double texture) {
+                               std::optional<double> most_damping, double bend) {
   StabiliserPlan plan;
   if (!device && !chosen) return plan;
   const DeviceModel model = device.value_or(DeviceModel{});
@@ -87,11 +87,11 @@ StabiliserPlan planStabilisers(const HapticProperties& haptics,
   const double stiffest = stiffestLaw(haptics);
   const bool safe = kMargin * stiffest <= *plan.predicted_limit;
   const Stabilisers wanted = chosen.value_or(Stabilisers{!safe, false});
-  if ((!chosen || chosen->coupling) && !isSteadyAlong(texture, model)) {
+  if ((!chosen || chosen->coupling) && !isSteadyAlong(bend, haptics.force_limit, model)) {
     plan.lateral = planLateral(haptics, model);
-    plan.lateral_why = "texture " + formatNumber(std::round(texture)) +
-                       " N/m along the surface at 1 N, limit " +
-                       limitText(stiffnessLimit(sampledLoop(model)));
+    plan.lateral_why = "texture " + formatNumber(std::round(haptics.force_limit * bend)) +
+                       " N/m along the surface at " + formatNumber(haptics.force_limit) +
+                       " N, limit " + limitText(stiffnessLimit(sampledLoop(model)));
   }
   if (!wanted.coupling && !wanted.passivity) return plan;
 

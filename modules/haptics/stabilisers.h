@@ -32,7 +32,8 @@ struct StabiliserPlan {
   // K* of the loop without these, with the scene's own damping [N/m]; absent without a device.
   std::optional<double> predicted_limit;
   std::string why; // "stiffness 1e+05 N/m, limit 1001 N/m"; empty without coupling and passivity
-  std::string lateral_why; // "texture 1974 N/m along the surface at 1 N, limit 1001 N/m"; or empty
+  std::string
+      lateral_why; // "texture 6514 N/m along the surface at 3.3 N, limit 1001 N/m"; or empty
 };
 
 // The stiffest law of the scene in one direction: spring (and with it sticking friction) or magnet.
@@ -54,19 +55,20 @@ CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& de
 // k_l <= sqrt(2 b B) / (T/2 + n T).
 LateralPlan planLateral(const HapticProperties& haptics, const DeviceModel& device);
 
-inline constexpr double kTexturePress = 1; // [N], at which the stiffness of textures is told
-// Whether a stiffness along the surface [N/m], where the device alone damps, has a margin of two.
-bool isSteadyAlong(double stiffness, const DeviceModel& device);
+// Whether a texture of second derivative `bend` [1/m] leaves a margin of two along the surface,
+// where the device alone damps, however hard it is pressed. The servo never gives more than
+// force_limit [N], so that no more than this times `bend` is felt.
+bool isSteadyAlong(double bend, double force_limit, const DeviceModel& device);
 
 // chosen absent = automatic: nothing without a device model, nothing where the scene is stable with
 // a margin of two, else the coupling. A chosen stabiliser without a device model takes
 // DeviceModel{}. Of painted surfaces `haptics` are the hardest (painted_range.h), and most_damping
-// [N s/m] the most damped; it must be as stable there. texture: the stiffest of the scene's, P h''
-// under kTexturePress [N/m]; above what the device bears with a margin of two there is the lateral
-// coupling, unless the choice leaves couplings out.
+// [N s/m] the most damped; it must be as stable there. bend: of the scene's sharpest texture [1/m];
+// where that is not steady along the surface there is the lateral coupling, unless the choice
+// leaves couplings out.
 StabiliserPlan planStabilisers(const HapticProperties& haptics,
                                const std::optional<DeviceModel>& device,
                                const std::optional<Stabilisers>& chosen,
-                               std::optional<double> most_damping = {}, double texture = 0);
+                               std::optional<double> most_damping = {}, double bend = 0);
 
 } // namespace patina

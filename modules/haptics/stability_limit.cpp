@@ -120,15 +120,4 @@ double ruleOfThumb(const SampledLoop& loop) {
   return (loop.damping + loop.virtual_damping) / ((0.5 + loop.delay) * loop.period);
 }
 
-double undelayedLimit(double mass, double damping, double period) {
-  const double x = damping * period / mass;
-  const double m_per_b2 = mass / (damping * damping), period2_per_m = period * period / mass;
-  // For small x = b T/m the differences lose their digits; the second limit is then far away.
-  if (x < 1e-3) return x * (1 - x / 2 + x * x / 6) / (period2_per_m * (0.5 - x / 3 + x * x / 8));
-  const double a = std::exp(-x), loss = -std::expm1(-x);
-  const double oscillating = loss / (m_per_b2 * (loss - a * x));
-  const double alternating = 2 * (1 + a) / (m_per_b2 * (x * (1 + a) - 2 * loss));
-  return std::min(oscillating, alternating);
-}
-
 } // namespace patina

@@ -43,7 +43,4 @@ double dampingLimit(const SampledLoop& loop);
 // (b + B) / (T/2 + n T).
 double ruleOfThumb(const SampledLoop& loop);
 
-// K* without delay, B and hand spring, in closed form (2.1.2).
-double undelayedLimit(double mass, double damping, double period);
-
 } // namespace patina

@@ -13,9 +13,13 @@
 namespace patina::test {
 namespace {
 
+// By closed form a tick changes the force by no more than the tip's own motion explains:
+//   spring  2 k |dx| + k v_s dt, also while the contact point runs by itself: .55 N at 2000 N/m;
+//   damper  B |v| + B |dv|, for -B P v with 0 <= P <= 1 changes by B |v| as P does: .4 N.
+// They hardly ever come together: of the damper's share less than 3/4 was met with the spring's.
 constexpr double kSpeed = 0.2;      // [m/s]
-constexpr double kMostBeyond = 0.4; // [N], the damper's B v, which begins with contact
-constexpr double kOwnStep = 0.05;   // [N] of the spring alone, beyond 2 k |dx| + k v_s dt
+constexpr double kMostBeyond = 0.3; // [N] beyond the spring's; .274 measured
+constexpr double kRounding = 1e-3;  // [N]
 
 struct Edge {
   const char* name;
@@ -78,7 +82,7 @@ TEST(CoupledPress, OverAnEdgeStepsNoMoreThanSpringAndDamperExplain) {
           const auto& plan = snapshot->stabilisers.coupling;
           const double damping = plan ? plan->damping : 0;
           std::mt19937 random(7);
-          double straight = 0, beyond = 0, own = 0, damped = 0;
+          double straight = 0, beyond = 0, own = 0, swung = 0, damped = 0;
           long contacts = 0, faults = 0;
           for (int k = 0; k < 60; ++k) {
             ContactMemory memory;
@@ -93,7 +97,10 @@ TEST(CoupledPress, OverAnEdgeStepsNoMoreThanSpringAndDamperExplain) {
                 const double step = (now.force - last.force).norm();
                 if (turned < 1e-6) straight = std::max(straight, step);
                 beyond = std::max(beyond, step - law - damping * turned);
-                if (!now.snap) own = std::max(own, (springOf(now) - springOf(last)).norm() - law);
+                const Vec3 spring = springOf(now) - springOf(last);
+                const double damper = (now.force - last.force - spring).norm();
+                own = std::max(own, spring.norm() - law);
+                swung = std::max(swung, damper - damping * (kSpeed + turned));
               }
               damped = std::max(damped, (now.force - springOf(now)).norm());
               contacts += now.touching;
@@ -109,7 +116,8 @@ TEST(CoupledPress, OverAnEdgeStepsNoMoreThanSpringAndDamperExplain) {
           EXPECT_GT(contacts, 500);
           EXPECT_EQ(faults, 0) << what;
           EXPECT_LE(beyond, kMostBeyond) << what;
-          EXPECT_LE(own, kOwnStep) << what;
+          EXPECT_LE(own, kRounding) << what;
+          EXPECT_LE(swung, kRounding) << what;
           EXPECT_LE(damped, damping * kSpeed * (1 + 1e-6)) << what;
         }
     }

@@ -9,9 +9,9 @@
 #include <QTabletEvent>
 #include <QToolButton>
 
+#include "core/run_queue_wait.h"
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
-#include "haptics/run_queue_wait.h"
 #include "support/least_time.h"
 
 namespace patina {

@@ -5,11 +5,11 @@
 #include <future>
 #include <optional>
 
+#include "core/run_queue_wait.h"
 #include "geometry/shapes.h"
 #include "gui/window_fixture.h"
 #include "haptics/latency.h"
 #include "haptics/realtime.h"
-#include "haptics/run_queue_wait.h"
 #include "visualization/camera.h"
 
 namespace patina {

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "core/run_queue_wait.h"
 #include "haptics/realtime.h"
-#include "haptics/run_queue_wait.h"
 
 namespace patina {
 namespace {

@@ -1,75 +1,18 @@
-// Material maps and reliefs made by hand, for the tests of what is painted.
+// What is painted, as felt, for the tests of it.
 #pragma once
 
-#include "field/build_field.h"
-#include "geometry/shapes.h"
 #include "haptics/contact_fixture.h"
+#include "support/painted_shapes.h"
 #include "support/relief_image.h"
 
 namespace patina {
 
 using test::reliefImage;
 
-// A map whose nodes within `box` [m] hold value(p) with weight 1 (paint that covers).
-inline std::shared_ptr<MaterialMap> coveredMap(double voxel, const Box3& box,
-                                               MaterialChannel channel,
-                                               const std::function<double(const Vec3&)>& value,
-                                               std::shared_ptr<MaterialMap> map = nullptr) {
-  if (!map) map = std::make_shared<MaterialMap>(Vec3::Zero(), voxel);
-  const auto low = [&](int a) { return static_cast<int>(std::ceil(box.min()[a] / voxel)); };
-  const auto high = [&](int a) { return static_cast<int>(std::floor(box.max()[a] / voxel)); };
-  for (int k = low(2); k <= high(2); ++k)
-    for (int j = low(1); j <= high(1); ++j)
-      for (int i = low(0); i <= high(0); ++i) {
-        MaterialLayer& layer = map->writable({i >> 3, j >> 3, k >> 3}, channel);
-        const auto n = static_cast<std::size_t>((k & 7) * 64 + (j & 7) * 8 + (i & 7));
-        layer.value[n] = static_cast<float>(value(voxel * Vec3(i, j, k)));
-        layer.weight[n] = 1;
-      }
-  return map;
-}
-
 inline FeltObject feltMaterial(const MaterialMap& map, const Scene& scene) {
   FeltObject object;
   object.material = materialSamples(map, baseMaterial(scene.haptics), nullptr, nullptr);
   return object;
-}
-
-// A box of 40 x 40 x 12 mm whose top is z = 0, with the image laid over it from above, and its
-// field.
-struct Slab {
-  static constexpr double kSide = 0.04;
-  std::shared_ptr<const TriangleMesh> mesh;
-  Field field;
-  std::shared_ptr<const ReliefFaces> faces;
-};
-inline CornerUvs uvsFromAbove(const TriangleMesh& mesh, double side) {
-  CornerUvs uvs(mesh.triangles.size());
-  for (std::size_t f = 0; f < uvs.size(); ++f)
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 p = mesh.corner(f, k);
-      uvs[f][static_cast<std::size_t>(k)] = Vec2(p.x(), p.y()) / side + Vec2::Constant(0.5);
-    }
-  return uvs;
-}
-inline Slab slab(double voxel, int cells = 1, double band = 8) {
-  Slab made;
-  TriangleMesh mesh = box(Vec3(Slab::kSide, Slab::kSide, 0.012), cells);
-  for (Vec3& p : mesh.positions) p.z() -= 0.006;
-  FieldSpec spec;
-  spec.voxel = voxel;
-  spec.band = band;
-  Progress progress;
-  made.field = withSamples(buildField(mesh, spec, progress).field);
-  made.faces = reliefFaces(mesh, uvsFromAbove(mesh, Slab::kSide));
-  made.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
-  return made;
-}
-
-// One of half a millimetre's voxel, made once a program.
-inline const Slab& fineSlab() {
-  static const Slab made = slab(0.5e-3, 1, 14);
-  return made;
 }
 
 // Work of a closed path over these corners, from the last of them, by the trapezium rule [J, given
@@ -97,17 +40,9 @@ inline FeltObject feltRelief(std::shared_ptr<const ReliefFaces> faces,
                              std::shared_ptr<const TiledImage> image, double height,
                              double greatest = 1) {
   FeltObject object;
-  auto relief = std::make_shared<ReliefSurface>();
-  relief->faces = std::move(faces);
-  relief->image = std::move(image);
-  relief->height = height;
-  object.relief = std::move(relief);
+  object.relief = reliefOn(std::move(faces), std::move(image), height);
   object.highest = std::abs(height) * greatest;
   return object;
-}
-
-inline Box3 cube(double half) {
-  return {Vec3::Constant(-half), Vec3::Constant(half)};
 }
 
 } // namespace patina

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <thread>
 
+#include "core/timing_window.h"
 #include "haptics/realtime.h"
-#include "haptics/timing_window.h"
 
 namespace patina {
 namespace {

@@ -105,6 +105,56 @@ TEST(CornerLoop, RestsAtAnyStiffnessWithTheAutomaticStabiliser) {
   }
 }
 
+// Two walls hold the tip across, and their common line turns: it holds along it as a bowl does.
+TEST(CornerLoop, RestsInAGrooveThatRunsRoundTheTip) {
+  for (const double half_angle : {30.0, 60.0})
+    for (const double radius : {2e-3, 10e-3}) {
+      const double a = half_angle * std::numbers::pi / 180;
+      const Field ring = cubeField(
+          [=](const Vec3& p) {
+            const double out = radius - std::hypot(p.x(), p.z());
+            return std::sin(a) * out - std::cos(a) * std::abs(p.y());
+          },
+          0.2e-3, 160);
+      for (const double stiffness : {700.0, 2e3, 1e5, 1e7})
+        for (const double press : {0.3, 2.0}) {
+          Scene scene = unlimited(stiffness);
+          scene.device_model = DeviceModel{};
+          SimulationSpec spec;
+          spec.press = press;
+          spec.surface = Vec3(0.3e-3, 0.2e-3, -radius);
+          spec.depth = -0.6e-3;
+          spec.seconds = 12;
+          Progress progress;
+          const SimulationReport run = simulate(*compileStages(scene, ring), spec, progress);
+          expectRest(run, std::to_string(half_angle) + " at " + std::to_string(stiffness), 20e-3);
+        }
+    }
+}
+
+// A groove along the grid, pressed where one wall of its rounded bottom holds the tip and two are
+// about to: each is as stiff as a plane, so that what a plane bears is enough.
+TEST(CornerLoop, RestsInTheMiddleOfAGrooveAlongTheGrid) {
+  for (const double half_angle : {15.0, 45.0, 80.0}) {
+    const double a = half_angle * std::numbers::pi / 180;
+    const Field field =
+        innerCorner({Vec3(std::cos(a), 0, std::sin(a)), Vec3(-std::cos(a), 0, std::sin(a))});
+    for (const double stiffness : {300.0, 490.0, 700.0, 1000.0, 2000.0})
+      for (const double aside : {0.0, 1e-6, 0.1e-3}) {
+        Scene scene = unlimited(stiffness);
+        scene.device_model = DeviceModel{};
+        SimulationSpec spec;
+        spec.press = 3;
+        spec.surface = Vec3(aside, 0, 0);
+        spec.depth = -2e-3;
+        spec.seconds = 12;
+        Progress progress;
+        const SimulationReport run = simulate(*compileStages(scene, field), spec, progress);
+        expectRest(run, std::to_string(half_angle) + " at " + std::to_string(stiffness), 50e-3);
+      }
+  }
+}
+
 // The disturbances of a plane's loop, where contact has more than one normal.
 TEST(CornerLoop, RestsAfterAnImpactUnderJitterAMissedTickAndATeleport) {
   for (const Corner& corner : corners()) {

@@ -159,16 +159,23 @@ void expectSameForces(const HapticSnapshot& a, const HapticSnapshot& b, double d
   }
 }
 
-// A texture that the loop bears has no such stage, and costs and feels what it did.
+Scene upTo(double force_limit, Scene scene) {
+  scene.haptics.force_limit = force_limit;
+  return scene;
+}
+
+// A texture that the loop bears under all that the servo gives has no such stage, and costs and
+// feels what it did.
 TEST(LateralCoupling, IsAbsentWhereTheTextureIsGentle) {
   const FeltObject gentle = waves(10e-6), stiff = waves(50e-6);
   const Field& field = fineSlab().field;
-  const auto with = compileStages(automatic(300), field, std::span(&gentle, 1));
+  const auto with = compileStages(upTo(1, automatic(300)), field, std::span(&gentle, 1));
   EXPECT_FALSE(with->stabilisers.lateral);
   EXPECT_FALSE(hasLateral(*with));
-  expectSameForces(*with, *compileStages(bare(300), field, std::span(&gentle, 1)), 2e-3);
+  expectSameForces(*with, *compileStages(upTo(1, bare(300)), field, std::span(&gentle, 1)), 2e-3);
 
-  EXPECT_TRUE(hasLateral(*compileStages(automatic(300), field, std::span(&stiff, 1))));
+  EXPECT_TRUE(hasLateral(*compileStages(upTo(3, automatic(300)), field, std::span(&gentle, 1))));
+  EXPECT_TRUE(hasLateral(*compileStages(upTo(1, automatic(300)), field, std::span(&stiff, 1))));
   EXPECT_FALSE(hasLateral(*compileStages(bare(300), field, std::span(&stiff, 1))));
   EXPECT_FALSE(hasLateral(*compileStages(sceneOf(300), field, std::span(&stiff, 1))));
   Scene literal = automatic(300); // which has no force along the surface
@@ -189,9 +196,9 @@ TEST(LateralCoupling, LeavesTheGentleTextureOfAnotherObjectAsItIs) {
   ASSERT_GT(top, 0);
   std::array<FeltObject, 2> objects{waves(50e-6), waves(10e-6)};
   objects[1].first_face = top;
-  const auto with = compileStages(automatic(300), fineSlab().field, objects);
+  const auto with = compileStages(upTo(1, automatic(300)), fineSlab().field, objects);
   ASSERT_TRUE(hasLateral(*with));
-  expectSameForces(*with, *compileStages(bare(300), fineSlab().field, objects), 2e-3);
+  expectSameForces(*with, *compileStages(upTo(1, bare(300)), fineSlab().field, objects), 2e-3);
 }
 
 // The map is of the scene as it is felt: calm with the coupling.

@@ -39,6 +39,52 @@ TEST(TextureLoop, RestsAtAnyStiffnessByItselfInAHandAndWithJitter) {
   std::printf("texture: at rest to %.2g m/s\n", worst);
 }
 
+// Also what is gentle under a light press: at 9.8 um rms, 500 N/m along the surface at 1 N.
+TEST(TextureLoop, RestsUnderAllThatTheServoGives) {
+  const double press = 3.2, limit = 3.3;
+  for (const double rms : {2e-6, 2.9e-6, 3.1e-6, 9.8e-6, 50e-6})
+    for (const double stiffness : kStiffnesses) {
+      Scene scene = automatic(stiffness);
+      scene.haptics.force_limit = limit;
+      const FeltObject object = rough(rms, scene);
+      const auto snapshot = compileStages(scene, planeField(kVoxel, 96), std::span(&object, 1));
+      SimulationSpec spec = comesDown(scene);
+      spec.press = press;
+      Progress progress;
+      const SimulationReport run = simulate(*snapshot, spec, progress);
+      EXPECT_LE(run.rms_velocity, 1e-6) << rms << " " << stiffness;
+      EXPECT_TRUE(run.touches_late) << rms << " " << stiffness;
+      EXPECT_EQ(run.fault_ticks, 0u) << rms << " " << stiffness;
+    }
+}
+
+// A groove in the image, pressed at its bottom, where the slope is none and on both sides steep.
+TEST(TextureLoop, RestsInAGrooveOfTheImage) {
+  const double high = 0.3e-3;
+  for (const double slope : {0.2, 1.0, 3.0}) {
+    const auto image = reliefImage(1024, [=](double u, double) {
+      return std::min(1.0, std::abs(Slab::kSide * (u - 0.5)) * slope / high);
+    });
+    FeltObject object = feltRelief(fineSlab().faces, image, high, kReliefOvershoot);
+    object.bend = 2 * slope * image->width() / Slab::kSide;
+    for (const double stiffness : {300.0, 490.0, 700.0, 1000.0, 2000.0})
+      for (const double aside : {0.0, 20e-6, 0.1e-3}) {
+        Scene scene = automatic(stiffness);
+        scene.haptics.force_limit = 3.3;
+        SimulationSpec spec = comesDown(scene);
+        spec.surface.x() = aside;
+        spec.press = 3;
+        spec.seconds = 12;
+        Progress progress;
+        const SimulationReport run = simulate(
+            *compileStages(scene, fineSlab().field, std::span(&object, 1)), spec, progress);
+        EXPECT_LE(run.rms_velocity, 1e-6) << slope << " " << stiffness << " " << aside;
+        EXPECT_TRUE(run.touches_late) << slope << " " << stiffness << " " << aside;
+        EXPECT_EQ(run.fault_ticks, 0u) << slope << " " << stiffness << " " << aside;
+      }
+  }
+}
+
 // k_l and B are planned from the device: heavy and light, quick and late.
 TEST(TextureLoop, CalmsDownOnAnyDeviceThatDamps) {
   Progress progress;

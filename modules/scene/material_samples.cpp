@@ -1,4 +1,4 @@
-#include "haptics/material_samples.h"
+#include "scene/material_samples.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptics/relief_surface.h"
+#include "scene/relief_surface.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "haptics/run_queue_wait.h"
+#include "core/run_queue_wait.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "haptics/timing_window.h"
+#include "core/timing_window.h"
 
 #include <algorithm>
 #include <limits>

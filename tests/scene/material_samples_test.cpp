@@ -1,10 +1,10 @@
-#include "haptics/material_samples.h"
+#include "scene/material_samples.h"
 
 #include <chrono>
 
 #include <gtest/gtest.h>
 
-#include "haptics/painted_fixture.h"
+#include "support/painted_shapes.h"
 
 namespace patina {
 namespace {

@@ -1,9 +1,11 @@
-#include "haptics/relief_surface.h"
+#include "scene/relief_surface.h"
 
 #include <gtest/gtest.h>
 
+#include "field/analytic_fields.h"
 #include "geometry/triangle_tree.h"
-#include "haptics/painted_fixture.h"
+#include "support/painted_shapes.h"
+#include "support/relief_image.h"
 
 namespace patina {
 namespace {
@@ -30,14 +32,14 @@ TEST(ReliefSurface, HeightAndSlopeConvergeWithTheTexel) {
   const double s = 2e-3;
   std::vector<double> height_error, slope_error;
   for (const int size : {64, 128, 256}) {
-    const FeltObject object = feltRelief(plane.faces, reliefImage(size, wave), s);
+    const auto relief = reliefOn(plane.faces, test::reliefImage(size, wave), s);
     double worst = 0, worst_slope = 0;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> in(-0.45 * kSide, 0.45 * kSide);
     for (int i = 0; i < 4000; ++i) {
       const Vec3 c(in(random), in(random), 0);
       const double u = c.x() / kSide + 0.5, v = c.y() / kSide + 0.5;
-      const ReliefAt at = reliefAt(*object.relief, c, topOf(plane));
+      const ReliefAt at = reliefAt(*relief, c, topOf(plane));
       const Vec2 slope = s / kSide * waveSlope(u, v);
       worst = std::max(worst, std::abs(at.height - s * wave(u, v)));
       worst_slope = std::max(worst_slope, (at.slope - Vec3(slope.x(), slope.y(), 0)).norm());
@@ -57,14 +59,14 @@ TEST(ReliefSurface, TheSlopeIsTheDerivativeOfTheHeightAlsoOfNoise) {
   const Slab& plane = fineSlab();
   std::mt19937 random(2);
   std::uniform_real_distribution<double> g(-1, 1), in(-0.49 * kSide, 0.49 * kSide);
-  const FeltObject object =
-      feltRelief(plane.faces, reliefImage(96, [&](double, double) { return g(random); }), 1e-3);
+  const auto relief =
+      reliefOn(plane.faces, test::reliefImage(96, [&](double, double) { return g(random); }), 1e-3);
   const double e = 1e-8;
   for (int i = 0; i < 4000; ++i) {
     const Vec3 c(in(random), in(random), 0);
-    const ReliefAt at = reliefAt(*object.relief, c, topOf(plane));
+    const ReliefAt at = reliefAt(*relief, c, topOf(plane));
     const auto h = [&](double dx, double dy) {
-      return reliefAt(*object.relief, c + Vec3(dx, dy, 0), at.face).height;
+      return reliefAt(*relief, c + Vec3(dx, dy, 0), at.face).height;
     };
     ASSERT_NEAR(at.slope.x(), (h(e, 0) - h(-e, 0)) / (2 * e), 1e-4);
     ASSERT_NEAR(at.slope.y(), (h(0, e) - h(0, -e)) / (2 * e), 1e-4);
@@ -74,8 +76,8 @@ TEST(ReliefSurface, TheSlopeIsTheDerivativeOfTheHeightAlsoOfNoise) {
 
 TEST(ReliefSurface, IsFlatWhereTheImageHasNoTiles) {
   const Slab& plane = fineSlab();
-  const FeltObject object = feltRelief(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3);
-  const ReliefAt at = reliefAt(*object.relief, Vec3(1e-3, 2e-3, 0), topOf(plane));
+  const auto relief = reliefOn(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3);
+  const ReliefAt at = reliefAt(*relief, Vec3(1e-3, 2e-3, 0), topOf(plane));
   EXPECT_EQ(at.height, 0);
   EXPECT_TRUE(at.slope.isZero(0));
   EXPECT_GE(at.face, 0);
@@ -83,12 +85,11 @@ TEST(ReliefSurface, IsFlatWhereTheImageHasNoTiles) {
 
 TEST(ReliefSurface, AFaceThatIsNotThereMeansNoHeight) {
   const Slab& plane = fineSlab();
-  const FeltObject object =
-      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 1; }), 1e-3);
-  for (const int face : {-1, 1 << 30})
-    EXPECT_EQ(reliefAt(*object.relief, Vec3::Zero(), face).face, -1);
+  const auto relief =
+      reliefOn(plane.faces, test::reliefImage(64, [](double, double) { return 1; }), 1e-3);
+  for (const int face : {-1, 1 << 30}) EXPECT_EQ(reliefAt(*relief, Vec3::Zero(), face).face, -1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(reliefAt(*object.relief, Vec3(0, nan, 0), 0).height, 0);
+  EXPECT_EQ(reliefAt(*relief, Vec3(0, nan, 0), 0).height, 0);
 }
 
 // Walking over the faces ends at the closest one: as near as the tree's answer, from points near
@@ -97,8 +98,8 @@ TEST(ReliefSurface, TheWalkFindsTheClosestFace) {
   const TriangleMesh mesh = vase();
   const TriangleTree tree(mesh);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
-  const FeltObject object =
-      feltRelief(faces, reliefImage(64, [](double, double) { return 1; }), 1e-3);
+  const auto relief =
+      reliefOn(faces, test::reliefImage(64, [](double, double) { return 1; }), 1e-3);
   std::mt19937 random(3);
   std::uniform_int_distribution<std::size_t> any(0, mesh.triangles.size() - 1);
   std::uniform_real_distribution<double> share(0, 1), off(-2e-4, 2e-4);
@@ -116,9 +117,9 @@ TEST(ReliefSurface, TheWalkFindsTheClosestFace) {
     const Vec3 c = on + off(random) * faceNormal(mesh, f);
     // A start up to 2 mm away along the surface.
     const auto start = tree.closestPoint(
-        c + 2e-3 * share(random) * randomDirection(random).cross(faceNormal(mesh, f)));
+        c + 2e-3 * share(random) * test::randomDirection(random).cross(faceNormal(mesh, f)));
     const double wanted = tree.closestPoint(c).distance;
-    const ReliefAt at = reliefAt(*object.relief, c, start.surface.face);
+    const ReliefAt at = reliefAt(*relief, c, start.surface.face);
     lost += at.distance > wanted + 1e-8;
   }
   std::printf("%d of %d walks end on another face than the closest\n", lost, count);
@@ -132,13 +133,13 @@ TEST(ReliefSurface, AWalkAlongAPathNeverLosesTheSurface) {
   const TriangleMesh mesh = icosphere(0.03, 40);
   const TriangleTree tree(mesh);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
-  const FeltObject object =
-      feltRelief(faces, reliefImage(64, [](double, double) { return 1; }), 1e-3);
+  const auto relief =
+      reliefOn(faces, test::reliefImage(64, [](double, double) { return 1; }), 1e-3);
   std::int32_t face = tree.closestPoint(Vec3(0, 0, 0.03)).surface.face;
   for (int i = 0; i < 20000; ++i) { // 0.3 mm a step, over every vertex there is
     const double a = 0.01 * i, b = 0.0007 * i;
     const Vec3 c = 0.0301 * Vec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b));
-    const ReliefAt at = reliefAt(*object.relief, c, face);
+    const ReliefAt at = reliefAt(*relief, c, face);
     ASSERT_LT(at.distance, tree.closestPoint(c).distance + 1e-8);
     face = at.face;
   }
