@@ -11,10 +11,10 @@ constexpr double kOnSurface = 1e-5, kHeld = 1e-4;
 constexpr double kAtRest = 3e-3;      // a step that is the last one
 constexpr double kRestError = 3e-4;   // what a step may leave undone where the surface is smooth
 constexpr double kTurnedError = 5e-3; // and before the turn of the surface is taken out of it
-constexpr double kCreaseStep = 0.1;   // the last one of a wall alone, beside a crease
-constexpr double kWallsStep = 0.03;   // and of several, or where there may be another
-constexpr double kMostRate = 0.8;
-constexpr double kSmoothStep = 0.1;
+constexpr double kCreaseStep = 0.03;  // the last one where there may be several walls
+constexpr double kMostRate = 0.8;     // of a step, that the next one takes
+constexpr double kLeastWay = 1e-4;    // below it the turn of a normal is rounding
+constexpr double kMostStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
 constexpr double kFlat = 0.2, kLeastSlope = 0.3;
 constexpr double kMostTrust = 2;
@@ -25,8 +25,9 @@ constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
-constexpr double kLent = 4e-3;                     // voxel^2, from where on it is taken back
-constexpr double kRoom = 1 + 1e-6, kNearly = 1.02; // of the square of a bound
+constexpr double kLent = 4e-3; // voxel^2, from where on it is taken back
+constexpr double kRoom = 1 + 1e-6,
+                 kNearly = 1.02; // of the square of a bound: for rounding, and what is aimed at
 constexpr int kMostSlides = 2, kFewLooks = 3, kMostLooks = 8, kMostShortenings = 4;
 
 } // namespace
@@ -77,8 +78,8 @@ void shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target
   const double most = radius * radius;
   const Vec3 whole = target - middle;
   double share = 1;
-  for (int k = 0; k < kMostShortenings && squared > kNearly * most; ++k) {
-    share *= radius / std::sqrt(squared);
+  for (int k = 0; k < kMostShortenings && squared > most; ++k) {
+    share *= radius / std::sqrt(kNearly * squared);
     target = middle + share * whole;
     to = projectOntoWalls(walls, target);
     squared = (to.z - middle).squaredNorm();
@@ -152,43 +153,42 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     if (looks == 0) first = seen;
     const Vec3 turn = seen.normal - wall.normal;
     const double turned = turn.squaredNorm();
-    if (!seen.known || !(std::abs(seen.height) < kSmoothStep) || !(turned < kTurnOfAWall))
+    if (!seen.known || !(std::abs(seen.height) < kMostStep) || !(turned < kTurnOfAWall))
       return false;
     const Vec3 way = z - wall.seen;
-    const double since = std::max(way.squaredNorm(), 1e-4);
+    const double way_squared = std::max(way.squaredNorm(), kLeastWay * kLeastWay);
     wall = wallAt(z, seen);
+    WallPlane ahead = wall;
     load = -wall.height(x);
     c = x + load * wall.normal;
     const Vec3 step = c - z;
     const double step_squared = step.squaredNorm();
-    if (!seen.smooth) {
-      // In a hollow narrower than the depth one wall would swing from side to side.
-      const bool settles = step_squared < kRestError * kRestError || load * load * turned < since;
-      if (!(settles && step_squared < kCreaseStep * kCreaseStep && load > kOnSurface &&
-            (c - start).squaredNorm() < ball * ball && load * load <= (start - x).squaredNorm()))
-        return false;
-    } else if (!(step_squared < kRestError * kRestError)) {
-      // What the step leaves undone is the share of it by which the surface turns under the depth;
-      // as it turned on the way here it is taken to turn on, under what this adds to the step too.
-      const double undone = load * load * turned * step_squared;
-      if (!(step_squared < kSmoothStep * kSmoothStep && load * load * turned < since &&
-            undone < kTurnedError * kTurnedError * since))
-        continue;
-      if (undone > kRestError * kRestError * since) {
-        const double rate = load / since * turn.dot(way);
-        wall.normal = (wall.normal + step.dot(way) / since / (1 - std::min(rate, kMostRate)) * turn)
-                          .normalized();
-        wall.offset = wall.normal.dot(c);
-        load = -wall.height(x);
-        c = x + load * wall.normal;
+    bool last = step_squared < kRestError * kRestError;
+    if (!last) {
+      // Of each step the next look would find the share of it by which the surface turns under the
+      // depth, and so on: a geometric series, whose sum is taken here along the way that was seen.
+      const double rate = load / way_squared * turn.dot(way),
+                   sum = 1 / (1 - std::min(rate, kMostRate)),
+                   left = sum * sum * load * load * turned / way_squared * step_squared;
+      const bool settles = load * load * turned < way_squared;
+      last = settles && step_squared < kMostStep * kMostStep && left < kTurnedError * kTurnedError;
+      if (settles && left > kRestError * kRestError) {
+        ahead.normal = (wall.normal + sum * step.dot(way) / way_squared * turn).normalized();
+        ahead.offset = ahead.normal.dot(c);
+        load = -ahead.height(x);
+        c = x + load * ahead.normal;
+        ahead.seen = c;
       }
     }
+    // Beside a crease another look may be another wall's, and no move of c makes it longer (P11).
+    if (!seen.smooth && !(last && load * load <= (start - x).squaredNorm())) return false;
+    if (!last) continue;
     if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
     if (seen.smooth)
       lend(proxy, 0.25 * (before.normal.dot(start - from) + load) *
-                      (before.normal + wall.normal).dot(c - start));
+                      (before.normal + ahead.normal).dot(c - start));
     proxy.c = c;
-    proxy.walls[0] = wall;
+    proxy.walls[0] = ahead;
     move.touching = move.smooth = true;
     move.held.count = 1;
     move.held.load[0] = load;
@@ -273,8 +273,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     if (next.to.count == 0 && next.by_ball && !next.by_trust && seen.height >= 0 &&
         step < kAtRest) {
       converged = true; // on its way through free space
-    } else if (!crease && walls.count == 1 && next.to.count == 1 && !bounded &&
-               step < kSmoothStep) {
+    } else if (!crease && walls.count == 1 && next.to.count == 1 && !bounded && step < kMostStep) {
       // What the step leaves undone is the share of it by which the surface turns under the depth.
       const double share = std::min(1.0, next.to.load[0] * turned / std::max(since, 1e-2));
       if (step < kRestError || (lone && share * step < kRestError)) {
@@ -282,8 +281,8 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
         converged = smooth = true;
       }
     } else if ((crease || looks > 0 || next.by_ball) && !next.by_trust && next.to.count > 0 &&
-               step < std::max(kWallsStep, next.by_ball ? 0.3 * ball : 0) &&
-               std::abs(seen.height) < kSmoothStep) {
+               step < std::max(kCreaseStep, next.by_ball ? 0.3 * ball : 0) &&
+               std::abs(seen.height) < kMostStep) {
       c = next.to.z;
       converged = true;
     } else if (std::abs(seen.height) < kHeld &&
@@ -303,7 +302,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
 
   if (!converged && seen.height < 0) {
     // Out to the surface; farther in than a step of Newton's tells, back to where c was feasible.
-    c = seen.height > -kSmoothStep
+    c = seen.height > -kMostStep
             ? Vec3(c - seen.height / std::max(seen.slope, kLeastSlope) * seen.normal)
             : anchor;
   }
