@@ -104,8 +104,8 @@ void build(CompiledObject& object, const BlockLattice& lattice, double band, Ope
            Progress& progress) {
   try {
     const BlockBox blocks = blocksAround(lattice, fieldBounds(*object.mesh), band);
-    object.first_block = blocks.low;
     object.built = buildField(*object.mesh, gridOf(lattice, blocks), band, progress, sides);
+    object.first_block = firstBlock(lattice, object.built.field->grid);
   } catch (const Error& error) {
     throw Error("object '" + object.object.name + "': " + error.what());
   }
@@ -163,7 +163,7 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, doubl
     if (fresh[i]) todo.push_back(i);
   if (scene.objects.size() == 1 && !todo.empty() && !keep) {
     fresh[0]->built = buildField(*fresh[0]->mesh, spec, progress);
-    fresh[0]->first_block = {0, 0, 0};
+    fresh[0]->first_block = firstBlock(lattice, fresh[0]->built.field->grid);
     return objects;
   }
   SharedProgress shared(progress, todo.size());

@@ -16,8 +16,11 @@ FieldSpec plainSpec(const CompiledScene& compiled, Box3& box) {
 }
 
 bool isOn(const SurfaceField& field, const FieldGrid& grid, double band) {
-  return field.grid.origin == grid.origin && field.grid.voxel == grid.voxel &&
-         field.grid.nodes == grid.nodes && field.band == band;
+  const auto is = [&](const FieldGrid& g) {
+    return field.grid.origin == g.origin && field.grid.voxel == g.voxel &&
+           field.grid.nodes == g.nodes;
+  };
+  return field.band == band && (is(grid) || is(withRoomForPlates(grid, band)));
 }
 
 Scene plain(const Scene& scene) {

@@ -78,7 +78,10 @@ void describeSides(std::size_t open_triangles, const Scene& scene, const MeshRep
     list.push(entry);
   }
   json.set("components_sides", list);
-  if (!counts.empty()) rows.emplace_back("sides", text(counts));
+  if (counts.empty()) return;
+  const bool plates = open_triangles > 0 && scene.field.sides == OpenSides::one;
+  rows.emplace_back("sides",
+                    text(counts) + (plates ? ": the front of a plate as thick as the band" : ""));
 }
 
 void describeObjects(const Scene& scene, Json& json, TextRows& rows) {

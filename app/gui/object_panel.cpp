@@ -96,8 +96,8 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
   row(tr("Sides"),
       text(patina::text(sideCounts(report.triangles - report.non_finite - report.degenerate,
                                    scene.built.report.open_triangles, scene.scene.field.sides))),
-      tr("Closed parts have an inside. Open ones, such as a terrain, are felt from the front of "
-         "their triangles, or from both sides with surface.sides = two and a tip radius."));
+      tr("Closed parts have an inside. Open ones, such as a terrain, are the front of a plate as "
+         "thick as the band, or felt from both sides with surface.sides = two and a tip radius."));
   const auto defect = [&](const QString& caption, std::size_t count, const QString& tip) {
     if (count > 0) row(caption, text(formatCount(count)), tip, true);
   };

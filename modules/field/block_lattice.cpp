@@ -60,4 +60,14 @@ FieldGrid gridOf(const BlockLattice& lattice, const BlockBox& blocks) {
   return grid;
 }
 
+std::array<int, 3> firstBlock(const BlockLattice& lattice, const FieldGrid& grid) {
+  std::array<int, 3> first{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    first[a] = static_cast<int>(
+        std::lround((grid.origin[axis] - lattice.anchor[axis]) / (kBlockSide * lattice.voxel)));
+  }
+  return first;
+}
+
 } // namespace patina

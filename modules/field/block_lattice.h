@@ -34,4 +34,7 @@ BlockBox blocksAround(const BlockLattice& lattice, const Box3& box, double band)
 // The grid of these blocks. Throws Error beyond 4096 nodes a side.
 FieldGrid gridOf(const BlockLattice& lattice, const BlockBox& blocks);
 
+// The lowest block of a grid on the lattice.
+std::array<int, 3> firstBlock(const BlockLattice& lattice, const FieldGrid& grid);
+
 } // namespace patina

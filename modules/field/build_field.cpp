@@ -1,6 +1,7 @@
 #include "field/build_field.h"
 
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <optional>
 
@@ -8,6 +9,7 @@
 
 #include "core/error.h"
 #include "field/distance_blocks.h"
+#include "field/plate.h"
 #include "field/signs.h"
 #include "geometry/open_parts.h"
 #include "geometry/orientation.h"
@@ -16,6 +18,8 @@
 
 namespace patina {
 namespace {
+
+constexpr double kPastBack = 1.5; // [voxel], what plateCaps needs
 
 double cpuSeconds() {
   std::timespec t{};
@@ -36,13 +40,6 @@ TriangleMesh onlyFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>
   return sound;
 }
 
-void renumberFaces(FieldBuilder& builder, const std::vector<std::int32_t>& face_of) {
-  tbb::parallel_for(std::size_t{0}, builder.face.size(), [&](std::size_t slot) {
-    for (std::int32_t& face : builder.face[slot]->face)
-      if (face >= 0) face = face_of[static_cast<std::size_t>(face)];
-  });
-}
-
 std::vector<std::int32_t> someUsable(const TriangleMesh& mesh) {
   std::vector<std::int32_t> usable = usableTriangles(mesh);
   if (usable.empty()) throw Error("field: the mesh has no triangle with an area");
@@ -54,6 +51,32 @@ TriangleMesh closedPart(const TriangleMesh& mesh, const OpenParts& open) {
   for (std::size_t f = 0; f < open.open.size(); ++f)
     if (!open.open[f]) faces.push_back(static_cast<std::int32_t>(f));
   return onlyFaces(mesh, faces);
+}
+
+// The front's distances and which nodes lie in the plates; then the distances to all of the plates.
+// Faces of `builder` are then those of `mesh`. Returns how much is doubtful.
+std::size_t makePlates(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
+                       const OpenParts& open, double band, Progress& progress) {
+  const PlateCaps caps = plateCaps(builder, mesh, tree, open, band);
+  progress.throwIfCancelled();
+  const auto own = static_cast<std::int32_t>(mesh.triangles.size());
+  const TriangleMesh plates = joined(mesh, caps.mesh);
+  FieldBuilder whole =
+      distanceBlocks(plates, TriangleTree(plates), builder.field.grid, band, progress, 0.7, 1);
+  signLike(whole, builder);
+  tbb::parallel_for(std::size_t{0}, whole.face.size(), [&](std::size_t slot) {
+    for (std::int32_t& face : whole.face[slot]->face)
+      if (face >= own) face = caps.face[static_cast<std::size_t>(face - own)];
+  });
+  builder = std::move(whole);
+  return caps.doubtful;
+}
+
+void renumberFaces(FieldBuilder& builder, const std::vector<std::int32_t>& face_of) {
+  tbb::parallel_for(std::size_t{0}, builder.face.size(), [&](std::size_t slot) {
+    for (std::int32_t& face : builder.face[slot]->face)
+      if (face >= 0) face = face_of[static_cast<std::size_t>(face)];
+  });
 }
 
 // grid_for(box of the sound triangles) chooses the grid.
@@ -72,12 +95,7 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   if (report.dropped_triangles > 0) reduced = onlyFaces(mesh, usable);
   const TriangleMesh& sound = reduced ? *reduced : mesh;
 
-  const FieldGrid grid = grid_for(bounds(sound));
-  const TriangleTree tree(sound);
-  progress.throwIfCancelled();
-  progress.report(0.1, "distances");
-  FieldBuilder builder = distanceBlocks(sound, tree, grid, band, progress, 0.1, 0.7);
-  progress.report(0.7, "signs");
+  FieldGrid grid = grid_for(bounds(sound));
   std::optional<TriangleMesh> turned;
   if (const auto wrong = misorientedTriangles(sound); !wrong.empty()) {
     turned = sound;
@@ -93,7 +111,19 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   report.open_parts = open.parts;
   report.open_triangles = open.triangles;
   progress.throwIfCancelled();
-  report.ambiguous_signs = assignSigns(builder, oriented, tree, winding, open, sides, progress);
+
+  const bool plates = open.any() && sides == OpenSides::one;
+  if (plates) grid = withRoomForPlates(grid, band);
+  const TriangleTree tree(sound);
+  progress.throwIfCancelled();
+  progress.report(0.1, "distances");
+  FieldBuilder builder =
+      distanceBlocks(sound, tree, grid, plates ? band + kPastBack : band, progress, 0.1, 0.7);
+  progress.report(0.7, "signs");
+  report.ambiguous_signs =
+      assignSigns(builder, oriented, tree, winding, open, plates ? band : 0, progress);
+  if (plates) report.ambiguous_signs += makePlates(builder, oriented, tree, open, band, progress);
+  signCoarse(builder);
   progress.throwIfCancelled();
   if (report.dropped_triangles > 0) renumberFaces(builder, usable);
 
@@ -108,6 +138,13 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
 }
 
 } // namespace
+
+FieldGrid withRoomForPlates(FieldGrid grid, double band) {
+  const int nodes = kBlockSide * static_cast<int>(std::ceil(band / kBlockSide));
+  grid.origin -= Vec3::Constant(nodes * grid.voxel);
+  for (int& n : grid.nodes) n += 2 * nodes;
+  return grid;
+}
 
 BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress) {
   return build(

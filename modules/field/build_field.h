@@ -29,8 +29,9 @@ struct BuiltField {
 
 // Exact distance and nearest face for every node with |phi| <= band; sign by connected components
 // of edges that the surface cannot cross (|d1| + |d2| > length) and one generalised winding number
-// for each, cross-checked; beside open parts of the mesh by their front (see signs.h): there is no
-// solid deeper behind them than the band. Parallel; polls `progress` and throws Cancelled.
+// for each, cross-checked. A one-sided open part is the front of a plate as thick as the band
+// (plate.h); the nearest face to its back and sides is that of the front which they lie behind, and
+// the grid gets room for them. Parallel; polls `progress` and throws Cancelled.
 // Degenerate and non-finite triangles are dropped and counted. Face indices refer to `mesh` as
 // given. Throws Error if no triangle is left or the grid is impossible.
 BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress);
@@ -38,6 +39,9 @@ BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress&
 // The same on a given grid, which must reach at least `band` voxels past the mesh on each side.
 BuiltField buildField(const TriangleMesh& mesh, const FieldGrid& grid, double band,
                       Progress& progress, OpenSides sides = OpenSides::one);
+
+// A grid grown by whole blocks on every side: that of a mesh with one-sided open parts.
+FieldGrid withRoomForPlates(FieldGrid grid, double band);
 
 // Of the triangles that a field is built from. Throws Error if there is none.
 Box3 fieldBounds(const TriangleMesh& mesh);

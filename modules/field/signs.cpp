@@ -324,40 +324,24 @@ class Signer {
   std::size_t ambiguous_ = 0;
 };
 
-// The nodes nearest to an open part; coarse nodes too. Returns how many are ambiguous.
-std::size_t signOpen(FieldBuilder& builder, const TriangleMesh& mesh, const OpenParts& open) {
+// The nodes nearest to an open part.
+void signPlates(FieldBuilder& builder, const TriangleMesh& mesh, const OpenParts& open,
+                double thickness) {
   const FrontSide front(mesh, open.open);
-  const auto isOpen = [&](std::int32_t face) {
-    return face >= 0 && open.open[static_cast<std::size_t>(face)] != 0;
-  };
-  std::atomic<std::size_t> doubtful{0};
   tbb::parallel_for(std::size_t{0}, builder.distance.size(), [&](std::size_t slot) {
     auto& phi = builder.distance[slot]->phi;
     const auto& faces = builder.face[slot]->face;
-    std::size_t here = 0;
     for (std::size_t n = 0; n < phi.size(); ++n) {
-      if (!isOpen(faces[n]) || !(phi[n] > kOnSurface)) continue;
+      if (faces[n] < 0 || !open.open[static_cast<std::size_t>(faces[n])]) continue;
+      if (!(phi[n] > kOnSurface) || !(static_cast<double>(phi[n]) < thickness)) continue;
       const std::array<int, 3> at = signs::nodeAt(builder, static_cast<std::int32_t>(slot), n);
-      const Side side = front.at(builder.field.grid.toWorld(Vec3(at[0], at[1], at[2])), faces[n]);
-      here += side == Side::beyond_back && phi[n] <= kRim;
-      if (side == Side::back) phi[n] = -phi[n];
+      const Vec3 p = builder.field.grid.toWorld(Vec3(at[0], at[1], at[2]));
+      if (front.at(p, faces[n]) == Side::back) phi[n] = -phi[n];
     }
-    doubtful += here;
   });
-  const auto& blocks = builder.field.blocks;
-  const auto nx = static_cast<std::size_t>(blocks[0] + 1),
-             ny = static_cast<std::size_t>(blocks[1] + 1);
-  tbb::parallel_for(std::size_t{0}, builder.coarse_face.size(), [&](std::size_t i) {
-    const std::int32_t face = builder.coarse_face[i];
-    CoarseNode& node = builder.field.coarse[i];
-    if (!isOpen(face) || node.phi < 0) return;
-    const Vec3 at(static_cast<double>(i % nx), static_cast<double>(i / nx % ny),
-                  static_cast<double>(i / nx / ny));
-    if (front.at(builder.field.grid.toWorld(kBlockSide * at), face) == Side::back)
-      node = {-node.phi, -node.gx, -node.gy, -node.gz};
-  });
-  return doubtful;
 }
+
+} // namespace
 
 void signCoarse(FieldBuilder& builder) {
   SurfaceField& field = builder.field;
@@ -379,18 +363,14 @@ void signCoarse(FieldBuilder& builder) {
   }
 }
 
-} // namespace
-
 std::size_t assignSigns(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-                        const WindingNumber& winding, const OpenParts& open, OpenSides sides,
+                        const WindingNumber& winding, const OpenParts& open, double thickness,
                         Progress& progress) {
   std::size_t ambiguous = 0;
-  if (open.triangles < mesh.triangles.size()) {
+  if (open.triangles < mesh.triangles.size())
     ambiguous = Signer(builder, mesh, tree, winding, open, progress).run();
-    signCoarse(builder);
-  }
   progress.throwIfCancelled();
-  if (open.any() && sides == OpenSides::one) ambiguous += signOpen(builder, mesh, open);
+  if (open.any() && thickness > 0) signPlates(builder, mesh, open, thickness);
   return ambiguous;
 }
 

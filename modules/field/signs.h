@@ -12,7 +12,7 @@
 
 namespace patina {
 
-// Signs the distances, the top table and the coarse nodes of `builder`, whose distances must be
+// Signs the distances and the top table of `builder`, whose distances must be
 // exact to 5e-4 voxel (FieldBuilder says what else). Returns how many nodes are ambiguous: the
 // rules disagree there and the majority stands.
 //
@@ -25,17 +25,18 @@ namespace patina {
 // surface (within 1e-6 voxel) counts as outside.
 //
 // All that holds of the closed parts of `mesh`, which `winding` is of (not read if there is none).
-// Beside an open part there is no inside for a winding number to find: a node whose nearest face is
-// open lies behind it (FrontSide), negative, or not, and beyond the rim there is nothing. With
-// OpenSides::two both sides are positive. Behind the band nothing is known, and so outside: a sheet
-// is a slab as deep as the band, only the coarse nodes say how far behind it they are. Nodes inside
-// a closed part stay so. Ambiguous are nodes within kRim voxels of a rim and behind it.
+// Beside an open part there is no inside for a winding number to find: it is the front of a plate,
+// and a node whose nearest face is open is in it if it lies behind that (FrontSide), not past the
+// rim, and nearer than `thickness` voxels. Without a thickness both sides are outside. Nodes inside
+// a closed part stay so. The values are still the distances to `mesh`: see plate.h for the rest.
 //
 // All of `mesh` in tree. Parallel, and the same for any number of threads. Polls `progress` and
 // throws Cancelled (builder is then half done).
-inline constexpr float kRim = 2;
 std::size_t assignSigns(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-                        const WindingNumber& winding, const OpenParts& open, OpenSides sides,
+                        const WindingNumber& winding, const OpenParts& open, double thickness,
                         Progress& progress);
+
+// The coarse nodes, like the nodes that lie where they do.
+void signCoarse(FieldBuilder& builder);
 
 } // namespace patina

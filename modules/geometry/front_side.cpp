@@ -55,14 +55,14 @@ Side FrontSide::at(const Vec3& p, std::int32_t face) const {
   const Vec3 w = closestBarycentric(p, a, b, c);
   const Vec3 from = p - (w[0] * a + w[1] * b + w[2] * c);
   Vec3 normal = faceNormal(mesh_, f);
-  bool beyond = false;
+  bool past = false;
   const auto zeros = (w.array() == 0).count();
   if (zeros == 1) {
     const std::size_t k = w[0] == 0 ? 1 : w[1] == 0 ? 2 : 0; // from corner k to the next
     const Edge& edge = edges_[index(edge_of_[f][k])];
     const Vec3 along =
         mesh_.corner(f, static_cast<int>((k + 1) % 3)) - mesh_.corner(f, static_cast<int>(k));
-    beyond = edge.rim && from.dot(along.cross(normal).normalized()) > kOver * from.norm();
+    past = edge.rim && from.dot(along.cross(normal).normalized()) > kOver * from.norm();
     normal = edge.normal;
   } else if (zeros == 2) {
     const std::size_t k = w[0] != 0 ? 0 : w[1] != 0 ? 1 : 2;
@@ -71,13 +71,12 @@ Side FrontSide::at(const Vec3& p, std::int32_t face) const {
     const Vec3 n = corner.normal.normalized();
     const Vec3 outward = corner.outward - corner.outward.dot(n) * n;
     // Surface almost all about it, as at the end of a slit, has no outside.
-    beyond = corner.rim && outward.norm() > kSlit * corner.normal.norm() &&
-             from.dot(outward.normalized()) > kOver * from.norm();
+    past = corner.rim && outward.norm() > kSlit * corner.normal.norm() &&
+           from.dot(outward.normalized()) > kOver * from.norm();
     normal = corner.normal;
   }
-  const bool behind = from.dot(normal) < 0;
-  if (beyond) return behind ? Side::beyond_back : Side::beyond_front;
-  return behind ? Side::back : Side::front;
+  if (past) return Side::past;
+  return from.dot(normal) < 0 ? Side::back : Side::front;
 }
 
 } // namespace patina

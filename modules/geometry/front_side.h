@@ -1,4 +1,4 @@
-// In front of, behind or beyond the rim of an open mesh.
+// In front of, behind or past the rim of an open mesh.
 #pragma once
 
 #include <array>
@@ -9,12 +9,13 @@
 
 namespace patina {
 
-enum class Side : std::uint8_t { front, back, beyond_front, beyond_back };
+enum class Side : std::uint8_t { front, back, past };
 
 // Sides of points by the nearest point of a mesh: by the face's normal, on edges and vertices by
 // the mean of the normals about, angle-weighted, which tells right from wrong wherever the surface
-// does not cut itself. A point is beyond where its nearest point lies on the rim and it does not
-// stand over the surface. Of coincident triangles the lowest counts. Immutable; any thread.
+// does not cut itself. Where the nearest point lies on the rim and the point does not stand over
+// the surface, it is past the rim. Of coincident triangles the lowest counts.
+// Immutable; any thread.
 class FrontSide {
  public:
   // The faces with open[face] != 0; the mesh must outlive this.

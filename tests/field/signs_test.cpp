@@ -349,7 +349,7 @@ TEST(Signs, CanBeCancelled) {
   FieldBuilder builder =
       distanceBlocks(mesh, tree, gridAround(bounds(mesh), spec), spec.band, progress, 0, 1);
   progress.cancel();
-  EXPECT_THROW(assignSigns(builder, mesh, tree, winding, {}, OpenSides::one, progress), Cancelled);
+  EXPECT_THROW(assignSigns(builder, mesh, tree, winding, {}, 0, progress), Cancelled);
 }
 
 } // namespace

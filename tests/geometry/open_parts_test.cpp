@@ -126,9 +126,8 @@ void expectSides(const TriangleMesh& mesh, const std::function<Side(const Vec3&)
 
 TEST(FrontSide, IsThatOfAPlaneOverAndBeyondASquare) {
   const auto truth = [](const Vec3& p) {
-    const bool over = std::max(std::abs(p.x()), std::abs(p.y())) < 1;
-    if (p.z() > 0) return over ? Side::front : Side::beyond_front;
-    return over ? Side::back : Side::beyond_back;
+    if (std::max(std::abs(p.x()), std::abs(p.y())) > 1) return Side::past;
+    return p.z() > 0 ? Side::front : Side::back;
   };
   for (const int cells : {1, 5}) expectSides(sheet(2, 2, cells), truth, 2);
   const TriangleMesh twice = joined(sheet(2, 2, 5), inverted(sheet(2, 2, 5)));

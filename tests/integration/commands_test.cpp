@@ -80,8 +80,9 @@ TEST_F(Commands, InfoSaysWhatIsOpen) {
   const std::string one = R"([{"sides":"one-sided","triangles":2}])";
   EXPECT_EQ(sidesOf(runJson({"info", sheet, "--no-field"})), one);
   EXPECT_EQ(sidesOf(runJson({"info", sheet, "--resolution", "60"})), one);
-  EXPECT_NE(run({"info", sheet, "--no-field"}).out.find("sides       one-sided\n"),
-            std::string::npos);
+  EXPECT_NE(
+      run({"info", sheet, "--no-field"}).out.find("sides       one-sided: the front of a plate"),
+      std::string::npos);
   const std::string both = folder / "both";
   EXPECT_EQ(run({"scene", "-o", both, "--add", sheet, "--add", sphere, "--set", "tip.radius=1mm",
                  "--set", "surface.sides=two"})

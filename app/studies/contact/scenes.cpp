@@ -295,9 +295,9 @@ std::shared_ptr<const SurfaceField> contactField(const ContactScene& scene, doub
   std::int32_t first_face = 0;
   for (const TriangleMesh& mesh : scene.meshes) {
     const BlockBox blocks = blocksAround(lattice, fieldBounds(mesh), spec.band);
-    parts.push_back(
-        {buildField(mesh, gridOf(lattice, blocks), spec.band, progress, scene.sides).field,
-         blocks.low, first_face});
+    const auto field =
+        buildField(mesh, gridOf(lattice, blocks), spec.band, progress, scene.sides).field;
+    parts.push_back({field, firstBlock(lattice, field->grid), first_face});
     first_face += static_cast<std::int32_t>(mesh.triangles.size());
   }
   return withSamples(std::make_shared<const SurfaceField>(mergeFields(parts, lattice)));
