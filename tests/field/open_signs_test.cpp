@@ -11,6 +11,7 @@
 #include "geometry/shapes.h"
 #include "geometry/triangle_tree.h"
 #include "support/changed_mesh.h"
+#include "support/node_values.h"
 #include "support/shared_data.h"
 
 namespace patina {
@@ -61,7 +62,7 @@ Signs count(const SurfaceField& field, const Truth& truth,
     for (int j = 0; j < grid.nodes[1]; ++j)
       for (int i = 0; i < grid.nodes[0]; ++i) {
         const Vec3 p = grid.toWorld(Vec3(i, j, k));
-        const float phi = field.phiAt(i, j, k);
+        const float phi = test::phiAt(field, i, j, k);
         signs.near_rim += rim(p) <= 2.01 * grid.voxel;
         signs.negative += phi < 0;
         if (std::abs(phi) < kSag) continue;
@@ -167,8 +168,8 @@ TEST(OpenSigns, BowlIsAShellAsDeepAsTheBand) {
     EXPECT_LT(made.report.ambiguous_signs, signs.near_rim);
     // Deep in the bowl there is nothing.
     const Vec3 q = made.field->grid.toGrid(Vec3(0, 0, -radius + (band + 2) * voxel));
-    EXPECT_EQ(made.field->phiAt(static_cast<int>(q[0]), static_cast<int>(q[1]),
-                                static_cast<int>(std::ceil(q[2]))),
+    EXPECT_EQ(test::phiAt(*made.field, static_cast<int>(q[0]), static_cast<int>(q[1]),
+                          static_cast<int>(std::ceil(q[2]))),
               kBeyondBand);
   }
 }
@@ -201,11 +202,13 @@ TEST(OpenSigns, TwoSidedSheetsHaveNoInside) {
   ASSERT_EQ(one.top, two.field->top);
   const double ball_voxels = 0.01 / one.grid.voxel;
   std::size_t inside = 0;
-  for (std::size_t slot = 0; slot < one.blockCount(); ++slot)
+  for (std::size_t slot = 0; slot < one.blockCount(); ++slot) {
+    const auto of_one = one.distance[slot]->phi(), of_two = two.field->distance[slot]->phi();
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      ASSERT_EQ(std::abs(one.distance[slot]->at(n)), std::abs(two.field->distance[slot]->at(n)));
-      inside += two.field->distance[slot]->at(n) < 0;
+      ASSERT_EQ(std::abs(of_one[n]), std::abs(of_two[n]));
+      inside += of_two[n] < 0;
     }
+  }
   EXPECT_NEAR(static_cast<double>(inside), 4.0 / 3 * std::numbers::pi * std::pow(ball_voxels, 3),
               0.05 * static_cast<double>(inside));
   EXPECT_EQ(two.report.ambiguous_signs, 0U);
