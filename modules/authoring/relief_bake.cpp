@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include <tbb/blocked_range.h>
@@ -23,6 +24,10 @@ std::vector<ReliefImage> imagesOf(std::span<const ReliefSource> sources, double 
   images.reserve(sources.size());
   for (const ReliefSource& source : sources) images.emplace_back(source, voxel);
   return images;
+}
+
+bool same(const DistanceNodes& a, const DistanceNodes& b) {
+  return std::memcmp(&a, &b, sizeof(a)) == 0;
 }
 
 bool meet(const BlockFeet& feet, const UvBox& box) {
@@ -69,11 +74,12 @@ struct ReliefBake::Impl {
     return range;
   }
 
-  // Distances of the base, moved in place.
-  void move(std::size_t slot, const std::vector<ReliefImage>& images, DistanceNodes& nodes) const {
+  // Moves distances of the base in place; false if all are what they were.
+  bool move(std::size_t slot, const std::vector<ReliefImage>& images, DistanceNodes& nodes) const {
     const BlockFeet& block = feet.block[slot];
     std::array<float, kBlockNodes>& phi = nodes.phi;
     const NodeUv* uv = feet.uv.data() + block.first;
+    bool moves = false;
     const auto each = [&](const auto& image_of) {
       std::size_t entry = 0;
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
@@ -81,7 +87,10 @@ struct ReliefBake::Impl {
         const ReliefImage* image = image_of(entry);
         const float fall = image ? image->at(uv[entry]) : 0.0F;
         ++entry;
-        if (fall != 0) phi[n] -= fall; // -0 less -0 would lose its sign
+        if (fall == 0) continue; // -0 less -0 would lose its sign
+        const float moved = phi[n] - fall;
+        moves |= moved != phi[n];
+        phi[n] = moved;
       }
     };
     const auto felt = [&](std::int32_t source) -> const ReliefImage* {
@@ -95,6 +104,7 @@ struct ReliefBake::Impl {
     } else if (const ReliefImage* image = felt(block.source)) {
       each([&](std::size_t) { return image; });
     }
+    return moves;
   }
 
   // The blocks of `which` made anew in `field`; returns those that differ from what it held.
@@ -103,18 +113,20 @@ struct ReliefBake::Impl {
     std::vector<std::uint8_t> differs(which.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, which.size(), 16),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                        DistanceNodes nodes;
+                        DistanceNodes moved, before;
                         for (std::size_t i = range.begin(); i < range.end(); ++i) {
                           const auto slot = static_cast<std::size_t>(which[i]);
                           std::shared_ptr<const DistanceBlock>& held = field.distance[slot];
-                          base->distance[slot]->unpack(nodes);
-                          move(slot, images, nodes);
-                          DistanceBlock moved(nodes);
-                          differs[i] = !(moved == *held);
+                          const std::shared_ptr<const DistanceBlock>& own = base->distance[slot];
+                          held->unpack(before);
+                          if (held == own)
+                            moved = before;
+                          else
+                            own->unpack(moved);
+                          const bool moves = move(slot, images, moved);
+                          differs[i] = !same(moved, before);
                           if (!differs[i]) continue;
-                          held = moved == *base->distance[slot]
-                                     ? base->distance[slot]
-                                     : std::make_shared<const DistanceBlock>(std::move(moved));
+                          held = moves ? std::make_shared<const DistanceBlock>(moved) : own;
                         }
                       });
     std::vector<std::int32_t> changed;

@@ -4,13 +4,12 @@
 
 #include <cstdint>
 
+#include "field/four.h"
 #include "field/surface_field.h"
 
 namespace patina {
 
-// One node, {phi, gx, gy, gz}: the compiler's portable vectors, SSE or NEON alike.
-using Float4 = float __attribute__((vector_size(16)));
-
+// {phi, gx, gy, gz}.
 inline Float4 load(const SampleNode& node) {
   Float4 value;
   __builtin_memcpy(&value, __builtin_assume_aligned(&node, 16), sizeof(value));

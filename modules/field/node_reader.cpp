@@ -1,22 +1,20 @@
 #include "field/node_reader.h"
 
-#include <memory>
-
 namespace patina {
 
-NodeReader::NodeReader(const SurfaceField& field) : field_(field), blocks_(field.blockCount()) {}
+NodeReader::NodeReader(const SurfaceField& field)
+    : field_(field), nodes_(std::make_unique_for_overwrite<DistanceNodes[]>(field.blockCount())),
+      state_(field.blockCount()) {}
 
-NodeReader::~NodeReader() {
-  for (auto& block : blocks_) delete block.load(std::memory_order_relaxed);
-}
-
-const DistanceNodes& NodeReader::unpacked(std::size_t slot) const {
-  auto nodes = std::make_unique_for_overwrite<DistanceNodes>();
-  field_.distance[slot]->unpack(*nodes);
-  const DistanceNodes* held = nullptr; // what another thread was first with
-  if (blocks_[slot].compare_exchange_strong(held, nodes.get(), std::memory_order_acq_rel))
-    held = nodes.release();
-  return *held;
+void NodeReader::unpack(std::size_t slot) const {
+  std::uint8_t state = kPacked;
+  if (state_[slot].compare_exchange_strong(state, kBeingRead, std::memory_order_acquire)) {
+    field_.distance[slot]->unpack(nodes_[slot]);
+    state_[slot].store(kRead, std::memory_order_release);
+    state_[slot].notify_all();
+  } else {
+    state_[slot].wait(kBeingRead, std::memory_order_acquire);
+  }
 }
 
 float NodeReader::phiAt(int i, int j, int k) const {

@@ -2,34 +2,36 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "field/surface_field.h"
 
 namespace patina {
 
-// A view: the field must outlive it. Holds 2 kB for each block that was read. Any thread, several
-// at once, except the servo's: the first read of a block allocates.
+// A view: the field must outlive it. Reserves 2 kB for each block of the field at once; the system
+// takes memory only for those that are read. Any thread, several at once, except the servo's: the
+// first read of a block unpacks it, and who reads it meanwhile waits.
 class NodeReader {
  public:
   explicit NodeReader(const SurfaceField& field);
-  ~NodeReader();
-  NodeReader(const NodeReader&) = delete;
-  NodeReader& operator=(const NodeReader&) = delete;
 
   const SurfaceField& field() const { return field_; }
   const DistanceNodes& block(std::size_t slot) const {
-    const DistanceNodes* nodes = blocks_[slot].load(std::memory_order_acquire);
-    return nodes ? *nodes : unpacked(slot);
+    if (state_[slot].load(std::memory_order_acquire) != kRead) unpack(slot);
+    return nodes_[slot];
   }
-  // As SurfaceField::phiAt.
+  // Outside the grid or in a block that is not stored: +-kBeyondBand.
   float phiAt(int i, int j, int k) const;
 
  private:
-  const DistanceNodes& unpacked(std::size_t slot) const;
+  enum State : std::uint8_t { kPacked, kBeingRead, kRead };
+  void unpack(std::size_t slot) const;
 
   const SurfaceField& field_;
-  mutable std::vector<std::atomic<const DistanceNodes*>> blocks_; // by slot; owned
+  std::unique_ptr<DistanceNodes[]> nodes_;               // by slot
+  mutable std::vector<std::atomic<std::uint8_t>> state_; // by slot
 };
 
 } // namespace patina

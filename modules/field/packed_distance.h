@@ -33,15 +33,13 @@ class DistanceBlock {
     unpack(nodes);
     return nodes.phi;
   }
-  float at(std::size_t node) const; // unpacks the block
 
   std::size_t bytes() const { return sizeof(*this) + words_ * sizeof(data_[0]); }
-  friend bool operator==(const DistanceBlock& a, const DistanceBlock& b);
 
  private:
   static constexpr std::size_t kRows = kBlockNodes / kBlockSide;
 
-  std::array<std::uint8_t, kRows> held_{};  // a bit for each node that is not fill_
+  std::array<std::uint8_t, kRows> held_;    // a bit for each node that is not fill_
   std::array<std::uint8_t, kRows> level_{}; // four bits for each four nodes: their codes' width
   std::unique_ptr<std::uint32_t[]> data_;
   std::uint32_t words_ = 0;

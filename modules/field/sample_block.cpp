@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "field/four.h"
+
 namespace patina {
 namespace {
 
@@ -62,16 +64,6 @@ void gather(const Neighbours& about, PaddedPhi& padded) {
       for (int x = 0; x < 3; ++x)
         out[kBlockSide + 2 + x] = high ? high[row + x] : about.fill[first + 2];
     }
-}
-
-// Four nodes along x at once: the compiler's portable vectors, SSE or NEON alike.
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
-
-Float4 load(const float* from) {
-  Float4 value;
-  std::memcpy(&value, from, sizeof(value));
-  return value;
 }
 
 Int4 isStored(Float4 phi) {

@@ -27,12 +27,6 @@ SurfaceField::Place SurfaceField::placeOf(int i, int j, int k) const {
       static_cast<std::size_t>(((k & mask) * kBlockSide + (j & mask)) * kBlockSide + (i & mask))};
 }
 
-float SurfaceField::phiAt(int i, int j, int k) const {
-  const Place place = placeOf(i, j, k);
-  return place.slot < 0 ? phiBeyond(place.slot)
-                        : distance[static_cast<std::size_t>(place.slot)]->at(place.index);
-}
-
 std::int32_t SurfaceField::faceAt(int i, int j, int k) const {
   const Place place = placeOf(i, j, k);
   if (place.slot < 0 || face.empty()) return -1;

@@ -73,9 +73,7 @@ struct SurfaceField {
     std::size_t index;
   };
   Place placeOf(int i, int j, int k) const;
-  // Node values; outside the grid or in a block that is not stored: +-kBeyondBand and -1. phiAt
-  // unpacks a block: NodeReader is for more than a few.
-  float phiAt(int i, int j, int k) const;
+  // -1 outside the grid or in a block that is not stored. Distances are read by NodeReader.
   std::int32_t faceAt(int i, int j, int k) const;
   std::vector<LayerBytes> layerBytes() const; // only layers that exist
   std::size_t bytes() const;

@@ -10,6 +10,7 @@
 #include "field/field_sampler.h"
 #include "geometry/shapes.h"
 #include "geometry/triangle_tree.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -36,7 +37,7 @@ double worstDistance(const CompiledScene& compiled) {
   for (int k = 0; k < field.grid.nodes[2]; ++k)
     for (int j = 0; j < field.grid.nodes[1]; ++j)
       for (int i = 0; i < field.grid.nodes[0]; ++i) {
-        const auto phi = static_cast<double>(field.phiAt(i, j, k));
+        const auto phi = static_cast<double>(test::phiAt(field, i, j, k));
         if (!(phi > 0) || phi >= static_cast<double>(kBeyondBand)) continue;
         const double exact = tree.closestPoint(field.grid.toWorld(Vec3(i, j, k))).distance;
         worst = std::max(worst, std::abs(phi - exact / field.grid.voxel));

@@ -9,6 +9,7 @@
 #include "app/studies/field_candidates.h"
 #include "app/studies/study_shapes.h"
 #include "field/field_grid.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -127,7 +128,7 @@ TEST(QuadraticSpline, InterpolatesTheNodesAndItsGradientIsItsDerivative) {
   const Vec3 near = grid.toGrid(Vec3(0.05, 0, 0)).array().round();
   for (int n = 0; n < 50; ++n) {
     const Vec3 node = near + Vec3(-(n % 3), n % 7 - 3, n % 5 - 2);
-    const float stored = field.phiAt(static_cast<int>(node.x()), static_cast<int>(node.y()),
+    const float stored = test::phiAt(field, static_cast<int>(node.x()), static_cast<int>(node.y()),
                                      static_cast<int>(node.z()));
     ASSERT_LT(std::abs(stored), 4);
     EXPECT_NEAR(spline.atGrid(node).phi, stored, 1e-5);

@@ -99,12 +99,12 @@ TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
     std::size_t moved = 0, shared = 0;
     for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
       shared += field->sample[slot] == m.field->sample[slot];
+      const auto old_phi = m.field->distance[slot]->phi(), phi = field->distance[slot]->phi();
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
-        const float before = m.field->distance[slot]->at(n);
+        const float before = old_phi[n], after = phi[n];
         const std::int32_t face = m.field->face[slot]->at(n);
         const bool moves = face >= first && std::abs(before) < kBeyondBand;
         moved += moves;
-        const float after = field->distance[slot]->at(n);
         const double z = m.field->grid.origin.z() +
                          m.field->grid.voxel * (kBlockSide * m.field->block_at[slot][2] +
                                                 static_cast<int>(n) / (kBlockSide * kBlockSide));

@@ -1,5 +1,6 @@
 #include "authoring/relief_bake.h"
 
+#include <algorithm>
 #include <cstring>
 #include <random>
 
@@ -17,13 +18,21 @@ using namespace test;
 
 constexpr double kRadius = 0.05;
 
+bool same(const DistanceBlock& a, const DistanceBlock& b) {
+  const auto phi = a.phi(), other = b.phi();
+  return std::memcmp(&phi, &other, sizeof(phi)) == 0;
+}
+
+bool same(const SampleBlock& a, const SampleBlock& b) {
+  return std::memcmp(&a, &b, sizeof(a)) == 0;
+}
+
 template <class Block>
 bool sameBlocks(const std::vector<std::shared_ptr<const Block>>& a,
                 const std::vector<std::shared_ptr<const Block>>& b) {
-  bool same = a.size() == b.size();
-  for (std::size_t i = 0; same && i < a.size(); ++i)
-    same = a[i] == b[i] || std::memcmp(a[i].get(), b[i].get(), sizeof(Block)) == 0;
-  return same;
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& of_a, const auto& of_b) {
+    return of_a == of_b || same(*of_a, *of_b);
+  });
 }
 
 bool sameBits(const SurfaceField& a, const SurfaceField& b) {
@@ -139,10 +148,10 @@ TEST(ReliefBake, NoSeamShowsThroughPaintThatCoversTheSurface) {
   const auto field = bakeOf(sphere.field, sphere.mesh, sources).baked(sources);
   const auto height = static_cast<float>(1e-3 / sphere.field->grid.voxel);
   std::size_t nodes = 0, low = 0;
-  for (std::size_t slot = 0; slot < field->blockCount(); ++slot)
+  for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
+    const auto old_phi = sphere.field->distance[slot]->phi(), phi = field->distance[slot]->phi();
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      const float before = sphere.field->distance[slot]->at(n);
-      const float after = field->distance[slot]->at(n);
+      const float before = old_phi[n], after = phi[n];
       if (!(std::abs(before) < kBeyondBand)) {
         EXPECT_EQ(before, after);
         continue;
@@ -150,6 +159,7 @@ TEST(ReliefBake, NoSeamShowsThroughPaintThatCoversTheSurface) {
       ++nodes;
       low += after != before - height;
     }
+  }
   EXPECT_GT(nodes, 20000U);
   EXPECT_EQ(low, 0U);
 }
@@ -293,9 +303,9 @@ TEST(ReliefBake, HoldsExtremesOfAnImage) {
     const auto field = bakeOf(sphere.field, sphere.mesh, sources).baked(sources);
     std::size_t moved = 0;
     for (std::size_t slot = 0; slot < field->blockCount(); ++slot) {
+      const auto before = sphere.field->distance[slot]->phi(), phi = field->distance[slot]->phi();
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
-        const float before = sphere.field->distance[slot]->at(n);
-        const float by = before - field->distance[slot]->at(n);
+        const float by = before[n] - phi[n];
         moved += by != 0;
         ASSERT_LE(std::abs(by), most);
       }

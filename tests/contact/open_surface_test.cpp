@@ -17,6 +17,7 @@
 #include "field/build_field.h"
 #include "geometry/shapes.h"
 #include "support/changed_mesh.h"
+#include "support/node_values.h"
 
 namespace patina::test {
 namespace {
@@ -162,7 +163,7 @@ Sides sidesOf(const SurfaceField& field, const TriangleMesh& mesh) {
   for (int k = 0; k < field.grid.nodes[2]; ++k)
     for (int j = 0; j < field.grid.nodes[1]; ++j)
       for (int i = 0; i < field.grid.nodes[0]; ++i) {
-        const double phi = static_cast<double>(field.phiAt(i, j, k));
+        const double phi = static_cast<double>(test::phiAt(field, i, j, k));
         if (!(std::abs(phi) > 1e-3 && std::abs(phi) <= field.band)) continue;
         const Vec3 p = field.grid.toWorld(Vec3(i, j, k));
         const ExactSurface::Nearest at = sheet.nearest(p);

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "geometry/shapes.h"
 #include "geometry/triangle_tree.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -66,10 +67,11 @@ void expectExact(const TriangleMesh& mesh, const BuiltField& built, int stride =
       for (int i = 0; i < grid.nodes[0]; i += stride) {
         const Vec3 p = grid.toWorld(Vec3(i, j, k));
         const double truth = bruteForce(mesh, p);
-        const double phi = std::abs(static_cast<double>(field.phiAt(i, j, k))) * h;
+        const double phi = std::abs(static_cast<double>(test::phiAt(field, i, j, k))) * h;
         const std::int32_t face = field.faceAt(i, j, k);
         if (truth > (field.band + 1e-4) * h) {
-          ASSERT_EQ(std::abs(field.phiAt(i, j, k)), kBeyondBand) << i << ' ' << j << ' ' << k;
+          ASSERT_EQ(std::abs(test::phiAt(field, i, j, k)), kBeyondBand)
+              << i << ' ' << j << ' ' << k;
           ASSERT_EQ(face, -1);
         } else if (truth <= field.band * h) {
           ++in_band;
@@ -135,7 +137,7 @@ TEST(BuildField, IsExactInALargeGrid) {
     const double truth = bruteForce(mesh, grid.toWorld(Vec3(i, j, k))) / grid.voxel;
     if (truth > built.field->band) continue;
     ++in_band;
-    ASSERT_NEAR(std::abs(built.field->phiAt(i, j, k)), truth, 1e-4);
+    ASSERT_NEAR(std::abs(test::phiAt(*built.field, i, j, k)), truth, 1e-4);
     ASSERT_GE(built.field->faceAt(i, j, k), 0);
   }
   EXPECT_GT(in_band, 5000);
@@ -158,8 +160,9 @@ TEST(BuildField, StoresOnlyBlocksWithANodeInTheBand) {
   ASSERT_EQ(field.face.size(), field.blockCount());
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     int in_band = 0;
+    const auto distance = field.distance[slot]->phi();
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      const float phi = std::abs(field.distance[slot]->at(n));
+      const float phi = std::abs(distance[n]);
       in_band += phi <= field.band;
       EXPECT_EQ(field.face[slot]->at(n) >= 0, phi <= field.band);
     }
@@ -177,7 +180,7 @@ TEST(BuildField, NeverChangesFasterThanDistance) {
   for (int k = 0; k < field.grid.nodes[2]; ++k)
     for (int j = 0; j < field.grid.nodes[1]; ++j)
       for (int i = 0; i + 1 < field.grid.nodes[0]; ++i) {
-        const float a = field.phiAt(i, j, k), b = field.phiAt(i + 1, j, k);
+        const float a = test::phiAt(field, i, j, k), b = test::phiAt(field, i + 1, j, k);
         if (std::abs(a) >= kBeyondBand || std::abs(b) >= kBeyondBand) continue;
         EXPECT_LE(std::abs(a - b), 1 + 1e-5f);
       }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "field/analytic_fields.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -21,7 +22,9 @@ float difference(const SurfaceField& field, const std::array<int, 3>& at, std::s
   auto low = at, high = at;
   --low[axis];
   ++high[axis];
-  const auto phi = [&](const std::array<int, 3>& n) { return field.phiAt(n[0], n[1], n[2]); };
+  const auto phi = [&](const std::array<int, 3>& n) {
+    return test::phiAt(field, n[0], n[1], n[2]);
+  };
   const float before = phi(low), here = phi(at), after = phi(high);
   if (isStored(before) && isStored(after)) return (after - before) * 0.5F;
   if (isStored(after)) return after - here;
@@ -42,7 +45,7 @@ float slope(const SurfaceField& field, const std::array<int, 3>& at, std::size_t
       for (int k = -1; k <= 1; ++k) {
         auto node = beside;
         node[axis] += k;
-        if (!isStored(field.phiAt(node[0], node[1], node[2]))) return own;
+        if (!isStored(test::phiAt(field, node[0], node[1], node[2]))) return own;
       }
       const float other = difference(field, beside, axis);
       if (!(std::abs(other - own) < 0.03F)) return own;
@@ -51,7 +54,7 @@ float slope(const SurfaceField& field, const std::array<int, 3>& at, std::size_t
   return sum;
 }
 
-// A grid of whole blocks, so that phiAt() knows every node that is stored.
+// A grid of whole blocks, so that test::phiAt() knows every node that is stored.
 FieldGrid wholeBlocks() {
   return {Vec3::Constant(-0.04), 1e-3, {80, 80, 80}};
 }
@@ -69,7 +72,7 @@ TEST(SampleLayer, HoldsEachNodesOwnDifferences) {
                                       kBlockSide * block[2] + z};
           const SampleNode& node =
               sample.node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)];
-          const float phi = field->phiAt(at[0], at[1], at[2]);
+          const float phi = test::phiAt(*field, at[0], at[1], at[2]);
           ASSERT_EQ(node.phi, phi);
           Vec3 central = Vec3::Zero(), expected = Vec3::Zero();
           for (std::size_t axis = 0; isStored(phi) && axis < 3; ++axis) {
@@ -83,8 +86,8 @@ TEST(SampleLayer, HoldsEachNodesOwnDifferences) {
           if (x == kBlockSide || y == kBlockSide || z == kBlockSide) continue;
           bool all = true;
           for (int c = 0; c < 8; ++c)
-            all = all &&
-                  isStored(field->phiAt(at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)));
+            all = all && isStored(test::phiAt(*field, at[0] + (c & 1), at[1] + (c >> 1 & 1),
+                                              at[2] + (c >> 2)));
           ASSERT_EQ(sample.cellComplete(x, y, z), all);
           complete += all;
         }

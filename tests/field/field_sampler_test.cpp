@@ -317,12 +317,12 @@ TEST(FieldSampler, FaceNearIsTheFaceOfTheNearestStoredNode) {
   // Each node names itself.
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     FaceNodes faces{};
+    const auto phi = field.distance[slot]->phi();
     for (int n = 0; n < kBlockNodes; ++n) {
       const auto& at = field.block_at[slot];
       const int i = 8 * at[0] + n % 8, j = 8 * at[1] + n / 8 % 8, k = 8 * at[2] + n / 64;
       const auto index = static_cast<std::size_t>(n);
-      faces.face[index] =
-          std::abs(field.distance[slot]->at(index)) < kBeyondBand ? (k * 64 + j) * 64 + i : -1;
+      faces.face[index] = std::abs(phi[index]) < kBeyondBand ? (k * 64 + j) * 64 + i : -1;
     }
     field.face.push_back(std::make_shared<const FaceBlock>(faces));
   }

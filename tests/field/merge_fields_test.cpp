@@ -12,6 +12,7 @@
 #include "field/field_sampler.h"
 #include "field/merged_shapes.h"
 #include "geometry/triangle_tree.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -40,7 +41,7 @@ TEST(MergeFields, IsExactOutsideAndNeverTooDeepInside) {
   std::size_t outside = 0, inside = 0;
   forNodes(*m.field, [&](int i, int j, int k) {
     const Vec3 p = m.field->grid.toWorld(Vec3(i, j, k));
-    const auto phi = static_cast<double>(m.field->phiAt(i, j, k));
+    const auto phi = static_cast<double>(test::phiAt(*m.field, i, j, k));
     if (std::abs(phi) >= static_cast<double>(kBeyondBand)) return;
     const double da = a.closestPoint(p).distance, db = b.closestPoint(p).distance;
     if (phi > 0) {
@@ -78,14 +79,14 @@ TEST(MergeFields, NodesHoldTheLeastOfThePartsAndItsOwner) {
       std::array<int, 3> in{i, j, k};
       for (std::size_t a = 0; a < 3; ++a)
         in[a] -= kBlockSide * (m.parts[p].first_block[a] - all.low[a]);
-      const float phi = m.parts[p].field->phiAt(in[0], in[1], in[2]);
+      const float phi = test::phiAt(*m.parts[p].field, in[0], in[1], in[2]);
       if (!(phi < least)) continue;
       least = phi;
       owner = static_cast<std::int32_t>(p);
       const std::int32_t own = m.parts[p].field->faceAt(in[0], in[1], in[2]);
       face = own < 0 ? -1 : own + m.parts[p].first_face;
     }
-    ASSERT_EQ(m.field->phiAt(i, j, k), least);
+    ASSERT_EQ(test::phiAt(*m.field, i, j, k), least);
     ASSERT_EQ(m.field->faceAt(i, j, k), face);
     if (face < 0) return;
     ASSERT_EQ(ownerOf(face, m.parts), owner);

@@ -11,6 +11,7 @@
 #include "geometry/shapes.h"
 #include "geometry/triangle_tree.h"
 #include "support/changed_mesh.h"
+#include "support/node_values.h"
 #include "support/shared_data.h"
 
 namespace patina {
@@ -60,7 +61,7 @@ Signs count(const SurfaceField& field, const TriangleMesh& mesh, const Truth& tr
     for (int j = 0; j < grid.nodes[1]; ++j)
       for (int i = 0; i < grid.nodes[0]; ++i) {
         const Vec3 p = grid.toWorld(Vec3(i, j, k));
-        const float phi = field.phiAt(i, j, k);
+        const float phi = test::phiAt(field, i, j, k);
         signs.negative += phi < 0;
         if (std::abs(phi) < kSag) continue;
         const auto negative = truth(p, tree.closestPoint(p).distance / grid.voxel);
@@ -151,8 +152,8 @@ TEST(OpenSigns, BowlIsAShellAsDeepAsTheBand) {
     EXPECT_EQ(made.report.ambiguous_signs, 0U);
     // Deeper in the bowl there is nothing.
     const Vec3 q = made.field->grid.toGrid(Vec3(0, 0, -radius + (band + 2) * voxel));
-    EXPECT_GT(made.field->phiAt(static_cast<int>(q[0]), static_cast<int>(q[1]),
-                                static_cast<int>(std::ceil(q[2]))),
+    EXPECT_GT(test::phiAt(*made.field, static_cast<int>(q[0]), static_cast<int>(q[1]),
+                          static_cast<int>(std::ceil(q[2]))),
               1.5);
   }
 }
@@ -182,7 +183,7 @@ TEST(OpenSigns, TwoSidedSheetsHaveNoInside) {
   const double ball_voxels = 0.01 / two.field->grid.voxel;
   std::size_t inside = 0;
   for (const auto& block : two.field->distance)
-    for (std::size_t n = 0; n < kBlockNodes; ++n) inside += block->at(n) < 0;
+    for (const float phi : block->phi()) inside += phi < 0;
   EXPECT_NEAR(static_cast<double>(inside), 4.0 / 3 * std::numbers::pi * std::pow(ball_voxels, 3),
               0.05 * static_cast<double>(inside));
   EXPECT_EQ(two.report.ambiguous_signs, 0U);

@@ -10,6 +10,7 @@
 #include "field/merged_shapes.h"
 #include "field/union_surface.h"
 #include "geometry/triangle_tree.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -65,7 +66,7 @@ template <class Depth> double worstNode(const SurfaceField& field, const Depth& 
       const std::array<int, 3> i{kBlockSide * at[0] + n % kBlockSide,
                                  kBlockSide * at[1] + n / kBlockSide % kBlockSide,
                                  kBlockSide * at[2] + n / (kBlockSide * kBlockSide)};
-      const auto phi = static_cast<double>(field.phiAt(i[0], i[1], i[2]));
+      const auto phi = static_cast<double>(test::phiAt(field, i[0], i[1], i[2]));
       if (!(phi < 0)) continue;
       const double exact = depth(field.grid.toWorld(Vec3(i[0], i[1], i[2]))) / field.grid.voxel;
       if (std::abs(phi) < static_cast<double>(kBeyondBand))
@@ -124,9 +125,10 @@ TEST(Redistance, LeavesEveryNodeThatMinHadRight) {
     const auto& at = before.block_at[s];
     const std::int32_t now = after.slotOf(at[0], at[1], at[2]);
     if (now < 0) continue;
-    const auto& new_phi = after.distance[static_cast<std::size_t>(now)]->phi();
+    const auto old_phi = before.distance[s]->phi();
+    const auto new_phi = after.distance[static_cast<std::size_t>(now)]->phi();
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      const float phi = before.distance[s]->at(n);
+      const float phi = old_phi[n];
       if (phi > 0) {
         ASSERT_EQ(new_phi[n], phi);
       } else {

@@ -10,6 +10,7 @@
 #include "field/distance_blocks.h"
 #include "field/field_sampler.h"
 #include "geometry/shapes.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -87,7 +88,7 @@ Wrong wrongSigns(const TriangleMesh& mesh, const Truth& truth, int resolution = 
         const double d = truth(grid.toWorld(Vec3(i, j, k))) / grid.voxel;
         if (std::abs(d) < kSag) continue;
         ++count;
-        bad += (field->phiAt(i, j, k) < 0) != (d < 0);
+        bad += (test::phiAt(*field, i, j, k) < 0) != (d < 0);
       }
   wrong.nodes = static_cast<double>(bad) / static_cast<double>(count);
 
@@ -241,9 +242,10 @@ TEST(Signs, LargeFlippedFacesAreOutvoted) {
   ASSERT_EQ(sound->blockCount(), flipped->blockCount());
   EXPECT_EQ(sound->top, flipped->top);
   std::size_t different = 0;
-  for (std::size_t slot = 0; slot < sound->blockCount(); ++slot)
-    for (std::size_t n = 0; n < kBlockNodes; ++n)
-      different += (sound->distance[slot]->at(n) < 0) != (flipped->distance[slot]->at(n) < 0);
+  for (std::size_t slot = 0; slot < sound->blockCount(); ++slot) {
+    const auto a = sound->distance[slot]->phi(), b = flipped->distance[slot]->phi();
+    for (std::size_t n = 0; n < kBlockNodes; ++n) different += (a[n] < 0) != (b[n] < 0);
+  }
   EXPECT_EQ(different, 0U);
 }
 
@@ -270,7 +272,7 @@ TEST(Signs, ThinPlatesHaveTwoOutsides) {
             const double d = truth(p - off);
             if (std::abs(d) < 1e-8 || p.z() > 0.015) continue;
             inside += d < 0;
-            wrong += (field->phiAt(i, j, k) < 0) != (d < 0);
+            wrong += (test::phiAt(*field, i, j, k) < 0) != (d < 0);
           }
       EXPECT_EQ(wrong, 0U) << thickness << " " << shift;
       if (thickness > 0.001) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "field/analytic_fields.h"
+#include "support/node_values.h"
 
 namespace patina {
 namespace {
@@ -23,14 +24,14 @@ TEST(SampledFunction, HoldsEveryNodeOfTheBandAndTheSignOfAllOthers) {
     for (int j = 0; j < grid.nodes[1]; ++j)
       for (int i = 0; i < grid.nodes[0]; ++i) {
         const double exact = sphere(grid.toWorld(Vec3(i, j, k))) / grid.voxel;
-        const float stored = field.phiAt(i, j, k);
+        const float stored = test::phiAt(field, i, j, k);
         if (std::abs(exact) <= 5)
           ASSERT_NEAR(stored, exact, 1e-6);
         else
           ASSERT_EQ(stored, exact < 0 ? -kBeyondBand : kBeyondBand) << i << ' ' << j << ' ' << k;
       }
-  EXPECT_EQ(field.phiAt(-1, 0, 0), kBeyondBand);
-  EXPECT_EQ(field.phiAt(0, 0, grid.nodes[2]), kBeyondBand);
+  EXPECT_EQ(test::phiAt(field, -1, 0, 0), kBeyondBand);
+  EXPECT_EQ(test::phiAt(field, 0, 0, grid.nodes[2]), kBeyondBand);
   EXPECT_EQ(field.faceAt(32, 32, 6), -1);
 }
 
@@ -75,9 +76,9 @@ TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
   const auto field = sampledField(torusDistance(0.03, 0.015), grid, 4);
   const auto difference = [&](int i, int j, int k, int axis) {
     const std::array<int, 3> d{axis == 0, axis == 1, axis == 2};
-    const float before = field->phiAt(i - d[0], j - d[1], k - d[2]);
-    const float here = field->phiAt(i, j, k);
-    const float after = field->phiAt(i + d[0], j + d[1], k + d[2]);
+    const float before = test::phiAt(*field, i - d[0], j - d[1], k - d[2]);
+    const float here = test::phiAt(*field, i, j, k);
+    const float after = test::phiAt(*field, i + d[0], j + d[1], k + d[2]);
     const bool low = std::abs(before) < kBeyondBand, high = std::abs(after) < kBeyondBand;
     if (low && high) return (after - before) / 2;
     return high ? after - here : low ? here - before : 0.0F;
@@ -93,14 +94,14 @@ TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
           const SampleNode& node =
               field->sample[slot]
                   ->node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)];
-          ASSERT_EQ(node.phi, field->phiAt(i, j, k));
+          ASSERT_EQ(node.phi, test::phiAt(*field, i, j, k));
           if (std::abs(node.phi) >= kBeyondBand) {
             ASSERT_EQ(node.gx, 0);
             continue;
           }
           const Vec3 central(difference(i, j, k, 0), difference(i, j, k, 1),
                              difference(i, j, k, 2));
-          one_sided += std::abs(field->phiAt(i + 1, j, k)) >= kBeyondBand;
+          one_sided += std::abs(test::phiAt(*field, i + 1, j, k)) >= kBeyondBand;
           ASSERT_LT((Vec3(node.gx, node.gy, node.gz) - central).norm(), 0.2);
           ++nodes;
           // Their neighbours across have nearly the same slopes, and a share in these.
@@ -158,8 +159,8 @@ TEST(SampleLayer, FlagsExactlyTheCellsWhoseEightNodesAreStored) {
       if (i + 1 >= grid.nodes[0] || j + 1 >= grid.nodes[1] || k + 1 >= grid.nodes[2]) continue;
       bool all = true;
       for (int corner = 0; corner < 8; ++corner)
-        all &= std::abs(field->phiAt(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2))) <
-               kBeyondBand;
+        all &= std::abs(test::phiAt(*field, i + (corner & 1), j + (corner >> 1 & 1),
+                                    k + (corner >> 2))) < kBeyondBand;
       ASSERT_EQ(field->sample[slot]->cellComplete(x, y, z), all) << i << ' ' << j << ' ' << k;
       ++(all ? complete : incomplete);
     }

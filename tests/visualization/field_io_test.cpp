@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "field/surface_field.h"
+#include "support/node_values.h"
 #include "visualization/field_io.h"
 
 namespace patina {
@@ -63,7 +64,7 @@ void expectSameNodes(const SurfaceField& a, const SurfaceField& b) {
   for (int k = -1; k <= a.grid.nodes[2]; ++k)
     for (int j = -1; j <= a.grid.nodes[1]; ++j)
       for (int i = -1; i <= a.grid.nodes[0]; ++i) {
-        ASSERT_EQ(a.phiAt(i, j, k), b.phiAt(i, j, k)) << i << ' ' << j << ' ' << k;
+        ASSERT_EQ(test::phiAt(a, i, j, k), test::phiAt(b, i, j, k)) << i << ' ' << j << ' ' << k;
         if (!a.face.empty()) {
           ASSERT_EQ(a.faceAt(i, j, k), b.faceAt(i, j, k));
         }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/node_values.h"
 #include "visualization/node_layer.h"
 #include "visualization/slice_layer.h"
 #include "visualization/surface_pick.h"
@@ -61,7 +62,7 @@ TEST(NodesNear, AreTheStoredNodesWithinTheRadius) { // K26
     for (int j = 0; j < grid.nodes[1]; ++j)
       for (int i = 0; i < grid.nodes[0]; ++i)
         if ((grid.toWorld(Vec3(i, j, k)) - point).norm() <= 4.01 * grid.voxel &&
-            std::abs(sphere().phiAt(i, j, k)) < kBeyondBand)
+            std::abs(test::phiAt(sphere(), i, j, k)) < kBeyondBand)
           ++expected;
   EXPECT_EQ(nodes.size(), expected);
   EXPECT_GT(nodes.size(), 100U);
