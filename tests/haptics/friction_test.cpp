@@ -7,6 +7,7 @@
 
 #include "haptics/device.h"
 #include "haptics/friction_stage.h"
+#include "haptics/neutral_stages.h"
 
 namespace patina {
 namespace {
@@ -170,7 +171,7 @@ TEST(Friction, StickSlipPeriodFollowsItsClosedForm) {
 TEST(Friction, ZeroIsBitwiseTheFrictionlessPath) {
   const Field sphere = sphereField();
   const auto without = compileStages(sceneOf(500), sphere);
-  const auto with = compileAllStages(withFriction(sceneOf(500), 0, 0), sphere);
+  const auto with = withNeutralStages(withFriction(sceneOf(500), 0, 0), sphere);
   ContactMemory a, b;
   std::mt19937 random(1);
   Vec3 tip(0, 0, 0.0305);
@@ -308,7 +309,7 @@ TEST(Friction, TwoWallsGripByTheWedgeFactor) {
       contact.material.static_friction = contact.material.dynamic_friction = mu;
       const Field groove =
           cubeField([=](const Vec3& p) { return std::min(left.dot(p), right.dot(p)); }, 0.4e-3, 80);
-      const FrictionStage stage(groove, Sampler::high, 0, Friction{}, false);
+      const FrictionStage stage(FieldSampler(*groove, Sampler::high), 0, Friction{}, false);
       const double reach = mu * d / std::sin(alpha);
       for (const double dragged : {0.99 * reach, 1.01 * reach, 5 * reach}) {
         ContactMemory memory;
