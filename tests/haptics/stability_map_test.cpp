@@ -183,16 +183,16 @@ TEST(StabilityRatio, TheCouplingTakesItBelowTheLimitWhereverTheWallAloneIsNot) {
   EXPECT_LT(ratioAt(scene, sphereField(), point), 0.02);
   scene.stabilisers = Stabilisers{true, false};
   const LoopLimits limits = loopLimits(scene);
-  EXPECT_TRUE(limits.coupled);
+  EXPECT_TRUE(limits.coupled());
   const CouplingPlan plan = planCoupling(scene.haptics, DeviceModel{});
   EXPECT_NEAR(ratioAt(scene, sphereField(), point),
               limitWith(plan.damping) / inSeries(1e5, plan.stiffness), 0.02);
   EXPECT_GT(ratioAt(scene, sphereField(), point), 1.5);
   // By itself, once something is known of the device.
   scene.stabilisers.reset();
-  EXPECT_FALSE(loopLimits(scene).coupled);
+  EXPECT_FALSE(loopLimits(scene).coupled());
   scene.device_model = DeviceModel{};
-  EXPECT_TRUE(loopLimits(scene).coupled);
+  EXPECT_TRUE(loopLimits(scene).coupled());
 }
 
 // K d / (R + d) along a narrow bowl, behind a coupling: damped by the square of d / (R + d).
