@@ -4,7 +4,6 @@
 #include "app/cli/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
-#include "haptics/device.h"
 #include "haptics/latency.h"
 #ifdef PATINA_HAS_USB
 #include "usb/usb_bus.h"
@@ -18,16 +17,16 @@ struct DevicesOptions {
   bool diagnose = false;
 };
 
-void addBuiltIn(const DeviceInfo& info, const std::string& scene_name, Json& list, TextRows& rows) {
+void addBuiltIn(const char* name, const std::string& note, Json& list, TextRows& rows) {
   Json entry = Json::object();
-  entry.set("name", info.name);
+  entry.set("name", name);
   entry.set("kind", "built-in");
-  entry.set("device", scene_name);
-  entry.set("max_force", info.max_force);
-  entry.set("max_stiffness", info.max_stiffness);
-  entry.set("note", info.note);
+  entry.set("device", name);
+  entry.set("max_force", 0.0);
+  entry.set("max_stiffness", 0.0);
+  entry.set("note", note);
   list.push(entry);
-  rows.emplace_back(scene_name, "built in; " + info.note);
+  rows.emplace_back(name, "built in; " + note);
 }
 
 #ifdef PATINA_HAS_USB
@@ -77,9 +76,9 @@ void addUsb(bool diagnose, Json& list, TextRows& rows) {
 int runDevices(const DevicesOptions& options, Console& console) {
   Json list = Json::array();
   TextRows rows;
-  addBuiltIn(makeMouseDevice(Vec3::Zero())->info(), "mouse", list, rows);
-  addBuiltIn(makeSimulatedDevice({})->info(), "simulated", list, rows);
-  addBuiltIn(makeReplayDevice({Vec3::Zero()})->info(), "replay", list, rows);
+  addBuiltIn("mouse", "seen, not felt: the drawn tool is held out by the contact", list, rows);
+  addBuiltIn("simulated", "point mass with viscous damping, exact zero-order hold", list, rows);
+  addBuiltIn("replay", "plays a recorded tip path", list, rows);
   addUsb(options.diagnose, list, rows);
   Json json = Json::object();
   json.set("devices", list);

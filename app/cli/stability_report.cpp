@@ -57,7 +57,7 @@ Json stabilityJson(const SurfaceStability& stability, const Scene& scene) {
   json.set("jumping", share(map.jumping, map));
   json.set("limit", map.limits.plain);
   json.set("limit_damped", map.limits.damped);
-  json.set("coupled", map.limits.coupled);
+  json.set("coupled", map.limits.coupled());
   json.set("device_given", scene.device_model.has_value());
   return json;
 }
@@ -77,7 +77,7 @@ TextRows stabilityRows(const SurfaceStability& stability, const Scene& scene) {
                           ": a light grip does not hold the tip there; judged as a plane");
   if (map.jumping) rows.emplace_back("jumping", percent(map.jumping) + ": the force jumps; grey");
   rows.emplace_back("device", deviceText(scene));
-  if (map.limits.coupled) rows.emplace_back("coupling", "on: the map is of the coupled loop");
+  if (map.limits.coupled()) rows.emplace_back("coupling", "on: the map is of the coupled loop");
   return rows;
 }
 

@@ -22,14 +22,14 @@ class HandDevice final : public MouseDevice {
 
   void setTarget(const Vec3& world) noexcept override { hand_->setTarget(world); }
 
-  DeviceState exchange(const Vec3& force, double dt) noexcept override {
+  Vec3 exchange(const Vec3& force, double dt) noexcept override {
     newest_ = (newest_ + 1) % on_their_way_.size();
     on_their_way_[newest_] = force;
     const std::size_t arrived =
         (newest_ + on_their_way_.size() - static_cast<std::size_t>(spec_.device.delay)) %
         on_their_way_.size();
 
-    Vec3 pull = spec_.stiffness * (hand_->exchange(Vec3::Zero(), dt).tip - position_);
+    Vec3 pull = spec_.stiffness * (hand_->exchange(Vec3::Zero(), dt) - position_);
     const double size = pull.norm();
     if (size > spec_.max_force) pull *= spec_.max_force / size;
     const HeldStep step =
@@ -37,11 +37,7 @@ class HandDevice final : public MouseDevice {
     const Vec3 total = withFriction(on_their_way_[arrived] + pull, dt);
     position_ += step.xv * velocity_ + step.xf * total;
     velocity_ = step.vv * velocity_ + step.vf * total;
-    return {read(), false, false};
-  }
-
-  DeviceInfo info() const override {
-    return {"simulated device", 0, 0, "a mass on a spring and a damper towards the mouse"};
+    return read();
   }
 
  private:

@@ -1,4 +1,4 @@
-// The last N ticks' times, written by the servo thread and read by any other without a lock.
+// How late the last N ticks were, written by the servo thread and read by any other without a lock.
 #pragma once
 
 #include <atomic>
@@ -14,21 +14,14 @@ class TimingWindow {
   explicit TimingWindow(std::size_t capacity);
 
   // Servo thread. Saturates at 2^32 - 1 ns.
-  void record(std::int64_t late_ns, std::int64_t step_ns) noexcept;
+  void record(std::int64_t late_ns) noexcept;
 
   Percentiles late() const; // [ns]; any thread; zeros before the first tick
-  Percentiles step() const;
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
 
  private:
-  struct Entry {
-    std::atomic<std::uint32_t> late{0};
-    std::atomic<std::uint32_t> step{0};
-  };
-  Percentiles percentiles(std::atomic<std::uint32_t> Entry::*member) const;
-
   std::size_t capacity_;
-  std::unique_ptr<Entry[]> entries_;
+  std::unique_ptr<std::atomic<std::uint32_t>[]> late_;
   std::atomic<std::uint64_t> count_{0};
 };
 

@@ -18,7 +18,6 @@ struct ContactMemory {
   bool has_last_tip = false;
   Vec3 velocity = Vec3::Zero(); // [m/s], of the filter stage, where there is one
   double gap = 0;               // [s] since last_tip, spent on ticks without a finite tip
-  std::uint64_t bad_tips = 0;   // NaN or infinite
 
   bool in_contact = false;
   Vec3 last_candidate = Vec3::Zero(); // [m]

@@ -1,6 +1,8 @@
 // What a held force gives to the device it moves and takes from it, exactly (MATH 2.3).
 #pragma once
 
+#include <algorithm>
+
 #include "core/types.h"
 
 namespace patina {
@@ -12,7 +14,14 @@ struct EnergyLedger {
   double lowest_absorbed = 0; // the least of each
   double lowest_credited = 0;
 
-  void add(const Vec3& force, const Vec3& moved, double damping, double seconds) noexcept;
+  void add(const Vec3& force, const Vec3& moved, double damping, double seconds) noexcept {
+    const double work = force.dot(moved);
+    absorbed -= work;
+    credited -= work;
+    if (seconds > 0) credited += damping * moved.squaredNorm() / seconds;
+    lowest_absorbed = std::min(lowest_absorbed, absorbed);
+    lowest_credited = std::min(lowest_credited, credited);
+  }
 };
 
 } // namespace patina

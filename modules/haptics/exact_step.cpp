@@ -1,13 +1,12 @@
 #include "haptics/exact_step.h"
 
-#include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 
-#include "haptics/device.h"
+#include <Eigen/Core>
+#include <unsupported/Eigen/MatrixFunctions>
 
 namespace patina {
 namespace {
@@ -18,24 +17,6 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 Motion moved(const HeldStep& s, const Motion& m, double force) noexcept {
   return {s.xx * m.x + s.xv * m.v + s.xf * force, s.vx * m.x + s.vv * m.v + s.vf * force};
-}
-
-// exp of the system with F as a third state, scaled and squared: no term of it is a difference of
-// nearly equal numbers.
-HeldStep stepWithSpring(const Oscillator& body, double dt) noexcept {
-  Eigen::Matrix3d rate;
-  rate << 0, 1, 0, -body.spring / body.mass, -body.damping / body.mass, 1 / body.mass, 0, 0, 0;
-  rate *= dt;
-  int halvings = 0;
-  while (rate.block<2, 2>(0, 0).cwiseAbs().maxCoeff() > 0.25 && halvings < 200) {
-    rate *= 0.5;
-    ++halvings;
-  }
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Identity();
-  for (int term = 14; term > 0; --term)
-    sum = Eigen::Matrix3d::Identity() + rate * sum / static_cast<double>(term);
-  for (int i = 0; i < halvings; ++i) sum = (sum * sum).eval();
-  return {sum(0, 0), sum(0, 1), sum(0, 2), sum(1, 0), sum(1, 1), sum(1, 2)};
 }
 
 // When the velocity is next zero under a constant force; v e^(st) = v0 C(t) + w0 S(t), where C and
@@ -59,9 +40,11 @@ double nextRest(const Oscillator& body, const Motion& m, double force) noexcept 
 } // namespace
 
 HeldStep heldStep(const Oscillator& body, double dt) noexcept {
-  if (body.spring > 0) return stepWithSpring(body, dt);
-  const HeldForceStep free = heldForceStep(body.mass, body.damping, dt);
-  return {1, free.c, free.d, 0, free.a, free.e};
+  Eigen::Matrix3d rate; // F/m is the third state
+  rate << 0, 1, 0, -body.spring / body.mass, -body.damping / body.mass, 1, 0, 0, 0;
+  const Eigen::Matrix3d step = (dt * rate).exp();
+  return {step(0, 0), step(0, 1), step(0, 2) / body.mass,
+          step(1, 0), step(1, 1), step(1, 2) / body.mass};
 }
 
 ExactStep::ExactStep(const Oscillator& body, double dt) : body_(body), dt_(dt) {

@@ -11,11 +11,11 @@ constexpr double kMaxTurn = 0.1; // [rad] a tick
 
 } // namespace
 
-FrictionStage::FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                             double tip_radius, const Friction& friction, bool raised)
-    : field_(std::move(field)), sampler_(*field_, sampler), depth_gain_(friction.depth_gain),
-      slip_(friction.slip), raised_(raised), iso_(tip_radius / field_->grid.voxel),
-      trail_(kTrailVoxels * field_->grid.voxel), per_voxel_(1 / field_->grid.voxel) {}
+FrictionStage::FrictionStage(const FieldSampler& sampler, double tip_radius,
+                             const Friction& friction, bool raised)
+    : sampler_(sampler), depth_gain_(friction.depth_gain), slip_(friction.slip), raised_(raised),
+      iso_(tip_radius / sampler.grid().voxel), trail_(kTrailVoxels * sampler.grid().voxel),
+      per_voxel_(1 / sampler.grid().voxel) {}
 
 void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const double gain = 1 + depth_gain_ * contact.depth / kFrictionDepthReference;

@@ -1,8 +1,6 @@
 // Friction as a limit to the movement of the VCP (K09, K10).
 #pragma once
 
-#include <memory>
-
 #include "field/field_sampler.h"
 #include "haptics/stage.h"
 #include "scene/scene.h"
@@ -23,8 +21,8 @@ class FrictionStage final : public ForceStage {
  public:
   // Of `friction` only what a material has not. raised: the surface that is felt is not phi =
   // tip_radius (relief), and there is nothing to bring p back to.
-  FrictionStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
-                const Friction& friction, bool raised = false);
+  FrictionStage(const FieldSampler& sampler, double tip_radius, const Friction& friction,
+                bool raised);
 
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "friction"; }
@@ -33,7 +31,6 @@ class FrictionStage final : public ForceStage {
   Vec3 againstMotion(const Contact& contact, ContactMemory& memory) const noexcept;
   Vec3 ontoSurface(const Contact& contact, const Vec3& offset, double length) const noexcept;
 
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   double depth_gain_;
   Friction::SlipDirection slip_;

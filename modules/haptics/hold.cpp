@@ -30,9 +30,7 @@ Eigen::Matrix<double, 3, 2> Hold::free() const noexcept {
   if (count_ == 2) {
     free.col(0) = axis_[0].cross(axis_[1]);
   } else if (count_ == 1) {
-    int least = 0;
-    axis_[0].cwiseAbs().minCoeff(&least);
-    free.col(0) = axis_[0].cross(Vec3(Vec3::Unit(least))).normalized();
+    free.col(0) = axis_[0].unitOrthogonal();
     free.col(1) = axis_[0].cross(Vec3(free.col(0)));
   }
   return free;

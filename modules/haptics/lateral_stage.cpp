@@ -30,9 +30,8 @@ struct LateralStage::Height {
 LateralStage::LateralStage(std::shared_ptr<const Reliefs> reliefs,
                            std::span<const FeltObject> objects, std::vector<bool> stiff,
                            double shell, const LateralPlan& plan)
-    : reliefs_(std::move(reliefs)), stiff_(std::move(stiff)), shell_(shell), plan_(plan) {
-  for (const FeltObject& object : objects) object_from_world_.push_back(object.object_from_world);
-}
+    : reliefs_(std::move(reliefs)), objects_(objects), stiff_(std::move(stiff)), shell_(shell),
+      plan_(plan) {}
 
 LateralStage::Height LateralStage::heightAt(const Contact& contact, const Vec3& aside,
                                             ContactMemory& memory) const noexcept {
@@ -45,7 +44,8 @@ LateralStage::Height LateralStage::heightAt(const Contact& contact, const Vec3& 
   }
   const double roughness = contact.material.roughness;
   if (roughness > 0) {
-    const Pose& object_from_world = object_from_world_[static_cast<std::size_t>(contact.object)];
+    const Pose& object_from_world =
+        objects_[static_cast<std::size_t>(contact.object)].object_from_world;
     const Eigen::Matrix3d turn = object_from_world.linear();
     Eigen::Matrix3d bend;
     const RoughPattern pattern = roughPattern(object_from_world * at, &bend);

@@ -38,7 +38,7 @@ class LateralStage final : public ForceStage {
   Height heightAt(const Contact& contact, const Vec3& aside, ContactMemory& memory) const noexcept;
 
   std::shared_ptr<const Reliefs> reliefs_;
-  std::vector<Pose> object_from_world_;
+  std::span<const FeltObject> objects_;
   std::vector<bool> stiff_;
   double shell_; // [m], over everything that is pulled
   LateralPlan plan_;

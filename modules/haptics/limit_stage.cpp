@@ -17,7 +17,7 @@ void LimitStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   memory.last_raw = raw;
   memory.last_stiffness = contact.stiffness;
   memory.has_last_raw = true;
-  contact.force = limited(raw);
+  contact.force = scaledTo(raw, spec_.force_limit);
   if (!memory.faulted) return;
   contact.fault = true;
   memory.since_fault += std::max(contact.dt, 0.0);
@@ -43,9 +43,8 @@ bool LimitStage::jumped(const Contact& contact, const ContactMemory& memory) con
   return (contact.force - memory.last_raw).squaredNorm() > allowed * allowed;
 }
 
-Vec3 LimitStage::limited(const Vec3& force) const noexcept {
-  // Rounding of the scaled vector must not lift it over the limit.
-  const double limit = spec_.force_limit * (1 - 1e-15);
+Vec3 scaledTo(const Vec3& force, double limit) noexcept {
+  limit *= 1 - 1e-15; // rounding of the scaled vector must not lift it over the limit
   if (force.squaredNorm() <= limit * limit) return force;
   return limit / force.stableNorm() * force; // the square may have overflowed
 }

@@ -17,6 +17,9 @@ struct LimitSpec {
   double max_speed = kHandSpeed; // v_max [m/s]
 };
 
+// The force scaled so that its magnitude is at most `limit`.
+Vec3 scaledTo(const Vec3& force, double limit) noexcept;
+
 // Jump fault: where the force (before the limit) changes within a tick by more than
 // 2 v_max (K T + B), plus K times what the VCP let go as a slip began, the step of a magnet where
 // its band ends and what relief moved the VCP by (K + B/T). K is the place's own, now or a tick
@@ -34,7 +37,6 @@ class LimitStage final : public ForceStage {
 
  private:
   bool jumped(const Contact& contact, const ContactMemory& memory) const noexcept;
-  Vec3 limited(const Vec3& force) const noexcept;
 
   LimitSpec spec_;
 };

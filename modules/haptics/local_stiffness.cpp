@@ -40,11 +40,6 @@ StabiliserPlan lateralOf(StabiliserPlan plan) {
 
 } // namespace
 
-struct StiffnessProbe::WayIn {
-  Vec3 surface, outward; // where the tip touches
-  ContactMemory memory;  // of a tick just outside
-};
-
 StiffnessProbe::StiffnessProbe(const Scene& scene, std::shared_ptr<const SurfaceField> field,
                                std::span<const FeltObject> objects)
     : wall_(compileStages(wallOf(scene), std::move(field), objects,
@@ -84,47 +79,41 @@ Eigen::Matrix3d StiffnessProbe::differenced(const ContactMemory& at, const Vec3&
 
 std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point,
                                                  std::optional<double> depth) const {
-  return at(point, depth, kStep);
-}
-
-std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point, std::optional<double> depth,
-                                                 double step) const {
   const GridSample sample = sampler_.at(point);
   const double slope = sample.gradient.norm();
   if (!(slope > kMinGradient)) return std::nullopt;
-  WayIn way;
-  way.outward = sample.gradient / slope;
-  way.surface = point + (reach_ - sample.phi) * way.outward;
+  const Vec3 outward = sample.gradient / slope;
+  Vec3 surface = point + (reach_ - sample.phi) * outward; // where the tip touches
+  ContactMemory outside;
   const double voxel = sampler_.grid().voxel;
-  tick(*wall_, way.memory, way.surface + (raised_ + kStart * voxel) * way.outward, kRest);
+  tick(*wall_, outside, surface + (raised_ + kStart * voxel) * outward, kRest);
   // In a cleft the way in is not free: the tip is there without having come from anywhere.
-  if (way.memory.in_contact) way.memory.reset();
+  if (outside.in_contact) outside.reset();
 
   double stiffness = wall_->base.stiffness;
   if (painted_) { // what is felt there, and how high
-    const Vec3 below = way.surface - (raised_ + press_ / stiffness) * way.outward;
-    ContactMemory memory = way.memory;
+    const Vec3 below = surface - (raised_ + press_ / stiffness) * outward;
+    ContactMemory memory = outside;
     const Contact contact = settled(memory, below);
     if (contact.touching) stiffness = contact.material.stiffness;
     if (contact.touching && raised_ > 0)
-      way.surface =
-          below + contact.depth / std::sqrt(1 + contact.slope.squaredNorm()) * way.outward;
+      surface = below + contact.depth / std::sqrt(1 + contact.slope.squaredNorm()) * outward;
   }
   stiffness = inSeries(stiffness, coupling_);
   LocalStiffness result;
   result.depth = depth.value_or(press_ / stiffness);
-  result.tip = way.surface - result.depth * way.outward;
-  ContactMemory memory = way.memory;
+  result.tip = surface - result.depth * outward;
+  ContactMemory memory = outside;
   const Contact contact = settled(memory, result.tip);
   result.material = contact.material;
   result.lateral = contact.lateral;
-  const Vec3 ran = contact.candidate - way.surface;
-  result.slips = (ran - ran.dot(way.outward) * way.outward).norm() > kSlips * result.depth;
+  const Vec3 ran = contact.candidate - surface;
+  result.slips = (ran - ran.dot(outward) * outward).norm() > kSlips * result.depth;
   const Vec3& force = contact.force;
   result.force = force.norm();
   if (!(result.force > 0)) return std::nullopt;
   result.normal = force / result.force;
-  const double length = std::min(step * voxel, 0.5 * result.depth);
+  const double length = std::min(kStep * voxel, 0.5 * result.depth);
   result.matrix = differenced(memory, result.tip, length);
   const Eigen::Matrix3d change = differenced(memory, result.tip, 0.5 * length) - result.matrix;
   result.uncertainty = change.cwiseAbs().maxCoeff();

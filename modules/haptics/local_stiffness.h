@@ -54,12 +54,7 @@ class StiffnessProbe {
   // direction or no force. Any thread.
   std::optional<LocalStiffness> at(const Vec3& point, std::optional<double> depth = {}) const;
 
-  // As above, with the step in voxels.
-  std::optional<LocalStiffness> at(const Vec3& point, std::optional<double> depth,
-                                   double step) const;
-
  private:
-  struct WayIn;
   Contact settled(ContactMemory& memory, const Vec3& tip) const;
   Eigen::Matrix3d differenced(const ContactMemory& at, const Vec3& tip, double step) const;
 

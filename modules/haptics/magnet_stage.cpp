@@ -12,10 +12,10 @@ constexpr double kWholeGradient = 0.5;
 
 } // namespace
 
-MagnetStage::MagnetStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                         double tip_radius, const Magnet& magnet, MagnetRelief relief)
-    : field_(std::move(field)), sampler_(*field_, sampler), magnet_(magnet),
-      relief_(std::move(relief)), per_voxel_(1 / field_->grid.voxel), iso_(tip_radius * per_voxel_),
+MagnetStage::MagnetStage(const FieldSampler& sampler, double tip_radius, const Magnet& magnet,
+                         MagnetRelief relief)
+    : sampler_(sampler), magnet_(magnet), relief_(std::move(relief)),
+      per_voxel_(1 / sampler.grid().voxel), iso_(tip_radius * per_voxel_),
       range_(magnet.range * per_voxel_) {}
 
 void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept {

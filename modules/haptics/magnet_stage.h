@@ -26,13 +26,12 @@ struct MagnetRelief {
 // height above it takes phi's place, and the pull leans as contact does.
 class MagnetStage final : public ForceStage {
  public:
-  MagnetStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double tip_radius,
-              const Magnet& magnet, MagnetRelief relief = {});
+  MagnetStage(const FieldSampler& sampler, double tip_radius, const Magnet& magnet,
+              MagnetRelief relief);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "magnet"; }
 
  private:
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   Magnet magnet_;
   MagnetRelief relief_;

@@ -7,34 +7,21 @@
 
 namespace patina {
 
-OwnerStage::OwnerStage(std::shared_ptr<const SurfaceField> field,
-                       std::span<const FeltObject> objects)
-    : field_(std::move(field)), sampler_(*field_, Sampler::kim) {
-  for (const FeltObject& object : objects) first_face_.push_back(object.first_face);
-}
-
 std::int32_t OwnerStage::ownerAt(const Vec3& p) const noexcept {
   const std::int32_t face = sampler_.faceNear(p);
-  const auto next = std::upper_bound(first_face_.begin(), first_face_.end(), face);
-  return static_cast<std::int32_t>(std::max<std::ptrdiff_t>(next - first_face_.begin() - 1, 0));
+  const auto next = std::ranges::upper_bound(objects_, face, {}, &FeltObject::first_face);
+  return static_cast<std::int32_t>(std::max<std::ptrdiff_t>(next - objects_.begin() - 1, 0));
 }
 
 void OwnerStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (contact.touching) contact.object = ownerAt(contact.surface);
 }
 
-MaterialStage::MaterialStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                             std::span<const FeltObject> objects, bool gradients)
-    : field_(std::move(field)), sampler_(*field_, sampler), gradients_(gradients) {
-  for (const FeltObject& object : objects)
-    objects_.push_back({object.material, object.object_from_world});
-}
-
 void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
   const auto i = static_cast<std::size_t>(contact.object);
-  if (!contact.touching || i >= objects_.size() || !objects_[i].samples) return;
-  const Painted& object = objects_[i];
-  const MaterialAt at = materialAt(*object.samples, object.object_from_world * contact.surface);
+  if (!contact.touching || i >= objects_.size() || !objects_[i].material) return;
+  const FeltObject& object = objects_[i];
+  const MaterialAt at = materialAt(*object.material, object.object_from_world * contact.surface);
   contact.material = at.material;
   const auto inWorld = [&](const Vec3& gradient) {
     return Vec3(object.object_from_world.linear().transpose() * gradient);

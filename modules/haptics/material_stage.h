@@ -1,9 +1,7 @@
 // What the contact is made of: painted values at the closest point of the surface (K12, K22, K23).
 #pragma once
 
-#include <memory>
 #include <span>
-#include <vector>
 
 #include "field/field_sampler.h"
 #include "haptics/felt_object.h"
@@ -15,34 +13,29 @@ namespace patina {
 // and paint on one of them.
 class OwnerStage final : public ForceStage {
  public:
-  OwnerStage(std::shared_ptr<const SurfaceField> field, std::span<const FeltObject> objects);
+  OwnerStage(const FieldSampler& sampler, std::span<const FeltObject> objects)
+      : sampler_(sampler), objects_(objects) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "owner"; }
   std::int32_t ownerAt(const Vec3& p) const noexcept; // 0 where nothing is known
 
  private:
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
-  std::vector<std::int32_t> first_face_;
+  std::span<const FeltObject> objects_;
 };
 
 // Sets Contact::material and, with `gradients`, how stiffness changes as the tip moves. Objects
 // without paint keep the snapshot's base.
 class MaterialStage final : public ForceStage {
  public:
-  MaterialStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                std::span<const FeltObject> objects, bool gradients);
+  MaterialStage(const FieldSampler& sampler, std::span<const FeltObject> objects, bool gradients)
+      : sampler_(sampler), objects_(objects), gradients_(gradients) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "material"; }
 
  private:
-  struct Painted {
-    std::shared_ptr<const MaterialSamples> samples;
-    Pose object_from_world;
-  };
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
-  std::vector<Painted> objects_;
+  std::span<const FeltObject> objects_;
   bool gradients_;
 };
 

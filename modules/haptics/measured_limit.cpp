@@ -12,8 +12,6 @@ constexpr double kDepth = 1e-3;     // [m]
 constexpr double kAmplitude = 1e-6; // [m]
 constexpr double kTolerance = 1e-4;
 
-} // namespace
-
 bool oscillationDecays(const HapticProperties& haptics, SimulationSpec spec) {
   HapticProperties unlimited = haptics;
   unlimited.force_limit = std::numeric_limits<double>::infinity();
@@ -24,6 +22,8 @@ bool oscillationDecays(const HapticProperties& haptics, SimulationSpec spec) {
   const SimulationReport run = simulate(*planeSnapshot(unlimited, {}), spec, progress);
   return run.rms_velocity < run.rms_early;
 }
+
+} // namespace
 
 double measuredStiffnessLimit(HapticProperties haptics, const SimulationSpec& spec, double low,
                               double high) {

@@ -10,8 +10,8 @@ constexpr double kLongestStep = 1;   // voxels; a longer one leaves the part tha
 
 } // namespace
 
-OffsetStage::OffsetStage(std::shared_ptr<const SurfaceField> field, Sampler sampler)
-    : field_(std::move(field)), sampler_(*field_, sampler), per_voxel_(1 / field_->grid.voxel) {}
+OffsetStage::OffsetStage(const FieldSampler& sampler)
+    : sampler_(sampler), per_voxel_(1 / sampler.grid().voxel) {}
 
 void OffsetStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (!contact.touching || contact.normal.isZero(0)) return;

@@ -1,8 +1,6 @@
 // The offset surface: felt at a distance from the model, directed by the model itself (K12).
 #pragma once
 
-#include <memory>
-
 #include "field/field_sampler.h"
 #include "haptics/stage.h"
 
@@ -14,12 +12,11 @@ namespace patina {
 // properties: Contact::surface, brought onto phi = 0 by one Newton step, lies there within O(h^2).
 class OffsetStage final : public ForceStage {
  public:
-  OffsetStage(std::shared_ptr<const SurfaceField> field, Sampler sampler);
+  explicit OffsetStage(const FieldSampler& sampler);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "offset"; }
 
  private:
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   double per_voxel_; // [1/m]
 };

@@ -8,13 +8,6 @@
 
 namespace patina {
 
-// Contact with it: the VCP is straight above the tip (K06).
-class PlaneStage final : public ForceStage {
- public:
-  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "plane"; }
-};
-
 // Spring, damping, stabilisers and limit as compileStages() makes them, on the plane. Has no field.
 // Throws std::invalid_argument for friction, offset, magnet or tip radius, which need one. An
 // infinite force limit is allowed; then no jump of the force is a fault either.

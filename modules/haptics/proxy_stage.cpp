@@ -29,12 +29,11 @@ void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Con
 
 } // namespace
 
-ProxyStage::ProxyStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double iso,
-                       double steepness)
-    : field_(std::move(field)), sampler_(*field_, sampler),
-      search_(sampler_, iso / field_->grid.voxel, steepness), voxel_(field_->grid.voxel),
-      per_voxel_(1 / voxel_), iso_(iso * per_voxel_), steepness_(steepness),
-      per_steepness_(1 / steepness), snap_speed_(kSnapSides * sideOf(field_->grid)) {}
+ProxyStage::ProxyStage(const FieldSampler& sampler, double iso, double steepness)
+    : sampler_(sampler), search_(sampler_, iso / sampler.grid().voxel, steepness),
+      voxel_(sampler.grid().voxel), per_voxel_(1 / voxel_), iso_(iso * per_voxel_),
+      steepness_(steepness), per_steepness_(1 / steepness),
+      snap_speed_(kSnapSides * sideOf(sampler.grid())) {}
 
 void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const Vec3 x = toGrid(contact.tip);

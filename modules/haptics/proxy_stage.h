@@ -1,8 +1,6 @@
 // Contact on any shape: the tip's proxy stays on the surface, nearest to the tip (P01 to P12).
 #pragma once
 
-#include <memory>
-
 #include "haptics/proxy.h"
 #include "haptics/stage.h"
 
@@ -21,10 +19,8 @@ inline constexpr double kSnapSides = 0.9;
 class ProxyStage final : public ForceStage {
  public:
   // iso [m]: the tip's radius, plus the offset, plus a shell about what is pulled. steepness >= 1:
-  // how much faster than the distance to it the field may fall, where relief is baked in. Throws
-  // std::invalid_argument without a sample layer.
-  ProxyStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double iso,
-             double steepness = 1);
+  // how much faster than the distance to it the field may fall, where relief is baked in.
+  ProxyStage(const FieldSampler& sampler, double iso, double steepness = 1);
 
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "contact"; }
@@ -34,7 +30,6 @@ class ProxyStage final : public ForceStage {
              Vec3& c) const noexcept;
   Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - sampler_.grid().origin); }
 
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   ProxySearch search_;
   double voxel_;

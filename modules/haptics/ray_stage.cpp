@@ -84,9 +84,9 @@ Vec3 directionAt(const GridSample& sample, const ContactMemory& memory) noexcept
 
 } // namespace
 
-RayStage::RayStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double iso)
-    : field_(std::move(field)), sampler_(*field_, sampler), voxel_(field_->grid.voxel),
-      per_voxel_(1 / voxel_), iso_(iso * per_voxel_) {}
+RayStage::RayStage(const FieldSampler& sampler, double iso)
+    : sampler_(sampler), voxel_(sampler.grid().voxel), per_voxel_(1 / voxel_),
+      iso_(iso * per_voxel_) {}
 
 void RayStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const Vec3 q = per_voxel_ * (contact.tip - sampler_.grid().origin);

@@ -2,8 +2,6 @@
 // K06).
 #pragma once
 
-#include <memory>
-
 #include "field/field_sampler.h"
 #include "haptics/stage.h"
 
@@ -16,14 +14,12 @@ namespace patina {
 // is that of the coarse nodes.
 class RayStage final : public ForceStage {
  public:
-  // iso [m]: the tip's radius plus the offset (K12). Throws std::invalid_argument without a sample
-  // layer.
-  RayStage(std::shared_ptr<const SurfaceField> field, Sampler sampler, double iso);
+  // iso [m]: the tip's radius plus the offset (K12).
+  RayStage(const FieldSampler& sampler, double iso);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "contact"; }
 
  private:
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
   double voxel_;
   double per_voxel_; // [1/m]

@@ -58,21 +58,16 @@ void announceStep(Contact& contact, ContactMemory::Leaning& last, double height,
 
 } // namespace
 
-Reliefs::Reliefs(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                 std::span<const FeltObject> objects)
-    : field_(std::move(field)), sampler_(*field_, sampler),
-      lost_(kLostVoxels * field_->grid.voxel) {
-  for (const FeltObject& object : objects)
-    parts_.push_back({object.first_face, object.relief, object.highest});
-}
+Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects)
+    : sampler_(sampler), objects_(objects), lost_(kLostVoxels * sampler.grid().voxel) {}
 
 ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory,
                      Eigen::Matrix3d* bend) const noexcept {
   ReliefAt at;
   if (bend) bend->setZero();
   const auto i = static_cast<std::size_t>(object);
-  if (i >= parts_.size() || !parts_[i].relief) return at;
-  const Part& part = parts_[i];
+  if (i >= objects_.size() || !objects_[i].relief) return at;
+  const FeltObject& part = objects_[i];
   if (memory.relief_object == object) at = reliefAt(*part.relief, c, memory.relief_face, bend);
   if (at.face < 0 || at.distance > lost_) {
     const std::int32_t near = sampler_.faceNear(c);
@@ -96,8 +91,8 @@ ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory,
 
 std::size_t Reliefs::bytes() const {
   std::size_t sum = 0;
-  for (const Part& part : parts_)
-    if (part.relief) sum += patina::bytes(*part.relief->faces);
+  for (const FeltObject& object : objects_)
+    if (object.relief) sum += patina::bytes(*object.relief->faces);
   return sum;
 }
 
@@ -138,12 +133,6 @@ RoughPattern roughPattern(const Vec3& p, Eigen::Matrix3d* bend) noexcept {
   return pattern;
 }
 
-RoughnessStage::RoughnessStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                               std::span<const FeltObject> objects, double shell, ForceForm form)
-    : field_(std::move(field)), sampler_(*field_, sampler), shell_(shell), form_(form) {
-  for (const FeltObject& object : objects) object_from_world_.push_back(object.object_from_world);
-}
-
 void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (!contact.touching) {
     memory.roughness.known = false;
@@ -153,9 +142,9 @@ void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexce
   Vec3 slope = Vec3::Zero();
   const double roughness = contact.material.roughness;
   const auto i = static_cast<std::size_t>(contact.object);
-  const bool rough = roughness > 0 && i < object_from_world_.size() && !contact.normal.isZero(0);
+  const bool rough = roughness > 0 && i < objects_.size() && !contact.normal.isZero(0);
   if (rough) {
-    const Pose& object_from_world = object_from_world_[i];
+    const Pose& object_from_world = objects_[i].object_from_world;
     const RoughPattern pattern =
         roughPattern(object_from_world * (contact.surface + contact.aside));
     height = roughness * pattern.height;

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "field/field_sampler.h"
 #include "haptics/felt_object.h"
@@ -15,8 +14,7 @@ namespace patina {
 // The reliefs of a scene's objects, each |height| <= its `highest`.
 class Reliefs {
  public:
-  Reliefs(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-          std::span<const FeltObject> objects);
+  Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects);
   // At the closest point c [m, world] of the object, cut off at `highest`; flat where the object
   // has none. The walk over its faces goes on from memory.relief_face.
   // bend: as of reliefAt().
@@ -26,14 +24,8 @@ class Reliefs {
   std::size_t bytes() const; // of the packed faces
 
  private:
-  struct Part {
-    std::int32_t first_face;
-    std::shared_ptr<const ReliefSurface> relief;
-    double highest;
-  };
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
-  std::vector<Part> parts_;
+  std::span<const FeltObject> objects_;
   double lost_; // [m] from the mesh, where the walk begins afresh
 };
 
@@ -69,15 +61,15 @@ inline constexpr double kRoughnessPeak = 2.8284271247461903; // sqrt(2 waves)
 class RoughnessStage final : public ForceStage {
  public:
   // shell = kRoughnessPeak times the roughest there is [m].
-  RoughnessStage(std::shared_ptr<const SurfaceField> field, Sampler sampler,
-                 std::span<const FeltObject> objects, double shell, ForceForm form);
+  RoughnessStage(const FieldSampler& sampler, std::span<const FeltObject> objects, double shell,
+                 ForceForm form)
+      : sampler_(sampler), objects_(objects), shell_(shell), form_(form) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "roughness"; }
 
  private:
-  std::shared_ptr<const SurfaceField> field_;
   FieldSampler sampler_;
-  std::vector<Pose> object_from_world_;
+  std::span<const FeltObject> objects_;
   double shell_;
   ForceForm form_;
 };

@@ -1,6 +1,7 @@
 #include "haptics/servo_loop.h"
 
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 #include <thread>
 
@@ -43,7 +44,7 @@ struct ServoLoop::Impl {
       const double dt = static_cast<double>(woke - last_wake) / kNsPerSecond;
       last_wake = woke;
 
-      const DeviceState state = device->exchange(force, dt);
+      const Vec3 tip = device->exchange(force, dt);
       if (!law.fading()) {
         exchange.hold(law.felt()); // it may have to fade out
         law.turnTo(exchange.latest());
@@ -51,14 +52,14 @@ struct ServoLoop::Impl {
       ToolSample sample;
       sample.t = static_cast<double>(woke - start) / kNsPerSecond;
       const std::int64_t before = monotonicNs();
-      const Contact contact = law.tick(state.tip, dt);
+      const Contact contact = law.tick(tip, dt);
       record(contact, law.field(), sample);
       force = contact.force;
       const std::int64_t step = monotonicNs() - before;
       sample.step_ns = static_cast<std::uint32_t>(std::min<std::int64_t>(step, UINT32_MAX));
       sample.late_ns =
           static_cast<std::uint32_t>(std::clamp<std::int64_t>(woke - deadline, 0, UINT32_MAX));
-      window.record(woke - deadline, step);
+      window.record(woke - deadline);
       measureRate(woke);
       samples.push(sample);
     }
@@ -123,25 +124,14 @@ Ring<ToolSample>& ServoLoop::samples() {
   return impl_->samples;
 }
 
-const Device& ServoLoop::device() const {
-  return *impl_->device;
-}
-
 ServoTiming ServoLoop::timing() const {
   const RealtimeGrant grant = impl_->grant.load(std::memory_order_acquire);
-  const Percentiles late = impl_->window.late();
-  const Percentiles step = impl_->window.step();
   ServoTiming timing;
   timing.policy = policyText(grant);
   timing.realtime = grant.fifo_error == 0;
   timing.ticks = impl_->window.count();
   timing.missed = impl_->missed.load(std::memory_order_relaxed);
-  timing.late_p50 = late.p50 * 1e-3;
-  timing.late_p99 = late.p99 * 1e-3;
-  timing.late_p999 = late.p999 * 1e-3;
-  timing.late_max = late.max * 1e-3;
-  timing.step_p50_ns = step.p50;
-  timing.step_p99_ns = step.p99;
+  timing.late_p99 = impl_->window.late().p99 * 1e-3;
   timing.rate_hz = impl_->measured_rate.load(std::memory_order_relaxed);
   return timing;
 }

@@ -1,11 +1,9 @@
 // The servo thread: device -> stages -> limit -> device (DESIGN section 4).
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "core/ring.h"
 #include "core/snapshot_exchange.h"
@@ -20,9 +18,7 @@ struct ServoTiming {
   bool realtime = false;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0; // deadlines that passed by more than a period
-  // Of the last 8192 ticks at least, exact percentiles [us]:
-  double late_p50 = 0, late_p99 = 0, late_p999 = 0, late_max = 0;
-  double step_p50_ns = 0, step_p99_ns = 0;
+  double late_p99 = 0;      // [us], exact, of the last 8192 ticks at least
   double rate_hz = 0;
 };
 
@@ -43,9 +39,8 @@ class ServoLoop {
   // as publish does too; call it now and then.
   void publish(std::shared_ptr<const HapticSnapshot> snapshot);
   void collect();
-  Ring<ToolSample>& samples();  // consumer: one thread; holds 1 s at least
-  ServoTiming timing() const;   // any thread
-  const Device& device() const; // for info(); keep your own pointer to a MouseDevice
+  Ring<ToolSample>& samples(); // consumer: one thread; holds 1 s at least
+  ServoTiming timing() const;  // any thread
 
  private:
   struct Impl;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptics/exact_step.h"
+#include "haptics/limit_stage.h"
 
 namespace patina {
 namespace {
@@ -28,7 +29,6 @@ void check(const SimulationSpec& s) {
   require(s.seconds >= kLeastSeconds && std::isfinite(s.seconds), "a run takes 3 s or more");
   require(s.device.rate > 0 && s.device.encoder_step >= 0 && s.device.delay >= 0,
           "rate must be above 0, encoder step and delay not below");
-  require(s.substeps >= 1, "a tick has a step or more");
   require(!s.saturation || *s.saturation > 0, "saturation must be above 0");
   require(!s.jitter || (s.jitter->shortest > 0 && s.jitter->longest >= s.jitter->shortest),
           "the shortest period must be above 0 and not above the longest");
@@ -54,11 +54,11 @@ class Body {
  public:
   explicit Body(const SimulationSpec& spec)
       : axes_(axesFrom(spec.inward)), surface_(spec.surface), start_(spec.depth, 0, 0),
-        press_(spec.press), encoder_(spec.device.encoder_step),
-        substeps_(spec.substeps), oscillator_{spec.device.mass + spec.hand.mass,
-                                              spec.device.damping + spec.hand.damping,
-                                              spec.hand.stiffness, spec.device.coulomb},
-        step_(oscillator_, 1 / spec.device.rate / spec.substeps), length_(1 / spec.device.rate) {
+        press_(spec.press),
+        encoder_(spec.device.encoder_step), oscillator_{spec.device.mass + spec.hand.mass,
+                                                        spec.device.damping + spec.hand.damping,
+                                                        spec.hand.stiffness, spec.device.coulomb},
+        step_(oscillator_, 1 / spec.device.rate), length_(1 / spec.device.rate) {
     axis_[0].v = spec.speed;
   }
 
@@ -83,7 +83,7 @@ class Body {
   // Returns how far it went.
   Vec3 hold(const Vec3& force, double seconds) {
     if (seconds != length_) {
-      step_ = ExactStep(oscillator_, seconds / substeps_);
+      step_ = ExactStep(oscillator_, seconds);
       length_ = seconds;
     }
     const Vec3 along = axes_.transpose() * force + Vec3(press_, 0, 0);
@@ -91,7 +91,7 @@ class Body {
     for (int i = 0; i < 3; ++i) {
       Motion& axis = axis_[static_cast<std::size_t>(i)];
       const double from = axis.x;
-      for (int k = 0; k < substeps_; ++k) axis = step_(axis, along[i]);
+      axis = step_(axis, along[i]);
       moved[i] = axis.x - from;
     }
     return axes_ * moved;
@@ -104,10 +104,9 @@ class Body {
   std::array<Motion, 3> axis_;
   double press_;
   double encoder_;
-  int substeps_;
   Oscillator oscillator_;
   ExactStep step_;
-  double length_; // [s], of step_ with its substeps
+  double length_; // [s], of step_
 };
 
 // Forces on their way to the device.
@@ -193,12 +192,6 @@ Verdict judge(const SimulationReport& run, double accounted) {
   const bool calmer = run.stable && (run.rms_velocity < kStillSettling * run.rms_middle ||
                                      run.rms_velocity < kCalm * run.rms_early);
   return calmer && run.energy_gained <= accounted ? Verdict::kCalmingDown : Verdict::kUnsettled;
-}
-
-Vec3 scaledTo(const Vec3& force, double limit) {
-  const double magnitude = force.stableNorm();
-  // Rounding of the scaled vector must not lift it over the limit.
-  return magnitude > limit ? Vec3(limit * (1 - 1e-15) / magnitude * force) : force;
 }
 
 } // namespace
@@ -293,8 +286,6 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   const std::optional<double> ratio = bounce.ratio();
   const bool lost = report.verdict == Verdict::kLeftSurface && spec.press > 0;
   if (ratio && *ratio >= 0 && *ratio <= kLargestRestitution && !lost) report.restitution = ratio;
-  report.last_position = body.position();
-  report.last_velocity = body.velocity();
   progress.report(1, "simulating");
   return report;
 }

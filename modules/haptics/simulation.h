@@ -45,7 +45,6 @@ struct SimulationSpec {
   // [N/m]: |dF| <= c |dx| a tick. The negative control of F13; never in a servo.
   std::optional<double> naive_limit{};
   unsigned seed = 1; // of the jitter
-  int substeps = 1;  // the device's, between two ticks; changes nothing (T-ST1)
 };
 
 // What the loop feels: a tick of the servo, or a law of a test's own.
@@ -101,8 +100,6 @@ struct SimulationReport {
   std::uint64_t ticks = 0;
   std::uint64_t contact_ticks = 0;
   std::uint64_t fault_ticks = 0;
-  Vec3 last_position = Vec3::Zero(); // where it ended
-  Vec3 last_velocity = Vec3::Zero();
 };
 
 // Throws std::invalid_argument for values out of range (seconds below 3, too). Polls progress.

@@ -78,100 +78,16 @@ std::string namesOf(const PaintedRange& range) {
   std::string text;
   for (const MaterialChannel channel : kAllMaterialChannels)
     if (range.has(channel)) text += (text.empty() ? "" : ", ") + std::string(name(channel));
-  return text + (text.empty() ? "neutral" : " painted");
-}
-
-template <class Part> std::size_t bytesOf(std::span<const FeltObject> objects, const Part& part) {
-  std::size_t bytes = 0;
-  for (const FeltObject& object : objects) bytes += part(object);
-  return bytes;
-}
-
-// What a stage may be present for although the scene has no use for it.
-enum class Unneeded { left_out, present };
-
-std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticProperties& haptics,
-                                               std::shared_ptr<const SurfaceField> field,
-                                               std::span<const FeltObject> objects,
-                                               const StabiliserPlan& plan, Unneeded unneeded) {
-  auto snapshot = std::make_shared<HapticSnapshot>();
-  snapshot->base = baseMaterial(haptics);
-  const PaintedRange range = paintedRange(snapshot->base, objects);
-  const Shell shell = shellOf(range);
-  checkField(field.get(), haptics, shell.relief, shell.roughness);
-  const bool all = unneeded == Unneeded::present;
-  const auto add = [&](std::unique_ptr<const ForceStage> stage, std::string why,
-                       std::size_t bytes = 0) {
-    addStage(*snapshot, std::move(stage), std::move(why), bytes);
-  };
-  const double radius = haptics.tip_radius.value_or(0);
-  const double iso = radius + haptics.offset.value_or(0) + shell.relief + shell.roughness;
-  const std::string why = haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always";
-  if (haptics.contact == HapticProperties::Contact::ray)
-    add(std::make_unique<RayStage>(field, scene.sampler, iso), why, bytesRead(*field));
-  else
-    add(std::make_unique<ProxyStage>(field, scene.sampler, iso, range.baked ? kBakedSteepness : 1),
-        why, bytesRead(*field));
-  if (haptics.offset) {
-    add(std::make_unique<OffsetStage>(field, scene.sampler),
-        "offset = " + formatNumber(*haptics.offset));
-  }
-  MagnetRelief raised;
-  raised.leans = scene.relief.form == ForceForm::conservative;
-  if (objects.size() > 1 && (range.any() || shell.relief > 0)) {
-    add(std::make_unique<OwnerStage>(field, objects),
-        std::to_string(objects.size()) + " objects, some painted");
-    if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(field, objects);
-  }
-  const bool slopes =
-      range.has(MaterialChannel::stiffness) && scene.material_form == ForceForm::conservative;
-  if (range.any() || all) {
-    add(std::make_unique<MaterialStage>(field, scene.sampler, objects, slopes), namesOf(range),
-        bytesOf(objects, [](const FeltObject& o) { return o.material ? o.material->bytes() : 0; }));
-  }
-  std::shared_ptr<const Reliefs> reliefs;
-  if (shell.relief > 0 || all)
-    reliefs = std::make_shared<const Reliefs>(field, scene.sampler, objects);
-  if (plan.lateral || all) {
-    std::vector<bool> stiff;
-    for (const FeltObject& object : objects)
-      stiff.push_back(plan.lateral && !isSteadyAlong(textureBend(object), haptics.force_limit,
-                                                     scene.device_model.value_or(DeviceModel{})));
-    add(std::make_unique<LateralStage>(reliefs, objects, std::move(stiff),
-                                       shell.relief + shell.roughness,
-                                       plan.lateral.value_or(LateralPlan{})),
-        plan.lateral ? plan.lateral_why : "neutral");
-  }
-  if (reliefs) {
-    add(std::make_unique<ReliefStage>(reliefs, shell.relief, scene.relief.form),
-        shell.relief > 0 ? "relief up to " + formatLength(shell.relief) : "neutral",
-        reliefs->bytes());
-    if (shell.relief > 0) raised.reliefs = reliefs;
-  }
-  if (shell.roughness > 0 || all) {
-    add(std::make_unique<RoughnessStage>(field, scene.sampler, objects, shell.roughness,
-                                         scene.relief.form),
-        shell.roughness > 0 ? "roughness up to " + formatLength(range.most.roughness) + " rms"
-                            : "neutral");
-  }
-  const bool painted_friction =
-      std::max(range.most.static_friction, range.most.dynamic_friction) > 0 && range.any();
-  if (haptics.friction || painted_friction) {
-    const Friction friction = scene.haptics.friction.value_or(Friction{});
-    add(std::make_unique<FrictionStage>(field, scene.sampler, iso, friction,
-                                        shell.relief + shell.roughness > 0),
-        haptics.friction ? "friction.static = " + formatNumber(friction.static_coefficient)
-                         : "friction is painted");
-  }
-  const MagnetMaker magnet = [&](const Magnet& spec) {
-    return std::make_unique<MagnetStage>(field, scene.sampler, radius, spec, raised);
-  };
-  addForceLaw(*snapshot, haptics, range, plan, magnet, maxSpeed(field->grid), slopes || all);
-  snapshot->field = std::move(field);
-  return snapshot;
+  return text + " painted";
 }
 
 } // namespace
+
+void HapticSnapshot::add(std::unique_ptr<const ForceStage> stage, std::string reason,
+                         std::size_t bytes) {
+  why.push_back({std::string(stage->name()), std::move(reason), bytes});
+  stages.push_back(std::move(stage));
+}
 
 double reachOf(const HapticProperties& haptics, double relief) {
   return haptics.tip_radius.value_or(0) + relief +
@@ -195,30 +111,89 @@ StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects) {
 
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
-                                                    std::span<const FeltObject> objects,
+                                                    std::span<const FeltObject> felt,
                                                     const StabiliserPlan& plan) {
-  HapticProperties needed = scene.haptics;
-  if (needed.friction && needed.friction->static_coefficient == 0) needed.friction.reset();
-  if (needed.damping == 0.0) needed.damping.reset();
-  if (needed.offset == 0.0) needed.offset.reset();
-  if (needed.magnet && needed.magnet->range * needed.magnet->strength == 0) needed.magnet.reset();
-  return compiled(scene, needed, std::move(field), objects, plan, Unneeded::left_out);
+  HapticProperties haptics = scene.haptics;
+  if (haptics.friction && haptics.friction->static_coefficient == 0) haptics.friction.reset();
+  if (haptics.damping == 0.0) haptics.damping.reset();
+  if (haptics.offset == 0.0) haptics.offset.reset();
+  if (haptics.magnet && haptics.magnet->range * haptics.magnet->strength == 0)
+    haptics.magnet.reset();
+
+  auto snapshot = std::make_shared<HapticSnapshot>();
+  snapshot->base = baseMaterial(haptics);
+  snapshot->objects.assign(felt.begin(), felt.end());
+  const std::span<const FeltObject> objects = snapshot->objects;
+  const PaintedRange range = paintedRange(snapshot->base, objects);
+  const Shell shell = shellOf(range);
+  checkField(field.get(), haptics, shell.relief, shell.roughness);
+  const FieldSampler sampler(*field, scene.sampler);
+  const double radius = haptics.tip_radius.value_or(0);
+  const double iso = radius + haptics.offset.value_or(0) + shell.relief + shell.roughness;
+  const std::string why = haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always";
+  if (haptics.contact == HapticProperties::Contact::ray)
+    snapshot->add(std::make_unique<RayStage>(sampler, iso), why, bytesRead(*field));
+  else
+    snapshot->add(std::make_unique<ProxyStage>(sampler, iso, range.baked ? kBakedSteepness : 1),
+                  why, bytesRead(*field));
+  if (haptics.offset)
+    snapshot->add(std::make_unique<OffsetStage>(sampler),
+                  "offset = " + formatNumber(*haptics.offset));
+  MagnetRelief raised;
+  raised.leans = scene.relief.form == ForceForm::conservative;
+  if (objects.size() > 1 && (range.any() || shell.relief > 0)) {
+    snapshot->add(std::make_unique<OwnerStage>(sampler, objects),
+                  std::to_string(objects.size()) + " objects, some painted");
+    if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(sampler, objects);
+  }
+  const bool slopes =
+      range.has(MaterialChannel::stiffness) && scene.material_form == ForceForm::conservative;
+  if (range.any()) {
+    std::size_t bytes = 0;
+    for (const FeltObject& object : objects)
+      bytes += object.material ? object.material->bytes() : 0;
+    snapshot->add(std::make_unique<MaterialStage>(sampler, objects, slopes), namesOf(range), bytes);
+  }
+  if (shell.relief > 0) raised.reliefs = std::make_shared<const Reliefs>(sampler, objects);
+  if (plan.lateral) {
+    std::vector<bool> stiff;
+    for (const FeltObject& object : objects)
+      stiff.push_back(!isSteadyAlong(textureBend(object), haptics.force_limit,
+                                     scene.device_model.value_or(DeviceModel{})));
+    snapshot->add(std::make_unique<LateralStage>(raised.reliefs, objects, std::move(stiff),
+                                                 shell.relief + shell.roughness, *plan.lateral),
+                  plan.lateral_why);
+  }
+  if (raised.reliefs)
+    snapshot->add(std::make_unique<ReliefStage>(raised.reliefs, shell.relief, scene.relief.form),
+                  "relief up to " + formatLength(shell.relief), raised.reliefs->bytes());
+  if (shell.roughness > 0)
+    snapshot->add(
+        std::make_unique<RoughnessStage>(sampler, objects, shell.roughness, scene.relief.form),
+        "roughness up to " + formatLength(range.most.roughness) + " rms");
+  const bool painted_friction =
+      std::max(range.most.static_friction, range.most.dynamic_friction) > 0 && range.any();
+  if (haptics.friction || painted_friction) {
+    const Friction friction = scene.haptics.friction.value_or(Friction{});
+    snapshot->add(
+        std::make_unique<FrictionStage>(sampler, iso, friction, shell.relief + shell.roughness > 0),
+        haptics.friction ? "friction.static = " + formatNumber(friction.static_coefficient)
+                         : "friction is painted");
+  }
+  std::unique_ptr<const ForceStage> magnet;
+  if (haptics.magnet) {
+    haptics.magnet->strength = plan.softened(haptics.magnet->strength);
+    magnet = std::make_unique<MagnetStage>(sampler, radius, *haptics.magnet, raised);
+  }
+  addForceLaw(*snapshot, haptics, range, plan, std::move(magnet), maxSpeed(field->grid), slopes);
+  snapshot->field = std::move(field);
+  return snapshot;
 }
 
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
                                                     std::span<const FeltObject> objects) {
   return compileStages(scene, std::move(field), objects, planOf(scene, objects));
-}
-
-std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
-                                                       std::shared_ptr<const SurfaceField> field,
-                                                       std::span<const FeltObject> objects) {
-  HapticProperties all = scene.haptics;
-  if (!all.friction) all.friction = Friction{};
-  if (!all.damping) all.damping = 0;
-  if (!all.magnet) all.magnet = Magnet{};
-  return compiled(scene, all, std::move(field), objects, planOf(scene, objects), Unneeded::present);
 }
 
 Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
@@ -232,7 +207,6 @@ Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& 
   const double period = dt > 0 && dt < 1e6 ? dt : 0;
   contact.dt = memory.gap + period;
   if (!tip.allFinite()) {
-    ++memory.bad_tips;
     memory.gap = contact.dt;
     memory.applied.setZero();
     return contact;

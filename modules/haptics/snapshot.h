@@ -21,10 +21,13 @@ struct StageInfo {
 
 struct HapticSnapshot {
   std::shared_ptr<const SurfaceField> field; // with its sample layer; world frame
+  std::vector<FeltObject> objects;
   std::vector<std::unique_ptr<const ForceStage>> stages;
   std::vector<StageInfo> why; // one entry a stage
   StabiliserPlan stabilisers; // what of it is present is a stage; coupling->stiffness is k_c
   Material base;              // what a contact is made of where nothing is painted
+
+  void add(std::unique_ptr<const ForceStage> stage, std::string reason, std::size_t bytes = 0);
 };
 
 // How far from the surface its properties are felt: tip radius plus offset or magnetic range, and
@@ -52,14 +55,8 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::span<const FeltObject> objects,
                                                     const StabiliserPlan& plan);
 
-// For the proof that pruning changes nothing: every stage that has a neutral value is present with
-// it where the scene has none. (A cut-off and an offset have none: they are other laws.)
-std::shared_ptr<const HapticSnapshot> compileAllStages(const Scene& scene,
-                                                       std::shared_ptr<const SurfaceField> field,
-                                                       std::span<const FeltObject> objects = {});
-
 // One servo tick as a pure function of its arguments: dt is passed in, no clock is read.
-// A NaN or infinite tip: no contact, zero force, counted in memory.bad_tips.
+// A NaN or infinite tip: no contact, zero force.
 Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
              double dt) noexcept;
 

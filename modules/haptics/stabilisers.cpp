@@ -33,8 +33,8 @@ std::string reasonFor(double stiffest, double limit, const std::optional<Stabili
 
 } // namespace
 
-double stiffestLaw(const HapticProperties& haptics) {
-  return std::max(haptics.stiffness, haptics.magnet ? haptics.magnet->strength : 0.0);
+double StabiliserPlan::softened(double stiffness) const {
+  return coupling ? inSeries(stiffness, coupling->stiffness) : stiffness;
 }
 
 SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device,
@@ -84,7 +84,8 @@ StabiliserPlan planStabilisers(const HapticProperties& haptics,
     plan.predicted_limit =
         std::min(*plan.predicted_limit, stiffnessLimit(sceneLoop(damped, model)));
   }
-  const double stiffest = stiffestLaw(haptics);
+  const double stiffest =
+      std::max(haptics.stiffness, haptics.magnet ? haptics.magnet->strength : 0.0);
   const bool safe = kMargin * stiffest <= *plan.predicted_limit;
   const Stabilisers wanted = chosen.value_or(Stabilisers{!safe, false});
   if ((!chosen || chosen->coupling) && !isSteadyAlong(bend, haptics.force_limit, model)) {
@@ -104,12 +105,9 @@ StabiliserPlan planStabilisers(const HapticProperties& haptics,
     spec.most = dampingLimit(sampledLoop(model)) / kMargin;
     if (model.encoder_step > 0)
       spec.most = std::min(spec.most, kPassivityNoise / (model.rate * model.encoder_step));
-    if (haptics.magnet) {
-      const double strength = plan.coupling
-                                  ? inSeries(haptics.magnet->strength, plan.coupling->stiffness)
-                                  : haptics.magnet->strength;
-      spec.reserve = 0.5 * strength * haptics.magnet->range * haptics.magnet->range;
-    }
+    if (haptics.magnet)
+      spec.reserve = 0.5 * plan.softened(haptics.magnet->strength) * haptics.magnet->range *
+                     haptics.magnet->range;
     plan.passivity = spec;
   }
   return plan;

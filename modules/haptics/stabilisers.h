@@ -34,10 +34,9 @@ struct StabiliserPlan {
   std::string why; // "stiffness 1e+05 N/m, limit 1001 N/m"; empty without coupling and passivity
   std::string
       lateral_why; // "texture 6514 N/m along the surface at 3.3 N, limit 1001 N/m"; or empty
-};
 
-// The stiffest law of the scene in one direction: spring (and with it sticking friction) or magnet.
-double stiffestLaw(const HapticProperties& haptics);
+  double softened(double stiffness) const; // [N/m], behind the coupling, if any
+};
 
 // The loop of `device` with the scene's own damping.
 SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device,

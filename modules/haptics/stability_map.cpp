@@ -38,9 +38,9 @@ double loadOf(const std::complex<double>& eigenvalue, double whirl) {
 // square.
 double borneAlong(const LocalStiffness& at, const LoopLimits& limits) {
   const double softening = limits.softening(at.material.stiffness);
-  const double spring = at.lateral > 0   ? at.lateral
-                        : limits.coupled ? softening * at.material.stiffness
-                                         : 0;
+  const double spring = at.lateral > 0     ? at.lateral
+                        : limits.coupled() ? softening * at.material.stiffness
+                                           : 0;
   if (!(spring > 0)) return limits.plain;
   const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - at.normal * at.normal.transpose();
   const Eigen::Matrix3d along = flat * at.matrix * flat;
@@ -76,7 +76,7 @@ bool jumps(const LocalStiffness& at) {
 } // namespace
 
 double LoopLimits::softening(double stiffness) const {
-  return coupled && stiffness > 0 ? inSeries(stiffness, coupling) / stiffness : 1;
+  return stiffness > 0 ? inSeries(stiffness, coupling) / stiffness : 1;
 }
 
 LoopLimits loopLimits(const Scene& scene, std::span<const FeltObject> objects) {
@@ -95,7 +95,6 @@ LoopLimits loopLimits(const Scene& scene, std::span<const FeltObject> objects) {
   double least = haptics.damping.value_or(0), most = range.most.damping;
   if (plan) {
     limits.coupling = plan->stiffness;
-    limits.coupled = true;
     least = plan->damping;
     most = std::min(most, plan->most_damping);
   }

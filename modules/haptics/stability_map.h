@@ -1,7 +1,9 @@
 // Where on a surface the sampled loop would buzz, before anyone touches it: K*(x)/K (F3, 2.1.7).
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "core/progress.h"
@@ -19,9 +21,9 @@ struct LoopLimits {
   double tied = 0;   // along what holds the tip so that the coupling damps it in full
   double damped = 0; // where damping helps: along the normal, and while friction sticks
   double whirl = 0;  // b^2 / (m K*): what the device's damping holds against a whirl
-  bool coupled = false;
-  double coupling = 0; // k_c [N/m], where coupled
+  double coupling = std::numeric_limits<double>::infinity(); // k_c [N/m], if any
 
+  bool coupled() const { return std::isfinite(coupling); }
   // k / K of two springs in a row, by which the coupling softens a surface.
   double softening(double stiffness) const;
 };

@@ -1,4 +1,5 @@
 // One term of the force. Stages are immutable and shared; what changes lives in ContactMemory.
+// Field and objects are the snapshot's: a stage views them.
 #pragma once
 
 #include <string_view>

@@ -41,7 +41,7 @@ struct Library {
 
 const std::vector<Library>& libraries() {
   static const std::vector<Library> kLibraries{
-      {"Eigen", {"Eigen/"}, {{"modules/", true}, {"app/", true}}},
+      {"Eigen", {"Eigen/", "unsupported/Eigen/"}, {{"modules/", true}, {"app/", true}}},
       {"OpenMesh", {"OpenMesh/"}, {{"modules/geometry/", false}}},
       {"TBB",
        {"tbb/", "oneapi/"},
@@ -65,9 +65,9 @@ const std::vector<Library>& libraries() {
 // Headers of the system that end in .h; those of C++ have no dot.
 bool isSystem(const std::string& included) {
   if (included.find('.') == std::string::npos) return included.find('/') == std::string::npos;
-  static const Names kSystem{"unistd.h", "fcntl.h",  "sched.h",     "time.h",      "stdlib.h",
-                             "poll.h",   "dirent.h", "immintrin.h", "emmintrin.h", "signal.h",
-                             "dlfcn.h"};
+  static const Names kSystem{"unistd.h",    "fcntl.h",  "sched.h",  "time.h",
+                             "stdlib.h",    "poll.h",   "dirent.h", "immintrin.h",
+                             "emmintrin.h", "signal.h", "dlfcn.h"};
   return kSystem.contains(included) || included.starts_with("sys/");
 }
 

@@ -12,6 +12,7 @@
 #include "haptics/realtime.h"
 #include "haptics/servo_loop.h"
 #include "support/least_time.h"
+#include "support/simulated_device.h"
 
 namespace patina {
 namespace {
@@ -30,17 +31,16 @@ class ResolvedDevice final : public Device {
     std::int64_t ns;
     double force;
   };
-  DeviceState exchange(const Vec3& force, double dt) noexcept override {
+  Vec3 exchange(const Vec3& force, double dt) noexcept override {
     if (count_ < ticks_.size()) ticks_[count_++] = {monotonicNs(), force.norm()};
     return rest_->exchange(force, dt);
   }
-  DeviceInfo info() const override { return rest_->info(); }
   std::vector<Tick> ticks() const { // when the loop has stopped
     return {ticks_.begin(), ticks_.begin() + static_cast<std::ptrdiff_t>(count_)};
   }
 
  private:
-  std::unique_ptr<Device> rest_ = makeReplayDevice({kPlace - Vec3(kDepth, 0, 0)});
+  std::unique_ptr<Device> rest_ = std::make_unique<StillDevice>(kPlace - Vec3(kDepth, 0, 0));
   std::vector<Tick> ticks_ = std::vector<Tick>(60000);
   std::size_t count_ = 0;
 };
@@ -200,7 +200,7 @@ PATINA_TIMED_TEST(FeltEdit, ADabIsFeltInTheNextTicksAndNoTickIsLongBecauseOfIt) 
 
 // For the thread sanitizer: painting, values, undo and a servo that reads meanwhile.
 TEST(FeltEdit, PaintingWhileTheServoReadsTearsNothing) { // T-K20
-  ServoLoop loop(makeReplayDevice({kPlace - Vec3(kDepth, 0, 0)}), 1000);
+  ServoLoop loop(std::make_unique<StillDevice>(kPlace - Vec3(kDepth, 0, 0)), 1000);
   Desk desk({}, [&](const CompiledScene& compiled) { loop.publish(compiled.snapshot); });
   desk.open(oneBall());
   loop.start();

@@ -12,7 +12,7 @@ Vec3 restUnder(const Vec3& force, const Vec3& target) {
   const auto hand = makeHandDevice(Vec3::Zero());
   hand->setTarget(target);
   Vec3 tip;
-  for (int tick = 0; tick < 3000; ++tick) tip = hand->exchange(force, 1e-3).tip;
+  for (int tick = 0; tick < 3000; ++tick) tip = hand->exchange(force, 1e-3);
   return tip;
 }
 
@@ -28,7 +28,7 @@ TEST(HandDevice, NeverPullsHarderThanItMay) {
   hand->setTarget(Vec3(1, 0, 0));
   // Held still by a wall that gives way to more than the hand's most.
   for (int tick = 0; tick < 2000; ++tick)
-    ASSERT_LT(hand->exchange(Vec3(-1.001 * spec.max_force, 0, 0), 1e-3).tip[0], 1e-9);
+    ASSERT_LT(hand->exchange(Vec3(-1.001 * spec.max_force, 0, 0), 1e-3)[0], 1e-9);
 }
 
 TEST(HandDevice, AForceArrivesAfterTheDelayOfTheModel) {
@@ -36,8 +36,8 @@ TEST(HandDevice, AForceArrivesAfterTheDelayOfTheModel) {
   spec.device.delay = 3;
   const auto hand = makeHandDevice(Vec3::Zero(), spec);
   for (int tick = 0; tick < 3; ++tick)
-    EXPECT_EQ(hand->exchange(Vec3(1, 0, 0), 1e-3).tip, Vec3::Zero()) << tick;
-  EXPECT_GT(hand->exchange(Vec3(1, 0, 0), 1e-3).tip[0], 0);
+    EXPECT_EQ(hand->exchange(Vec3(1, 0, 0), 1e-3), Vec3::Zero()) << tick;
+  EXPECT_GT(hand->exchange(Vec3(1, 0, 0), 1e-3)[0], 0);
 }
 
 TEST(HandDevice, TheTipIsReadInWholeStepsOfTheEncoder) {
@@ -46,7 +46,7 @@ TEST(HandDevice, TheTipIsReadInWholeStepsOfTheEncoder) {
   const auto hand = makeHandDevice(Vec3::Zero(), spec);
   hand->setTarget(Vec3(0.01, -0.004, 0));
   for (int tick = 0; tick < 500; ++tick) {
-    const Vec3 counts = hand->exchange(Vec3::Zero(), 1e-3).tip / spec.device.encoder_step;
+    const Vec3 counts = hand->exchange(Vec3::Zero(), 1e-3) / spec.device.encoder_step;
     ASSERT_LT((counts - counts.array().round().matrix()).norm(), 1e-9);
   }
 }
@@ -56,11 +56,11 @@ TEST(HandDevice, DryFrictionHoldsAgainstAnyForceUpToItsOwn) {
   spec.device.coulomb = 0.4;
   const auto held = makeHandDevice(Vec3::Zero(), spec);
   for (int tick = 0; tick < 200; ++tick)
-    ASSERT_EQ(held->exchange(Vec3(0.24, 0.31, 0), 1e-3).tip, Vec3::Zero()); // 0.392 N
+    ASSERT_EQ(held->exchange(Vec3(0.24, 0.31, 0), 1e-3), Vec3::Zero()); // 0.392 N
   // Past it the tip goes to where the hand's spring bears the rest.
   const auto moved = makeHandDevice(Vec3::Zero(), spec);
   Vec3 tip;
-  for (int tick = 0; tick < 3000; ++tick) tip = moved->exchange(Vec3(1, 0, 0), 1e-3).tip;
+  for (int tick = 0; tick < 3000; ++tick) tip = moved->exchange(Vec3(1, 0, 0), 1e-3);
   EXPECT_NEAR(tip[0], (1 - 0.4) / spec.stiffness, 1e-6);
 }
 

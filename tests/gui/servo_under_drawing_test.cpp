@@ -10,6 +10,7 @@
 #include "gui/window_fixture.h"
 #include "haptics/latency.h"
 #include "haptics/realtime.h"
+#include "support/simulated_device.h"
 #include "visualization/camera.h"
 
 namespace patina {
@@ -26,19 +27,18 @@ class WatchedDevice final : public Device {
     double wait = 0, exchange = 0; // [us]
   };
 
-  DeviceState exchange(const Vec3& force, double dt) noexcept override {
+  Vec3 exchange(const Vec3& force, double dt) noexcept override {
     const std::int64_t begin = monotonicNs();
     if (!wait_) wait_.emplace(); // the first tick: in the servo's thread
     const std::optional<std::int64_t> total = wait_->total();
     known_ = known_ && total;
-    const DeviceState state = rest_->exchange(force, dt);
+    const Vec3 tip = rest_->exchange(force, dt);
     if (count_ < ticks_.size())
       ticks_[count_++] = {1e-3 * static_cast<double>(total.value_or(0) - before_),
                           1e-3 * static_cast<double>(monotonicNs() - begin)};
     before_ = total.value_or(0);
-    return state;
+    return tip;
   }
-  DeviceInfo info() const override { return rest_->info(); }
 
   // When the loop has stopped. Absent where the system keeps no account of the wait.
   std::optional<std::vector<Tick>> ticks() const {
@@ -47,7 +47,7 @@ class WatchedDevice final : public Device {
   }
 
  private:
-  std::unique_ptr<Device> rest_ = makeReplayDevice({Vec3(0.99 * kRadius, 0, 0)});
+  std::unique_ptr<Device> rest_ = std::make_unique<StillDevice>(Vec3(0.99 * kRadius, 0, 0));
   std::optional<RunQueueWait> wait_;
   std::int64_t before_ = 0;
   bool known_ = true;

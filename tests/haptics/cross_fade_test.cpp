@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/device.h"
+#include "support/simulated_device.h"
 
 namespace patina {
 namespace {
@@ -148,7 +148,7 @@ TEST(CrossFade, EditsDoNotShakeAStableContact) {
   spec.position = Vec3(0, 0, -1e-3);
   spec.velocity = Vec3(0, 0, -0.1);
   spec.hand_force = Vec3(0, 0, -1);
-  const auto device = makeSimulatedDevice(spec);
+  SimulatedDevice device(spec);
   CrossFade law;
   law.turnTo(soft.get());
   Vec3 force = Vec3::Zero(), tip = spec.position;
@@ -157,7 +157,7 @@ TEST(CrossFade, EditsDoNotShakeAStableContact) {
     if (i < 3000 && i % 33 == 0 && !law.fading())
       law.turnTo(law.felt() == soft.get() ? stiff.get() : soft.get());
     const Vec3 last = tip;
-    tip = device->exchange(force, 1e-3).tip;
+    tip = device.exchange(force, 1e-3);
     force = law.tick(tip, 1e-3).force;
     deepest = std::max(deepest, -tip.z());
     if (i > 11000) fastest = std::max(fastest, (tip - last).norm() / 1e-3);

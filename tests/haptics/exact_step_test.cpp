@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "haptics/device.h"
-
 namespace patina {
 namespace {
 
@@ -47,6 +45,23 @@ TEST(ExactStep, ASoftSpringIsAlmostNone) {
   EXPECT_NEAR(soft.xv / none.xv, 1, 1e-11);
 }
 
+// x = b dt/m; (1 - e^-x)/x and its integral as they are, or where they lose their digits by series.
+TEST(HeldStep, WithoutASpringIsTheClosedFormHoweverMuchItIsDamped) {
+  const double m = .1, dt = 1e-3;
+  for (const double x : {0., 1e-12, 1e-6, 1e-3, .3, 20., 1e3}) {
+    const HeldStep step = heldStep({m, x * m / dt, 0, 0}, dt);
+    const double c = x < 1e-4 ? 1 - x / 2 + x * x / 6 : -std::expm1(-x) / x;
+    const double d = x < 1e-2 ? .5 - x / 6 + x * x / 24 - x * x * x / 120 : (1 - c) / x;
+    EXPECT_NEAR(step.xx, 1, 1e-13) << x;
+    EXPECT_EQ(step.vx, 0) << x;
+    EXPECT_NEAR(step.vv, std::exp(-x), 1e-13 * std::exp(-x)) << x;
+    EXPECT_NEAR(step.xv / (c * dt), 1, 1e-13) << x;
+    EXPECT_NEAR(step.vf / (c * dt / m), 1, 1e-13) << x;
+    EXPECT_NEAR(step.xf / (d * dt * dt / m), 1, 1e-12) << x;
+  }
+}
+
+// T-ST1: a held force gives the same motion however finely its period is stepped.
 TEST(ExactStep, HalvesMakeTheWhole) {
   for (const double friction : {0., .2})
     for (const double spring : {0., 500.}) {

@@ -5,8 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "haptics/device.h"
 #include "haptics/friction_stage.h"
+#include "haptics/neutral_stages.h"
+#include "support/simulated_device.h"
 
 namespace patina {
 namespace {
@@ -93,7 +94,7 @@ TEST(Friction, RestsOnASlopeWithoutCreep) {
     spec.mass = 0.1;
     spec.damping = 5; // settles within the ramp; 0.5 needs half a minute
     spec.position = Vec3(0, 0, -weight * std::cos(theta) / 500);
-    const auto device = makeSimulatedDevice(spec);
+    SimulatedDevice device(spec);
     ContactMemory memory;
     Vec3 tip = spec.position, force = Vec3::Zero();
     Vec3 after_settling = tip;
@@ -102,7 +103,7 @@ TEST(Friction, RestsOnASlopeWithoutCreep) {
     for (int i = 0; i < end; ++i) {
       const double share = std::min(1.0, static_cast<double>(i) / ramp);
       const Vec3 load(share * weight * std::sin(theta), 0, -weight * std::cos(theta));
-      tip = device->exchange(force + load, kPeriod).tip;
+      tip = device.exchange(force + load, kPeriod);
       if (tip.x() > 5e-3) break; // it slides
       force = tick(*snapshot, memory, tip, kPeriod).force;
       if (i == settle) after_settling = tip;
@@ -144,7 +145,7 @@ TEST(Friction, StickSlipPeriodFollowsItsClosedForm) {
     SimulatedDeviceSpec spec;
     spec.mass = m;
     spec.damping = 0.02; // against the sampled spring's own gain, K dt / 2
-    const auto device = makeSimulatedDevice(spec);
+    SimulatedDevice device(spec);
     ContactMemory memory;
     tick(*snapshot, memory, Vec3(0, 0, 1e-5), dt);
     glide(*snapshot, memory, Vec3(0, 0, -d), 1e-6, dt);
@@ -153,7 +154,7 @@ TEST(Friction, StickSlipPeriodFollowsItsClosedForm) {
     std::vector<double> periods;
     for (int i = 0; i * dt < 6.5 * expected; ++i) { // the held depth keeps the normal force
       const double t = i * dt;
-      x = device->exchange(Vec3(friction + k * (V * t - x), 0, 0), dt).tip.x();
+      x = device.exchange(Vec3(friction + k * (V * t - x), 0, 0), dt).x();
       friction = tick(*snapshot, memory, Vec3(x, 0, -d), dt).force.x();
       const bool onset = memory.slipping && !was_slipping;
       was_slipping = memory.slipping;
@@ -170,7 +171,7 @@ TEST(Friction, StickSlipPeriodFollowsItsClosedForm) {
 TEST(Friction, ZeroIsBitwiseTheFrictionlessPath) {
   const Field sphere = sphereField();
   const auto without = compileStages(sceneOf(500), sphere);
-  const auto with = compileAllStages(withFriction(sceneOf(500), 0, 0), sphere);
+  const auto with = withNeutralStages(withFriction(sceneOf(500), 0, 0), sphere);
   ContactMemory a, b;
   std::mt19937 random(1);
   Vec3 tip(0, 0, 0.0305);
@@ -253,12 +254,12 @@ TEST(Friction, MassComesToRestWithoutChatter) {
   spec.position = Vec3(-5e-3, 0, -2e-3);
   spec.velocity = Vec3(0.1, 0, 0);
   spec.hand_force = Vec3(0, 0, -1);
-  const auto device = makeSimulatedDevice(spec);
+  SimulatedDevice device(spec);
   ContactMemory memory;
   Vec3 tip = spec.position, last = tip, force = Vec3::Zero();
   for (int i = 0; i < 10000; ++i) {
     last = tip;
-    tip = device->exchange(force, kPeriod).tip;
+    tip = device.exchange(force, kPeriod);
     force = tick(*snapshot, memory, tip, kPeriod).force;
   }
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);
@@ -275,12 +276,12 @@ TEST(Friction, DampingActsOnTheStuckPoint) {
   spec.position = Vec3(0, 0, -2e-3);
   spec.velocity = Vec3(0.02, 0, 0);
   spec.hand_force = Vec3(0, 0, -3);
-  const auto device = makeSimulatedDevice(spec);
+  SimulatedDevice device(spec);
   ContactMemory memory;
   Vec3 tip = spec.position, last = tip, force = Vec3::Zero();
   for (int i = 0; i < 8000; ++i) {
     last = tip;
-    tip = device->exchange(force, kPeriod).tip;
+    tip = device.exchange(force, kPeriod);
     force = tick(*snapshot, memory, tip, kPeriod).force;
   }
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);
@@ -308,7 +309,7 @@ TEST(Friction, TwoWallsGripByTheWedgeFactor) {
       contact.material.static_friction = contact.material.dynamic_friction = mu;
       const Field groove =
           cubeField([=](const Vec3& p) { return std::min(left.dot(p), right.dot(p)); }, 0.4e-3, 80);
-      const FrictionStage stage(groove, Sampler::high, 0, Friction{}, false);
+      const FrictionStage stage(FieldSampler(*groove, Sampler::high), 0, Friction{}, false);
       const double reach = mu * d / std::sin(alpha);
       for (const double dragged : {0.99 * reach, 1.01 * reach, 5 * reach}) {
         ContactMemory memory;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/device.h"
+#include "haptics/exact_step.h"
 
 namespace patina {
 namespace {
@@ -89,7 +89,7 @@ TEST(Magnet, ClosedLoopsDoNoWork) {
 double amplitudeRatio(double K, double k_m, double m, double b, double T) {
   const double w = 4e-3;
   const auto snapshot = compileStages(magnetic(K, w, k_m), planeField(0x1p-10));
-  const HeldForceStep step = heldForceStep(m, b, T);
+  const HeldStep step = heldStep({m, b, 0, 0}, T);
   double x = 0.5 * w, v = 0;
   ContactMemory memory;
   std::vector<double> peaks;
@@ -98,8 +98,8 @@ double amplitudeRatio(double K, double k_m, double m, double b, double T) {
     const double force = tick(*snapshot, memory, Vec3(0, 0, x), T).force.z();
     last_v = v;
     last_x = x;
-    x = last_x + step.c * last_v + step.d * force;
-    v = step.a * last_v + step.e * force;
+    x = last_x + step.xv * last_v + step.xf * force;
+    v = step.vv * last_v + step.vf * force;
     if (last_v > 0 && v <= 0) {
       // The top lies between two samples: exact for a constant acceleration.
       const double acceleration = (v - last_v) / T;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/cross_fade.h"
+#include "haptics/neutral_stages.h"
 #include "haptics/painted_fixture.h"
 
 namespace patina {
@@ -58,7 +59,7 @@ TEST(PulledRelief, OfNoHeightChangesNoBit) {
   const auto without = compileStages(scene, plane.field);
   const auto with = compiledWith(scene, black, plane.field);
   EXPECT_EQ(with->stages.size(), without->stages.size());
-  const auto all = compileAllStages(scene, plane.field, std::span(&black, 1));
+  const auto all = withNeutralStages(scene, plane.field, std::span(&black, 1));
   ContactMemory a, b;
   std::mt19937 random(2);
   Vec3 tip(0, 0, 1e-3);

@@ -94,7 +94,7 @@ class WanderingDevice final : public Device {
   static constexpr int kWarmUp = 500;
   static constexpr int kTicks = 6000;
 
-  DeviceState exchange(const Vec3&, double) noexcept override {
+  Vec3 exchange(const Vec3&, double) noexcept override {
     if (tick_ == kWarmUp) before = costOfThisThread();
     if (tick_ == kTicks) {
       after = costOfThisThread();
@@ -102,14 +102,13 @@ class WanderingDevice final : public Device {
     }
     const int phase = tick_++ % 1000;
     const double s = phase * 1e-3;
-    if (phase < 400) return {Vec3(0.01 * std::sin(40 * s), 0, 0.021 - 0.003 * s), false, false};
-    if (phase < 600) return {Vec3(0, 0, 0.02 - 0.05 * (s - 0.4)), false, false};
-    if (phase < 700) return {Vec3(0.03 + 2e-3 * (phase % 2), 0.001, 0.002), false, false};
-    if (phase < 750) return {Vec3(1, 1, 1), false, false};
-    if (phase < 760) return {Vec3::Constant(std::nan("")), false, false};
-    return {Vec3(0, 0, phase % 2 ? 0.05 : 0.015), false, false};
+    if (phase < 400) return Vec3(0.01 * std::sin(40 * s), 0, 0.021 - 0.003 * s);
+    if (phase < 600) return Vec3(0, 0, 0.02 - 0.05 * (s - 0.4));
+    if (phase < 700) return Vec3(0.03 + 2e-3 * (phase % 2), 0.001, 0.002);
+    if (phase < 750) return Vec3(1, 1, 1);
+    if (phase < 760) return Vec3::Constant(std::nan(""));
+    return Vec3(0, 0, phase % 2 ? 0.05 : 0.015);
   }
-  DeviceInfo info() const override { return {"wandering", 0, 0, ""}; }
 
   Cost before, after;
   std::atomic<bool> done{false};

@@ -8,7 +8,7 @@
 #include "geometry/shapes.h"
 #include "haptics/contact_fixture.h"
 #include "haptics/coupling_stage.h"
-#include "haptics/device.h"
+#include "haptics/exact_step.h"
 #include "haptics/stabilisers.h"
 
 namespace patina {
@@ -99,7 +99,7 @@ double growth(const Scene& scene, const Field& field, const Vec3& rest, const Ve
   const auto snapshot = compileStages(scene, field);
   const DeviceModel device = scene.device_model.value_or(DeviceModel{});
   const double period = 1 / device.rate;
-  const HeldForceStep step = heldForceStep(device.mass, device.damping, period);
+  const HeldStep step = heldStep({device.mass, device.damping, 0, 0}, period);
   ContactMemory memory;
   Vec3 press = Vec3::Zero();
   for (int i = 0; i < 20; ++i) press = -tick(*snapshot, memory, rest, period).force; // settled
@@ -108,8 +108,8 @@ double growth(const Scene& scene, const Field& field, const Vec3& rest, const Ve
   const int second = static_cast<int>(std::lround(device.rate));
   for (int i = 0; i < 8 * second; ++i) {
     const Vec3 force = tick(*snapshot, memory, x, period).force + press;
-    x += step.c * v + step.d * force;
-    v = step.a * v + step.e * force;
+    x += step.xv * v + step.xf * force;
+    v = step.vv * v + step.vf * force;
     if (i / second == 1) early += v.squaredNorm();
     if (i / second == 7) late += v.squaredNorm();
   }
@@ -183,16 +183,16 @@ TEST(StabilityRatio, TheCouplingTakesItBelowTheLimitWhereverTheWallAloneIsNot) {
   EXPECT_LT(ratioAt(scene, sphereField(), point), 0.02);
   scene.stabilisers = Stabilisers{true, false};
   const LoopLimits limits = loopLimits(scene);
-  EXPECT_TRUE(limits.coupled);
+  EXPECT_TRUE(limits.coupled());
   const CouplingPlan plan = planCoupling(scene.haptics, DeviceModel{});
   EXPECT_NEAR(ratioAt(scene, sphereField(), point),
               limitWith(plan.damping) / inSeries(1e5, plan.stiffness), 0.02);
   EXPECT_GT(ratioAt(scene, sphereField(), point), 1.5);
   // By itself, once something is known of the device.
   scene.stabilisers.reset();
-  EXPECT_FALSE(loopLimits(scene).coupled);
+  EXPECT_FALSE(loopLimits(scene).coupled());
   scene.device_model = DeviceModel{};
-  EXPECT_TRUE(loopLimits(scene).coupled);
+  EXPECT_TRUE(loopLimits(scene).coupled());
 }
 
 // K d / (R + d) along a narrow bowl, behind a coupling: damped by the square of d / (R + d).
@@ -218,14 +218,14 @@ TEST(StabilityRatio, AWhirlNeedsDampingEvenWhereEachDirectionIsSoft) {
     at.matrix << 300, -c, 0, c, 300, 0, 0, 0, 100;
     const double ratio = stabilityRatio(at, scene, loopLimits(scene));
     EXPECT_LT(ratio, 0.95 * limitWith(0) / 300);
-    const HeldForceStep step = heldForceStep(0.1, 0.5, 1e-3);
+    const HeldStep step = heldStep({0.1, 0.5, 0, 0}, 1e-3);
     for (const double scale : {0.9 * ratio, 1.1 * ratio}) {
       Vec3 x(1e-3, 0, 0), v = Vec3::Zero();
       double early = 0, late = 0;
       for (int i = 0; i < 40000; ++i) {
         const Vec3 force = -scale * at.matrix * x;
-        x += step.c * v + step.d * force;
-        v = step.a * v + step.e * force;
+        x += step.xv * v + step.xf * force;
+        v = step.vv * v + step.vf * force;
         if (i >= 10000 && i < 20000) early += v.squaredNorm();
         if (i >= 30000) late += v.squaredNorm();
       }

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "field/merge_fields.h"
+#include "haptics/neutral_stages.h"
 #include "haptics/painted_fixture.h"
 
 namespace patina {
@@ -95,7 +96,7 @@ TEST(CompileStages, PruningChangesNoForce) {
   for (const Scene& scene : {sceneOf(500), damped, withFriction(sceneOf(500), 0.5, 0.3), finite,
                              warm, coupled, watched}) {
     const auto pruned = compileStages(scene, sphere);
-    const auto full = compileAllStages(scene, sphere);
+    const auto full = withNeutralStages(scene, sphere);
     EXPECT_GE(full->stages.size(), 9U); // a coupling is spring and damping in one
     expectSameForces(*pruned, *full, Vec3(0, 0, 0.0302),
                      [](const Vec3& tip) { return std::abs(tip.norm() - 0.03) > 6e-3; });
@@ -122,7 +123,7 @@ TEST(CompileStages, PruningChangesNoForceWherePaintIsFelt) {
                                    painted(MaterialChannel::stiffness, 900), both}) {
     const std::vector<FeltObject> objects{object};
     expectSameForces(*compileStages(scene, made.field, objects),
-                     *compileAllStages(scene, made.field, objects), Vec3(0, 0, 1e-3),
+                     *withNeutralStages(scene, made.field, objects), Vec3(0, 0, 1e-3),
                      strayedFromTop);
   }
 }
@@ -154,7 +155,7 @@ TEST(CompileStages, PruningChangesNoForceOfAUnion) {
                             .material;
   for (const auto& objects : {plain, painted})
     expectSameForces(*compileStages(scene, field, objects),
-                     *compileAllStages(scene, field, objects), Vec3(0, 0, 2e-3), strayedFromTop);
+                     *withNeutralStages(scene, field, objects), Vec3(0, 0, 2e-3), strayedFromTop);
 }
 
 TEST(CompileStages, RefusesAFieldThatCannotServe) {

@@ -100,7 +100,7 @@ TEST(PaintedStiffness, FromOneToTenMillionAcrossACellStaysBounded) {
                     coupled ? "coupled" : "bare",
                     form == ForceForm::literal ? "literal" : "conservative", 1e3 * x,
                     name(run.verdict), run.rms_velocity, run.energy_gained, 1e3 * run.max_depth);
-        EXPECT_TRUE(run.last_position.allFinite());
+        EXPECT_TRUE(std::isfinite(run.rms_velocity));
         EXPECT_LE(run.max_force, 3.3);
         EXPECT_EQ(run.fault_ticks, 0u);
         if (coupled) {
