@@ -7,6 +7,7 @@
 
 #include "haptics/coupling_stage.h"
 #include "haptics/hold.h"
+#include "haptics/painted_range.h"
 
 namespace patina {
 namespace {
@@ -28,10 +29,13 @@ struct LateralStage::Height {
 };
 
 LateralStage::LateralStage(std::shared_ptr<const Reliefs> reliefs,
-                           std::span<const FeltObject> objects, std::vector<bool> stiff,
-                           double shell, const LateralPlan& plan)
-    : reliefs_(std::move(reliefs)), stiff_(std::move(stiff)), shell_(shell), plan_(plan) {
-  for (const FeltObject& object : objects) object_from_world_.push_back(object.object_from_world);
+                           std::span<const FeltObject> objects, double shell,
+                           const LateralPlan& plan)
+    : reliefs_(std::move(reliefs)), shell_(shell), plan_(plan) {
+  for (const FeltObject& object : objects) {
+    object_from_world_.push_back(object.object_from_world);
+    stiff_.push_back(textureBend(object) > plan.steady_bend);
+  }
 }
 
 LateralStage::Height LateralStage::heightAt(const Contact& contact, const Vec3& aside,

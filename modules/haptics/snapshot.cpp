@@ -133,12 +133,7 @@ std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene, const HapticP
   if (shell.relief > 0 || all)
     reliefs = std::make_shared<const Reliefs>(field, scene.sampler, objects);
   if (plan.lateral || all) {
-    std::vector<bool> stiff;
-    for (const FeltObject& object : objects)
-      stiff.push_back(plan.lateral && !isSteadyAlong(textureBend(object), haptics.force_limit,
-                                                     scene.device_model.value_or(DeviceModel{})));
-    add(std::make_unique<LateralStage>(reliefs, objects, std::move(stiff),
-                                       shell.relief + shell.roughness,
+    add(std::make_unique<LateralStage>(reliefs, objects, shell.relief + shell.roughness,
                                        plan.lateral.value_or(LateralPlan{})),
         plan.lateral ? plan.lateral_why : "neutral");
   }

@@ -88,8 +88,8 @@ TEST_F(FeltPaints, CurvatureOfReliefIsKnownWhereThereIsADevice) {
     EXPECT_GT(limit.curvature, 0);
     EXPECT_EQ(compiled.paint.objects[0].bend, limit.curvature);
     EXPECT_EQ(compiled.snapshot->stabilisers.lateral.has_value(),
-              !isSteadyAlong(limit.curvature, compiled.scene.haptics.force_limit,
-                             *compiled.scene.device_model));
+              limit.curvature >
+                  steadyBend(compiled.scene.haptics.force_limit, *compiled.scene.device_model));
   }
 }
 
