@@ -48,9 +48,10 @@ std::optional<Worst> worstRelief(const CompiledScene& compiled) {
   for (std::size_t i = 0; i < compiled.paint.relief.size(); ++i) {
     if (!compiled.paint.relief[i].felt) continue;
     const SceneObject& object = compiled.scene.objects[i];
-    const ReliefLimit limit = reliefLimit(
-        *compiled.objects[i]->mesh, object.paint->layout, *compiled.paint.relief[i].felt,
-        compiled.scene.relief.height, compiled.scene.device_model);
+    const ReliefLimit limit =
+        reliefLimit(*compiled.objects[i]->mesh, object.paint->layout,
+                    *compiled.paint.relief[i].felt, compiled.scene.relief.height,
+                    compiled.scene.device_model, compiled.scene.haptics.force_limit);
     const bool worse = !worst || std::pair(excess(limit), limit.highest) >
                                      std::pair(excess(worst->limit), worst->limit.highest);
     if (limit.highest > 0 && worse) worst = Worst{limit, object.name};
@@ -97,7 +98,8 @@ void describeRelief(const CompiledScene& compiled, Json& json, TextRows& rows) {
     const bool exceeded = limit.highest > *limit.admissible;
     relief.set("admissible", *limit.admissible);
     relief.set("exceeded", exceeded);
-    text += "; at 1 N the device bears " + formatLength(*limit.admissible) +
+    text += "; at " + formatNumber(compiled.scene.haptics.force_limit) +
+            " N, the force limit, the device bears " + formatLength(*limit.admissible) +
             (exceeded ? ": it will buzz, smooth it" : "");
   }
   json.set("relief", std::move(relief));

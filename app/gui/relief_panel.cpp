@@ -48,7 +48,7 @@ std::optional<ReliefLimit> worstLimit(const CompiledScene& compiled, const Progr
     const SceneObject& object = compiled.scene.objects[i];
     const ReliefLimit limit =
         reliefLimit(*object.mesh, object.paint->layout, *felt[i].felt, compiled.scene.relief.height,
-                    compiled.scene.device_model);
+                    compiled.scene.device_model, compiled.scene.haptics.force_limit);
     if (limit.highest > 0 && (!worst || severity(limit) > severity(*worst))) worst = limit;
   }
   return worst;
@@ -168,13 +168,14 @@ void ReliefPanel::measure(std::shared_ptr<const CompiledScene> scene) {
       if (!limit) return;
       const bool beyond = limit->admissible && limit->highest > *limit->admissible;
       QString words = tr("Highest: %1.").arg(inWords(limit->highest));
+      const QString press = QString::number(scene->scene.haptics.force_limit);
       if (limit->admissible)
-        words +=
-            beyond
-                ? tr(" Beyond %1 it may buzz on this device when it is pressed with 1 N: "
-                     "lower it, or smooth it.")
-                      .arg(inWords(*limit->admissible))
-                : tr(" Up to %1 is calm on this device at 1 N.").arg(inWords(*limit->admissible));
+        words += beyond
+                     ? tr(" Beyond %1 it may buzz on this device when it is pressed with %2 N, the "
+                          "force limit: lower it, or smooth it.")
+                           .arg(inWords(*limit->admissible), press)
+                     : tr(" Up to %1 is calm on this device at %2 N, the force limit.")
+                           .arg(inWords(*limit->admissible), press);
       note_->setText(words);
       note_->setProperty("bad", beyond);
       note_->setProperty("quiet", !beyond);

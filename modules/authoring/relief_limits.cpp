@@ -127,7 +127,7 @@ std::vector<float> BendMap::byTile(const TiledImage& image, const TiledImage* be
 
 ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
                         const TiledImage& relief, double height,
-                        const std::optional<DeviceModel>& device) {
+                        const std::optional<DeviceModel>& device, double force_limit) {
   double low = 0, high = 0;
   for (std::size_t t = 0; t < relief.tileCount(); ++t)
     if (const auto& tile = relief.sharedTile(t)) {
@@ -147,7 +147,7 @@ ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
   limit.wavelength = 2 * M_PI * std::sqrt(0.5 * scale * (high - low) / limit.curvature);
   if (device) {
     const double stiffness = 2 * device->damping * device->rate / (1 + 2 * device->delay);
-    limit.admissible = limit.highest * stiffness / limit.curvature; // at P = 1 N
+    limit.admissible = limit.highest * stiffness / (force_limit * limit.curvature);
   }
   return limit;
 }

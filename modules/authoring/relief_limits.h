@@ -25,8 +25,9 @@ struct ReliefLimit {
   // [m], 2 pi sqrt(amplitude / curvature), amplitude half the difference of highest and lowest: of
   // a sine as curved. 0 if flat.
   double wavelength = 0;
-  // [m] of `highest` at 1 N on the scene's device: of a sine 2 b lambda^2 / (4 pi^2 P T). Absent
-  // without a device and for a relief without curvature.
+  // [m] of `highest` on the device, pressed as hard as the force limit P lets the servo press
+  // back: of a sine 2 b lambda^2 / (4 pi^2 P T). Absent without a device and for a relief without
+  // curvature.
   std::optional<double> admissible;
 };
 // The h'' of ReliefLimit for images of one size on one layout, kept by tile: a version that shares
@@ -49,9 +50,9 @@ class BendMap {
   std::unique_ptr<Impl> impl_;
 };
 
-// `mesh` in metres, `relief` of one channel. Parallel.
+// `mesh` in metres, `relief` of one channel, force_limit > 0 [N]. Parallel.
 ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
                         const TiledImage& relief, double height,
-                        const std::optional<DeviceModel>& device);
+                        const std::optional<DeviceModel>& device, double force_limit);
 
 } // namespace patina

@@ -12,8 +12,8 @@ double inSeries(double stiffness, double coupling) noexcept;
 // point by a spring k_c in series with the surface's own, and damped (dampWalls; B is the plan's,
 // or the material's where that damps more, up to most_damping):
 //   F = k (p - x) - B v across the walls,  k = K k_c / (K + k_c).
-// Along a single wall it damps what the surface's curvature holds, that is by B s^2 where the
-// contact point keeps back a share s of the tip's motion; s = d / (R + d) in a bowl, 0 on a plane.
+// Along them it damps what the surface's curvature holds, that is by B s^2 where the contact point
+// keeps back a share s of the tip's motion; s = d / (R + d) in a bowl, 0 on a plane.
 class CouplingStage final : public ForceStage {
  public:
   CouplingStage(double coupling, double damping, double most_damping, bool magnetic = false)

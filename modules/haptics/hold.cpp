@@ -1,5 +1,8 @@
 #include "haptics/hold.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace patina {
 namespace {
 
@@ -7,14 +10,30 @@ constexpr double kApart = 0.2; // sine of the angle from which on a wall is anot
 
 } // namespace
 
-Hold::Hold(const Contact& contact) noexcept : contact_(&contact) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.walls); ++i) {
-    const Vec3& normal = contact.wall[i].normal;
-    const Vec3 own = normal - across(normal);
-    const double length = own.norm();
-    if (i > 0 && length < kApart) continue;
-    wall_[static_cast<std::size_t>(count_)] = i;
-    axis_[static_cast<std::size_t>(count_++)] = i > 0 ? Vec3(own / length) : normal;
+Hold::Hold(const Contact& contact) noexcept {
+  for (int i = 0; i < contact.walls; ++i) add(contact.wall[static_cast<std::size_t>(i)]);
+}
+
+void Hold::add(const Contact::WallLoad& wall) noexcept {
+  const auto along = [&](const Contact::WallLoad& other) { return other.normal.dot(wall.normal); };
+  const auto end = wall_.begin() + count_;
+  const auto nearest = std::max_element(
+      wall_.begin(), end, [&](const auto& a, const auto& b) { return along(a) < along(b); });
+  // What faces a wall is in its plane, but not a part of it.
+  const bool same =
+      nearest != end && along(*nearest) > 0 && (wall.normal - across(wall.normal)).norm() < kApart;
+  if (same) {
+    const Vec3 sum = nearest->load * nearest->normal + wall.load * wall.normal;
+    const double load = sum.norm();
+    if (load > 0) *nearest = {sum / load, load};
+  } else {
+    wall_[static_cast<std::size_t>(count_++)] = wall;
+  }
+  const int count = std::exchange(count_, 0);
+  for (; count_ < count; ++count_) {
+    const auto i = static_cast<std::size_t>(count_);
+    const Vec3& normal = wall_[i].normal;
+    axis_[i] = count_ > 0 ? Vec3((normal - across(normal)).normalized()) : normal;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "haptics/coupling_stage.h"
 #include "haptics/hold.h"
+#include "haptics/painted_range.h"
 
 namespace patina {
 namespace {
@@ -28,10 +29,11 @@ struct LateralStage::Height {
 };
 
 LateralStage::LateralStage(std::shared_ptr<const Reliefs> reliefs,
-                           std::span<const FeltObject> objects, std::vector<bool> stiff,
-                           double shell, const LateralPlan& plan)
-    : reliefs_(std::move(reliefs)), objects_(objects), stiff_(std::move(stiff)), shell_(shell),
-      plan_(plan) {}
+                           std::span<const FeltObject> objects, double shell,
+                           const LateralPlan& plan)
+    : reliefs_(std::move(reliefs)), objects_(objects), shell_(shell), plan_(plan) {
+  for (const FeltObject& object : objects) stiff_.push_back(textureBend(object) > plan.steady_bend);
+}
 
 LateralStage::Height LateralStage::heightAt(const Contact& contact, const Vec3& aside,
                                             ContactMemory& memory) const noexcept {

@@ -21,15 +21,16 @@ namespace patina {
 // place, never uphill. Relief and roughness stages read at s + u; their force, by the gradient of U
 // along s with u held, is then B du/T + k_l u along the surface: stiffness no more than k_l, that
 // of P h'' and k_l in series, and damped as far as it is stiff. What a hop from one valley to the
-// next frees goes into B. Along two walls u has their line, on three it is zero.
+// next frees goes into B. Along two walls (hold.h) u has their line, on three it is zero. s itself
+// stays on the line of two walls however nearly they are one (pull_back.h).
 //
-// Ahead of relief and roughness, behind what knows the material. Objects that are not `stiff` are
-// felt as without it: u = 0, k_l without bound.
+// Ahead of relief and roughness, behind what knows the material. Objects of a texture that is
+// steady by the plan are felt as without it: u = 0, k_l without bound.
 class LateralStage final : public ForceStage {
  public:
-  // stiff: by object. reliefs: null where there are none.
+  // reliefs: null where there are none.
   LateralStage(std::shared_ptr<const Reliefs> reliefs, std::span<const FeltObject> objects,
-               std::vector<bool> stiff, double shell, const LateralPlan& plan);
+               double shell, const LateralPlan& plan);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "lateral coupling"; }
 
@@ -39,8 +40,8 @@ class LateralStage final : public ForceStage {
 
   std::shared_ptr<const Reliefs> reliefs_;
   std::span<const FeltObject> objects_;
-  std::vector<bool> stiff_;
-  double shell_; // [m], over everything that is pulled
+  std::vector<bool> stiff_; // by object
+  double shell_;            // [m], over everything that is pulled
   LateralPlan plan_;
 };
 

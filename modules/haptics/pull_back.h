@@ -15,7 +15,8 @@ Vec3 pulledBack(const FieldSampler& sampler, const Vec3& q, const Vec3& n, doubl
                 const Vec3& along) noexcept;
 
 // The same at contact.surface for a contact held by one wall. Two leave J only the line they have
-// in common, three nothing.
+// in common, three nothing; also where Hold takes two for one, because the contact point stays on
+// their line all the same.
 Vec3 pulledBack(const FieldSampler& sampler, const Contact& contact, const Vec3& along) noexcept;
 
 } // namespace patina

@@ -18,6 +18,7 @@ void notTouching(Contact& contact) noexcept {
   contact.normal.setZero();
   contact.slope.setZero();
   contact.depth = 0;
+  contact.walls = 0;
 }
 
 // d -= gap, and the normal leans by `slope` more. n - slope is longer than 1: of a potential, the

@@ -156,11 +156,7 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   }
   if (shell.relief > 0) raised.reliefs = std::make_shared<const Reliefs>(sampler, objects);
   if (plan.lateral) {
-    std::vector<bool> stiff;
-    for (const FeltObject& object : objects)
-      stiff.push_back(!isSteadyAlong(textureBend(object), haptics.force_limit,
-                                     scene.device_model.value_or(DeviceModel{})));
-    snapshot->add(std::make_unique<LateralStage>(raised.reliefs, objects, std::move(stiff),
+    snapshot->add(std::make_unique<LateralStage>(raised.reliefs, objects,
                                                  shell.relief + shell.roughness, *plan.lateral),
                   plan.lateral_why);
   }

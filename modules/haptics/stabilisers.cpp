@@ -63,11 +63,12 @@ LateralPlan planLateral(const HapticProperties& haptics, const DeviceModel& devi
   const CouplingPlan normal = planCoupling(haptics, device);
   const double held = (0.5 + device.delay) / device.rate; // mean age of what is applied
   const double steady = std::sqrt(2 * device.damping * normal.damping) / held;
-  return {std::clamp(steady, kLeastLateral * normal.stiffness, normal.stiffness), normal.damping};
+  return {std::clamp(steady, kLeastLateral * normal.stiffness, normal.stiffness), normal.damping,
+          steadyBend(haptics.force_limit, device)};
 }
 
-bool isSteadyAlong(double bend, double force_limit, const DeviceModel& device) {
-  return bend == 0 || kMargin * force_limit * bend <= stiffnessLimit(sampledLoop(device));
+double steadyBend(double force_limit, const DeviceModel& device) {
+  return stiffnessLimit(sampledLoop(device)) / (kMargin * force_limit);
 }
 
 StabiliserPlan planStabilisers(const HapticProperties& haptics,
@@ -88,7 +89,7 @@ StabiliserPlan planStabilisers(const HapticProperties& haptics,
       std::max(haptics.stiffness, haptics.magnet ? haptics.magnet->strength : 0.0);
   const bool safe = kMargin * stiffest <= *plan.predicted_limit;
   const Stabilisers wanted = chosen.value_or(Stabilisers{!safe, false});
-  if ((!chosen || chosen->coupling) && !isSteadyAlong(bend, haptics.force_limit, model)) {
+  if ((!chosen || chosen->coupling) && bend > steadyBend(haptics.force_limit, model)) {
     plan.lateral = planLateral(haptics, model);
     plan.lateral_why = "texture " + formatNumber(std::round(haptics.force_limit * bend)) +
                        " N/m along the surface at " + formatNumber(haptics.force_limit) +

@@ -20,8 +20,10 @@ struct CouplingPlan {
 
 // Of relief and roughness along the surface (lateral_stage.h).
 struct LateralPlan {
-  double stiffness = 0;                                      // k_l [N/m]
-  double damping = 0;                                        // B [N s/m], beside it
+  double stiffness = 0; // k_l [N/m]
+  double damping = 0;   // B [N s/m], beside it
+  // [1/m], steadyBend(): objects of no more are felt without.
+  double steady_bend = std::numeric_limits<double>::infinity();
   double coupling = std::numeric_limits<double>::infinity(); // k_c [N/m] of the coupling, if any
 };
 
@@ -54,10 +56,10 @@ CouplingPlan planCoupling(const HapticProperties& haptics, const DeviceModel& de
 // k_l <= sqrt(2 b B) / (T/2 + n T).
 LateralPlan planLateral(const HapticProperties& haptics, const DeviceModel& device);
 
-// Whether a texture of second derivative `bend` [1/m] leaves a margin of two along the surface,
+// The largest second derivative [1/m] of a texture that leaves a margin of two along the surface,
 // where the device alone damps, however hard it is pressed. The servo never gives more than
-// force_limit [N], so that no more than this times `bend` is felt.
-bool isSteadyAlong(double bend, double force_limit, const DeviceModel& device);
+// force_limit [N], so that no more than this times the second derivative is felt.
+double steadyBend(double force_limit, const DeviceModel& device);
 
 // chosen absent = automatic: nothing without a device model, nothing where the scene is stable with
 // a margin of two, else the coupling. A chosen stabiliser without a device model takes

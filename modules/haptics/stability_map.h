@@ -65,7 +65,9 @@ struct StabilityMap {
   std::size_t jumping = 0;  // the force jumps
 };
 
-// Every vertex of `mesh`, which lies on the field's surface, pressed as StiffnessProbe says. Some
+// Every vertex of `mesh`, which lies on the field's surface, pressed as StiffnessProbe says: with
+// 1 N, or the force limit where that is less. Of a harder press it says nothing: texture is stiffer
+// along the surface in proportion, and the lateral coupling is planned for the force limit. Some
 // 5 to 15 us a vertex on one core; polls progress, throws Cancelled, and as compileStages().
 StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField> field,
                           const TriangleMesh& mesh, Progress& progress,

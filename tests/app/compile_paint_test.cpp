@@ -82,14 +82,15 @@ TEST_F(FeltPaints, CurvatureOfReliefIsKnownWhereThereIsADevice) {
     editor.apply(dabAt(Tool::relief, 5e-4, 0.004, place), progress);
     const CompiledScene& compiled = *editor.compiled();
     const SceneObject& object = compiled.scene.objects[0];
-    const ReliefLimit limit = reliefLimit(
-        *compiled.objects[0]->mesh, object.paint->layout, *compiled.paint.relief[0].felt,
-        compiled.scene.relief.height, compiled.scene.device_model);
+    const ReliefLimit limit =
+        reliefLimit(*compiled.objects[0]->mesh, object.paint->layout,
+                    *compiled.paint.relief[0].felt, compiled.scene.relief.height,
+                    compiled.scene.device_model, compiled.scene.haptics.force_limit);
     EXPECT_GT(limit.curvature, 0);
     EXPECT_EQ(compiled.paint.objects[0].bend, limit.curvature);
     EXPECT_EQ(compiled.snapshot->stabilisers.lateral.has_value(),
-              !isSteadyAlong(limit.curvature, compiled.scene.haptics.force_limit,
-                             *compiled.scene.device_model));
+              limit.curvature >
+                  steadyBend(compiled.scene.haptics.force_limit, *compiled.scene.device_model));
   }
 }
 

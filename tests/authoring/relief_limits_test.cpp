@@ -17,21 +17,24 @@ TEST(ReliefLimit, OfASineIsTheClosedForm) {
   const Sheet sheet;
   DeviceModel device;
   device.damping = 0.5;
+  const double press = 2.5;
   for (const double wavelength : {22 * kTexel, 60 * kTexel})
     for (const double angle : {0.0, 0.6, M_PI / 2}) {
       const double k = 2 * M_PI / wavelength, height = -0.2e-3;
       const Vec2 along(std::cos(angle), std::sin(angle));
       const auto image = reliefImage(
           kSize, [&](double u, double v) { return std::sin(k * kWidth * along.dot(Vec2(u, v))); });
-      const ReliefLimit limit = reliefLimit(sheet.mesh, sheet.layout, *image, height, device);
+      const ReliefLimit limit =
+          reliefLimit(sheet.mesh, sheet.layout, *image, height, device, press);
       EXPECT_NEAR(limit.highest, 0.2e-3, 0.01 * 0.2e-3);
       EXPECT_NEAR(limit.curvature / (0.2e-3 * k * k), 1, 0.02);
       EXPECT_NEAR(limit.wavelength / wavelength, 1, 0.02);
       ASSERT_TRUE(limit.admissible);
-      const double exact = 2 * 0.5 * wavelength * wavelength / (4 * M_PI * M_PI * 1e-3);
+      const double exact = 2 * 0.5 * wavelength * wavelength / (4 * M_PI * M_PI * press * 1e-3);
       EXPECT_NEAR(*limit.admissible / exact, 1, 0.02);
       device.delay = 2;
-      EXPECT_NEAR(*reliefLimit(sheet.mesh, sheet.layout, *image, height, device).admissible / exact,
+      EXPECT_NEAR(*reliefLimit(sheet.mesh, sheet.layout, *image, height, device, press).admissible /
+                      exact,
                   0.2, 0.004);
       device.delay = 0;
     }
@@ -48,7 +51,7 @@ TEST(ReliefLimit, DoesNotDependOnTheLayout) {
       const Vec2 side = side_from_uv * Vec2(u - 0.5, v - 0.5);
       return std::cos(k * (0.8 * side[0] + 0.6 * side[1]));
     });
-    const ReliefLimit limit = reliefLimit(sheet.mesh, sheet.layout, *image, 1e-3, std::nullopt);
+    const ReliefLimit limit = reliefLimit(sheet.mesh, sheet.layout, *image, 1e-3, std::nullopt, 1);
     EXPECT_NEAR(limit.curvature / (1e-3 * k * k), 1, 0.02) << m;
     EXPECT_FALSE(limit.admissible);
   }
@@ -81,10 +84,10 @@ TEST(ReliefLimit, OfFlatReliefIsNone) {
   const Sheet sheet;
   const TiledImage empty(kSize, kSize, 1);
   const auto constant = reliefImage(kSize, [](double, double) { return 0.7; });
-  const ReliefLimit none = reliefLimit(sheet.mesh, sheet.layout, empty, 1e-3, DeviceModel{});
+  const ReliefLimit none = reliefLimit(sheet.mesh, sheet.layout, empty, 1e-3, DeviceModel{}, 1);
   EXPECT_EQ(none.highest, 0);
   EXPECT_FALSE(none.admissible);
-  const ReliefLimit flat = reliefLimit(sheet.mesh, sheet.layout, *constant, 1e-3, DeviceModel{});
+  const ReliefLimit flat = reliefLimit(sheet.mesh, sheet.layout, *constant, 1e-3, DeviceModel{}, 1);
   EXPECT_NEAR(flat.highest, 0.7e-3, 1e-9);
   EXPECT_EQ(flat.curvature, 0);
   EXPECT_FALSE(flat.admissible);
@@ -98,10 +101,10 @@ TEST(ReliefLimit, DoesNotLookAcrossTheEdgeOfAChart) {
     return texels.ownerAt(static_cast<int>(u * kSize), static_cast<int>(v * kSize)) >= 0 ? 0.0
                                                                                          : 1.0;
   });
-  EXPECT_EQ(reliefLimit(sheet.mesh, sheet.layout, *image, 1e-3, std::nullopt).curvature, 0);
+  EXPECT_EQ(reliefLimit(sheet.mesh, sheet.layout, *image, 1e-3, std::nullopt, 1).curvature, 0);
   const auto line = reliefImage(
       kSize, [](double u, double) { return static_cast<int>(u * kSize) == 128 ? 1.0 : 0.0; });
-  EXPECT_NEAR(reliefLimit(sheet.mesh, sheet.layout, *line, 1e-3, std::nullopt).curvature,
+  EXPECT_NEAR(reliefLimit(sheet.mesh, sheet.layout, *line, 1e-3, std::nullopt, 1).curvature,
               2e-3 / (4 * kTexel * kTexel), 0.01 * 1e-3 / (kTexel * kTexel));
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
+#include "haptics/pull_back.h"
 
 namespace patina {
 namespace {
@@ -31,6 +32,26 @@ TEST(Crease, SlidingAcrossAnEdgeDeeperThanTheBandIsNoFault) {
       }
       EXPECT_GT(contact.normal.x(), 0.99); // of the face where it came in
     }
+  }
+}
+
+// J of the closest point, which such a crease holds too.
+TEST(Crease, WhatIsPaintedDoesNotChangeAcrossAFlatOne) {
+  const Field field = planeField();
+  const FieldSampler sampler(*field, Sampler::high);
+  for (const double lean : {0.02, 0.05, 0.3}) {
+    Contact contact;
+    contact.touching = true;
+    contact.tip = Vec3(0, 0, -1e-3);
+    contact.normal = Vec3::UnitZ();
+    contact.walls = 2;
+    const double load = 0.5e-3 / std::cos(lean);
+    contact.wall[0] = {Vec3(std::sin(lean), 0, std::cos(lean)), load};
+    contact.wall[1] = {Vec3(-std::sin(lean), 0, std::cos(lean)), load};
+    EXPECT_LT((pulledBack(sampler, contact, Vec3(3, 2, 0)) - Vec3(0, 2, 0)).norm(), 1e-12);
+    contact.walls = 1;
+    contact.wall[0] = {contact.normal, 1e-3};
+    EXPECT_LT((pulledBack(sampler, contact, Vec3(3, 2, 0)) - Vec3(3, 2, 0)).norm(), 1e-6);
   }
 }
 

@@ -40,11 +40,10 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   const auto reliefs = std::make_shared<const Reliefs>(sampler, objects);
   const ForceForm form = scene.relief.form;
   const double radius = scene.haptics.tip_radius.value_or(0);
-  const std::vector<bool> none(objects.size(), false);
   std::vector<std::unique_ptr<const ForceStage>> neutral;
   neutral.push_back(std::make_unique<MaterialStage>(sampler, objects, false));
   neutral.push_back(
-      std::make_unique<LateralStage>(reliefs, objects, none, raisedBy(felt), LateralPlan{}));
+      std::make_unique<LateralStage>(reliefs, objects, raisedBy(felt), LateralPlan{}));
   neutral.push_back(std::make_unique<ReliefStage>(reliefs, 0, form));
   neutral.push_back(std::make_unique<RoughnessStage>(sampler, objects, 0, form));
   neutral.push_back(std::make_unique<FrictionStage>(sampler, radius, Friction{}, false));

@@ -143,11 +143,6 @@ TEST(LateralCoupling, HopsAreSaidAndAreNoFault) {
   }
 }
 
-bool hasLateral(const HapticSnapshot& snapshot) {
-  return std::any_of(snapshot.why.begin(), snapshot.why.end(),
-                     [](const StageInfo& stage) { return stage.name == "lateral coupling"; });
-}
-
 void expectSameForces(const HapticSnapshot& a, const HapticSnapshot& b, double depth) {
   ContactMemory memory_a, memory_b;
   for (int i = 0; i < 3000; ++i) {
@@ -183,8 +178,8 @@ TEST(LateralCoupling, IsAbsentWhereTheTextureIsGentle) {
   EXPECT_FALSE(hasLateral(*compileStages(literal, field, std::span(&stiff, 1))));
 }
 
-// By object: the stiff texture of one is not what the other is felt by.
-TEST(LateralCoupling, LeavesTheGentleTextureOfAnotherObjectAsItIs) {
+// The whole top is the second object's.
+std::array<FeltObject, 2> stiffAndGentle() {
   const auto& triangles = fineSlab().mesh->triangles;
   std::int32_t top = 0;
   const auto isTop = [&](std::int32_t f) {
@@ -193,12 +188,31 @@ TEST(LateralCoupling, LeavesTheGentleTextureOfAnotherObjectAsItIs) {
     return true;
   };
   while (top < static_cast<std::int32_t>(triangles.size()) && !isTop(top)) ++top;
-  ASSERT_GT(top, 0);
+  EXPECT_GT(top, 0);
   std::array<FeltObject, 2> objects{waves(50e-6), waves(10e-6)};
   objects[1].first_face = top;
+  return objects;
+}
+
+// By object: the stiff texture of one is not what the other is felt by.
+TEST(LateralCoupling, LeavesTheGentleTextureOfAnotherObjectAsItIs) {
+  const std::array<FeltObject, 2> objects = stiffAndGentle();
   const auto with = compileStages(upTo(1, automatic(300)), fineSlab().field, objects);
   ASSERT_TRUE(hasLateral(*with));
   expectSameForces(*with, *compileStages(upTo(1, bare(300)), fineSlab().field, objects), 2e-3);
+}
+
+// The probe presses without the force limit, but judges by it.
+TEST(LateralCoupling, TheProbeFeelsTheGentleTextureOfAnotherObjectAsItIs) {
+  const std::array<FeltObject, 2> objects = stiffAndGentle();
+  const Vec3 valley(0.5 * kWave, 1e-4, 0);
+  const auto lateralOf = [&](std::span<const FeltObject> felt) {
+    const auto at = StiffnessProbe(upTo(1, automatic(300)), fineSlab().field, felt).at(valley);
+    EXPECT_TRUE(at);
+    return at ? at->lateral : -1;
+  };
+  EXPECT_EQ(lateralOf(objects), 0);
+  EXPECT_GT(lateralOf(std::span(objects).first(1)), 0); // which then has the top
 }
 
 // The map is of the scene as it is felt: calm with the coupling.

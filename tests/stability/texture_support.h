@@ -1,6 +1,7 @@
 // Textures that are stiffer along the surface than the default loop bears, and a mass on them.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <numbers>
@@ -66,6 +67,11 @@ inline std::shared_ptr<const HapticSnapshot> compiledOn(const Texture& texture,
                                                         const Scene& scene) {
   const FeltObject object = texture.on(scene);
   return compileStages(scene, texture.field, std::span(&object, 1));
+}
+
+inline bool hasLateral(const HapticSnapshot& snapshot) {
+  return std::any_of(snapshot.why.begin(), snapshot.why.end(),
+                     [](const StageInfo& stage) { return stage.name == "lateral coupling"; });
 }
 
 // A mass under 1 N that comes down off every line of symmetry.
