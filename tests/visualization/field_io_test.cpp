@@ -53,8 +53,9 @@ void addFaces(SurfaceField& field) {
   std::int32_t next = 7;
   for (const auto& distance : field.distance) {
     FaceNodes faces{};
+    const auto phi = distance->phi();
     for (std::size_t n = 0; n < faces.face.size(); ++n)
-      faces.face[n] = std::abs(distance->at(n)) < kBeyondBand ? next++ : -1;
+      faces.face[n] = std::abs(phi[n]) < kBeyondBand ? next++ : -1;
     field.face.push_back(std::make_shared<const FaceBlock>(faces));
   }
 }
