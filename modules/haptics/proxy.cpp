@@ -25,9 +25,8 @@ constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
-constexpr double kLent = 4e-3; // voxel^2, from where on it is taken back
-constexpr double kRoom = 1 + 1e-6,
-                 kNearly = 1.02; // of the square of a bound: for rounding, and what is aimed at
+constexpr double kLent = 4e-3;     // voxel^2, from where on it is taken back
+constexpr double kRoom = 1 + 1e-6; // of the square of a bound, for rounding
 constexpr int kMostSlides = 2, kFewLooks = 3, kMostLooks = 8, kMostShortenings = 4;
 
 } // namespace
@@ -78,8 +77,8 @@ void shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target
   const double most = radius * radius;
   const Vec3 whole = target - middle;
   double share = 1;
-  for (int k = 0; k < kMostShortenings && squared > most; ++k) {
-    share *= radius / std::sqrt(kNearly * squared);
+  for (int k = 0; k < kMostShortenings && squared > kRoom * most; ++k) {
+    share *= radius / std::sqrt(squared);
     target = middle + share * whole;
     to = projectOntoWalls(walls, target);
     squared = (to.z - middle).squaredNorm();
@@ -176,8 +175,7 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
         ahead.normal = (wall.normal + sum * step.dot(way) / way_squared * turn).normalized();
         ahead.offset = ahead.normal.dot(c);
         load = -ahead.height(x);
-        c = x + load * ahead.normal;
-        ahead.seen = c;
+        c = x + load * ahead.normal; // seen at z: from a guessed normal facets would turn twice
       }
     }
     // Beside a crease another look may be another wall's, and no move of c makes it longer (P11).
@@ -280,7 +278,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
         c = next.to.z;
         converged = smooth = true;
       }
-    } else if ((crease || looks > 0 || next.by_ball) && !next.by_trust && next.to.count > 0 &&
+    } else if ((crease || looks > 0) && !next.by_trust && next.to.count > 0 &&
                step < std::max(kCreaseStep, next.by_ball ? 0.3 * ball : 0) &&
                std::abs(seen.height) < kMostStep) {
       c = next.to.z;

@@ -164,13 +164,19 @@ TEST(Simulate, RunsOnASheetFeltFromBothSides) {
   const std::string mesh = folder / "sheet.ply";
   writeMesh(mesh, sheet(0.1, 0.1, 10));
   for (const char* radius : {"0.5mm", "2mm"}) {
-    const Json report =
-        runJson({"simulate", mesh, "--unit", "m", "--set", "surface.sides=two", "--set",
-                 std::string("tip.radius=") + radius, "--set", "stiffness=800"});
+    const std::string scene = folder / (std::string("scene") + radius);
+    ASSERT_EQ(run({"scene", "-o", scene, "--add", mesh, "--unit", "m", "--set",
+                   std::string("tip.radius=") + radius, "--set", "surface.sides=two", "--set",
+                   "stiffness=800"})
+                  .exit,
+              0);
+    const Json report = runJson({"simulate", scene});
     EXPECT_TRUE(report.at("stable").asBool()) << radius;
-    // Pressed by 1 N, it is held: by the spring and the coupling in series.
-    EXPECT_NEAR(number(report, "max_depth"), 1 / number(report, "stiffness_displayed"), 2e-4)
-        << radius;
+    // Pressed by 1 N it is held, by the spring and the coupling in series; a press that begins at
+    // once takes it down to twice that at most.
+    const double rest = 1 / number(report, "stiffness_displayed");
+    EXPECT_GT(number(report, "max_depth"), rest - 2e-4) << radius;
+    EXPECT_LT(number(report, "max_depth"), 2 * rest) << radius;
   }
 }
 
