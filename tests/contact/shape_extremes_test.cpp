@@ -8,24 +8,13 @@
 #include "app/studies/contact/course.h"
 #include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
+#include "contact/ways.h"
 #include "field/models.h"
 #include "geometry/shapes.h"
 #include "support/changed_mesh.h"
 
 namespace patina::test {
 namespace {
-
-// Through the corners at one speed.
-std::vector<Vec3> way(const std::vector<Vec3>& corners, double speed) {
-  std::vector<Vec3> tips = {corners.front()};
-  for (const Vec3& to : corners) {
-    const Vec3 from = tips.back();
-    const int count = static_cast<int>(std::ceil((to - from).norm() / (speed * kTick)));
-    for (int i = 1; i <= count; ++i)
-      tips.push_back(from + static_cast<double>(i) / count * (to - from));
-  }
-  return tips;
-}
 
 struct Felt {
   std::shared_ptr<const HapticSnapshot> snapshot;
