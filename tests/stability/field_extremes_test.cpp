@@ -147,8 +147,7 @@ TEST(FieldExtremes, OneTriangleHasExactDistancesAndABack) {
   forNodes(*field, [&](const Vec3& p, float phi) {
     if (normal.dot(p - a) < 0 || !(phi < kBeyondBand)) return;
     const double d = tree.closestPoint(p).distance / field->grid.voxel;
-    worst = std::max(worst, std::abs(static_cast<double>(phi) - d));
-    ++stored;
+    worst = std::max(worst, std::abs(static_cast<double>(phi) - d)), ++stored;
   });
   EXPECT_LT(worst, 1e-4);
   EXPECT_GT(stored, 1000U);
