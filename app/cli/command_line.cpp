@@ -5,8 +5,8 @@
 #include <map>
 #include <sstream>
 
-#include "app/cli/command.h"
-#include "app/cli/help.h"
+#include "app/cli/commands/command.h"
+#include "app/cli/output/help.h"
 #include "core/error.h"
 
 namespace patina::cli {

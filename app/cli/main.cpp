@@ -5,8 +5,8 @@
 
 #include <vtkObject.h>
 
-#include "app/cli/command.h"
 #include "app/cli/command_line.h"
+#include "app/cli/commands/command.h"
 #include "core/error.h"
 
 namespace {

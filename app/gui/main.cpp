@@ -15,13 +15,13 @@
 #include <QSurfaceFormat>
 #include <QTimer>
 
-#include "app/gui/first_picture.h"
-#include "app/gui/main_window.h"
-#include "app/gui/tour.h"
-#include "app/gui/window_style.h"
+#include "app/gui/loading/first_picture.h"
+#include "app/gui/window/main_window.h"
+#include "app/gui/window/tour.h"
+#include "app/gui/window/window_style.h"
 #include "core/error.h"
 #include "core/numbers.h"
-#include "visualization/display.h"
+#include "visualization/view/display.h"
 
 namespace {
 

@@ -1,12 +1,12 @@
 #include "app/studies/study.h"
 
-#include "app/studies/contact_study.h"
-#include "app/studies/field_study.h"
-#include "app/studies/friction_study.h"
-#include "app/studies/material_study.h"
-#include "app/studies/paint_study.h"
-#include "app/studies/stability_study.h"
-#include "app/studies/surfaces_study.h"
+#include "app/studies/field/field_study.h"
+#include "app/studies/field/surfaces_study.h"
+#include "app/studies/haptics/contact_study.h"
+#include "app/studies/haptics/friction_study.h"
+#include "app/studies/haptics/stability_study.h"
+#include "app/studies/paint/material_study.h"
+#include "app/studies/paint/paint_study.h"
 
 namespace patina {
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
-#include "scene/grey_relief.h"
+#include "scene/paint/grey_relief.h"
 
 namespace patina {
 namespace {

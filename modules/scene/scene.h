@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "core/types.h"
-#include "field/field_grid.h"
-#include "field/field_sampler.h"
-#include "geometry/triangle_mesh.h"
+#include "field/sampling/field_sampler.h"
+#include "field/store/field_grid.h"
+#include "geometry/mesh/triangle_mesh.h"
 #include "scene/device_model.h"
 #include "scene/haptic_properties.h"
-#include "scene/object_paint.h"
-#include "scene/relief_settings.h"
+#include "scene/paint/object_paint.h"
+#include "scene/paint/relief_settings.h"
 
 namespace patina {
 

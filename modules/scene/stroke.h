@@ -10,7 +10,7 @@
 
 #include "core/json.h"
 #include "core/types.h"
-#include "scene/material_map.h"
+#include "scene/paint/material_map.h"
 
 namespace patina {
 

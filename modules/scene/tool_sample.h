@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace patina {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/material_map.h"
+#include "scene/paint/material_map.h"
 
 namespace patina {
 

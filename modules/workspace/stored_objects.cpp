@@ -1,10 +1,10 @@
 #include "workspace/stored_objects.h"
 
 #include "core/error.h"
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 #include "workspace/content_files.h"
-#include "workspace/image_file.h"
 #include "workspace/material_file.h"
+#include "workspace/painted_image.h"
 
 namespace patina {
 namespace {

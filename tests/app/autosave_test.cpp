@@ -1,5 +1,5 @@
 // A scene without a folder survives the death of its program, and leaves nothing after a clean end.
-#include "app/autosave.h"
+#include "session/store/autosave.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // What of a scene's paint is felt, what is kept between versions, and what is absent.
-#include "app/compile_paint.h"
+#include "session/build/compile_paint.h"
 
 #include <gtest/gtest.h>
 
-#include "app/editor.h"
 #include "app/painted_scenes.h"
+#include "session/edit/editor.h"
 
 namespace patina {
 namespace {

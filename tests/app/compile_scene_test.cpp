@@ -1,5 +1,5 @@
 // Several objects compile to one field; an edit of one leaves the others' as they are.
-#include "app/compile_scene.h"
+#include "session/build/compile_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "field/field_sampler.h"
-#include "geometry/shapes.h"
-#include "geometry/triangle_tree.h"
+#include "field/sampling/field_sampler.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
 
 namespace patina {

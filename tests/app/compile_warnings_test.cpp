@@ -1,8 +1,8 @@
-#include "app/compile_warnings.h"
+#include "session/build/compile_warnings.h"
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

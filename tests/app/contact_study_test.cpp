@@ -1,4 +1,4 @@
-#include "app/studies/contact_study.h"
+#include "app/studies/haptics/contact_study.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <span>
 
-#include "app/studies/contact_test_path.h"
+#include "app/studies/haptics/contact_test_path.h"
 
 namespace patina {
 namespace {

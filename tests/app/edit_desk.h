@@ -13,8 +13,8 @@
 
 #include <unistd.h>
 
-#include "app/edit_thread.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
+#include "session/edit/edit_thread.h"
 
 namespace patina::test {
 

@@ -1,11 +1,11 @@
 // Undo without limit but memory: what is thinned out is replayed to the same bits.
-#include "app/edit_history.h"
+#include "session/edit/edit_history.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "support/same_scene.h"
 
 namespace patina {

@@ -1,10 +1,10 @@
 // Edits on a thread of their own: order, what becomes one edit, and that nobody waits.
-#include "app/edit_thread.h"
+#include "session/edit/edit_thread.h"
 
 #include <gtest/gtest.h>
 
 #include "app/edit_desk.h"
-#include "app/value_edit.h"
+#include "session/edit/value_edit.h"
 #include "support/sanitized.h"
 #include "workspace/workspace.h"
 

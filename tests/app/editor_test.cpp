@@ -1,5 +1,5 @@
 // One place for edits: what it does to the scene, what it tells, and what it takes back.
-#include "app/editor.h"
+#include "session/edit/editor.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/studies/field_study.h"
+#include "app/studies/field/field_study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/studies/field_candidates.h"
+#include "app/studies/field/field_candidates.h"
 #include "app/studies/study_shapes.h"
-#include "field/field_grid.h"
+#include "field/store/field_grid.h"
 #include "support/node_values.h"
 
 namespace patina {

@@ -1,4 +1,4 @@
-#include "app/studies/friction_study.h"
+#include "app/studies/haptics/friction_study.h"
 
 #include <gtest/gtest.h>
 

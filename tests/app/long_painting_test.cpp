@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "app/editor.h"
 #include "app/painted_scenes.h"
+#include "session/edit/editor.h"
 #include "support/sanitized.h"
 
 namespace patina {

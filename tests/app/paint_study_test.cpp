@@ -1,11 +1,11 @@
-#include "app/studies/paint_study.h"
+#include "app/studies/paint/paint_study.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "app/studies/material_study.h"
+#include "app/studies/paint/material_study.h"
 
 namespace patina {
 namespace {

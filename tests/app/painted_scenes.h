@@ -5,9 +5,9 @@
 
 #include <random>
 
-#include "app/compile_scene.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "scene/edit.h"
+#include "session/build/compile_scene.h"
 #include "support/same_scene.h"
 
 namespace patina::test {

@@ -1,4 +1,4 @@
-#include "app/session.h"
+#include "session/build/session.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <unistd.h>
 
-#include "app/stage_cost.h"
-#include "geometry/mesh_io.h"
-#include "geometry/shapes.h"
-#include "visualization/field_io.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/shapes.h"
+#include "session/build/stage_cost.h"
+#include "visualization/export/field_io.h"
 #include "workspace/workspace.h"
 
 namespace patina {

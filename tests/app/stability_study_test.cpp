@@ -1,4 +1,4 @@
-#include "app/studies/stability_study.h"
+#include "app/studies/haptics/stability_study.h"
 
 #include <gtest/gtest.h>
 

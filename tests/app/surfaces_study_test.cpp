@@ -1,4 +1,4 @@
-#include "app/studies/surfaces_study.h"
+#include "app/studies/field/surfaces_study.h"
 
 #include <gtest/gtest.h>
 

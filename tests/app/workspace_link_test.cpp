@@ -1,18 +1,18 @@
 // An editor in a folder: what its journal and states give back in another process.
-#include "app/workspace_link.h"
+#include "session/store/workspace_link.h"
 
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "app/editor.h"
-#include "app/journal_fold.h"
 #include "app/painted_scenes.h"
-#include "app/replay.h"
-#include "app/session.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "session/build/session.h"
+#include "session/edit/editor.h"
+#include "session/store/journal_fold.h"
+#include "session/store/replay.h"
 
 namespace patina {
 namespace {

@@ -61,30 +61,33 @@ TEST(Architecture, TheOracleOfContactKnowsNoFieldAndNoStage) {
 // The checker itself: each made-up edge must be seen, each allowed one must pass.
 TEST(Architecture, TheCheckerSeesForbiddenEdges) {
   for (const auto& [path, line] : std::vector<std::pair<std::string, std::string>>{
-           {"modules/core/a.cpp", "#include \"geometry/triangle_mesh.h\""},
-           {"modules/geometry/a.cpp", "#include \"field/models.h\""},
+           {"modules/core/a.cpp", "#include \"geometry/mesh/triangle_mesh.h\""},
+           {"modules/geometry/a.cpp", "#include \"field/surface/models.h\""},
            {"modules/field/a.h", "#include \"scene/scene.h\""},
-           {"modules/scene/a.cpp", "#include \"haptics/snapshot.h\""},
-           {"modules/haptics/a.cpp", "#include \"visualization/field_io.h\""},
-           {"modules/visualization/a.cpp", "#include \"haptics/snapshot.h\""},
-           {"modules/workspace/a.cpp", "#include \"visualization/field_io.h\""},
+           {"modules/scene/a.cpp", "#include \"haptics/servo/snapshot.h\""},
+           {"modules/haptics/a.cpp", "#include \"visualization/export/field_io.h\""},
+           {"modules/visualization/a.cpp", "#include \"haptics/servo/snapshot.h\""},
+           {"modules/workspace/a.cpp", "#include \"visualization/export/field_io.h\""},
            {"modules/workspace/a.cpp", "#include \"usb/usb_bus.h\""},
-           {"modules/haptics/a.cpp", "  #  include  \"app/session.h\""},
+           {"modules/haptics/a.cpp", "  #  include  \"session/build/session.h\""},
            {"modules/kitchen/a.cpp", "#include \"core/json.h\""},
            {"modules/field/a.cpp", "#include \"models.h\""},
-           {"app/session.cpp", "#include \"app/gui/main_window.h\""},
-           {"app/studies/a.cpp", "#include \"app/cli/command.h\""},
-           {"app/gui/a.cpp", "#include \"app/cli/command.h\""},
+           {"app/studies/a.cpp", "#include \"app/gui/window/main_window.h\""},
+           {"modules/session/a.cpp", "#include \"app/gui/window/main_window.h\""},
+           {"modules/scene/a.cpp", "#include \"session/build/session.h\""},
+           {"app/studies/a.cpp", "#include \"app/cli/commands/command.h\""},
+           {"app/gui/a.cpp", "#include \"app/cli/commands/command.h\""},
            {"modules/core/csv.cpp", "#include <nlohmann/json.hpp>"},
            {"modules/core/json.h", "#include <nlohmann/json.hpp>"},
-           {"modules/geometry/adjacency.h", "#include <OpenMesh/Core/Mesh/TriConnectivity.hh>"},
+           {"modules/geometry/mesh/adjacency.h",
+            "#include <OpenMesh/Core/Mesh/TriConnectivity.hh>"},
            {"modules/field/a.cpp", "#include <OpenMesh/Core/Mesh/TriConnectivity.hh>"},
            {"modules/field/a.h", "#include <tbb/parallel_for.h>"},
            {"modules/haptics/a.cpp", "#include <tbb/parallel_for.h>"},
            {"modules/haptics/a.cpp", "#include <vtkPolyData.h>"},
            {"modules/visualization/a.cpp", "#include <QWidget>"},
            {"modules/visualization/a.cpp", "#include <QVTKOpenGLNativeWidget.h>"},
-           {"app/session.cpp", "#include <QString>"},
+           {"modules/session/a.cpp", "#include <QString>"},
            {"app/gui/a.cpp", "#include <CLI/CLI.hpp>"},
            {"app/cli/a.h", "#include <CLI/CLI.hpp>"},
            {"modules/workspace/sha256.h", "#include <openssl/evp.h>"},
@@ -98,7 +101,7 @@ TEST(Architecture, TheCheckerSeesForbiddenEdges) {
 
 TEST(Architecture, TheCheckerAllowsWhatThePlanAllows) {
   for (const auto& [path, line] : std::vector<std::pair<std::string, std::string>>{
-           {"modules/scene/a.h", "#include \"field/field_grid.h\""},
+           {"modules/scene/a.h", "#include \"field/store/field_grid.h\""},
            {"modules/haptics/a.cpp", "#include \"usb/usb_bus.h\""},
            {"modules/core/json.cpp", "#include <nlohmann/json.hpp>"},
            {"modules/geometry/a.cpp", "#include <OpenMesh/Core/Mesh/TriConnectivity.hh>"},
@@ -109,7 +112,7 @@ TEST(Architecture, TheCheckerAllowsWhatThePlanAllows) {
            {"modules/core/a.h", "#include <Eigen/Core>"},
            {"app/gui/a.h", "#include <QWidget>"},
            {"app/cli/a.cpp", "#include <CLI/CLI.hpp>"},
-           {"app/cli/a.cpp", "#include \"app/session.h\""}})
+           {"app/cli/a.cpp", "#include \"session/build/session.h\""}})
     EXPECT_TRUE(forbidden(path, line).empty()) << forbidden(path, line)[0];
 }
 

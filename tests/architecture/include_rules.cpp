@@ -11,20 +11,24 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// What a module sees besides itself. Siblings (the last four) never see one another.
+// What a module sees besides itself. Siblings (haptics to workspace) never see one another.
 const std::map<std::string, Names>& visibleModules() {
   static const Names kBelowSiblings{"core", "geometry", "field", "scene"};
   static const std::map<std::string, Names> kVisible{
       {"core", {}},
+      {"pictures", {"core"}},
       {"geometry", {"core"}},
       {"usb", {"core"}},
       {"field", {"core", "geometry"}},
       {"scene", {"core", "geometry", "field"}},
       {"haptics", {"core", "geometry", "field", "scene", "usb"}},
-      {"authoring", kBelowSiblings},
-      {"acquisition", {"core", "geometry", "field", "scene", "usb"}},
+      {"authoring", {"core", "geometry", "field", "scene", "pictures"}},
+      {"acquisition", {"core", "geometry", "field", "scene", "usb", "pictures"}},
       {"visualization", kBelowSiblings},
-      {"workspace", kBelowSiblings}};
+      {"workspace", {"core", "geometry", "field", "scene", "pictures"}},
+      {"session",
+       {"core", "geometry", "field", "scene", "usb", "pictures", "haptics", "authoring",
+        "visualization", "workspace"}}};
   return kVisible;
 }
 
@@ -48,10 +52,11 @@ const std::vector<Library>& libraries() {
        {{"modules/geometry/", false},
         {"modules/field/", false},
         {"modules/authoring/", false},
+        {"modules/session/", false},
         {"app/", false}}},
       {"nlohmann-json", {"nlohmann/"}, {{"modules/core/json.cpp", false}}},
       {"libusb", {"libusb"}, {{"modules/usb/", false}}},
-      {"OpenImageIO", {"OpenImageIO/"}, {{"modules/workspace/", false}}},
+      {"OpenImageIO", {"OpenImageIO/"}, {{"modules/pictures/", false}}},
       {"OpenSSL", {"openssl/"}, {{"modules/workspace/", false}}},
       {"pthread", {"pthread.h"}, {{"modules/haptics/", false}}},
       {"CLI11", {"CLI/"}, {{"app/cli/", false}}},

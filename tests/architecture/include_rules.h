@@ -7,7 +7,7 @@
 namespace patina::architecture {
 
 struct SourceFile {
-  std::string path; // relative to the project's root, "modules/field/models.cpp"
+  std::string path; // relative to the project's root, "modules/field/surface/models.cpp"
   std::string text;
 };
 

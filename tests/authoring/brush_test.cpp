@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "authoring/dab.h"
+#include "authoring/brush/dab.h"
+#include "authoring/brush/stroke_path.h"
 #include "authoring/paint_fixture.h"
-#include "authoring/stroke_path.h"
 
 namespace patina {
 namespace {

@@ -1,4 +1,4 @@
-#include "authoring/emboss.h"
+#include "authoring/images/emboss.h"
 
 #include <array>
 
@@ -6,7 +6,7 @@
 
 #include "authoring/relief_shapes.h"
 #include "core/error.h"
-#include "geometry/mesh_report.h"
+#include "geometry/mesh/mesh_report.h"
 
 namespace patina {
 namespace {

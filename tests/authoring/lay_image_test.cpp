@@ -1,4 +1,4 @@
-#include "authoring/lay_image.h"
+#include "authoring/images/lay_image.h"
 
 #include <gtest/gtest.h>
 

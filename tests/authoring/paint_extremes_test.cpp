@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "authoring/brush/surface_values.h"
 #include "authoring/paint_fixture.h"
-#include "authoring/surface_values.h"
 #include "core/error.h"
 
 namespace patina {

@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "authoring/paint_surface.h"
-#include "authoring/painter.h"
-#include "authoring/surface_values.h"
-#include "authoring/volume_fill.h"
-#include "field/build_field.h"
-#include "geometry/shapes.h"
+#include "authoring/brush/paint_surface.h"
+#include "authoring/brush/painter.h"
+#include "authoring/brush/surface_values.h"
+#include "authoring/brush/volume_fill.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina::test {
 

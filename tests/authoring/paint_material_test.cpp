@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "authoring/brush/surface_values.h"
 #include "authoring/paint_fixture.h"
-#include "authoring/surface_values.h"
 
 namespace patina {
 namespace {

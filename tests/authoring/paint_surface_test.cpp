@@ -1,4 +1,4 @@
-#include "authoring/paint_surface.h"
+#include "authoring/brush/paint_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What a stroke leaves in images and material (K18, K20, K22).
-#include "authoring/painter.h"
+#include "authoring/brush/painter.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
+#include "authoring/brush/surface_values.h"
+#include "authoring/brush/volume_fill.h"
 #include "authoring/paint_fixture.h"
-#include "authoring/surface_values.h"
-#include "authoring/volume_fill.h"
 #include "core/error.h"
 
 namespace patina {

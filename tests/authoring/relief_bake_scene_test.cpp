@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "authoring/relief_shapes.h"
-#include "field/field_sampler.h"
 #include "field/merged_shapes.h"
+#include "field/sampling/field_sampler.h"
 
 namespace patina {
 namespace {

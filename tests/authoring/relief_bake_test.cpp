@@ -1,4 +1,4 @@
-#include "authoring/relief_bake.h"
+#include "authoring/relief/relief_bake.h"
 
 #include <algorithm>
 #include <cstring>
@@ -8,8 +8,8 @@
 
 #include "authoring/relief_shapes.h"
 #include "core/error.h"
-#include "field/field_sampler.h"
-#include "geometry/texel_map.h"
+#include "field/sampling/field_sampler.h"
+#include "geometry/atlas/texel_map.h"
 
 namespace patina {
 namespace {

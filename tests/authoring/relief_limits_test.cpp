@@ -1,4 +1,4 @@
-#include "authoring/relief_limits.h"
+#include "authoring/relief/relief_limits.h"
 
 #include <cmath>
 #include <random>

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "authoring/relief_bake.h"
-#include "field/build_field.h"
-#include "geometry/shapes.h"
+#include "authoring/relief/relief_bake.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
 #include "support/relief_image.h"
 
 namespace patina::test {

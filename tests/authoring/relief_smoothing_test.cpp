@@ -1,4 +1,4 @@
-#include "authoring/relief_smoothing.h"
+#include "authoring/relief/relief_smoothing.h"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "authoring/volume_fill.h"
+#include "authoring/brush/volume_fill.h"
 
 #include <gtest/gtest.h>
 

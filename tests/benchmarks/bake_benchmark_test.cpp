@@ -7,9 +7,9 @@
 #include <ctime>
 
 #include "authoring/relief_shapes.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_unit.h"
-#include "geometry/texel_map.h"
+#include "geometry/atlas/texel_map.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_unit.h"
 #include "support/least_time.h"
 #include "support/one_thread.h"
 #include "support/shared_data.h"

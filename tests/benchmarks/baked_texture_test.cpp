@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/editor.h"
-#include "app/session.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
+#include "session/build/session.h"
+#include "session/edit/editor.h"
 #include "support/sanitized.h"
 
 namespace patina {

@@ -1,5 +1,5 @@
 // The fixed contact test against what must hold: accuracy from one run, times against a reference.
-#include "app/studies/contact_test_path.h"
+#include "app/studies/haptics/contact_test_path.h"
 #include "benchmarks/tick_time.h"
 
 #include <gtest/gtest.h>

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/editor.h"
-#include "app/session.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
+#include "session/build/session.h"
+#include "session/edit/editor.h"
 #include "support/least_time.h"
 #include "support/one_thread.h"
 

@@ -8,9 +8,9 @@
 
 #include "app/edit_desk.h"
 #include "core/percentiles.h"
-#include "haptics/latency.h"
-#include "haptics/realtime.h"
-#include "haptics/servo_loop.h"
+#include "haptics/servo/latency.h"
+#include "haptics/servo/realtime.h"
+#include "haptics/servo/servo_loop.h"
 #include "support/least_time.h"
 #include "support/simulated_device.h"
 

@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build_field.h"
-#include "field/models.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_unit.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "field/surface/models.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_unit.h"
+#include "geometry/mesh/shapes.h"
 #include "support/shared_data.h"
 
 namespace patina {

@@ -4,10 +4,10 @@
 
 #include <cstdio>
 
-#include "app/compile_scene.h"
 #include "benchmarks/tick_time.h"
-#include "field/build_field.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
+#include "session/build/compile_scene.h"
 #include "support/one_thread.h"
 
 namespace patina {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/compile_scene.h"
-#include "authoring/painter.h"
-#include "geometry/shapes.h"
+#include "authoring/brush/painter.h"
+#include "geometry/mesh/shapes.h"
+#include "session/build/compile_scene.h"
 #include "support/least_time.h"
 #include "support/one_thread.h"
 

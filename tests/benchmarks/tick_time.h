@@ -1,8 +1,8 @@
 // What a tick takes along the fixed contact test.
 #pragma once
 
-#include "app/studies/contact_test_path.h"
-#include "haptics/snapshot.h"
+#include "app/studies/haptics/contact_test_path.h"
+#include "haptics/servo/snapshot.h"
 #include "support/least_time.h"
 
 namespace patina::test {

@@ -10,10 +10,10 @@
 #include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
 #include "core/csv.h"
-#include "field/models.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_unit.h"
-#include "geometry/shapes.h"
+#include "field/surface/models.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_unit.h"
+#include "geometry/mesh/shapes.h"
 #include "support/judged_scenes.h"
 
 namespace patina::test {

@@ -10,7 +10,7 @@
 #include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
 #include "contact/ways.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "support/changed_mesh.h"
 
 namespace patina::test {

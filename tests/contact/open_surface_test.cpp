@@ -14,8 +14,8 @@
 #include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
 #include "contact/ways.h"
-#include "field/build_field.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
 #include "support/changed_mesh.h"
 #include "support/node_values.h"
 

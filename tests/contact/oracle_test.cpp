@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "app/studies/contact/oracle.h"
-#include "geometry/mesh_report.h"
-#include "geometry/shapes.h"
-#include "geometry/winding_number.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/winding/winding_number.h"
 #include "support/judged_scenes.h"
 
 namespace patina::test {

@@ -9,8 +9,8 @@
 #include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
 #include "contact/ways.h"
-#include "field/models.h"
-#include "geometry/shapes.h"
+#include "field/surface/models.h"
+#include "geometry/mesh/shapes.h"
 #include "support/changed_mesh.h"
 
 namespace patina::test {

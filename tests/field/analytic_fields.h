@@ -6,8 +6,8 @@
 #include <memory>
 #include <random>
 
-#include "field/field_grid.h"
-#include "field/surface_field.h"
+#include "field/store/field_grid.h"
+#include "field/store/surface_field.h"
 
 namespace patina::test {
 

@@ -1,6 +1,6 @@
 // A built field against brute force over all triangles: T-K01e, T-K02, and what a build must do
 // with bad input, cancel and threads.
-#include "field/build_field.h"
+#include "field/build/build_field.h"
 
 #include <cmath>
 #include <limits>
@@ -10,8 +10,8 @@
 #include <tbb/global_control.h>
 
 #include "core/error.h"
-#include "geometry/shapes.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
 
 namespace patina {

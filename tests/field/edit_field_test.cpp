@@ -1,4 +1,4 @@
-#include "field/edit_field.h"
+#include "field/build/edit_field.h"
 
 #include <cstring>
 #include <random>

@@ -1,4 +1,4 @@
-#include "field/face_block.h"
+#include "field/store/face_block.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "field/field_grid.h"
+#include "field/store/field_grid.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "field/field_sampler.h"
+#include "field/sampling/field_sampler.h"
 
 #include <cmath>
 #include <limits>

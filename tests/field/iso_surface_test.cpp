@@ -1,4 +1,4 @@
-#include "field/iso_surface.h"
+#include "field/surface/iso_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "field/analytic_fields.h"
-#include "field/iso_cases.h"
-#include "field/models.h"
+#include "field/surface/iso_cases.h"
+#include "field/surface/models.h"
 
 namespace patina {
 namespace {

@@ -1,5 +1,5 @@
 // K14: the union is as exact as its parts, says who owns what, and costs what one object costs.
-#include "field/merge_fields.h"
+#include "field/merge/merge_fields.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 #include "core/error.h"
 #include "field/analytic_fields.h"
-#include "field/field_sampler.h"
 #include "field/merged_shapes.h"
-#include "geometry/triangle_tree.h"
+#include "field/sampling/field_sampler.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
 
 namespace patina {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "field/build_field.h"
-#include "field/merge_fields.h"
-#include "field/redistance.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "field/merge/merge_fields.h"
+#include "field/merge/redistance.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina::test {
 

@@ -1,4 +1,4 @@
-#include "field/node_reader.h"
+#include "field/store/node_reader.h"
 
 #include <atomic>
 

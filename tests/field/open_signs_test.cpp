@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build_field.h"
-#include "geometry/mesh_io.h"
-#include "geometry/shapes.h"
-#include "geometry/triangle_tree.h"
+#include "field/build/build_field.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/changed_mesh.h"
 #include "support/node_values.h"
 #include "support/shared_data.h"

@@ -1,4 +1,4 @@
-#include "field/packed_distance.h"
+#include "field/store/packed_distance.h"
 
 #include <bit>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build_field.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

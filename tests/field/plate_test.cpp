@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build_field.h"
-#include "field/node_reader.h"
-#include "geometry/shapes.h"
-#include "geometry/triangle_tree.h"
+#include "field/build/build_field.h"
+#include "field/store/node_reader.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/changed_mesh.h"
 
 namespace patina {

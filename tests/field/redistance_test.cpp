@@ -1,15 +1,15 @@
 // F9: after re-distancing a union's depth is that to its own surface.
-#include "field/redistance.h"
+#include "field/merge/redistance.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "field/field_sampler.h"
+#include "field/merge/union_surface.h"
 #include "field/merged_shapes.h"
-#include "field/union_surface.h"
-#include "geometry/triangle_tree.h"
+#include "field/sampling/field_sampler.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
 
 namespace patina {

@@ -1,4 +1,4 @@
-#include "field/signs.h"
+#include "field/signs/signs.h"
 
 #include <cmath>
 #include <functional>
@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build_field.h"
-#include "field/distance_blocks.h"
-#include "field/field_sampler.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "field/build/distance_blocks.h"
+#include "field/sampling/field_sampler.h"
+#include "geometry/mesh/shapes.h"
 #include "support/node_values.h"
 
 namespace patina {

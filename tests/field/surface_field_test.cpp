@@ -1,4 +1,4 @@
-#include "field/surface_field.h"
+#include "field/store/surface_field.h"
 
 #include <atomic>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "geometry/mesh_report.h"
+#include "geometry/mesh/mesh_report.h"
 
 namespace patina::fuzz {
 

@@ -5,7 +5,7 @@
 
 #include "check_mesh.h"
 #include "core/error.h"
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/adjacency.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -9,7 +9,7 @@
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
 
-#include "geometry/texture_layout.h"
+#include "geometry/atlas/texture_layout.h"
 
 namespace patina::test {
 

@@ -6,9 +6,9 @@
 
 #include <tbb/global_control.h>
 
+#include "geometry/atlas/texel_map.h"
 #include "geometry/atlas_checks.h"
-#include "geometry/shapes.h"
-#include "geometry/texel_map.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 
 namespace patina {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_report.h"
-#include "geometry/shapes.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/shapes.h"
 #include "support/least_time.h"
 #include "support/shared_data.h"
 

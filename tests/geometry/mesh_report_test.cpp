@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "geometry/mesh_report.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

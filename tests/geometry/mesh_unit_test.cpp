@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "geometry/mesh_unit.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/mesh_unit.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -1,4 +1,4 @@
-#include "geometry/open_parts.h"
+#include "geometry/mesh/open_parts.h"
 
 #include <cmath>
 #include <functional>
@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/front_side.h"
-#include "geometry/mesh_io.h"
-#include "geometry/shapes.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/front_side.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/changed_mesh.h"
 #include "support/shared_data.h"
 

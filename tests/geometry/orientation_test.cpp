@@ -1,10 +1,10 @@
-#include "geometry/orientation.h"
+#include "geometry/mesh/orientation.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/mesh_report.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "geometry/shapes.h"
-#include "geometry/texel_map.h"
+#include "geometry/atlas/texel_map.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

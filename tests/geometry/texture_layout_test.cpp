@@ -1,10 +1,10 @@
 // Paint across an atlas's charts, and when a mesh's own coordinates will do.
 #include <random>
 
+#include "geometry/atlas/texel_map.h"
 #include "geometry/atlas_checks.h"
-#include "geometry/mesh_io.h"
-#include "geometry/shapes.h"
-#include "geometry/texel_map.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/shapes.h"
 #include "support/shared_data.h"
 
 namespace patina {

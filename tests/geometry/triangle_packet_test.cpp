@@ -1,5 +1,5 @@
 // The packet kernel is compiled twice: both must give the same distances.
-#include "geometry/triangle_packet.h"
+#include "geometry/tree/triangle_packet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
-#include "geometry/triangle_pieces.h"
-#include "geometry/triangle_tree.h"
-#include "geometry/wide_bvh.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_pieces.h"
+#include "geometry/tree/triangle_tree.h"
+#include "geometry/tree/wide_bvh.h"
 
 namespace patina {
 namespace {

@@ -1,5 +1,5 @@
 // Queries of the tree against brute force over all triangles (T-K02's oracle).
-#include "geometry/triangle_tree.h"
+#include "geometry/tree/triangle_tree.h"
 
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -1,4 +1,4 @@
-#include "geometry/winding_number.h"
+#include "geometry/winding/winding_number.h"
 
 #include <cmath>
 #include <limits>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/gui/energy_meter.h"
+#include "app/gui/servo/energy_meter.h"
 
 namespace patina {
 namespace {

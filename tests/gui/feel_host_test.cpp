@@ -1,13 +1,13 @@
 // The servo's host: any thread publishes, and loops come and go meanwhile.
-#include "app/gui/feel_host.h"
+#include "app/gui/servo/feel_host.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
 
-#include "app/compile_scene.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
+#include "session/build/compile_scene.h"
 
 namespace patina {
 namespace {

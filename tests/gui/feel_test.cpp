@@ -3,7 +3,7 @@
 
 #include <vtkCamera.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
 namespace patina {

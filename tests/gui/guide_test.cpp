@@ -7,7 +7,7 @@
 #include <QCheckBox>
 #include <QGroupBox>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
 namespace patina {

@@ -1,7 +1,7 @@
 // The simulated hand yields to the surface, and a scene that asks for it gets it.
-#include "app/gui/hand_device.h"
+#include "app/gui/servo/hand_device.h"
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 #include "workspace/workspace.h"
 

@@ -11,7 +11,7 @@
 #include <vtkPointData.h>
 #include <vtkXMLImageDataWriter.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 #include "workspace/workspace.h"
 

@@ -4,7 +4,7 @@
 #include <QListWidget>
 #include <QToolButton>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
 namespace patina {

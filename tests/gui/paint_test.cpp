@@ -10,7 +10,7 @@
 #include <QToolButton>
 
 #include "core/run_queue_wait.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 #include "support/least_time.h"
 

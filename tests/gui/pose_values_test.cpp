@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/gui/pose_values.h"
+#include "app/gui/panels/pose_values.h"
 
 namespace patina {
 namespace {

@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 
 #include "core/csv.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 #include "support/least_time.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/csv.h"
 #include "core/error.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
 namespace patina {

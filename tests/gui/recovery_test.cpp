@@ -8,7 +8,7 @@
 #include <QAbstractButton>
 #include <QMessageBox>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
 namespace patina {

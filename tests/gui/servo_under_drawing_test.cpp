@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "core/run_queue_wait.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
-#include "haptics/latency.h"
-#include "haptics/realtime.h"
+#include "haptics/servo/latency.h"
+#include "haptics/servo/realtime.h"
 #include "support/simulated_device.h"
-#include "visualization/camera.h"
+#include "visualization/view/camera.h"
 
 namespace patina {
 namespace {

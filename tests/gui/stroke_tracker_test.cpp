@@ -1,5 +1,5 @@
 // Ticks of a tool become strokes: when they begin and end, and how densely they are sampled (K20).
-#include "app/gui/stroke_tracker.h"
+#include "app/gui/painting/stroke_tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <QLabel>
 #include <QToolButton>
 
-#include "app/gui/value_row.h"
-#include "geometry/shapes.h"
+#include "app/gui/panels/value_row.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
 namespace patina {

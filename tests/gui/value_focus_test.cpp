@@ -7,7 +7,7 @@
 #include <QSlider>
 #include <QtTest/qtestspontaneevent.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
 namespace patina {

@@ -14,9 +14,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "app/gui/main_window.h"
-#include "app/gui/window_style.h"
-#include "geometry/mesh_io.h"
+#include "app/gui/window/main_window.h"
+#include "app/gui/window/window_style.h"
+#include "geometry/io/mesh_io.h"
 #include "support/own_display.h"
 
 namespace patina {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <random>
 
-#include "haptics/snapshot.h"
+#include "haptics/servo/snapshot.h"
 
 namespace patina {
 

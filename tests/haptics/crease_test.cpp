@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "haptics/contact/pull_back.h"
 #include "haptics/contact_fixture.h"
-#include "haptics/pull_back.h"
 
 namespace patina {
 namespace {

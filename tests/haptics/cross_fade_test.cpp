@@ -1,5 +1,5 @@
 // T-RAMP: with the tip held still, no edit changes the force by more than 0.05 N a tick (2.4).
-#include "haptics/cross_fade.h"
+#include "haptics/servo/cross_fade.h"
 
 #include <gtest/gtest.h>
 

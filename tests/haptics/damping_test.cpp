@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/spring_stage.h"
+#include "haptics/stages/spring_stage.h"
 
 namespace patina {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 
 #include <gtest/gtest.h>
 

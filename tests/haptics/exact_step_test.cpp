@@ -1,4 +1,4 @@
-#include "haptics/exact_step.h"
+#include "haptics/devices/exact_step.h"
 
 #include <gtest/gtest.h>
 

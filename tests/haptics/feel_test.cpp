@@ -1,4 +1,4 @@
-#include "haptics/feel.h"
+#include "haptics/servo/feel.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "haptics/friction_stage.h"
 #include "haptics/neutral_stages.h"
+#include "haptics/stages/friction_stage.h"
 #include "support/simulated_device.h"
 
 namespace patina {

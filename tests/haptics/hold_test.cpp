@@ -1,11 +1,11 @@
-#include "haptics/hold.h"
+#include "haptics/contact/hold.h"
 
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/spring_stage.h"
+#include "haptics/stages/spring_stage.h"
 
 namespace patina {
 namespace {

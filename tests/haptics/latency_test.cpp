@@ -1,4 +1,4 @@
-#include "haptics/latency.h"
+#include "haptics/servo/latency.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/run_queue_wait.h"
-#include "haptics/realtime.h"
+#include "haptics/servo/realtime.h"
 
 namespace patina {
 namespace {

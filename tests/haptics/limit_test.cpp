@@ -1,5 +1,5 @@
 #include "haptics/contact_fixture.h"
-#include "haptics/limit_stage.h"
+#include "haptics/stages/limit_stage.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The closed forms of MATH 2.1.7, on analytic fields.
-#include "haptics/local_stiffness.h"
+#include "haptics/stability/local_stiffness.h"
 
 #include <gtest/gtest.h>
 

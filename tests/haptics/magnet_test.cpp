@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/exact_step.h"
+#include "haptics/devices/exact_step.h"
 
 namespace patina {
 namespace {

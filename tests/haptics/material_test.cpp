@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/cross_fade.h"
 #include "haptics/painted_fixture.h"
-#include "haptics/painted_range.h"
-#include "haptics/relief_stage.h"
+#include "haptics/servo/cross_fade.h"
+#include "haptics/stability/painted_range.h"
+#include "haptics/stages/relief_stage.h"
 
 namespace patina {
 namespace {

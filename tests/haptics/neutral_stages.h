@@ -2,12 +2,12 @@
 #pragma once
 
 #include "haptics/contact_fixture.h"
-#include "haptics/friction_stage.h"
-#include "haptics/lateral_stage.h"
-#include "haptics/magnet_stage.h"
-#include "haptics/material_stage.h"
-#include "haptics/relief_stage.h"
-#include "haptics/spring_stage.h"
+#include "haptics/stages/friction_stage.h"
+#include "haptics/stages/lateral_stage.h"
+#include "haptics/stages/magnet_stage.h"
+#include "haptics/stages/material_stage.h"
+#include "haptics/stages/relief_stage.h"
+#include "haptics/stages/spring_stage.h"
 
 namespace patina {
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/cross_fade.h"
 #include "haptics/neutral_stages.h"
 #include "haptics/painted_fixture.h"
+#include "haptics/servo/cross_fade.h"
 
 namespace patina {
 namespace {

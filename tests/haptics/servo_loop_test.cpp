@@ -1,4 +1,4 @@
-#include "haptics/servo_loop.h"
+#include "haptics/servo/servo_loop.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "core/timing_window.h"
-#include "haptics/realtime.h"
+#include "haptics/servo/realtime.h"
 #include "support/simulated_device.h"
 
 namespace patina {

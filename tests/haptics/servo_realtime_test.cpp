@@ -16,9 +16,9 @@
 #include <mutex>
 #include <thread>
 
-#include "field/build_field.h"
-#include "geometry/shapes.h"
-#include "haptics/servo_loop.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
+#include "haptics/servo/servo_loop.h"
 
 namespace {
 thread_local long allocations = 0;

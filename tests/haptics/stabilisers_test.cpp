@@ -1,11 +1,11 @@
 // Coupling, passivity controller and their choice, tick by tick (MATH 2.3).
-#include "haptics/stabilisers.h"
+#include "haptics/stability/stabilisers.h"
 
 #include <gtest/gtest.h>
 
+#include "haptics/contact/plane.h"
 #include "haptics/contact_fixture.h"
-#include "haptics/coupling_stage.h"
-#include "haptics/plane.h"
+#include "haptics/stages/coupling_stage.h"
 
 namespace patina {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptics/stability_limit.h"
+#include "haptics/stability/stability_limit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,15 @@
 // K*(x)/K against closed forms, and against a mass on the surface.
-#include "haptics/stability_map.h"
+#include "haptics/stability/stability_map.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "haptics/contact_fixture.h"
-#include "haptics/coupling_stage.h"
-#include "haptics/exact_step.h"
-#include "haptics/stabilisers.h"
+#include "haptics/devices/exact_step.h"
+#include "haptics/stability/stabilisers.h"
+#include "haptics/stages/coupling_stage.h"
 
 namespace patina {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "field/merge_fields.h"
+#include "field/merge/merge_fields.h"
 #include "haptics/neutral_stages.h"
 #include "haptics/painted_fixture.h"
 

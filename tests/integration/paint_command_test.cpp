@@ -3,8 +3,8 @@
 #include <signal.h>
 #include <thread>
 
-#include "app/editor.h"
 #include "integration/painted.h"
+#include "session/edit/editor.h"
 
 namespace patina::test {
 namespace {

@@ -1,11 +1,11 @@
 // What the other commands make of a painted workspace: scene, info, emboss, export, field,
 // simulate.
-#include "app/session.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_report.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/tree/triangle_tree.h"
 #include "integration/painted.h"
-#include "workspace/image_file.h"
+#include "pictures/picture_file.h"
+#include "session/build/session.h"
 
 namespace patina::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/tree/triangle_tree.h"
 #include "integration/program.h"
 #include "workspace/workspace.h"
 

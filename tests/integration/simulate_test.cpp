@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "core/csv.h"
-#include "geometry/mesh_io.h"
-#include "geometry/shapes.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/shapes.h"
 #include "integration/program.h"
 
 namespace patina::test {

@@ -1,5 +1,5 @@
 // A display that answers late, or not at all.
-#include "visualization/display.h"
+#include "visualization/view/display.h"
 
 #include <algorithm>
 #include <array>

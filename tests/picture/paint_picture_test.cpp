@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "field/surface_field.h"
-#include "geometry/texture_layout.h"
+#include "field/store/surface_field.h"
+#include "geometry/atlas/texture_layout.h"
 #include "picture/picture_support.h"
 #include "support/painted_objects.h"
-#include "visualization/picture.h"
+#include "visualization/view/picture.h"
 
 namespace patina {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "picture/picture_support.h"
-#include "visualization/plot.h"
+#include "visualization/plots/plot.h"
 
 namespace patina {
 namespace {

@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "field/surface_field.h"
-#include "geometry/shapes.h"
+#include "field/store/surface_field.h"
+#include "geometry/mesh/shapes.h"
 #include "picture/picture_support.h"
-#include "visualization/picture.h"
+#include "visualization/view/picture.h"
 
 namespace patina {
 namespace {

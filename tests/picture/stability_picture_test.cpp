@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "field/surface_field.h"
-#include "geometry/shapes.h"
+#include "field/store/surface_field.h"
+#include "geometry/mesh/shapes.h"
 #include "picture/picture_support.h"
-#include "visualization/picture.h"
+#include "visualization/view/picture.h"
 
 namespace patina {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/material_map.h"
+#include "scene/paint/material_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/material_samples.h"
+#include "scene/paint/material_samples.h"
 
 #include <chrono>
 

@@ -1,9 +1,9 @@
-#include "scene/relief_surface.h"
+#include "scene/paint/relief_surface.h"
 
 #include <gtest/gtest.h>
 
 #include "field/analytic_fields.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/painted_shapes.h"
 #include "support/relief_image.h"
 

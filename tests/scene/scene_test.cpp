@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "core/error.h"
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

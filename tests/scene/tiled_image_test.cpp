@@ -1,4 +1,4 @@
-#include "scene/tiled_image.h"
+#include "scene/paint/tiled_image.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/limit_stage.h"
+#include "haptics/stages/limit_stage.h"
 #include "support/simulated_device.h"
 
 namespace patina {

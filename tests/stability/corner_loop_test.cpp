@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/simulation.h"
+#include "haptics/devices/simulation.h"
 
 namespace patina {
 namespace {

@@ -9,10 +9,10 @@
 #include <random>
 
 #include "core/error.h"
-#include "field/build_field.h"
-#include "field/field_sampler.h"
-#include "geometry/shapes.h"
-#include "geometry/triangle_tree.h"
+#include "field/build/build_field.h"
+#include "field/sampling/field_sampler.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
 
 namespace patina {

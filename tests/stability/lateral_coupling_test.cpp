@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/coupling_stage.h"
-#include "haptics/stability_map.h"
+#include "haptics/stability/stability_map.h"
+#include "haptics/stages/coupling_stage.h"
 #include "stability/texture_support.h"
 #include "support/least_time.h"
 

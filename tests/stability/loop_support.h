@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "haptics/measured_limit.h"
-#include "haptics/plane.h"
-#include "haptics/simulation.h"
+#include "haptics/contact/plane.h"
+#include "haptics/devices/simulation.h"
+#include "haptics/stability/measured_limit.h"
 
 namespace patina {
 

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "field/block_lattice.h"
-#include "field/build_field.h"
-#include "field/merge_fields.h"
-#include "field/redistance.h"
-#include "geometry/shapes.h"
-#include "haptics/cross_fade.h"
-#include "haptics/snapshot.h"
+#include "field/build/build_field.h"
+#include "field/merge/merge_fields.h"
+#include "field/merge/redistance.h"
+#include "field/store/block_lattice.h"
+#include "geometry/mesh/shapes.h"
+#include "haptics/servo/cross_fade.h"
+#include "haptics/servo/snapshot.h"
 
 namespace patina {
 namespace {

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/coupling_stage.h"
+#include "haptics/devices/simulation.h"
 #include "haptics/painted_fixture.h"
-#include "haptics/simulation.h"
-#include "haptics/stability_limit.h"
-#include "haptics/stability_map.h"
+#include "haptics/stability/stability_limit.h"
+#include "haptics/stability/stability_map.h"
+#include "haptics/stages/coupling_stage.h"
 
 namespace patina {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/coupling_stage.h"
+#include "haptics/stages/coupling_stage.h"
 #include "stability/loop_support.h"
 
 namespace patina {

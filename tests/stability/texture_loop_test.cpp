@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "authoring/relief_limits.h"
-#include "haptics/coupling_stage.h"
+#include "authoring/relief/relief_limits.h"
+#include "haptics/stages/coupling_stage.h"
 #include "stability/texture_support.h"
 
 namespace patina {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "haptics/devices/simulation.h"
 #include "haptics/painted_fixture.h"
-#include "haptics/simulation.h"
 
 namespace patina {
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build_field.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
 #include "haptics/contact_fixture.h"
 
 namespace patina {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_report.h"
-#include "geometry/mesh_unit.h"
 #include "app/studies/contact/scenes.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/mesh_unit.h"
 #include "support/shared_data.h"
 
 namespace patina::test {

@@ -1,7 +1,7 @@
 // The distance of one node, for tests: it unpacks a block, which is too slow for anything else.
 #pragma once
 
-#include "field/surface_field.h"
+#include "field/store/surface_field.h"
 
 namespace patina::test {
 

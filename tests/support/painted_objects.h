@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "geometry/shapes.h"
-#include "geometry/texel_map.h"
+#include "geometry/atlas/texel_map.h"
+#include "geometry/mesh/shapes.h"
 #include "scene/scene.h"
 
 namespace patina {

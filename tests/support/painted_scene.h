@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 #include "scene/scene.h"
 #include "scene/stroke.h"
 

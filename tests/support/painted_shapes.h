@@ -5,10 +5,10 @@
 #include <functional>
 #include <memory>
 
-#include "field/build_field.h"
-#include "geometry/shapes.h"
-#include "scene/material_map.h"
-#include "scene/relief_surface.h"
+#include "field/build/build_field.h"
+#include "geometry/mesh/shapes.h"
+#include "scene/paint/material_map.h"
+#include "scene/paint/relief_surface.h"
 
 namespace patina {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "scene/tiled_image.h"
+#include "scene/paint/tiled_image.h"
 
 namespace patina::test {
 

@@ -1,8 +1,8 @@
 // A device that yields, and one that stands still.
 #pragma once
 
-#include "haptics/device.h"
-#include "haptics/exact_step.h"
+#include "haptics/devices/device.h"
+#include "haptics/devices/exact_step.h"
 
 namespace patina {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/error.h"
+#include "pictures/picture_file.h"
 #include "support/painted_scene.h"
-#include "workspace/image_file.h"
 #include "workspace/workspace.h"
 
 namespace patina {

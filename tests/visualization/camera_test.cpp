@@ -6,7 +6,7 @@
 #include <vtkNew.h>
 
 #include "core/error.h"
-#include "visualization/camera.h"
+#include "visualization/view/camera.h"
 
 namespace patina {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "core/csv.h"
 #include "core/error.h"
-#include "geometry/shapes.h"
-#include "visualization/export_files.h"
+#include "geometry/mesh/shapes.h"
+#include "visualization/export/export_files.h"
 
 namespace patina {
 namespace {

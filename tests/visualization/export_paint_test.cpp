@@ -1,5 +1,5 @@
 // Read back as ParaView does, by VTK's own readers.
-#include "visualization/export_paint.h"
+#include "visualization/export/export_paint.h"
 
 #include <filesystem>
 #include <set>
@@ -20,7 +20,7 @@
 
 #include "core/error.h"
 #include "support/painted_objects.h"
-#include "visualization/export_files.h"
+#include "visualization/export/export_files.h"
 
 namespace patina {
 namespace {

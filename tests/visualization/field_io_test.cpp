@@ -14,9 +14,9 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "field/surface_field.h"
+#include "field/store/surface_field.h"
 #include "support/node_values.h"
-#include "visualization/field_io.h"
+#include "visualization/export/field_io.h"
 
 namespace patina {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/surface_pick.h"
 #include "support/node_values.h"
-#include "visualization/node_layer.h"
-#include "visualization/slice_layer.h"
-#include "visualization/surface_pick.h"
+#include "visualization/layers/node_layer.h"
+#include "visualization/layers/slice_layer.h"
 
 namespace patina {
 namespace {

@@ -1,4 +1,4 @@
-#include "visualization/paint_layer.h"
+#include "visualization/layers/paint_layer.h"
 
 #include <random>
 
@@ -8,15 +8,15 @@
 #include <vtkNew.h>
 #include <vtkRenderer.h>
 
-#include "geometry/texture_layout.h"
+#include "scene/surface_pick.h"
+#include "geometry/atlas/texture_layout.h"
+#include "scene/painted_value.h"
+#include "scene/relief_slope.h"
 #include "support/least_time.h"
 #include "support/one_thread.h"
 #include "support/painted_objects.h"
-#include "visualization/image_surface.h"
-#include "visualization/material_surface.h"
-#include "visualization/painted_value.h"
-#include "visualization/relief_slope.h"
-#include "visualization/surface_pick.h"
+#include "visualization/layers/image_surface.h"
+#include "visualization/layers/material_surface.h"
 
 namespace patina {
 namespace {

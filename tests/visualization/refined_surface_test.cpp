@@ -1,10 +1,10 @@
-#include "visualization/refined_surface.h"
+#include "visualization/surfaces/refined_surface.h"
 
 #include <map>
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -1,7 +1,7 @@
 // Where contact is seen when it is felt elsewhere (K12).
 #include <gtest/gtest.h>
 
-#include "visualization/tool_layer.h"
+#include "visualization/layers/tool_layer.h"
 
 namespace patina {
 namespace {

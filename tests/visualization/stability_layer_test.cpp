@@ -1,4 +1,4 @@
-#include "visualization/stability_layer.h"
+#include "visualization/layers/stability_layer.h"
 
 #include <cmath>
 
@@ -10,7 +10,7 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
 
-#include "geometry/shapes.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

@@ -8,8 +8,8 @@
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 
-#include "geometry/shapes.h"
-#include "visualization/surface_data.h"
+#include "geometry/mesh/shapes.h"
+#include "visualization/surfaces/surface_data.h"
 
 namespace patina {
 namespace {

@@ -1,7 +1,7 @@
 // Where an offset or a magnet acts, in words.
 #include <gtest/gtest.h>
 
-#include "visualization/touch_band.h"
+#include "visualization/values/touch_band.h"
 
 namespace patina {
 namespace {

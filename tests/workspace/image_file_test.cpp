@@ -1,4 +1,4 @@
-#include "workspace/image_file.h"
+#include "pictures/picture_file.h"
 
 #include <cstdlib>
 #include <fstream>

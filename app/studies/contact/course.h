@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "app/studies/contact/oracle.h"
-#include "geometry/winding_number.h"
-#include "haptics/snapshot.h"
+#include "geometry/winding/winding_number.h"
+#include "haptics/servo/snapshot.h"
 
 namespace patina {
 

@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "geometry/mesh_report.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/tree/triangle_tree.h"
 
 namespace patina {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "app/studies/contact/course.h"
-#include "geometry/mesh_report.h"
+#include "geometry/mesh/mesh_report.h"
 
 namespace patina {
 namespace {

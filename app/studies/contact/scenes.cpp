@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "field/build_field.h"
-#include "field/merge_fields.h"
-#include "field/models.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "field/merge/merge_fields.h"
+#include "field/surface/models.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

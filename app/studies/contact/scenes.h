@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/open_parts.h"
-#include "geometry/triangle_mesh.h"
-#include "haptics/snapshot.h"
+#include "geometry/mesh/open_parts.h"
+#include "geometry/mesh/triangle_mesh.h"
+#include "haptics/servo/snapshot.h"
 
 namespace patina {
 

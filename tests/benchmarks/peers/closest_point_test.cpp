@@ -12,8 +12,8 @@
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/mesh/shapes.h"
+#include "geometry/tree/triangle_tree.h"
 
 namespace patina {
 namespace {

@@ -13,9 +13,9 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include "field/build_field.h"
-#include "geometry/mesh_io.h"
-#include "geometry/shapes.h"
+#include "field/build/build_field.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {

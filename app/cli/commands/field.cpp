@@ -1,0 +1,63 @@
+#include "app/cli/commands/commands.h"
+#include "app/cli/input/scene_options.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "visualization/export/field_io.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct FieldOptions {
+  std::filesystem::path input, output;
+  SceneOptions scene;
+};
+
+int runField(const FieldOptions& options, Console& console) {
+  if (!isVolumeFile(options.output))
+    throw Error("--output: a field is a .vti file, not '" + options.output.string() + "'");
+  requireWritable(options.output, {options.input});
+  const Scene scene = openWith(options.input, options.scene, console);
+  if (scene.objects.empty())
+    throw Error(options.input.string() + ": needs an object to build a field");
+  // One object needs no more than its field, unless relief is in it.
+  const bool baked = scene.relief.mode == ReliefMode::baked && highestRelief(scene) > 0;
+  BuiltField built;
+  if (scene.objects.size() == 1 && !baked) {
+    built = buildField(worldMesh(scene), scene.field, console.progress());
+  } else {
+    const auto compiled = compile(scene, console.progress());
+    built = compiled->built;
+    built.field = compiled->paint.field;
+  }
+  console.progress().throwIfCancelled();
+  writeField(options.output, *built.field);
+  console.report(fieldJson(*built.field, built.report),
+                 aligned(fieldRows(*built.field, built.report)));
+  return kDone;
+}
+
+} // namespace
+
+Command fieldCommand() {
+  auto options = std::make_shared<FieldOptions>();
+  Command command;
+  command.name = "field";
+  command.summary = "build the sampled implicit surface of a mesh or scene";
+  command.description =
+      "Writes signed distance [m], negative inside, and the nearest face of every node in a band "
+      "about the surface, as a volume that ParaView opens. JSON: seconds, cpu_seconds, voxel [m], "
+      "resolution (cells), origin [m], band_voxels, blocks, bytes, dense_bytes, "
+      "dropped_triangles, ambiguous_signs, redistanced_nodes (depths re-measured where objects "
+      "overlap). Baked relief is in it, pulled relief is not.";
+  command.examples = {"patina field bunny.ply -o bunny.vti --resolution 200",
+                      "patina field bunny.ply -o bunny.vti --voxel 0.5mm --band 6 --json"};
+  command.input("MESH", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
+  command.output("FIELD.vti", "The field, compressed.", options->output);
+  addFieldOptions(command, options->scene);
+  addOpenOptions(command, options->scene.open);
+  command.run = [options](Console& console) { return runField(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli

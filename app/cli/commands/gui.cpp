@@ -1,0 +1,87 @@
+#include <cerrno>
+#include <cstring>
+#include <unistd.h>
+
+#include "app/cli/commands/commands.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "geometry/mesh/mesh_unit.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct GuiOptions {
+  std::filesystem::path input;
+  std::vector<std::string> words; // for the window, checked here
+};
+
+int runGui(const GuiOptions& options) {
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+  const std::filesystem::path window = self.parent_path() / "patina-gui";
+  if (!std::filesystem::exists(window))
+    throw Error("this build has no window: " + window.string() +
+                " is missing; configure with PATINA_GUI=ON and build again");
+  std::vector<std::string> words = {window.string()};
+  words.insert(words.end(), options.words.begin(), options.words.end());
+  if (!options.input.empty()) {
+    if (!std::filesystem::exists(options.input))
+      throw FileError(options.input.string(), 0, "no such file or folder");
+    words.push_back(options.input.string());
+  }
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(window.c_str(), arguments.data());
+  throw Error(window.string() + " cannot be started: " + std::strerror(errno));
+}
+
+} // namespace
+
+Command guiCommand() {
+  auto options = std::make_shared<GuiOptions>();
+  Command command;
+  command.name = "gui";
+  command.summary = "the window";
+  command.description =
+      "Starts patina-gui, which stands beside this program. It needs a display; on a machine "
+      "without one: xvfb-run -a patina gui --tour FOLDER.";
+  command.examples = {"patina gui bunny.ply --unit cm", "patina gui workspace --log session.csv"};
+  command.reports = false;
+  command
+      .input("INPUT",
+             "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, the toy "
+             "dinosaur.",
+             options->input)
+      .required = false;
+  const auto pass = [options](const std::string& name, auto check) {
+    return [options, name, check](const std::string& text) {
+      check(text);
+      options->words.push_back(name);
+      if (!text.empty()) options->words.push_back(text);
+    };
+  };
+  const auto anything = [](const std::string&) {};
+  command.arguments.push_back(
+      {"--unit", "mm|cm|m|in|fit", "Unit of a mesh file.", "mm", false, false,
+       pass("--unit", [](const std::string& text) { (void)parseMeshUnit(text); })});
+  command.arguments.push_back({"--iso", "VALUE",
+                               "Value at which a volume (.vti) from elsewhere is a surface.", "",
+                               false, false, pass("--iso", [](const std::string& text) {
+                                 if (!parseNumber(text))
+                                   throw Error("'" + text + "' is not a number");
+                               })});
+  command.arguments.push_back({"--log", "FORCES.csv",
+                               "Record every tick; written when the window closes.", "", false,
+                               false, pass("--log", anything)});
+  command.arguments.push_back(
+      {"--tour", "FOLDER", "A scripted session: pictures and forces into the folder, then quit.",
+       "", false, false, pass("--tour", anything)});
+  command.arguments.push_back({"--first-picture-time", "",
+                               "Print the seconds from start to the first picture.", "", false,
+                               false, pass("--first-picture-time", anything)});
+  command.run = [options](Console&) { return runGui(*options); };
+  return command;
+}
+
+} // namespace patina::cli

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "app/cli/commands/commands.h"
+#include "app/cli/input/scene_options.h"
+#include "app/cli/output/reports.h"
+#include "core/csv.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "field/sampling/field_sampler.h"
+#include "geometry/tree/triangle_tree.h"
+#include "visualization/export/field_io.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct SampleOptions {
+  std::filesystem::path input, points, output;
+  SceneOptions scene;
+};
+
+const std::vector<std::string> kPointColumns = {"x [m]", "y [m]", "z [m]"};
+const std::vector<std::string> kColumns = {
+    "x [m]",  "y [m]",  "z [m]",   "phi [m]",         "nx",      "ny", "nz", "face", "cx [m]",
+    "cy [m]", "cz [m]", "in_band", "stiffness [N/m]", "friction"};
+
+// Exact closest points on what can be felt, under the indices of the mesh as given.
+class SurfaceOracle {
+ public:
+  explicit SurfaceOracle(UnionSurface surface)
+      : face_of_(std::move(surface.face)), tree_(surface.mesh) {}
+
+  ClosestPoint closest(const Vec3& p) const {
+    ClosestPoint found = tree_.closestPoint(p);
+    found.surface.face = face_of_[static_cast<std::size_t>(found.surface.face)];
+    return found;
+  }
+
+ private:
+  std::vector<std::int32_t> face_of_;
+  TriangleTree tree_;
+};
+
+struct SampledSurface {
+  std::shared_ptr<const SurfaceField> field;
+  std::optional<SurfaceOracle> oracle; // absent: only the field is known
+  Sampler sampler = Sampler::high;
+  std::shared_ptr<const CompiledScene> compiled; // null: only the field is known
+};
+
+Material materialAt(const SampledSurface& surface, std::int32_t face, const Vec3& closest) {
+  if (!surface.compiled) return baseMaterial({});
+  const Scene& scene = surface.compiled->scene;
+  const Material base = baseMaterial(scene.haptics);
+  const std::int32_t index = objectOfFace(*surface.compiled, face);
+  if (index < 0) return base;
+  const SceneObject& object = scene.objects[static_cast<std::size_t>(index)];
+  if (!object.paint || !object.paint->material) return base;
+  return object.paint->material->at(object.world_from_object.inverse() * closest, base);
+}
+
+SampledSurface open(const SampleOptions& options, Console& console) {
+  SampledSurface surface;
+  if (isFieldFile(options.input)) {
+    if (options.scene.open.unit_chosen)
+      console.warn(options.input.string() + ": --unit has no effect on a field");
+    if (options.scene.open.iso) throw Error("--iso: a field is sampled as it is; phi is given");
+    Scene scene;
+    for (const auto& [key, value] : options.scene.settings) {
+      if (key != "sampler") throw Error("--" + key + ": the field in the file has its own");
+      setValue(scene, key, value);
+    }
+    surface.field = withSamples(std::make_shared<const SurfaceField>(readField(options.input)));
+    surface.sampler = scene.sampler;
+    return surface;
+  }
+  const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
+  surface.field = compiled->paint.field;
+  surface.oracle.emplace(feltTriangles(*compiled, console.progress()));
+  surface.sampler = compiled->scene.sampler;
+  surface.compiled = compiled;
+  return surface;
+}
+
+std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler& sampler,
+                              const Vec3& p) {
+  const GridSample sample = sampler.at(p);
+  const bool in_band = p.allFinite() && sample.region == FieldRegion::band;
+  double phi = sample.phi;
+  Vec3 normal = sample.gradient.norm() > 0 ? Vec3(sample.gradient.normalized()) : Vec3::Zero();
+  Vec3 closest = p - phi * normal;
+  std::int32_t face = -1;
+  if (!p.allFinite()) {
+    phi = std::numeric_limits<double>::quiet_NaN();
+    normal.setConstant(phi);
+    closest.setConstant(phi);
+  } else if (surface.oracle) {
+    const ClosestPoint exact = surface.oracle->closest(p);
+    closest = exact.point;
+    face = exact.surface.face;
+    if (!in_band) { // the field only bounds the distance here
+      const double sign = sample.region == FieldRegion::deep ? -1 : 1;
+      phi = sign * exact.distance;
+      normal = exact.distance > 0 ? Vec3(sign * (p - closest) / exact.distance) : Vec3::Zero();
+    }
+  } else {
+    face = sampler.faceNear(p);
+  }
+  const Material material = materialAt(surface, face, closest);
+  return {p.x(),
+          p.y(),
+          p.z(),
+          phi,
+          normal.x(),
+          normal.y(),
+          normal.z(),
+          static_cast<double>(face),
+          closest.x(),
+          closest.y(),
+          closest.z(),
+          in_band ? 1.0 : 0.0,
+          material.stiffness,
+          std::max(material.static_friction, material.dynamic_friction)};
+}
+
+int runSample(const SampleOptions& options, Console& console) {
+  requireWritable(options.output, {options.input, options.points});
+  const CsvTable points = readCsv(options.points, kPointColumns);
+  const SampledSurface surface = open(options, console);
+  const FieldSampler sampler(*surface.field, surface.sampler);
+  CsvTable table;
+  table.columns = kColumns;
+  table.rows.reserve(points.rows.size());
+  std::size_t in_band = 0, bad_points = 0;
+  for (const std::vector<double>& row : points.rows) {
+    if (table.rows.size() % 1024 == 0) console.progress().throwIfCancelled();
+    table.rows.push_back(sampleRow(surface, sampler, {row[0], row[1], row[2]}));
+    in_band += table.rows.back()[11] != 0;
+    bad_points += std::isnan(table.rows.back()[3]);
+  }
+  console.progress().throwIfCancelled();
+  writeCsv(options.output, table);
+
+  Json json = Json::object();
+  json.set("points", points.rows.size());
+  json.set("in_band", in_band);
+  json.set("bad_points", bad_points);
+  json.set("sampler", std::string(name(surface.sampler)));
+  json.set("voxel", surface.field->grid.voxel);
+  if (bad_points)
+    console.warn(options.points.string() + ": " + formatCount(bad_points) +
+                 (bad_points == 1 ? " point is" : " points are") + " NaN or infinite");
+  console.report(json, aligned({{"points", formatCount(points.rows.size()) + ", in the band " +
+                                               formatCount(in_band)},
+                                {"sampler", std::string(name(surface.sampler))},
+                                {"voxel", formatLength(surface.field->grid.voxel)}}));
+  return kDone;
+}
+
+} // namespace
+
+Command sampleCommand() {
+  auto options = std::make_shared<SampleOptions>();
+  Command command;
+  command.name = "sample";
+  command.summary = "distance, direction, nearest face and material at points";
+  command.description =
+      "Points come with the columns x [m],y [m],z [m]; further columns are ignored. Out go phi [m] "
+      "(negative inside), the unit direction nx,ny,nz, the nearest face, the closest point "
+      "cx,cy,cz "
+      "[m], in_band (1 or 0), stiffness [N/m] and friction that holds: as painted at the closest "
+      "point, "
+      "the scene's own elsewhere.\n"
+      "With a mesh or workspace the face and closest point are exact, and so are phi and the "
+      "direction beyond the band; of several objects the closest point is one of their union's, "
+      "which "
+      "none of them hides. Where relief is baked, phi and the direction are those of the relief. "
+      "With a field alone they are what the field knows: closest point "
+      "= point - phi n, and beyond the band phi is a bound outside, the coarse nodes' estimate "
+      "inside; trust neither where in_band is 0.\n"
+      "JSON: points, in_band, bad_points (NaN or infinite), sampler, voxel [m].";
+  command.examples = {"patina sample bunny.ply --points points.csv -o samples.csv",
+                      "patina sample bunny.vti --points points.csv -o samples.csv --sampler kim"};
+  command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
+  command.file("--points", "POINTS.csv", "The points.", options->points).required = true;
+  command.output("SAMPLES.csv", "One row a point.", options->output);
+  addFieldOptions(command, options->scene);
+  addSamplerOption(command, options->scene);
+  addOpenOptions(command, options->scene.open);
+  command.run = [options](Console& console) { return runSample(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli

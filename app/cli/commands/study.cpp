@@ -1,0 +1,143 @@
+#include "app/studies/study.h"
+
+#include <algorithm>
+
+#include "app/cli/commands/commands.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "visualization/plots/plot.h"
+#include "visualization/view/display.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct StudyCommandOptions {
+  std::string name;
+  std::filesystem::path output;
+  StudyOptions study;
+};
+
+std::string knownStudies() {
+  std::string text;
+  for (const Study& study : studies()) text += std::string(study.name) + " ";
+  return text + "all";
+}
+
+std::vector<Study> chosen(const std::string& name) {
+  std::vector<Study> list;
+  for (const Study& study : studies())
+    if (name == "all" || name == study.name) list.push_back(study);
+  if (list.empty()) throw Error("there is no study '" + name + "'; there are: " + knownStudies());
+  return list;
+}
+
+bool canDraw(Console& console) {
+  try {
+    requireDisplay();
+    return true;
+  } catch (const Error& error) {
+    console.warn("tables without plots: " + std::string(error.what()));
+    return false;
+  }
+}
+
+// "field.csv", or "field-2.csv" where a study makes several tables.
+std::string baseName(const Study& study, std::size_t index, std::size_t count) {
+  const std::string name(study.name);
+  return count == 1 ? name : name + "-" + std::to_string(index + 1);
+}
+
+// A table of orders alone has nothing to plot against time.
+bool hasTimes(const WorkPrecisionTable& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [](const auto& row) { return row.ns > 0 && row.error > 0; });
+}
+
+void addRows(const Json& table, Json& rows) {
+  for (const Json& row : table.at("rows").asArray()) {
+    Json line = Json::object();
+    line.set("study", table.at("study")).set("title", table.at("title"));
+    for (const auto& [key, value] : row.asObject()) line.set(key, value);
+    rows.push(std::move(line));
+  }
+}
+
+int runStudy(const StudyCommandOptions& options, Console& console) {
+  const std::vector<Study> list = chosen(options.name);
+  const std::filesystem::path& folder = options.output;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    throw FileError(folder.string(), 0, "this folder cannot be made");
+  const bool draws = canDraw(console);
+
+  Json tables = Json::array(), rows = Json::array(), files = Json::array();
+  Json order_fitted, order_expected; // of the first table that has a theory to be held against
+  std::string text;
+  for (const Study& study : list) {
+    const std::vector<WorkPrecisionTable> results = study.run(options.study, console.progress());
+    console.progress().throwIfCancelled();
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const WorkPrecisionTable& table = results[i];
+      const std::string base = baseName(study, i, results.size());
+      const Json json = toJson(table);
+      writeCsv(folder / (base + ".csv"), table);
+      writeFileAtomically(folder / (base + ".json"), json.dump() + "\n");
+      files.push(base + ".csv");
+      files.push(base + ".json");
+      if (draws && hasTimes(table)) {
+        writePlot(workPrecisionPlot(table), folder / (base + ".png"));
+        files.push(base + ".png");
+      }
+      if (order_expected.isNull() && table.order_expected) {
+        order_fitted = json.at("order_fitted");
+        order_expected = json.at("order_expected");
+      }
+      addRows(json, rows);
+      tables.push(json);
+      text += toText(table) + "  " + (folder / base).string() + ".csv .json" +
+              (draws && hasTimes(table) ? " .png\n\n" : "\n\n");
+    }
+  }
+  Json json = Json::object();
+  json.set("rows", rows);
+  json.set("order_fitted", order_fitted);
+  json.set("order_expected", order_expected);
+  json.set("tables", tables);
+  json.set("files", files);
+  console.report(json, text);
+  return kDone;
+}
+
+} // namespace
+
+Command studyCommand() {
+  auto options = std::make_shared<StudyCommandOptions>();
+  Command command;
+  command.name = "study";
+  command.summary = "error against run time: tables and plots";
+  command.description = "NAME is all or one of:";
+  for (const Study& study : studies())
+    command.description += "\n" + std::string(study.name) + ": " + std::string(study.about) + ".";
+  command.description +=
+      "\nEach table becomes NAME-I.csv, NAME-I.json (with machine, compiler, scheduling policy and "
+      "load) and, where there is a display, NAME-I.png; a study of one table leaves the number "
+      "out. Measure on a quiet machine.\n"
+      "JSON: rows (the settings, error, error_max, ns, bytes), order_fitted and order_expected (of "
+      "the first table that has a theory), tables (each with its own), files.";
+  command.examples = {"patina study field -o studies", "patina study all -o studies --quick"};
+  command.arguments.push_back(
+      {"NAME", "NAME", "Which study.", "", true, false, [options](const std::string& text) {
+         (void)chosen(text);
+         options->name = text;
+       }});
+  command.output("FOLDER", "Where to; made if it is missing.", options->output);
+  command.flag("--quick", "Coarser and fewer: seconds instead of minutes.", options->study.quick);
+  command.flag("--thorough", "Ten times as many random touches: minutes.", options->study.thorough);
+  command.run = [options](Console& console) { return runStudy(*options, console); };
+  return command;
+}
+
+} // namespace patina::cli

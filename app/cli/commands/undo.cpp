@@ -1,0 +1,133 @@
+#include <algorithm>
+
+#include "app/cli/commands/commands.h"
+#include "app/cli/input/workspace_place.h"
+#include "core/numbers.h"
+#include "session/store/journal_fold.h"
+#include "session/store/replay.h"
+#include "session/store/workspace_link.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct HistoryOptions {
+  std::filesystem::path workspace;
+  int steps = 1;
+  bool list = false;
+};
+
+enum class Way { back, forth };
+
+std::string describe(const JournalEvent& event) {
+  if (const auto* stroke = std::get_if<Stroke>(&event)) return patina::describe(*stroke);
+  if (const auto* values = std::get_if<ValueEdit>(&event)) return patina::describe(*values);
+  return std::get<StoredSceneEdit>(event).what;
+}
+
+void listEdits(const FoldedJournal& fold, Json& json, std::string& text) {
+  Json edits = Json::array();
+  for (std::size_t i = 0; i < fold.steps.size(); ++i) {
+    const std::string what = describe(*fold.steps[i].event);
+    const bool done = i < fold.position;
+    Json edit = Json::object();
+    edit.set("what", what);
+    edit.set("done", done);
+    edits.push(std::move(edit));
+    text += std::to_string(i + 1) + "  " + what + (done ? "" : "  (undone)") + "\n";
+  }
+  json.set("edits", std::move(edits));
+}
+
+struct Counts {
+  std::size_t undoable = 0, redoable = 0, moved = 0;
+};
+
+// What a replay costs is paid only where the scene there is not stored.
+Counts move(const std::filesystem::path& folder, std::size_t steps, Way way, Console& console) {
+  auto opened = WorkspaceLink::open(folder, Replayer(), kHistoryBudget, true, false);
+  EditHistory& history = *opened.history;
+  steps = std::min(steps, way == Way::back ? history.undoable() : history.redoable());
+  if (steps > 0) {
+    const std::size_t target =
+        way == Way::back ? history.undoable() - steps : history.undoable() + steps;
+    Scene scene = history.sceneAt(target);
+    console.progress().throwIfCancelled();
+    if (way == Way::back)
+      opened.link->recordUndo(steps);
+    else
+      opened.link->recordRedo(steps);
+    history.place(target, std::move(scene));
+    opened.link->save(history);
+  }
+  return {history.undoable(), history.redoable(), steps};
+}
+
+int runHistory(const HistoryOptions& options, Way way, Console& console) {
+  const std::filesystem::path folder = workspaceFolder(options.workspace);
+  Counts counts;
+  Json json = Json::object();
+  std::string text;
+  {
+    const OpenedWorkspace found = openWorkspace(folder);
+    for (const std::string& note : found.notes) console.warn(note);
+    const FoldedJournal fold = folded(found.journal, found.journal_file.string());
+    counts = {fold.position, fold.steps.size() - fold.position, 0};
+    if (options.list) listEdits(fold, json, text);
+  }
+  const std::size_t possible = way == Way::back ? counts.undoable : counts.redoable;
+  if (!options.list && possible > 0)
+    counts = move(folder, static_cast<std::size_t>(options.steps), way, console);
+  if (!options.list && counts.moved == 0)
+    console.warn(folder.string() +
+                 (way == Way::back ? ": there is nothing to undo" : ": there is nothing to redo"));
+  json.set("history", counts.undoable);
+  json.set("redo", counts.redoable);
+  json.set("undone", way == Way::back ? counts.moved : 0);
+  json.set("redone", way == Way::forth ? counts.moved : 0);
+  const std::pair<std::string, std::string> moved{way == Way::back ? "undone" : "redone",
+                                                  formatCount(counts.moved)};
+  std::vector<std::pair<std::string, std::string>> rows;
+  if (!options.list) rows.push_back(moved);
+  rows.emplace_back("history", formatCount(counts.undoable) + " to undo, " +
+                                   formatCount(counts.redoable) + " to redo");
+  console.report(json, text + aligned(rows));
+  return kDone;
+}
+
+Command historyCommand(Way way) {
+  auto options = std::make_shared<HistoryOptions>();
+  const bool back = way == Way::back;
+  Command command;
+  command.name = back ? "undo" : "redo";
+  command.summary = back ? "take back edits of a workspace" : "do again what was undone";
+  command.description =
+      std::string(back ? "The workspace is as it was before its last edit, bit for bit; what was "
+                         "undone can be redone until something else is edited."
+                       : "The workspace is as it was before patina undo, bit for bit.") +
+      " Edits are strokes, values set, and objects added, moved or removed. If there are fewer "
+      "steps than asked for, all are taken; with none the folder stays as it is and the exit code "
+      "is 0.\n"
+      "JSON: history (edits that can be undone), redo (that can be redone), undone, redone (by "
+      "this command); with --list edits (what, done), oldest first.";
+  command.examples = {"patina " + command.name + " cup",
+                      "patina " + command.name + " cup --steps 3",
+                      "patina " + command.name + " cup --list"};
+  command.input("WORKSPACE", "The folder.", options->workspace);
+  command.integer("--steps", "How many edits.", options->steps, 1);
+  command.flag("--list", "Only print the history.", options->list);
+  command.run = [options, way](Console& console) { return runHistory(*options, way, console); };
+  return command;
+}
+
+} // namespace
+
+Command undoCommand() {
+  return historyCommand(Way::back);
+}
+
+Command redoCommand() {
+  return historyCommand(Way::forth);
+}
+
+} // namespace patina::cli

@@ -1,0 +1,31 @@
+// What one call of patina scene changes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/cli/input/scene_options.h"
+#include "scene/edit.h"
+
+namespace patina::cli {
+
+struct SceneEdits {
+  std::vector<std::string> added;   // MESH[@POSE.txt]
+  std::vector<std::string> moved;   // NAME@POSE.txt
+  std::vector<std::string> removed; // NAME
+  std::vector<std::string> images;  // OBJECT=FILE[,color|relief][,mapped|x|y|z]
+  Settings settings;
+
+  bool empty() const {
+    return added.empty() && moved.empty() && removed.empty() && images.empty() && settings.empty();
+  }
+};
+
+// Removals first, then moves, additions, settings, images. Throws Error; `scene` is only read.
+Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& open,
+             Console& console);
+// The one record of all of it; `after` is what edited() gave.
+Edit editOf(const SceneEdits& edits, const Scene& after);
+
+} // namespace patina::cli

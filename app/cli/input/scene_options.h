@@ -1,0 +1,50 @@
+// The options with which a mesh, workspace or volume becomes a scene; the same words in every
+// command.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/commands/command.h"
+#include "session/build/compile_scene.h"
+#include "session/build/session.h"
+
+namespace patina::cli {
+
+using Settings = std::vector<std::pair<std::string, std::string>>; // scene key, value
+
+struct SceneOptions {
+  OpenOptions open;
+  Settings settings;
+};
+
+// An option that stands for a key of the scene: the scene says what is allowed.
+void addSetting(Command& command, SceneOptions& options, const std::string& name,
+                const std::string& key, const std::string& value, const std::string& help,
+                const std::string& fallback);
+// --unit and --iso.
+void addOpenOptions(Command& command, OpenOptions& open);
+// --resolution --voxel --band; and --sampler.
+void addFieldOptions(Command& command, SceneOptions& options);
+void addSamplerOption(Command& command, SceneOptions& options);
+// --stiffness --damping --friction-... --tip-radius --force-limit.
+void addHapticOptions(Command& command, SceneOptions& options);
+
+// All of them or, with an Error, none. Their order matters only where they contradict one another.
+void applySettings(Scene& scene, const Settings& settings);
+
+// Whether they leave a scene with a tip radius above zero.
+bool setsTipRadius(const Settings& settings);
+
+// Opens, warns, and applies the settings. Throws FileError or Error; see openScene().
+OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& options,
+                       Console& console);
+Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console);
+// compile(), with what should be known of the result as warnings.
+std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console,
+                                                FaceLayer faces = FaceLayer::if_read);
+
+} // namespace patina::cli

@@ -1,0 +1,89 @@
+#include "app/cli/output/console.h"
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <unistd.h>
+
+namespace patina::cli {
+
+namespace {
+
+// A signal handler can reach nothing but a global; Console keeps it to itself.
+std::atomic<Progress*> interrupted_progress{nullptr};
+
+extern "C" void onInterrupt(int) {
+  if (Progress* progress = interrupted_progress.load()) progress->cancel();
+}
+
+} // namespace
+
+Console::Console()
+    : stderr_is_terminal_(isatty(STDERR_FILENO) == 1),
+      progress_([this](double fraction, std::string_view what) { drawBar(fraction, what); }) {
+  interrupted_progress = &progress_;
+  struct sigaction action = {};
+  action.sa_handler = onInterrupt;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigaction(SIGINT, &action, nullptr);
+}
+
+Console::~Console() {
+  clearBar();
+  std::signal(SIGINT, SIG_DFL);
+  interrupted_progress = nullptr;
+}
+
+void Console::endOnInterrupt() {
+  progress_.throwIfCancelled();
+  std::signal(SIGINT, SIG_DFL);
+}
+
+void Console::warn(const std::string& line) {
+  clearBar();
+  std::fprintf(stderr, "patina: warning: %s\n", line.c_str());
+}
+
+void Console::report(const Json& object, const std::string& text) {
+  clearBar();
+  const std::string out = json ? object.dump() + "\n" : text;
+  std::fwrite(out.data(), 1, out.size(), stdout);
+}
+
+void Console::say(const std::string& line) {
+  if (json) return;
+  clearBar();
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void Console::clearBar() {
+  if (!bar_drawn_) return;
+  std::fputs("\r\033[K", stderr);
+  bar_drawn_ = false;
+}
+
+void Console::drawBar(double fraction, std::string_view what) {
+  if (!stderr_is_terminal_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (bar_drawn_ && now - last_draw_ < std::chrono::milliseconds(50)) return;
+  last_draw_ = now;
+  bar_drawn_ = true;
+  constexpr int kWidth = 30;
+  const int done = static_cast<int>(kWidth * std::clamp(fraction, 0.0, 1.0));
+  const std::string bar = std::string(static_cast<std::size_t>(done), '#') +
+                          std::string(static_cast<std::size_t>(kWidth - done), '.');
+  std::fprintf(stderr, "\r[%s] %3.0f %% %.*s\033[K", bar.c_str(), 100 * fraction,
+               static_cast<int>(what.size()), what.data());
+}
+
+std::string aligned(const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::size_t width = 0;
+  for (const auto& [name, value] : rows) width = std::max(width, name.size());
+  std::string text;
+  for (const auto& [name, value] : rows)
+    text += name + std::string(width - name.size() + 2, ' ') + value + "\n";
+  return text;
+}
+
+} // namespace patina::cli

@@ -1,0 +1,215 @@
+#include "app/cli/output/help.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace patina::cli {
+
+namespace {
+
+constexpr std::size_t kWidth = 80;
+
+const char* const kAbout = "A workspace for touch research: a mesh becomes a sampled implicit "
+                           "surface, and a 1 kHz servo feels it.";
+const char* const kUnits =
+    "All numbers are SI. A length may carry its unit (um mm cm m in): 1.5mm. Meshes have no unit: "
+    "--unit says what theirs is.";
+const char* const kExitCodes[] = {
+    "0    done",
+    "1    the numerics did not succeed; the report is printed",
+    "2    bad input or usage; one line on stderr says what and where",
+    "130  cancelled with Ctrl-C; no output file was touched",
+};
+const Argument kJson{"--json", "", "Print the report as one JSON object on stdout.", "", false,
+                     false,    {}};
+const Argument kHelp{"-h,--help", "", "Print this help.", "", false, false, {}};
+const Argument kVersion{"--version", "", "Print the version.", "", false, false, {}};
+
+std::vector<std::string> paragraphs(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+// Words of `text`, wrapped, each line after the first indented.
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t column) {
+  std::istringstream in(text);
+  std::string out;
+  for (std::string word; in >> word;) {
+    if (column + word.size() + 1 > kWidth && column > indent) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (!out.empty()) {
+      out += ' ';
+      ++column;
+    }
+    out += word;
+    column += word.size();
+  }
+  return out;
+}
+
+std::string namesOf(const Argument& argument) {
+  std::string names;
+  for (const char c : argument.names) names += c == ',' ? std::string(", ") : std::string(1, c);
+  return argument.positional() || argument.value.empty() ? names : names + " " + argument.value;
+}
+
+std::string textOf(const Argument& argument) {
+  std::string text = argument.help;
+  if (argument.repeated) text += " May be given more than once.";
+  if (argument.required && !argument.positional()) text += " Required.";
+  if (!argument.fallback.empty()) text += " [" + argument.fallback + "]";
+  return text;
+}
+
+std::vector<Argument> allOf(const Command& command) {
+  std::vector<Argument> all = command.arguments;
+  if (command.reports) all.push_back(kJson);
+  all.push_back(kHelp);
+  return all;
+}
+
+std::string usage(const Command& command) {
+  std::string line = "patina " + command.name;
+  bool optional = false;
+  for (const Argument& argument : command.arguments) {
+    if (argument.positional()) {
+      const std::string name = argument.value + (argument.repeated ? "..." : "");
+      line += argument.required ? " " + name : " [" + name + "]";
+    } else if (argument.required) {
+      const std::string& names = argument.names;
+      line += " " + names.substr(0, names.find(',')) + " " + argument.value;
+    } else {
+      optional = true;
+    }
+  }
+  return line + (optional || command.reports ? " [options]" : "");
+}
+
+std::string table(const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::size_t width = 0;
+  for (const auto& row : rows) width = std::max(width, row.first.size());
+  const std::size_t indent = std::min<std::size_t>(width, 26) + 4;
+  std::string out;
+  for (const auto& [name, text] : rows) {
+    out += "  " + name;
+    if (name.size() + 4 > indent)
+      out += "\n" + std::string(indent, ' ');
+    else
+      out += std::string(indent - 2 - name.size(), ' ');
+    out += wrapped(text, indent, indent) + "\n";
+  }
+  return out;
+}
+
+std::string argumentTable(const std::vector<Argument>& arguments, bool positional) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Argument& argument : arguments)
+    if (argument.positional() == positional) rows.emplace_back(namesOf(argument), textOf(argument));
+  return rows.empty() ? "" : (positional ? "\nInput:\n" : "\nOptions:\n") + table(rows);
+}
+
+std::string exitCodes() {
+  std::string out = "\nExit codes:\n";
+  for (const char* line : kExitCodes) out += "  " + std::string(line) + "\n";
+  return out;
+}
+
+std::string roff(const std::string& text) {
+  std::string out;
+  bool line_start = true;
+  for (const char c : text) {
+    if (line_start && (c == '.' || c == '\'')) out += "\\&";
+    if (c == '\\')
+      out += "\\e";
+    else if (c == '-')
+      out += "\\-";
+    else
+      out += c;
+    line_start = c == '\n';
+  }
+  return out;
+}
+
+std::string manHeader(const std::string& page, const std::string& summary) {
+  std::string upper = page;
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return ".TH " + roff(upper) + " 1 \"\" \"patina " PATINA_VERSION "\" \"Patina\"\n.SH NAME\n" +
+         roff(page) + " \\- " + roff(summary) + "\n";
+}
+
+std::string manList(const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::string out;
+  for (const auto& [name, text] : rows) out += ".TP\n.B " + roff(name) + "\n" + roff(text) + "\n";
+  return out;
+}
+
+std::string manExitCodes() {
+  std::string out = ".SH EXIT STATUS\n.nf\n";
+  for (const char* line : kExitCodes) out += roff(line) + "\n";
+  return out + ".fi\n";
+}
+
+} // namespace
+
+std::string programHelp(const std::vector<Command>& commands) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Command& command : commands) rows.emplace_back(command.name, command.summary);
+  return "patina " PATINA_VERSION "\n" + wrapped(kAbout, 0, 0) +
+         "\n\nUsage: patina COMMAND INPUT... -o OUTPUT [options]\n\nCommands:\n" + table(rows) +
+         "\n" + wrapped(kUnits, 0, 0) + "\n\nOptions:\n" +
+         table({{namesOf(kHelp), "Print this help; after a command, that of the command."},
+                {namesOf(kVersion), kVersion.help}}) +
+         "\nExample:\n  patina model dinosaur -o dino.ply\n  patina info dino.ply\n" + exitCodes();
+}
+
+std::string commandHelp(const Command& command) {
+  const std::vector<Argument> all = allOf(command);
+  std::string out =
+      "patina " + command.name + ": " + command.summary + "\n\nUsage: " + usage(command) + "\n";
+  for (const std::string& paragraph : paragraphs(command.description))
+    out += "\n" + wrapped(paragraph, 0, 0) + "\n";
+  out += argumentTable(all, true) + argumentTable(all, false);
+  out += "\n" + wrapped(kUnits, 0, 0) + "\n";
+  out += command.examples.size() > 1 ? "\nExamples:\n" : "\nExample:\n";
+  for (const std::string& example : command.examples) out += "  " + example + "\n";
+  return out + exitCodes();
+}
+
+std::string programManPage(const std::vector<Command>& commands) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Command& command : commands)
+    rows.emplace_back("patina-" + command.name + "(1)", command.summary);
+  return manHeader("patina", "a workspace for touch research") +
+         ".SH SYNOPSIS\n.B patina\nCOMMAND INPUT... \\-o OUTPUT [options]\n.SH DESCRIPTION\n" +
+         roff(kAbout) + "\n.PP\n" + roff(kUnits) + "\n.SH COMMANDS\n" + manList(rows) +
+         manExitCodes();
+}
+
+std::string commandManPage(const Command& command) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Argument& argument : allOf(command))
+    rows.emplace_back(namesOf(argument), textOf(argument));
+  std::string out = manHeader("patina-" + command.name, command.summary) + ".SH SYNOPSIS\n" +
+                    roff(usage(command)) + "\n.SH DESCRIPTION\n";
+  for (const std::string& paragraph : paragraphs(command.description))
+    out += roff(paragraph) + "\n.PP\n";
+  out += roff(kUnits) + "\n.SH OPTIONS\n" + manList(rows) + ".SH EXAMPLES\n.nf\n";
+  for (const std::string& example : command.examples) out += roff(example) + "\n";
+  return out + ".fi\n" + manExitCodes() + ".SH SEE ALSO\n.BR patina (1)\n";
+}
+
+std::string markdown(const std::vector<Command>& commands) {
+  std::string out = "# The command line\n\nWhat `patina --help` and `patina COMMAND --help` print; "
+                    "made by `patina man -o docs --markdown`.\n\n```\n" +
+                    programHelp(commands) + "```\n";
+  for (const Command& command : commands)
+    out += "\n## patina " + command.name + "\n\n```\n" + commandHelp(command) + "```\n";
+  return out;
+}
+
+} // namespace patina::cli

@@ -1,0 +1,22 @@
+// --help and man pages, both written from the same Command values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/cli/commands/command.h"
+
+namespace patina::cli {
+
+// Of the program: what every command has in common and the list of commands.
+std::string programHelp(const std::vector<Command>& commands);
+std::string commandHelp(const Command& command);
+
+// roff, section 1: patina.1 and patina-COMMAND.1.
+std::string programManPage(const std::vector<Command>& commands);
+std::string commandManPage(const Command& command);
+
+// The --help of everything as one document.
+std::string markdown(const std::vector<Command>& commands);
+
+} // namespace patina::cli

@@ -1,0 +1,46 @@
+#include "app/cli/output/mesh_output.h"
+
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "geometry/io/mesh_file_type.h"
+#include "geometry/io/mesh_io.h"
+
+namespace patina::cli {
+
+namespace {
+
+double metresPer(MeshUnit unit) {
+  switch (unit) {
+  case MeshUnit::mm:
+    return 0.001;
+  case MeshUnit::cm:
+    return 0.01;
+  case MeshUnit::in:
+    return 0.0254;
+  default:
+    return 1;
+  }
+}
+
+} // namespace
+
+void addUnitOfOutput(Command& command, MeshUnit& unit) {
+  command.arguments.push_back({"--unit", "mm|cm|m|in", "Unit of the numbers in the file.", "mm",
+                               false, false,
+                               [&unit](const auto& text) { unit = parseMeshUnit(text); }});
+}
+
+void requireMeshOutput(const std::filesystem::path& path, MeshUnit unit,
+                       const std::vector<std::filesystem::path>& inputs) {
+  if (unit == MeshUnit::fit) throw Error("--unit: fit is for reading; use mm, cm, m or in");
+  (void)meshFileType(path);
+  requireWritable(path, inputs);
+}
+
+void writeMeshIn(const std::filesystem::path& path, TriangleMesh mesh, MeshUnit unit) {
+  if (const double scale = metresPer(unit); scale != 1)
+    for (Vec3& position : mesh.positions) position /= scale;
+  writeMesh(path, mesh);
+}
+
+} // namespace patina::cli

@@ -1,0 +1,137 @@
+#include "app/gui/loading/load_dialogs.h"
+
+#include <QButtonGroup>
+#include <QDialog>
+#include <QDialogButtonBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QVBoxLayout>
+
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+QDialog* questionAbout(QWidget* parent, const QString& title, const QString& words) {
+  auto* dialog = new QDialog(parent);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(title);
+  auto* layout = new QVBoxLayout(dialog);
+  auto* label = new QLabel(words, dialog);
+  label->setWordWrap(true);
+  label->setMinimumWidth(380);
+  layout->addWidget(label);
+  return dialog;
+}
+
+QDialogButtonBox* addButtons(QDialog* dialog) {
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, dialog);
+  dialog->layout()->addWidget(buttons);
+  QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
+  QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
+  return buttons;
+}
+
+QString inWords(double metres) {
+  return QString::fromStdString(formatLength(metres));
+}
+
+} // namespace
+
+void askUnit(QWidget* parent, const QString& name, double longest,
+             std::function<void(MeshUnit)> answer) {
+  QDialog* dialog = questionAbout(
+      parent, QDialog::tr("Which unit?"),
+      QDialog::tr("%1 is %2 units long. Mesh files carry no unit, and in millimetres it would be "
+                  "too small or too large to feel. What are its coordinates?")
+          .arg(name)
+          .arg(longest, 0, 'g', 4));
+  dialog->setObjectName(QStringLiteral("unit_dialog"));
+  auto* group = new QButtonGroup(dialog);
+  const std::pair<MeshUnit, QString> choices[] = {
+      {MeshUnit::fit, QDialog::tr("Unknown: make the longest side 100 mm")},
+      {MeshUnit::m, QDialog::tr("Metres (%1)").arg(inWords(longest))},
+      {MeshUnit::cm, QDialog::tr("Centimetres (%1)").arg(inWords(longest / 100))},
+      {MeshUnit::mm, QDialog::tr("Millimetres (%1)").arg(inWords(longest / 1000))},
+      {MeshUnit::in, QDialog::tr("Inches (%1)").arg(inWords(longest * 0.0254))}};
+  for (const auto& [unit, words] : choices) {
+    auto* button = new QRadioButton(words, dialog);
+    group->addButton(button, static_cast<int>(unit));
+    dialog->layout()->addWidget(button);
+  }
+  group->button(static_cast<int>(MeshUnit::fit))->setChecked(true);
+  addButtons(dialog);
+  QObject::connect(dialog, &QDialog::accepted, parent, [group, answer = std::move(answer)] {
+    answer(static_cast<MeshUnit>(group->checkedId()));
+  });
+  dialog->open();
+}
+
+void askIso(QWidget* parent, const QString& name, double low, double high,
+            std::function<void(double)> answer) {
+  QDialog* dialog = questionAbout(
+      parent, QDialog::tr("Where is the surface?"),
+      QDialog::tr("%1 is a volume whose values run from %2 to %3. The surface to feel is where the "
+                  "value is:")
+          .arg(name)
+          .arg(low, 0, 'g', 5)
+          .arg(high, 0, 'g', 5));
+  dialog->setObjectName(QStringLiteral("iso_dialog"));
+  auto* number = new QDoubleSpinBox(dialog);
+  number->setDecimals(6);
+  number->setRange(low, high);
+  number->setSingleStep((high - low) / 20);
+  // A distance has its surface at 0; of anything else the middle is a first guess.
+  number->setValue(low < 0 && high > 0 ? 0 : 0.5 * (low + high));
+  dialog->layout()->addWidget(number);
+  addButtons(dialog);
+  QObject::connect(dialog, &QDialog::accepted, parent,
+                   [number, answer = std::move(answer)] { answer(number->value()); });
+  dialog->open();
+}
+
+QString adviceFor(const QString& message) {
+  if (message.contains(QStringLiteral("no object")))
+    return QDialog::tr("Start with a mesh, File → Add object…, and save the workspace; or run "
+                       "patina scene -o FOLDER --add MESH.");
+  if (message.contains(QStringLiteral("no such file")))
+    return QDialog::tr("Check the name, or open it with File → Open.");
+  if (message.contains(QStringLiteral("extension")) || message.contains(QStringLiteral("format")))
+    return QDialog::tr("Patina opens .obj, .ply and .stl meshes, .vti volumes and its own "
+                       "workspace folders.");
+  if (message.contains(QStringLiteral("memory")) || message.contains(QStringLiteral("grid")))
+    return QDialog::tr("Choose a smaller resolution or a smaller band.");
+  return QDialog::tr("Repair the file at the place that is named, or export it again from the "
+                     "program that made it.");
+}
+
+void askRecover(QWidget* parent, const QString& name, const QString& message,
+                std::function<void()> yes) {
+  auto* box = new QMessageBox(QMessageBox::Warning, QDialog::tr("%1 is damaged").arg(name), message,
+                              QMessageBox::Cancel, parent);
+  box->setObjectName(QStringLiteral("damaged"));
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setInformativeText(
+      QDialog::tr("What can still be read can be opened; what cannot is left out, and said."));
+  auto* recover = box->addButton(QDialog::tr("Recover"), QMessageBox::AcceptRole);
+  recover->setObjectName(QStringLiteral("recover_damaged"));
+  QObject::connect(recover, &QPushButton::clicked, parent, std::move(yes));
+  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  box->open();
+}
+
+void showProblem(QWidget* parent, const QString& title, const QString& message,
+                 const QString& advice) {
+  auto* box = new QMessageBox(QMessageBox::Warning, title, message, QMessageBox::Ok, parent);
+  box->setObjectName(QStringLiteral("problem"));
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setInformativeText(advice);
+  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  box->open();
+}
+
+} // namespace patina

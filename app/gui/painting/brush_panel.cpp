@@ -1,0 +1,339 @@
+#include "app/gui/painting/brush_panel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <QCheckBox>
+#include <QColorDialog>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QSignalBlocker>
+#include <QToolButton>
+
+#include "app/gui/painting/brush_curve.h"
+
+namespace patina {
+namespace {
+
+constexpr std::array<std::array<double, 3>, 8> kSwatches{{{0.80, 0.22, 0.16},
+                                                          {0.93, 0.55, 0.13},
+                                                          {0.95, 0.83, 0.30},
+                                                          {0.29, 0.58, 0.28},
+                                                          {0.16, 0.52, 0.65},
+                                                          {0.20, 0.29, 0.62},
+                                                          {0.96, 0.96, 0.94},
+                                                          {0.14, 0.15, 0.18}}};
+
+QColor qColor(const std::array<double, 3>& color) {
+  return QColor::fromRgbF(color[0], color[1], color[2]);
+}
+
+QString titleOf(Tool tool) {
+  switch (tool) {
+  case Tool::color:
+    return BrushPanel::tr("Brush: colour");
+  case Tool::relief:
+    return BrushPanel::tr("Brush: relief");
+  case Tool::stiffness:
+    return BrushPanel::tr("Brush: stiffness");
+  case Tool::static_friction:
+  case Tool::dynamic_friction:
+    return BrushPanel::tr("Brush: friction");
+  case Tool::damping:
+    return BrushPanel::tr("Brush: damping");
+  case Tool::roughness:
+    return BrushPanel::tr("Brush: roughness");
+  case Tool::erase:
+    break;
+  }
+  return BrushPanel::tr("Eraser");
+}
+
+} // namespace
+
+BrushPanel::BrushPanel(QWidget* parent) : QGroupBox(parent), layout_(new QVBoxLayout(this)) {
+  layout_->setContentsMargins(0, 0, 0, 0);
+}
+
+void BrushPanel::show(const Brush& brush, const BrushBook& book) {
+  brush_ = brush;
+  setTitle(titleOf(brush.tool));
+  rebuild(book);
+}
+
+void BrushPanel::change() {
+  if (curve_ != nullptr) static_cast<BrushCurve*>(curve_)->setBrush(brush_);
+  emit edited(brush_);
+}
+
+ValueRow* BrushPanel::addRow(const char* name, const QString& caption, const QString& unit,
+                             const RowRange& range, double value, const QString& tip) {
+  auto* row = new ValueRow(caption, unit, range, rows_);
+  row->setObjectName(QString::fromUtf8(name));
+  row->setValue(value);
+  row->setToolTip(tip);
+  rows_->layout()->addWidget(row);
+  return row;
+}
+
+QComboBox* BrushPanel::addCombo(const char* name, const QString& caption, const QStringList& words,
+                                int now) {
+  auto* line = new QHBoxLayout;
+  auto* label = new QLabel(caption, rows_);
+  label->setProperty("quiet", true);
+  auto* combo = new QComboBox(rows_);
+  combo->setObjectName(QString::fromUtf8(name));
+  combo->setAccessibleName(caption);
+  combo->addItems(words);
+  combo->setCurrentIndex(now);
+  line->addWidget(label);
+  line->addWidget(combo, 1);
+  static_cast<QVBoxLayout*>(rows_->layout())->addLayout(line);
+  return combo;
+}
+
+void BrushPanel::rebuild(const BrushBook& book) {
+  takeAway(rows_);
+  rows_ = new QWidget(this);
+  auto* column = new QVBoxLayout(rows_);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(6);
+  if (brush_.tool == Tool::color)
+    addColor();
+  else
+    addValue(book.extent());
+  addLayers(book);
+  addSize(book);
+  addShape();
+  addChoices();
+  layout_->addWidget(rows_);
+}
+
+void BrushPanel::addColor() {
+  auto* line = new QHBoxLayout;
+  line->setSpacing(3);
+  const auto swatch = [&](const QColor& color, int wide, bool now) {
+    auto* button = new QToolButton(rows_);
+    button->setFixedSize(wide, 22);
+    button->setStyleSheet(QStringLiteral("QToolButton { background: %1; border: %2; "
+                                         "border-radius: 3px; }")
+                              .arg(color.name(), now ? QStringLiteral("2px solid #2b6cb0")
+                                                     : QStringLiteral("1px solid #9aa3b0")));
+    line->addWidget(button);
+    return button;
+  };
+  QToolButton* now = swatch(qColor(brush_.color), 44, true);
+  now->setObjectName(QStringLiteral("brush_color"));
+  now->setToolTip(tr("Choose another colour…"));
+  connect(now, &QToolButton::clicked, this, [this] {
+    const QColor color = QColorDialog::getColor(qColor(brush_.color), this, tr("Brush colour"));
+    if (!color.isValid()) return;
+    brush_.color = {color.redF(), color.greenF(), color.blueF()};
+    change();
+  });
+  for (const auto& color : kSwatches)
+    connect(swatch(qColor(color), 22, false), &QToolButton::clicked, this, [this, color] {
+      brush_.color = color;
+      change();
+    });
+  line->addStretch(1);
+  static_cast<QVBoxLayout*>(rows_->layout())->addLayout(line);
+}
+
+void BrushPanel::addValue(double extent) {
+  struct Kind {
+    QString caption, unit;
+    RowRange range;
+    double per_si;
+  };
+  const double highest = 1000 * std::max(1e-3, std::min(0.05 * extent, 0.05));
+  Kind kind;
+  switch (brush_.tool) {
+  case Tool::relief:
+    kind = {tr("Height; below 0 it engraves"),
+            QStringLiteral("mm"),
+            {-highest, highest, highest / 50, 2},
+            1000};
+    break;
+  case Tool::stiffness:
+    kind = {tr("Stiffness"), QStringLiteral("N/m"), {10, 10000, 10, 0, true}, 1};
+    break;
+  case Tool::static_friction:
+  case Tool::dynamic_friction: {
+    const int now = brush_.tool == Tool::static_friction ? 0 : 1;
+    auto* which = addCombo("which_friction", tr("Paints"),
+                           {tr("static friction"), tr("dynamic friction")}, now);
+    connect(which, qOverload<int>(&QComboBox::activated), this, [this](int index) {
+      emit toolAsked(index == 0 ? Tool::static_friction : Tool::dynamic_friction);
+    });
+    kind = {tr("Coefficient"), {}, {0, 2, 0.05, 2}, 1};
+    break;
+  }
+  case Tool::damping:
+    kind = {tr("Damping"), QStringLiteral("N s/m"), {0, 20, 0.1, 2}, 1};
+    break;
+  case Tool::roughness:
+    kind = {tr("Roughness, rms"), QStringLiteral("µm"), {0, 500, 5, 0}, 1e6};
+    break;
+  default: {
+    const QStringList words = {tr("everything"), tr("colour"),          tr("relief"),
+                               tr("stiffness"),  tr("static friction"), tr("dynamic friction"),
+                               tr("damping"),    tr("roughness")};
+    int now = 0;
+    for (int i = 0; i < 7; ++i)
+      if (brush_.erases == name(static_cast<Tool>(i))) now = i + 1;
+    auto* what = addCombo("erases", tr("Erases"), words, now);
+    connect(what, qOverload<int>(&QComboBox::activated), this, [this](int index) {
+      brush_.erases = index == 0 ? std::string() : std::string(name(static_cast<Tool>(index - 1)));
+      change();
+    });
+    return;
+  }
+  }
+  const double per_si = kind.per_si;
+  ValueRow* row = addRow("brush_value", kind.caption, kind.unit, kind.range, per_si * brush_.value);
+  connect(row, &ValueRow::edited, this, [this, per_si](double value) {
+    brush_.value = value / per_si;
+    change();
+  });
+}
+
+void BrushPanel::addLayers(const BrushBook& book) {
+  if (brush_.tool == Tool::erase) return;
+  const std::array<std::pair<Tool, QString>, 7> tools{
+      {{Tool::color, tr("colour")},
+       {Tool::relief, tr("relief")},
+       {Tool::stiffness, tr("stiffness")},
+       {Tool::static_friction, tr("static friction")},
+       {Tool::dynamic_friction, tr("dynamic friction")},
+       {Tool::damping, tr("damping")},
+       {Tool::roughness, tr("roughness")}}};
+  auto* box = new QToolButton(rows_);
+  box->setObjectName(QStringLiteral("brush_also"));
+  box->setText(tr("Paints also…"));
+  box->setToolTip(tr("What the same stroke lays on beside this, each as its own tool is set"));
+  box->setPopupMode(QToolButton::InstantPopup);
+  box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  auto* menu = new QMenu(box);
+  const auto say = [box, menu] {
+    QStringList words;
+    for (const QAction* action : menu->actions())
+      if (action->isChecked()) words << action->text();
+    box->setText(words.isEmpty() ? tr("Paints also…")
+                                 : tr("Also: %1").arg(words.join(QStringLiteral(", "))));
+  };
+  for (const auto& [tool, caption] : tools) {
+    if (!canJoin(brush_, tool)) continue;
+    QAction* action = menu->addAction(caption);
+    action->setObjectName(QStringLiteral("also_") +
+                          QString::fromUtf8(std::string(name(tool)).c_str()));
+    action->setCheckable(true);
+    action->setChecked(layerOf(brush_, tool) != nullptr);
+    const BrushLayer layer = book.brush(tool);
+    connect(action, &QAction::toggled, this, [this, layer, say](bool on) {
+      std::erase_if(brush_.also, [&](const BrushLayer& l) { return l.tool == layer.tool; });
+      if (on) brush_.also.push_back(layer);
+      say();
+      change();
+    });
+  }
+  say();
+  box->setMenu(menu);
+  rows_->layout()->addWidget(box);
+}
+
+void BrushPanel::addSize(const BrushBook& book) {
+  const double most = 500 * book.extent();
+  ValueRow* radius = addRow("brush_radius", tr("Radius"), QStringLiteral("mm"),
+                            {most / 500, most, most / 100, 2, true}, 1000 * brush_.radius,
+                            tr("[ smaller, ] larger"));
+  connect(radius, &ValueRow::edited, this, [this](double value) {
+    brush_.radius = value / 1000;
+    change();
+  });
+  ValueRow* grows = addRow("brush_grows", tr("Radius from force"), QStringLiteral("mm/N"),
+                           {0, most / 10, most / 500, 2}, 1000 * brush_.radius_per_force,
+                           tr("The harder the tool presses, the larger the brush; a pen's "
+                              "pressure is such a force"));
+  connect(grows, &ValueRow::edited, this, [this](double value) {
+    brush_.radius_per_force = value / 1000;
+    change();
+  });
+  ValueRow* press =
+      addRow("brush_press", tr("Pressing force"), QStringLiteral("N"), {0.1, 3, 0.1, 1}, book.press,
+             tr("How hard the mouse, or a pen at full pressure, presses the tool "
+                "onto the surface"));
+  connect(press, &ValueRow::edited, this, &BrushPanel::pressed);
+}
+
+void BrushPanel::addShape() {
+  auto* shape = addCombo("brush_shape", tr("Shape"), {tr("power"), tr("cone"), tr("smooth")},
+                         static_cast<int>(brush_.shape));
+  shape->setItemData(0, QStringLiteral("1 − (d/r)^f"), Qt::ToolTipRole);
+  shape->setItemData(1, QStringLiteral("(1 − d/r)^f"), Qt::ToolTipRole);
+  shape->setItemData(2, QStringLiteral("(1 − (d/r)²)^f"), Qt::ToolTipRole);
+  connect(shape, qOverload<int>(&QComboBox::activated), this, [this](int index) {
+    brush_.shape = static_cast<BrushShape>(index);
+    change();
+  });
+  ValueRow* falloff = addRow("brush_falloff", tr("Fall-off"), {}, {0.25, 16, 0.25, 2, true},
+                             brush_.falloff, tr("{ less, } more: the exponent f of the shape"));
+  connect(falloff, &ValueRow::edited, this, [this](double value) {
+    brush_.falloff = value;
+    change();
+  });
+  auto* curve = new BrushCurve(rows_);
+  curve->setBrush(brush_);
+  rows_->layout()->addWidget(curve);
+  curve_ = curve;
+}
+
+void BrushPanel::addChoices() {
+  if (brush_.tool != Tool::erase) {
+    QStringList words = {tr("once a stroke"), tr("builds up"), tr("adds"), tr("smooths")};
+    int now = static_cast<int>(brush_.mode);
+    std::vector<StrokeMode> modes = {StrokeMode::max, StrokeMode::build_up, StrokeMode::add,
+                                     StrokeMode::smooth};
+    if (brush_.tool == Tool::color) {
+      words.removeAt(2);
+      modes.erase(modes.begin() + 2);
+      if (now > 1) --now;
+    }
+    auto* mode = addCombo("brush_mode", tr("Lays on"), words, now);
+    connect(mode, qOverload<int>(&QComboBox::activated), this, [this, modes](int index) {
+      brush_.mode = modes[static_cast<std::size_t>(index)];
+      change();
+    });
+  }
+  auto* seed =
+      addCombo("brush_seed", tr("Starts"), {tr("at the nearest point"), tr("under the tip")},
+               static_cast<int>(brush_.seed));
+  seed->setToolTip(
+      tr("Under the tip: where the way from the tip goes through the surface, as in the "
+         "paper; on thin parts it is the side that is touched"));
+  connect(seed, qOverload<int>(&QComboBox::activated), this, [this](int index) {
+    brush_.seed = static_cast<Seed>(index);
+    change();
+  });
+  auto* symmetry = addCombo("brush_symmetry", tr("Mirrored"),
+                            {tr("not"), tr("across x"), tr("across y"), tr("across z")},
+                            static_cast<int>(brush_.symmetry));
+  connect(symmetry, qOverload<int>(&QComboBox::activated), this, [this](int index) {
+    brush_.symmetry = static_cast<Symmetry>(index);
+    change();
+  });
+  auto* front = new QCheckBox(tr("Front faces only"), rows_);
+  front->setObjectName(QStringLiteral("front_only"));
+  front->setToolTip(tr("Leave out what looks away from the place that is touched, such as the "
+                       "far side of a thin part"));
+  front->setChecked(brush_.front_only);
+  connect(front, &QCheckBox::toggled, this, [this](bool on) {
+    brush_.front_only = on;
+    change();
+  });
+  rows_->layout()->addWidget(front);
+}
+
+} // namespace patina

@@ -1,0 +1,77 @@
+// Painting in the window: the tool that is chosen, its brush, and the hand that paints with it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <QElapsedTimer>
+#include <QObject>
+
+#include "app/gui/painting/brush_book.h"
+#include "app/gui/painting/brush_panel.h"
+#include "app/gui/painting/stroke_tracker.h"
+#include "app/gui/servo/feel_host.h"
+#include "app/gui/window/scene_widget.h"
+#include "app/gui/window/tool_bar.h"
+#include "session/edit/edit_thread.h"
+
+namespace patina {
+
+// Painting is feeling: the pointer presses the tool onto the surface under it, the servo feels
+// that, and where it feels contact the brush paints. All of these outlive it.
+class PaintDesk : public QObject {
+  Q_OBJECT
+ public:
+  struct Parts {
+    ToolBar& bar;
+    BrushPanel& panel;
+    SceneWidget& view;
+    FeelHost& feel;
+    EditThread& edits;
+  };
+  explicit PaintDesk(const Parts& parts, QObject* parent = nullptr);
+
+  void setScene(std::shared_ptr<const CompiledScene> scene, bool anew); // null: none
+  void feed(const std::vector<ToolSample>& ticks); // of every window tick, be there any or none
+  void refresh();                                  // brush cursor and what is under the pointer
+  void resizeBrush(double factor);
+  void softenBrush(double factor);
+  void pickAt(const Vec3& surface);
+
+  BrushBook& book() { return book_; }
+  void setBrush(const Brush& brush);
+  Brush brush() const { return book_.brush(tool_); }
+  bool painting() const { return tracker_.painting(); }
+
+ signals:
+  void chosen(const patina::ToolChoice& choice);
+  void underPointer(const QString& words); // empty: nothing
+
+ private:
+  void take(const ToolChoice& choice);
+  void follow(const Pointed& where);
+  void press(const Vec3& surface, double newtons);
+  void lift();
+  void moveTip(const Vec3& target);
+  Vec3 normalAt(const Vec3& surface) const;
+  std::optional<SurfaceValues> valuesAt(const Vec3& surface, QString* object = nullptr) const;
+  bool arrived(const std::vector<ToolSample>& ticks) const;
+  void send(const std::vector<StrokePiece>& pieces);
+  void showCursor(const std::optional<Vec3>& surface);
+  QString wordsFor(const Vec3& surface) const;
+
+  Parts at_;
+  std::shared_ptr<const CompiledScene> scene_;
+  BrushBook book_;
+  Tool tool_ = Tool::color; // of the brush, also while something else is chosen
+  StrokeTracker tracker_;
+  Vec3 aim_ = Vec3::Zero(); // on the surface
+  double newtons_ = 0;      // with which it is pressed there; 0: it is not
+  bool down_ = false, lingers_ = false;
+  QElapsedTimer released_;
+  std::size_t lingered_ = 0; // ticks since then
+  ToolSample last_;
+  int refreshes_ = 0;
+};
+
+} // namespace patina

@@ -1,0 +1,215 @@
+#include "app/gui/painting/tool_choice.h"
+
+#include <cmath>
+#include <vector>
+
+#include <QCoreApplication>
+#include <QPainter>
+#include <QPainterPath>
+#include <QPixmap>
+
+namespace patina {
+namespace {
+
+const QColor kInk(0x2a, 0x32, 0x40);
+const QColor kAccent(0x2b, 0x6c, 0xb0);
+const QColor kWarm(0xcc, 0x4a, 0x2c);
+
+QString tr(const char* words) {
+  return QCoreApplication::translate("ToolBar", words);
+}
+
+// Every picture is drawn in a square of 20 units.
+void drawNavigate(QPainter& p) {
+  p.drawEllipse(QRectF(4, 7, 12, 6));
+  p.drawEllipse(QRectF(7, 4, 6, 12));
+  p.setBrush(kInk);
+  p.drawEllipse(QPointF(10, 10), 1.4, 1.4);
+}
+
+void drawFeel(QPainter& p) {
+  QPainterPath ground(QPointF(2, 15));
+  ground.cubicTo(6, 15, 7, 17.5, 10, 17.5);
+  ground.cubicTo(13, 17.5, 14, 15, 18, 15);
+  p.drawPath(ground);
+  p.setPen(QPen(kWarm, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(10, 13), QPointF(10, 3.5));
+  p.drawLine(QPointF(10, 3), QPointF(7.2, 6.2));
+  p.drawLine(QPointF(10, 3), QPointF(12.8, 6.2));
+}
+
+void drawBrush(QPainter& p) {
+  p.drawLine(QPointF(17, 3), QPointF(10, 10));
+  QPainterPath tip(QPointF(10.8, 9.2));
+  tip.cubicTo(7, 8.6, 6.2, 12, 3, 16.6);
+  tip.cubicTo(8, 17, 12, 15, 12.2, 10.8);
+  tip.closeSubpath();
+  p.setBrush(kWarm);
+  p.setPen(QPen(kWarm.darker(130), 1));
+  p.drawPath(tip);
+}
+
+void drawRelief(QPainter& p) {
+  QPainterPath hill(QPointF(1.5, 15));
+  hill.cubicTo(6, 15, 6, 5, 10, 5);
+  hill.cubicTo(14, 5, 14, 15, 18.5, 15);
+  p.setBrush(QColor(0x2b, 0x6c, 0xb0, 70));
+  p.drawPath(hill);
+  p.setPen(QPen(kAccent, 1.6, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(10, 12.5), QPointF(10, 8.5));
+  p.drawLine(QPointF(10, 8), QPointF(8.3, 9.9));
+  p.drawLine(QPointF(10, 8), QPointF(11.7, 9.9));
+}
+
+void drawStiffness(QPainter& p) { // a spring
+  QPolygonF line;
+  line << QPointF(10, 2) << QPointF(10, 4.5);
+  for (int i = 0; i < 4; ++i) line << QPointF(i % 2 ? 5.5 : 14.5, 5.8 + 2.6 * i);
+  line << QPointF(10, 15.5) << QPointF(10, 18);
+  p.setPen(QPen(kAccent, 1.7, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  p.drawPolyline(line);
+  p.setPen(QPen(kInk, 1.6));
+  p.drawLine(QPointF(4, 18), QPointF(16, 18));
+}
+
+void drawFriction(QPainter& p) { // a block on rough ground
+  p.setBrush(QColor(0x2b, 0x6c, 0xb0, 70));
+  p.drawRect(QRectF(5, 5, 9, 7));
+  QPolygonF ground;
+  for (int i = 0; i <= 8; ++i) ground << QPointF(2 + 2 * i, i % 2 ? 13.4 : 16.4);
+  p.drawPolyline(ground);
+  p.setPen(QPen(kWarm, 1.6, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(7.5, 8.5), QPointF(12, 8.5));
+}
+
+void drawDamping(QPainter& p) { // a dashpot
+  p.drawLine(QPointF(10, 2), QPointF(10, 8));
+  p.drawLine(QPointF(6.5, 9), QPointF(13.5, 9));
+  p.drawPolyline(QPolygonF() << QPointF(4.5, 6) << QPointF(4.5, 15) << QPointF(15.5, 15)
+                             << QPointF(15.5, 6));
+  p.drawLine(QPointF(10, 15), QPointF(10, 18));
+}
+
+void drawRoughness(QPainter& p) {
+  QPolygonF ground;
+  const double heights[] = {12, 9, 13, 7, 12, 10, 14, 8, 12};
+  for (int i = 0; i <= 8; ++i) ground << QPointF(2 + 2 * i, heights[i]);
+  p.drawPolyline(ground);
+  p.drawLine(QPointF(2, 16.5), QPointF(18, 16.5));
+}
+
+void drawErase(QPainter& p) {
+  p.save();
+  p.translate(10, 10);
+  p.rotate(-40);
+  p.setBrush(QColor(0xf0, 0xb8, 0xb0));
+  p.drawRoundedRect(QRectF(-7, -3.6, 6, 7.2), 1, 1);
+  p.setBrush(QColor(0xff, 0xff, 0xff));
+  p.drawRoundedRect(QRectF(-1, -3.6, 8, 7.2), 1, 1);
+  p.restore();
+  p.drawLine(QPointF(4, 17.5), QPointF(16, 17.5));
+}
+
+void drawPick(QPainter& p) { // a pipette
+  p.setPen(QPen(kInk, 3.6, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(13.5, 6.5), QPointF(16, 4));
+  p.setPen(QPen(kInk, 1.5, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(10.5, 5.5), QPointF(14.5, 9.5));
+  p.setBrush(QColor(0x2b, 0x6c, 0xb0, 90));
+  p.drawPolygon(QPolygonF() << QPointF(11.2, 6.8) << QPointF(13.2, 8.8) << QPointF(6, 16)
+                            << QPointF(3.6, 16.4) << QPointF(4, 14));
+}
+
+using Draw = void (*)(QPainter&);
+
+Draw drawerOf(const ToolChoice& choice) {
+  switch (choice.handling) {
+  case Handling::navigate:
+    return drawNavigate;
+  case Handling::feel:
+    return drawFeel;
+  case Handling::pick:
+    return drawPick;
+  case Handling::paint:
+    break;
+  }
+  switch (choice.tool) {
+  case Tool::color:
+    return drawBrush;
+  case Tool::relief:
+    return drawRelief;
+  case Tool::stiffness:
+    return drawStiffness;
+  case Tool::static_friction:
+  case Tool::dynamic_friction:
+    return drawFriction;
+  case Tool::damping:
+    return drawDamping;
+  case Tool::roughness:
+    return drawRoughness;
+  case Tool::erase:
+    break;
+  }
+  return drawErase;
+}
+
+} // namespace
+
+const std::vector<ToolCard>& toolCards() {
+  const auto paint = [](Tool tool) { return ToolChoice{Handling::paint, tool}; };
+  static const std::vector<ToolCard> kCards = {
+      {{Handling::navigate, {}},
+       "tool_navigate",
+       tr("Navigate"),
+       tr("Left drag turns the camera, the wheel zooms"),
+       Qt::Key_A},
+      {{Handling::feel, {}},
+       "tool_feel",
+       tr("Feel"),
+       tr("Left drag moves the tip, the wheel moves it in depth"),
+       Qt::Key_V},
+      {paint(Tool::color), "tool_color", tr("Paint"), tr("Paint colour onto the surface"),
+       Qt::Key_P},
+      {paint(Tool::relief), "tool_relief", tr("Relief"),
+       tr("Raise or engrave the surface, felt as it is painted"), Qt::Key_H},
+      {paint(Tool::stiffness), "tool_stiffness", tr("Stiffness"),
+       tr("Make places softer or harder"), Qt::Key_D},
+      {paint(Tool::static_friction), "tool_friction", tr("Friction"),
+       tr("Make places slippery or grippy, static and dynamic"), Qt::Key_G},
+      {paint(Tool::damping), "tool_damping", tr("Damping"), tr("Make places viscous"), Qt::Key_J},
+      {paint(Tool::roughness), "tool_roughness", tr("Roughness"),
+       tr("Give places a fine rough pattern"), Qt::Key_U},
+      {paint(Tool::erase), "tool_erase", tr("Erase"),
+       tr("Take away what was painted, all of it or one kind"), Qt::Key_X},
+      {{Handling::pick, {}},
+       "tool_pick",
+       tr("Eyedropper"),
+       tr("Take what is painted at a place into the brush; with Alt, any tool does"),
+       Qt::Key_C}};
+  return kCards;
+}
+
+QIcon iconOf(const ToolChoice& choice) {
+  QIcon icon;
+  for (const int scale : {1, 2, 3}) {
+    QPixmap pixmap(20 * scale, 20 * scale);
+    pixmap.fill(Qt::transparent);
+    QPainter painter(&pixmap);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.scale(scale, scale);
+    painter.setPen(QPen(kInk, 1.4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+    drawerOf(choice)(painter);
+    painter.end();
+    icon.addPixmap(pixmap);
+  }
+  return icon;
+}
+
+std::optional<PaintQuantity> quantityOf(const ToolChoice& choice) {
+  if (choice.handling != Handling::paint || choice.tool == Tool::erase) return std::nullopt;
+  if (choice.tool == Tool::color) return PaintQuantity::color;
+  if (choice.tool == Tool::relief) return PaintQuantity::relief;
+  return quantityOf(*channelOf(choice.tool));
+}
+
+} // namespace patina

@@ -1,0 +1,38 @@
+// What the left button does in the 3D view.
+#pragma once
+
+#include <optional>
+
+#include <QIcon>
+#include <QKeySequence>
+#include <QString>
+
+#include "scene/stroke.h"
+#include "visualization/values/paint_quantity.h"
+
+namespace patina {
+
+enum class Handling { navigate, feel, paint, pick };
+
+struct ToolChoice {
+  Handling handling = Handling::feel;
+  Tool tool = Tool::color; // of paint
+  bool operator==(const ToolChoice& other) const {
+    return handling == other.handling && (handling != Handling::paint || tool == other.tool);
+  }
+};
+
+// How a tool is called, drawn and reached.
+struct ToolCard {
+  ToolChoice choice;
+  const char* name; // object name of its action
+  QString words, tip;
+  int key;
+};
+const std::vector<ToolCard>& toolCards(); // in the order of the tool bar
+QIcon iconOf(const ToolChoice& choice);   // drawn for 20 pixels
+
+// What shows what a tool does; nullopt for what does not paint, and for the eraser.
+std::optional<PaintQuantity> quantityOf(const ToolChoice& choice);
+
+} // namespace patina

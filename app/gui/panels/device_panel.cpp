@@ -1,0 +1,169 @@
+#include "app/gui/panels/device_panel.h"
+
+#include <cmath>
+
+#include <QDoubleSpinBox>
+#include <QSignalBlocker>
+
+#include "app/gui/panels/value_row.h"
+
+namespace patina {
+namespace {
+
+const char* const kDevices[] = {"mouse", "simulated"};
+
+// In the order of the list that a person chooses from.
+const std::optional<Stabilisers> kStabilisers[] = {
+    std::nullopt, Stabilisers{false, false}, Stabilisers{true, false}, Stabilisers{false, true},
+    Stabilisers{true, true}};
+
+struct Number {
+  const char* name;
+  QString caption, unit;
+  double per_unit; // SI
+  double low, high, step;
+  int decimals;
+  double (*get)(const DeviceModel&);
+  void (*set)(DeviceModel&, double);
+};
+
+std::vector<Number> numbers() {
+  const auto tr = [](const char* words) { return DevicePanel::tr(words); };
+  return {
+      {"device_mass", tr("Mass"), QStringLiteral("g"), 1e-3, 1, 5000, 10, 0,
+       [](const DeviceModel& m) { return m.mass; }, [](DeviceModel& m, double v) { m.mass = v; }},
+      {"device_damping", tr("Damping"), QStringLiteral("N s/m"), 1, 0, 100, 0.1, 2,
+       [](const DeviceModel& m) { return m.damping; },
+       [](DeviceModel& m, double v) { m.damping = v; }},
+      {"device_coulomb", tr("Dry friction"), QStringLiteral("N"), 1, 0, 10, 0.05, 2,
+       [](const DeviceModel& m) { return m.coulomb; },
+       [](DeviceModel& m, double v) { m.coulomb = v; }},
+      {"device_encoder", tr("Encoder step"), QStringLiteral("µm"), 1e-6, 0, 1000, 5, 1,
+       [](const DeviceModel& m) { return m.encoder_step; },
+       [](DeviceModel& m, double v) { m.encoder_step = v; }},
+      {"device_rate", tr("Rate"), QStringLiteral("Hz"), 1, 100, 10000, 100, 0,
+       [](const DeviceModel& m) { return m.rate; }, [](DeviceModel& m, double v) { m.rate = v; }},
+      {"device_delay", tr("Delay"), tr("samples"), 1, 0, 20, 1, 0,
+       [](const DeviceModel& m) { return static_cast<double>(m.delay); },
+       [](DeviceModel& m, double v) { m.delay = static_cast<int>(std::lround(v)); }}};
+}
+
+} // namespace
+
+DeviceChoice deviceChoice(const Scene& scene) {
+  return {scene.device, scene.device_model, scene.stabilisers};
+}
+
+DevicePanel::DevicePanel(QWidget* parent)
+    : QGroupBox(tr("Device"), parent), device_(new QComboBox(this)),
+      stabiliser_(new QComboBox(this)), layout_(new QVBoxLayout(this)), note_(new QLabel(this)) {
+  layout_->setContentsMargins(0, 0, 0, 0);
+  layout_->setSpacing(6);
+  auto* grid = new QGridLayout;
+  grid->setColumnStretch(1, 1);
+  const auto caption = [&](const QString& words, int row) {
+    auto* label = new QLabel(words, this);
+    label->setProperty("quiet", true);
+    grid->addWidget(label, row, 0);
+  };
+  caption(tr("Felt with"), 0);
+  device_->setObjectName(QStringLiteral("device"));
+  device_->addItems({tr("Mouse"), tr("Simulated device")});
+  device_->setToolTip(tr("The mouse's tip is where it is told to be. A simulated device is a mass "
+                         "in a hand: it yields, and rests where the forces are equal."));
+  grid->addWidget(device_, 0, 1);
+  caption(tr("Stabiliser"), 1);
+  stabiliser_->setObjectName(QStringLiteral("stabiliser"));
+  stabiliser_->addItems(
+      {tr("Automatic"), tr("None"), tr("Coupling"), tr("Passivity"), tr("Coupling and passivity")});
+  stabiliser_->setToolTip(
+      tr("Coupling: a spring and damper between tip and contact point, stable for any stiffness, "
+         "felt as a softer surface. Passivity: brakes when the surface has given more energy than "
+         "it took. Automatic: chosen from the device's numbers, nothing where none is needed."));
+  grid->addWidget(stabiliser_, 1, 1);
+  layout_->addLayout(grid);
+  note_->setObjectName(QStringLiteral("stability_note"));
+  note_->setProperty("quiet", true);
+  note_->setWordWrap(true);
+  note_->hide();
+  layout_->addWidget(note_);
+  connect(device_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
+    choice_.device = kDevices[index];
+    rebuild();
+    emit edited();
+  });
+  connect(stabiliser_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
+    choice_.stabilisers = kStabilisers[index];
+    emit edited();
+  });
+}
+
+void DevicePanel::setValues(const DeviceChoice& choice) {
+  choice_ = choice;
+  const QSignalBlocker quiet(device_), quiet_too(stabiliser_);
+  device_->setCurrentIndex(choice.device == kDevices[1] ? 1 : 0);
+  for (int i = 0; i < 5; ++i)
+    if (kStabilisers[i] == choice.stabilisers) stabiliser_->setCurrentIndex(i);
+  rebuild();
+}
+
+void DevicePanel::setNote(const QString& words) {
+  note_->setText(words);
+  note_->setVisible(!words.isEmpty());
+}
+
+void DevicePanel::rebuild() {
+  takeAway(numbers_);
+  if (!choice_.model && choice_.device == kDevices[0]) return;
+  numbers_ = new QWidget(this);
+  auto* column = new QVBoxLayout(numbers_);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(4);
+  if (choice_.model) addNumbers(column);
+  auto* button = new QToolButton(numbers_);
+  button->setObjectName(QStringLiteral("device_numbers"));
+  button->setText(choice_.model ? tr("✕ Forget the numbers") : tr("+ Device numbers"));
+  button->setToolTip(tr("Mass, damping, encoder, rate and delay say how stiff a surface may be"));
+  connect(button, &QToolButton::clicked, this, [this] {
+    if (choice_.model)
+      choice_.model.reset();
+    else
+      choice_.model.emplace();
+    rebuild();
+    emit edited();
+  });
+  column->addWidget(button);
+  layout_->insertWidget(1, numbers_);
+}
+
+void DevicePanel::addNumbers(QVBoxLayout* column) {
+  auto* grid = new QGridLayout;
+  grid->setHorizontalSpacing(8);
+  grid->setVerticalSpacing(2);
+  int index = 0;
+  for (const Number& number : numbers()) {
+    auto* label = new QLabel(number.caption, numbers_);
+    label->setProperty("quiet", true);
+    auto* box = new QDoubleSpinBox(numbers_);
+    box->setObjectName(QString::fromUtf8(number.name));
+    box->setAccessibleName(number.caption);
+    box->setDecimals(number.decimals);
+    box->setRange(number.low, number.high);
+    box->setSingleStep(number.step);
+    box->setSuffix(QStringLiteral(" ") + number.unit);
+    box->setKeyboardTracking(false);
+    box->setValue(number.get(*choice_.model) / number.per_unit);
+    connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
+            [this, set = number.set, per_unit = number.per_unit](double value) {
+              set(*choice_.model, per_unit * value);
+              emit edited();
+            });
+    const int row = 2 * (index / 2), side = index % 2;
+    grid->addWidget(label, row, side);
+    grid->addWidget(box, row + 1, side);
+    ++index;
+  }
+  column->addLayout(grid);
+}
+
+} // namespace patina

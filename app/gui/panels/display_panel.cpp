@@ -1,0 +1,163 @@
+#include "app/gui/panels/display_panel.h"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+namespace patina {
+namespace {
+
+QString caption(Layer layer) {
+  switch (layer) {
+  case Layer::mesh:
+    return DisplayPanel::tr("Mesh");
+  case Layer::iso:
+    return DisplayPanel::tr("Iso-surface");
+  case Layer::slice:
+    return DisplayPanel::tr("Slice");
+  case Layer::band:
+    return DisplayPanel::tr("Band");
+  case Layer::extent:
+    return DisplayPanel::tr("Field extent");
+  case Layer::tip:
+    return DisplayPanel::tr("Tool and force");
+  case Layer::nodes:
+    return DisplayPanel::tr("Nodes at the tip");
+  case Layer::stability:
+    return DisplayPanel::tr("Stability");
+  case Layer::wireframe:
+    return DisplayPanel::tr("Wireframe");
+  default:
+    break;
+  }
+  return {};
+}
+
+bool needsField(Layer layer) {
+  return layer != Layer::mesh && layer != Layer::wireframe;
+}
+
+} // namespace
+
+DisplayPanel::DisplayPanel(QWidget* parent)
+    : QGroupBox(tr("Show"), parent), slice_card_(new QWidget(this)),
+      axis_(new QComboBox(slice_card_)),
+      position_(
+          new ValueRow(tr("Slice position"), QStringLiteral("%"), {0, 100, 1, 1}, slice_card_)),
+      stability_note_(new QLabel(this)), iso_card_(new QWidget(this)) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  auto* grid = new QGridLayout;
+  grid->setVerticalSpacing(4);
+  column->addLayout(grid);
+  int index = 0;
+  for (const Layer layer : {Layer::mesh, Layer::tip, Layer::slice, Layer::iso, Layer::wireframe,
+                            Layer::nodes, Layer::extent, Layer::stability, Layer::band}) {
+    auto* box = new QCheckBox(caption(layer), this);
+    if (layer == Layer::stability)
+      box->setToolTip(
+          tr("Where the surface would buzz: K*(x)/K, what the loop bears over what this "
+             "place asks of it. Below 1, warm, a held tip swings up by itself."));
+    if (layer == Layer::band)
+      box->setToolTip(tr("Where the offset or the magnet acts: a shell, and a tint of the slice"));
+    box->setObjectName(QString::fromUtf8(name(layer).data(), static_cast<int>(name(layer).size())));
+    box->setChecked(layer == Layer::mesh || layer == Layer::tip || layer == Layer::band);
+    connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
+      arrange();
+      emit layerToggled(layer, on);
+    });
+    grid->addWidget(box, index / 2, index % 2);
+    boxes_[layer] = box;
+    ++index;
+  }
+
+  stability_note_->setObjectName(QStringLiteral("stability_words"));
+  stability_note_->setProperty("quiet", true);
+  stability_note_->setWordWrap(true);
+  stability_note_->hide();
+  column->addWidget(stability_note_);
+
+  auto* slice_layout = new QGridLayout(slice_card_);
+  slice_layout->setContentsMargins(0, 4, 0, 0);
+  auto* label = new QLabel(tr("Slice across"), slice_card_);
+  label->setProperty("quiet", true);
+  slice_layout->addWidget(label, 0, 0);
+  axis_->addItems({QStringLiteral("x"), QStringLiteral("y"), QStringLiteral("z")});
+  axis_->setCurrentIndex(slice_.axis);
+  slice_layout->addWidget(axis_, 0, 1);
+  slice_layout->addWidget(position_, 1, 0, 1, 2);
+  position_->setValue(100 * slice_.position);
+  column->addWidget(slice_card_);
+  connect(axis_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int axis) {
+    slice_.axis = axis;
+    emit sliceMoved(slice_);
+  });
+  connect(position_, &ValueRow::edited, this, [this](double percent) {
+    slice_.position = percent / 100;
+    emit sliceMoved(slice_);
+  });
+  (new QVBoxLayout(iso_card_))->setContentsMargins(0, 4, 0, 0);
+  column->addWidget(iso_card_);
+  setField(nullptr);
+}
+
+void DisplayPanel::setField(const SurfaceField* field) {
+  has_field_ = field != nullptr;
+  const double kept = iso_ != nullptr ? iso_->value() : 0;
+  delete iso_;
+  iso_ = nullptr;
+  if (has_field_) {
+    const double reach = 1000 * field->grid.voxel * (field->band - 1);
+    iso_ = new ValueRow(tr("Iso-surface at"), QStringLiteral("mm"),
+                        {-reach, reach, reach / 20, reach < 1 ? 3 : 2}, iso_card_);
+    iso_->setValue(kept);
+    iso_card_->layout()->addWidget(iso_);
+    connect(iso_, &ValueRow::edited, this, [this](double mm) { emit isoMoved(mm / 1000); });
+  }
+  arrange();
+}
+
+void DisplayPanel::arrange() {
+  for (const auto& [layer, box] : boxes_)
+    box->setVisible((has_field_ || !needsField(layer)) && (has_band_ || layer != Layer::band));
+  slice_card_->setVisible(has_field_ && shown(Layer::slice));
+  iso_card_->setVisible(has_field_ && shown(Layer::iso));
+}
+
+void DisplayPanel::setBand(bool has_band) {
+  has_band_ = has_band;
+  arrange();
+}
+
+void DisplayPanel::setStabilityNote(const QString& words) {
+  stability_note_->setText(words);
+  stability_note_->setVisible(!words.isEmpty());
+}
+
+void DisplayPanel::setShown(Layer layer, bool on) {
+  const auto box = boxes_.find(layer);
+  if (box != boxes_.end()) box->second->setChecked(on);
+}
+
+bool DisplayPanel::shown(Layer layer) const {
+  const auto box = boxes_.find(layer);
+  return box != boxes_.end() && box->second->isChecked();
+}
+
+void DisplayPanel::setSlice(const SlicePlace& place) {
+  slice_ = place;
+  {
+    const QSignalBlocker quiet(axis_);
+    axis_->setCurrentIndex(place.axis);
+    position_->setValue(100 * place.position);
+  }
+  emit sliceMoved(slice_);
+}
+
+void DisplayPanel::setIso(double iso) {
+  if (iso_ != nullptr) iso_->setValue(1000 * iso);
+  emit isoMoved(iso);
+}
+
+} // namespace patina

@@ -1,0 +1,42 @@
+#include "app/gui/panels/history_panel.h"
+
+namespace patina {
+
+HistoryPanel::HistoryPanel(QWidget* parent) : QListWidget(parent) {
+  setObjectName(QStringLiteral("history"));
+  setUniformItemSizes(true);
+  setFocusPolicy(Qt::NoFocus); // keys are the view's
+  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  setTextElideMode(Qt::ElideRight);
+  setStyleSheet(QStringLiteral("QListWidget { border: none; background: #ffffff; }"
+                               "QListWidget::item { padding: 2px 6px; }"
+                               "QListWidget::item:selected { background: #cfe0f3;"
+                               " color: #222832; }"));
+  connect(this, &QListWidget::itemClicked, this,
+          [this](QListWidgetItem* item) { emit asked(static_cast<std::size_t>(row(item))); });
+}
+
+void HistoryPanel::show(const EditStanding& standing) {
+  // Painting appends: a history of thousands is not made anew for each stroke.
+  std::size_t kept = 0;
+  while (kept < edits_.size() && kept < standing.edits.size() &&
+         edits_[kept] == standing.edits[kept])
+    ++kept;
+  if (count() == 0) addItem(tr("As it was opened"));
+  while (count() > static_cast<int>(kept) + 1) delete takeItem(count() - 1);
+  for (std::size_t i = kept; i < standing.edits.size(); ++i)
+    addItem(QString::fromStdString(standing.edits[i]));
+  edits_ = standing.edits;
+  for (int i = 0; i < count(); ++i) {
+    const bool done = i <= static_cast<int>(standing.done);
+    QFont font = this->font();
+    font.setItalic(!done);
+    item(i)->setFont(font);
+    item(i)->setForeground(done ? QColor(0x22, 0x28, 0x32) : QColor(0x9a, 0xa3, 0xb0));
+    item(i)->setToolTip(done ? item(i)->text() : tr("%1 (undone)").arg(item(i)->text()));
+  }
+  setCurrentRow(static_cast<int>(standing.done));
+  scrollToItem(currentItem());
+}
+
+} // namespace patina

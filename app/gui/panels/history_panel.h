@@ -1,0 +1,23 @@
+// Every edit, oldest first; a click goes there.
+#pragma once
+
+#include <QListWidget>
+
+#include "session/edit/edit_thread.h"
+
+namespace patina {
+
+class HistoryPanel : public QListWidget {
+  Q_OBJECT
+ public:
+  explicit HistoryPanel(QWidget* parent = nullptr);
+  void show(const EditStanding& standing);
+
+ signals:
+  void asked(std::size_t position); // so many edits are to be done
+
+ private:
+  std::vector<std::string> edits_;
+};
+
+} // namespace patina

@@ -1,0 +1,72 @@
+#include "app/gui/servo/feel_host.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace patina {
+
+void FeelHost::open(std::unique_ptr<MouseDevice> device, double rate) {
+  close();
+  const auto now = std::chrono::steady_clock::now();
+  if (began_once_) {
+    const double since = std::chrono::duration<double>(now - began_).count();
+    offset_ = std::max(since, last_t_ + 1 / rate);
+  } else {
+    began_ = now;
+    began_once_ = true;
+  }
+  mouse_ = device.get();
+  auto loop = std::make_unique<ServoLoop>(std::move(device), rate);
+  const std::lock_guard lock(publishers_);
+  loop_ = std::move(loop);
+  if (newest_) loop_->publish(newest_);
+  loop_->start();
+}
+
+void FeelHost::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
+  const std::lock_guard lock(publishers_);
+  newest_ = std::move(snapshot);
+  if (loop_) loop_->publish(newest_);
+}
+
+void FeelHost::close() {
+  mouse_ = nullptr;
+  if (!loop_) return;
+  loop_->stop();
+  empty(left_);
+  dropped_before_ += loop_->samples().dropped();
+  const std::lock_guard lock(publishers_);
+  loop_.reset();
+}
+
+void FeelHost::empty(std::vector<ToolSample>& into) {
+  // A servo that outruns this loop must not hold up the window.
+  const std::size_t most = into.size() + 20000;
+  ToolSample sample;
+  while (into.size() < most && loop_->samples().pop(sample)) {
+    last_t_ = sample.t += offset_;
+    into.push_back(sample);
+  }
+}
+
+void FeelHost::setTarget(const Vec3& target) {
+  if (mouse_ != nullptr) mouse_->setTarget(target);
+}
+
+std::vector<ToolSample> FeelHost::drain() {
+  if (loop_)
+    if (const std::unique_lock lock(publishers_, std::try_to_lock); lock) loop_->collect();
+  std::vector<ToolSample> samples = std::exchange(left_, {});
+  if (loop_) empty(samples);
+  return samples;
+}
+
+ServoTiming FeelHost::timing() const {
+  return loop_ ? loop_->timing() : ServoTiming{};
+}
+
+std::size_t FeelHost::dropped() const {
+  return dropped_before_ + (loop_ ? loop_->samples().dropped() : 0);
+}
+
+} // namespace patina

@@ -1,0 +1,70 @@
+#include "app/gui/servo/live_plots.h"
+
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include "app/gui/window/window_style.h"
+
+namespace patina {
+
+ForcePlot::ForcePlot(QWidget* parent)
+    : StripPlot(QStringLiteral("N"),
+                {{QStringLiteral("|F|"), toQColor(palette::kForce), 2.0, true},
+                 {QStringLiteral("x"), QColor(0xb5, 0x4a, 0x40)},
+                 {QStringLiteral("y"), QColor(0x3f, 0x8c, 0x45)},
+                 {QStringLiteral("z"), QColor(0x35, 0x62, 0xb5)}},
+                0.5, parent) {
+  setToolTip(tr("Force on the hand over the last five seconds"));
+}
+
+void ForcePlot::addSamples(const std::vector<ToolSample>& samples) {
+  for (const ToolSample& sample : samples) {
+    const Eigen::Vector3f force = sample.force.cast<float>();
+    add(sample.t, {force.norm(), force[0], force[1], force[2]});
+  }
+}
+
+EnergyPlot::EnergyPlot(QWidget* parent)
+    : StripPlot(QStringLiteral("mJ"),
+                {{QStringLiteral("E"), toQColor(palette::kSeries[0]), 2.0},
+                 {tr("lowest"), toQColor(palette::kSeries[1])}},
+                1.0, parent) {
+  setToolTip(tr("Energy that the surface has taken from the hand. A spring gives back what it "
+                "took; friction and damping keep it. Well below zero the surface feeds the hand: "
+                "that is what a buzz lives on."));
+  auto* each = new QCheckBox(tr("Each touch"), this);
+  each->setObjectName(QStringLiteral("energy_each_touch"));
+  each->setToolTip(tr("Begin at zero whenever a force begins"));
+  connect(each, &QCheckBox::toggled, this, [this](bool on) { meter_.from_each_touch = on; });
+  auto* zero = new QToolButton(this);
+  zero->setObjectName(QStringLiteral("energy_reset"));
+  zero->setText(tr("Zero"));
+  zero->setToolTip(tr("Count from now"));
+  connect(zero, &QToolButton::clicked, this, [this] { meter_.ledger = {}; });
+  auto* corner = new QHBoxLayout;
+  corner->addStretch(1);
+  corner->addWidget(each);
+  corner->addWidget(zero);
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 1, 12, 0);
+  column->addLayout(corner);
+  column->addStretch(1);
+}
+
+void EnergyPlot::addSamples(const std::vector<ToolSample>& samples, std::size_t dropped) {
+  if (dropped != dropped_) meter_.skip();
+  dropped_ = dropped;
+  for (const ToolSample& sample : samples) {
+    meter_.add(sample);
+    add(sample.t, {static_cast<float>(1000 * meter_.ledger.absorbed),
+                   static_cast<float>(1000 * meter_.ledger.lowest_absorbed)});
+  }
+}
+
+void EnergyPlot::restart() {
+  meter_.skip();
+  meter_.ledger = {};
+  clear();
+}
+
+} // namespace patina

@@ -1,0 +1,230 @@
+#include "app/gui/window/scene_widget.h"
+
+#include <cmath>
+
+#include <QMouseEvent>
+#include <QTabletEvent>
+#include <QWheelEvent>
+
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+
+#include "scene/surface_pick.h"
+#include "visualization/view/camera.h"
+
+namespace patina {
+
+SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
+  const vtkNew<vtkGenericOpenGLRenderWindow> window;
+  window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
+  setRenderWindow(window);
+  view_.attachTo(*window);
+  setEnableHiDPI(true);
+  setMinimumSize(480,
+                 320);    // without one, a docked layout may give it no pixel and nothing is drawn
+  setMouseTracking(true); // the brush is seen before it paints
+  setFocusPolicy(Qt::StrongFocus);
+  setMode(mode_);
+}
+
+SceneWidget::~SceneWidget() = default;
+
+void SceneWidget::setMode(Mode mode) {
+  mode_ = mode;
+  setCursor(feels() || paints() || mode_ == Mode::pick ? Qt::CrossCursor : Qt::OpenHandCursor);
+  emit modeChanged();
+}
+
+void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
+  field_ = std::move(field);
+  setMode(mode_);
+}
+
+bool SceneWidget::refresh() {
+  const auto now = std::chrono::steady_clock::now();
+  const bool changed = view_.prepare();
+  if (!isVisible()) return false;
+  // Smoothing costs 20 ms of a frame where OpenGL is software: a moving picture goes without it if
+  // it is slow, and is smoothed once it stands still.
+  const bool stands_still = now - drawn_ > std::chrono::milliseconds(150);
+  if (!changed && (smooth_ || !stands_still)) return false;
+  smooth_ = !changed || frame_seconds_ < (smooth_ ? 0.040 : 0.020);
+  view_.renderer().SetUseFXAA(smooth_);
+  renderWindow()->Render();
+  drawn_ = std::chrono::steady_clock::now();
+  // The one smoothed frame of a picture that stands says nothing about moving ones.
+  if (changed) frame_seconds_ = std::chrono::duration<double>(drawn_ - now).count();
+  return changed;
+}
+
+bool SceneWidget::settled() {
+  return smooth_ && !refresh();
+}
+
+Vec2 SceneWidget::fraction(const QPoint& pixel) const {
+  const double high = std::max(1, height());
+  return {(pixel.x() - 0.5 * width()) / high, (0.5 * height() - pixel.y()) / high};
+}
+
+Vec3 SceneWidget::restingPlace() {
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const double gap = 0.04 * view_.extent().diagonal().norm();
+  const Ray ray = rayThrough(camera, 0, 0);
+  if (field_)
+    if (const auto hit = firstSurfaceAlong(*field_, ray.origin, ray.direction))
+      return *hit - gap * ray.direction;
+  return Vec3(view_.extent().center()) -
+         (0.5 * view_.extent().diagonal().norm() + gap) * viewDirection(camera);
+}
+
+void SceneWidget::moveTip(const Vec3& target) {
+  target_ = target;
+  emit tipMoved(target);
+}
+
+std::optional<Vec3> SceneWidget::surfaceAt(const QPoint& pixel) {
+  if (!field_) return std::nullopt;
+  const Vec2 at = fraction(pixel);
+  const Ray ray = rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
+  return firstSurfaceAlong(*field_, ray.origin, ray.direction);
+}
+
+std::optional<Vec3> SceneWidget::underPointer() {
+  const bool looks = drag_ == Drag::none || drag_ == Drag::brush;
+  return pointer_ && looks ? surfaceAt(*pointer_) : std::nullopt;
+}
+
+void SceneWidget::brush(const QPoint& pixel, bool down, double pressure) {
+  emit pointed({surfaceAt(pixel), down, pressure});
+}
+
+bool SceneWidget::pick(const QMouseEvent& event) {
+  const bool asked = mode_ == Mode::pick || (event.modifiers().testFlag(Qt::AltModifier) &&
+                                             (mode_ == Mode::paint || mode_ == Mode::feel));
+  if (!asked || event.button() != Qt::LeftButton || event.modifiers().testFlag(Qt::ShiftModifier))
+    return false;
+  if (const auto hit = surfaceAt(event.pos())) emit pickAsked(*hit);
+  drag_ = Drag::none;
+  return true;
+}
+
+bool SceneWidget::pen(QTabletEvent& event) {
+  if (!paints()) return false; // it is a mouse then
+  pointer_ = event.pos();
+  const bool down = event.type() != QEvent::TabletRelease &&
+                    (event.type() == QEvent::TabletPress || drag_ == Drag::brush);
+  if (down || drag_ == Drag::brush) brush(event.pos(), down, event.pressure());
+  drag_ = down ? Drag::brush : Drag::none;
+  event.accept();
+  return true;
+}
+
+void SceneWidget::release() {
+  if (drag_ == Drag::brush) brush(last_, false, 1);
+  drag_ = Drag::none;
+}
+
+void SceneWidget::press(QMouseEvent& event) {
+  last_ = event.pos();
+  pointer_ = last_;
+  if (pick(event)) return;
+  const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
+  switch (event.button()) {
+  case Qt::LeftButton:
+    drag_ = paints() && !shift                 ? Drag::brush
+            : feels() && !shift                ? Drag::tip
+            : shift && mode_ == Mode::navigate ? Drag::pan
+                                               : Drag::orbit;
+    break;
+  case Qt::MiddleButton:
+    drag_ = Drag::pan;
+    break;
+  case Qt::RightButton:
+    drag_ = Drag::zoom;
+    break;
+  default:
+    drag_ = Drag::none;
+  }
+  if (drag_ == Drag::tip || drag_ == Drag::brush) drag(event);
+}
+
+void SceneWidget::drag(QMouseEvent& event) {
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const Vec2 now = fraction(event.pos());
+  const Vec2 moved = now - fraction(last_);
+  last_ = event.pos();
+  pointer_ = last_;
+  switch (drag_) {
+  case Drag::brush:
+    brush(last_, true, 1);
+    break;
+  case Drag::tip:
+    moveTip(pointInViewPlane(camera, now[0], now[1], target_));
+    break;
+  case Drag::orbit:
+    orbit(camera, moved[0], moved[1]);
+    break;
+  case Drag::pan:
+    pan(camera, moved[0], moved[1]);
+    break;
+  case Drag::zoom:
+    zoom(camera, std::exp(3 * moved[1]));
+    break;
+  case Drag::none:
+    break;
+  }
+}
+
+void SceneWidget::doubleClick(QMouseEvent& event) {
+  if (!feels() || event.button() != Qt::LeftButton) return press(event);
+  if (const auto hit = surfaceAt(event.pos())) moveTip(*hit);
+  drag_ = Drag::none;
+}
+
+void SceneWidget::wheel(QWheelEvent& event) {
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const double notches = event.angleDelta().y() / 120.0;
+  if (feels() && !event.modifiers().testFlag(Qt::ControlModifier)) {
+    const double step = 0.004 * view_.extent().diagonal().norm();
+    moveTip(target_ + notches * step * viewDirection(camera));
+  } else {
+    zoom(camera, std::pow(1.12, notches));
+  }
+}
+
+bool SceneWidget::event(QEvent* event) {
+  switch (event->type()) {
+  case QEvent::MouseButtonPress:
+    press(*static_cast<QMouseEvent*>(event));
+    return true;
+  case QEvent::MouseMove:
+    drag(*static_cast<QMouseEvent*>(event));
+    return true;
+  case QEvent::MouseButtonDblClick:
+    doubleClick(*static_cast<QMouseEvent*>(event));
+    return true;
+  case QEvent::MouseButtonRelease:
+    release();
+    return true;
+  case QEvent::TabletPress:
+  case QEvent::TabletMove:
+  case QEvent::TabletRelease:
+    return pen(*static_cast<QTabletEvent*>(event));
+  case QEvent::Leave:
+    pointer_.reset();
+    return true;
+  case QEvent::Wheel:
+    wheel(*static_cast<QWheelEvent*>(event));
+    return true;
+  case QEvent::ContextMenu:
+    return true;
+  // VTK's own key bindings (e quits, w wireframes) are not ours: keys go to the window's menus.
+  case QEvent::KeyPress:
+  case QEvent::KeyRelease:
+    return QOpenGLWidget::event(event);
+  default:
+    return QVTKOpenGLNativeWidget::event(event);
+  }
+}
+
+} // namespace patina

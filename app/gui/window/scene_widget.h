@@ -1,0 +1,95 @@
+// The 3D view: draws a SceneView, and turns the mouse into tip targets or camera moves.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include <QPoint>
+#include <QVTKOpenGLNativeWidget.h>
+
+#include "core/types.h"
+#include "visualization/view/scene_view.h"
+
+namespace patina {
+
+// Where a pointer that paints is.
+struct Pointed {
+  std::optional<Vec3> surface; // under it; absent: beside the object
+  bool down = false;
+  double pressure = 1; // of a pen, in [0, 1]
+};
+
+// In feel mode the left button moves the tip in the plane that faces the viewer, the wheel moves it
+// in depth and a double click sets it onto the surface; Shift + left, middle, right and Ctrl +
+// wheel move the camera. In navigate mode the left button and the wheel move the camera too. In
+// paint mode the left button, or a pen, is on the surface under it, and the wheel zooms; in pick
+// mode, and with Alt in feel and paint mode, it asks what is there.
+class SceneWidget : public QVTKOpenGLNativeWidget {
+  Q_OBJECT
+ public:
+  enum class Mode { feel, navigate, paint, pick };
+
+  explicit SceneWidget(QWidget* parent = nullptr);
+  ~SceneWidget() override;
+
+  SceneView& view() { return view_; }
+  void setMode(Mode mode);
+  Mode mode() const { return mode_; }
+  // What a double click looks for the surface in; nullptr = no contact yet, the mouse navigates.
+  void setField(std::shared_ptr<const SurfaceField> field);
+  void setTarget(const Vec3& target) { target_ = target; }
+  const Vec3& target() const { return target_; }
+
+  // Renders if anything changed since the last call; false if nothing did.
+  bool refresh();
+  // What is shown is up to date and smoothed.
+  bool settled();
+  // Seconds that the last frame took in which something had changed.
+  double frameSeconds() const { return frame_seconds_; }
+
+  // The surface under the pointer, while it is over the view and moves no camera.
+  std::optional<Vec3> underPointer();
+
+  // A resting place for the tip: over the surface in the middle of the picture, towards the viewer.
+  Vec3 restingPlace();
+
+ signals:
+  void tipMoved(const patina::Vec3& target);
+  void modeChanged();
+  void
+  pointed(const patina::Pointed& where); // paint mode, while the button is down and when it goes
+  void pickAsked(const patina::Vec3& surface);
+
+ protected:
+  bool event(QEvent* event) override;
+
+ private:
+  bool feels() const { return mode_ == Mode::feel && field_ != nullptr; }
+  bool paints() const { return mode_ == Mode::paint && field_ != nullptr; }
+  std::optional<Vec3> surfaceAt(const QPoint& pixel);
+  void brush(const QPoint& pixel, bool down, double pressure);
+  bool pick(const QMouseEvent& event); // false: it is no picking
+  bool pen(QTabletEvent& event);
+  void release();
+  Vec2 fraction(const QPoint& pixel) const; // of the height, from the centre, right and up
+  void press(QMouseEvent& event);
+  void drag(QMouseEvent& event);
+  void doubleClick(QMouseEvent& event);
+  void wheel(QWheelEvent& event);
+  void moveTip(const Vec3& target);
+
+  enum class Drag { none, tip, orbit, pan, zoom, brush };
+  SceneView view_;
+  std::shared_ptr<const SurfaceField> field_;
+  Mode mode_ = Mode::feel;
+  Drag drag_ = Drag::none;
+  QPoint last_;
+  std::optional<QPoint> pointer_; // over the view
+  Vec3 target_ = Vec3::Zero();
+  double frame_seconds_ = 0;
+  bool smooth_ = false; // the last frame was anti-aliased
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+} // namespace patina

@@ -1,0 +1,108 @@
+#include "app/gui/window/status_line.h"
+
+#include "core/numbers.h"
+#include "haptics/stability/stabilisers.h"
+
+namespace patina {
+
+StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
+  bar->setSizeGripEnabled(false);
+  bar->setStyleSheet(QStringLiteral("QStatusBar::item { border: none; }"
+                                    "QStatusBar QLabel { padding: 1px 7px; }"));
+  const auto label = [&](const char* name) {
+    auto* made = new QLabel(bar);
+    made->setObjectName(QString::fromUtf8(name));
+    bar->addWidget(made);
+    return made;
+  };
+  fault_ = label("fault");
+  fault_->setText(tr("force faded: it comes back by itself"));
+  fault_->setStyleSheet(QStringLiteral("background: #a12a1a; color: white;"));
+  fault_->setToolTip(tr("The force would have jumped, so it was faded to zero. It comes back when "
+                        "the tip has left the surface."));
+  showFault(false);
+  rate_ = label("rate");
+  late_ = label("late");
+  missed_ = label("missed");
+  policy_ = label("policy");
+  stabilisers_ = label("stabilisers");
+  stabilisers_->setStyleSheet(QStringLiteral("color: #14568c; font-weight: bold;"));
+  stages_ = label("stages");
+  bytes_ = label("bytes");
+  picked_ = new QLabel(bar);
+  picked_->setObjectName(QStringLiteral("picked"));
+  picked_->setStyleSheet(QStringLiteral("color: #14568c;"));
+  picked_->setToolTip(tr("What is felt and painted under the pointer"));
+  bar->addPermanentWidget(picked_);
+  late_->setToolTip(
+      tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
+  missed_->setToolTip(tr("Ticks that came more than a period late since the servo began"));
+  showTiming({}, false);
+  showScene(nullptr);
+}
+
+void StatusLine::showFault(bool on) {
+  fault_->setVisible(on);
+}
+
+void StatusLine::showPicked(const QString& words) {
+  picked_->setText(words);
+  picked_->setVisible(!words.isEmpty());
+}
+
+void StatusLine::showTiming(const ServoTiming& timing, bool running) {
+  for (QLabel* label : {late_, missed_, policy_}) label->setVisible(running);
+  if (!running) {
+    rate_->setText(tr("servo rests"));
+    return;
+  }
+  rate_->setText(tr("%1 Hz").arg(timing.rate_hz, 0, 'f', 0));
+  late_->setText(tr("p99 late %1 µs").arg(timing.late_p99, 0, 'f', 0));
+  missed_->setText(tr("missed %1").arg(timing.missed));
+  policy_->setText(timing.realtime ? tr("real time") : tr("no real time"));
+  policy_->setStyleSheet(timing.realtime ? QString() : QStringLiteral("color: #a15c00;"));
+  policy_->setToolTip(QString::fromStdString(timing.policy));
+}
+
+void StatusLine::showScene(const CompiledScene* scene) {
+  stabilisers_->clear();
+  stabilisers_->hide();
+  stages_->setVisible(scene != nullptr);
+  bytes_->setVisible(scene != nullptr);
+  if (scene == nullptr) return;
+  QStringList names, why;
+  for (const StageInfo& stage : scene->snapshot->why) {
+    names << QString::fromStdString(stage.name);
+    why << QStringLiteral("<tr><td><b>%1</b></td><td style='padding-left:8px'>%2</td>"
+                          "<td align='right' style='padding-left:8px'>%3</td></tr>")
+               .arg(names.back(), QString::fromStdString(stage.why).toHtmlEscaped(),
+                    QString::fromStdString(formatBytes(static_cast<double>(stage.bytes))));
+  }
+  showStabilisers(*scene);
+  stages_->setText(tr("stages: %1").arg(names.join(QStringLiteral(" → "))));
+  stages_->setToolTip(QStringLiteral("<table>%1</table>").arg(why.join(QString())));
+  bytes_->setText(tr("field %1")
+                      .arg(QString::fromStdString(
+                          formatBytes(static_cast<double>(scene->built.field->bytes())))));
+}
+
+void StatusLine::showStabilisers(const CompiledScene& scene) {
+  const StabiliserPlan& plan = scene.snapshot->stabilisers;
+  QStringList on, why;
+  for (const StageInfo& stage : scene.snapshot->why) {
+    if (stage.name != "coupling" && stage.name != "lateral coupling" && stage.name != "passivity")
+      continue;
+    QString words = QString::fromStdString(stage.name);
+    if (stage.name == "coupling" && plan.coupling)
+      words += QStringLiteral(" %1 N/m").arg(plan.coupling->stiffness, 0, 'f', 0);
+    if (stage.name == "lateral coupling" && plan.lateral)
+      words += QStringLiteral(" %1 N/m").arg(plan.lateral->stiffness, 0, 'f', 0);
+    on << words;
+    why << QStringLiteral("%1: %2").arg(words, QString::fromStdString(stage.why));
+  }
+  stabilisers_->setText(on.join(QStringLiteral(", ")));
+  stabilisers_->setToolTip(why.join(QStringLiteral("\n")));
+  stabilisers_->setVisible(!on.isEmpty());
+}
+
+} // namespace patina

@@ -1,0 +1,38 @@
+// The servo and the scene in one line: what runs, how well, and what it costs.
+#pragma once
+
+#include <QLabel>
+#include <QStatusBar>
+
+#include "haptics/servo/servo_loop.h"
+#include "session/build/session.h"
+
+namespace patina {
+
+class StatusLine : public QObject {
+  Q_OBJECT
+ public:
+  explicit StatusLine(QStatusBar* bar);
+  void showScene(const CompiledScene* scene); // nullptr: no scene, no stage
+  void showTiming(const ServoTiming& timing, bool running);
+  void showFault(bool on);               // the force jumped and was faded to zero (F13)
+  void showPicked(const QString& words); // what is under the pointer; empty: nothing
+  QString pickedText() const { return picked_->text(); }
+  QString stabilisersText() const { return stabilisers_->text(); } // empty: none is on
+  QString stagesText() const { return stages_->text(); }
+
+ private:
+  void showStabilisers(const CompiledScene& scene);
+
+  QLabel* fault_;
+  QLabel* rate_;
+  QLabel* late_;
+  QLabel* missed_;
+  QLabel* policy_;
+  QLabel* stages_;
+  QLabel* stabilisers_;
+  QLabel* bytes_;
+  QLabel* picked_;
+};
+
+} // namespace patina

@@ -1,0 +1,208 @@
+#include "authoring/relief/relief_feet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "geometry/tree/triangle_tree.h"
+
+namespace patina {
+namespace {
+
+using Index3 = std::array<int, 3>;
+
+bool isStored(float phi) {
+  return std::abs(phi) < kBeyondBand;
+}
+
+// Sources in the order of their faces, for finding a face's.
+class FaceSources {
+ public:
+  explicit FaceSources(std::span<const ReliefSource> sources) : sources_(sources) {
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      if (sources[i].uvs) order_.push_back(static_cast<std::int32_t>(i));
+    std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
+      return source(a).first_face < source(b).first_face;
+    });
+  }
+
+  std::int32_t of(std::int32_t face) const {
+    const auto after =
+        std::upper_bound(order_.begin(), order_.end(), face,
+                         [&](std::int32_t f, std::int32_t s) { return f < source(s).first_face; });
+    if (after == order_.begin()) return BlockFeet::kNone;
+    const std::int32_t s = *(after - 1);
+    return face - source(s).first_face < source(s).faces ? s : BlockFeet::kNone;
+  }
+  const ReliefSource& source(std::int32_t s) const { return sources_[static_cast<std::size_t>(s)]; }
+
+ private:
+  std::span<const ReliefSource> sources_;
+  std::vector<std::int32_t> order_;
+};
+
+class FeetMaker {
+ public:
+  FeetMaker(const SurfaceField& field, const TriangleMesh& mesh,
+            std::span<const ReliefSource> sources, Progress& progress)
+      : field_(field), mesh_(mesh), sources_(sources), progress_(progress) {}
+
+  ReliefFeet run() {
+    feet_.block.resize(field_.blockCount());
+    inBlocks([&](std::size_t slot) { survey(slot); });
+    std::size_t entries = 0, mixed = 0;
+    for (BlockFeet& block : feet_.block) {
+      if (block.source == BlockFeet::kNone) continue;
+      const std::size_t count = block.first;
+      block.first = entries;
+      entries += count;
+      if (block.source != BlockFeet::kMixed) continue;
+      block.first_source = mixed;
+      mixed += count;
+    }
+    feet_.uv.resize(entries);
+    feet_.source.resize(mixed, BlockFeet::kNone);
+    inBlocks([&](std::size_t slot) { place(slot); });
+    coarse();
+    return std::move(feet_);
+  }
+
+ private:
+  template <class Body> void inBlocks(const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, field_.blockCount(), 16),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        if (progress_.cancelled()) return;
+                        for (std::size_t slot = range.begin(); slot < range.end(); ++slot)
+                          body(slot);
+                      });
+    progress_.throwIfCancelled();
+  }
+
+  // Whose faces a block names; `first` holds the count of its nodes for now.
+  void survey(std::size_t slot) {
+    BlockFeet& feet = feet_.block[slot];
+    const std::array<float, kBlockNodes> phi = field_.distance[slot]->phi();
+    bool any = false;
+    std::int32_t last = -1, source = BlockFeet::kNone;
+    for (std::size_t n = 0; n < kBlockNodes; ++n) {
+      if (!isStored(phi[n])) continue;
+      const std::int32_t face = field_.face[slot]->at(n);
+      if (face != last || !any) source = sources_.of(face);
+      last = face;
+      if (any && source != feet.source)
+        feet.source = BlockFeet::kMixed;
+      else if (!any)
+        feet.source = source;
+      any = true;
+      ++feet.first;
+    }
+  }
+
+  NodeUv uvOf(std::int32_t source, std::int32_t face, const Vec3& p) const {
+    const auto f = static_cast<std::size_t>(face);
+    const ReliefSource& own = sources_.source(source);
+    const auto& uv = (*own.uvs)[static_cast<std::size_t>(face - own.first_face)];
+    const Vec3 w =
+        closestBarycentric(p, mesh_.corner(f, 0), mesh_.corner(f, 1), mesh_.corner(f, 2));
+    const Vec2 at = w[0] * uv[0] + w[1] * uv[1] + w[2] * uv[2];
+    return {static_cast<float>(at[0]), static_cast<float>(at[1])};
+  }
+
+  void place(std::size_t slot) {
+    BlockFeet& feet = feet_.block[slot];
+    if (feet.source == BlockFeet::kNone) return;
+    const Index3& at = field_.block_at[slot];
+    const std::array<float, kBlockNodes> phi = field_.distance[slot]->phi();
+    std::size_t entry = 0;
+    for (std::size_t n = 0; n < kBlockNodes; ++n) {
+      if (!isStored(phi[n])) continue;
+      const auto i = static_cast<int>(n);
+      const std::int32_t face = field_.face[slot]->at(n);
+      std::int32_t source = feet.source;
+      if (source == BlockFeet::kMixed)
+        source = feet_.source[feet.first_source + entry] = sources_.of(face);
+      NodeUv& uv = feet_.uv[feet.first + entry++];
+      if (source == BlockFeet::kNone) continue;
+      uv = uvOf(source, face,
+                field_.grid.toWorld(Vec3(kBlockSide * at[0] + i % kBlockSide,
+                                         kBlockSide * at[1] + i / kBlockSide % kBlockSide,
+                                         kBlockSide * at[2] + i / (kBlockSide * kBlockSide))));
+      for (std::size_t a = 0; a < 2; ++a) {
+        feet.low[a] = std::min(feet.low[a], uv[a]);
+        feet.high[a] = std::max(feet.high[a], uv[a]);
+      }
+    }
+  }
+
+  // The face about a point that is nearest to it; -1 if none is stored there.
+  std::int32_t faceNear(const Vec3& q) const {
+    std::int32_t nearest = -1;
+    double least = std::numeric_limits<double>::infinity();
+    const Vec3 p = field_.grid.toWorld(q);
+    for (int c = 0; c < 8; ++c) {
+      const std::int32_t face = field_.faceAt(static_cast<int>(std::floor(q[0])) + (c & 1),
+                                              static_cast<int>(std::floor(q[1])) + (c >> 1 & 1),
+                                              static_cast<int>(std::floor(q[2])) + (c >> 2));
+      if (face < 0 || face == nearest) continue;
+      const auto f = static_cast<std::size_t>(face);
+      const Vec3 a = mesh_.corner(f, 0), b = mesh_.corner(f, 1), c2 = mesh_.corner(f, 2);
+      const Vec3 w = closestBarycentric(p, a, b, c2);
+      const double d = (w[0] * a + w[1] * b + w[2] * c2 - p).squaredNorm();
+      if (d >= least) continue;
+      least = d;
+      nearest = face;
+    }
+    return nearest;
+  }
+
+  CoarseFoot coarseFoot(const CoarseNode& node, const Index3& at) const {
+    constexpr double kOneDirection = 0.9; // shorter: several feet were as near
+    Vec3 foot = kBlockSide * Vec3(at[0], at[1], at[2]);
+    std::int32_t face = field_.faceAt(kBlockSide * at[0], kBlockSide * at[1], kBlockSide * at[2]);
+    if (face < 0) {
+      if (!(node.phi < 0)) return {CoarseFoot::kOutside, {}};
+      const Vec3 g(node.gx, node.gy, node.gz);
+      if (g.norm() < kOneDirection) return {CoarseFoot::kMean, {}};
+      foot -= static_cast<double>(node.phi) * g;
+      face = faceNear(foot);
+      if (face < 0) return {CoarseFoot::kMean, {}};
+    }
+    const std::int32_t source = sources_.of(face);
+    if (source == BlockFeet::kNone) return {};
+    return {source, uvOf(source, face, field_.grid.toWorld(foot))};
+  }
+
+  void coarse() {
+    const Index3 n{field_.blocks[0] + 1, field_.blocks[1] + 1, field_.blocks[2] + 1};
+    feet_.coarse.resize(field_.coarse.size());
+    tbb::parallel_for(std::size_t{0}, feet_.coarse.size(), [&](std::size_t i) {
+      const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
+      feet_.coarse[i] =
+          coarseFoot(field_.coarse[i], {static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
+                                        static_cast<int>(i / (nx * ny))});
+    });
+  }
+
+  const SurfaceField& field_;
+  const TriangleMesh& mesh_;
+  const FaceSources sources_;
+  Progress& progress_;
+  ReliefFeet feet_;
+};
+
+} // namespace
+
+std::size_t ReliefFeet::bytes() const {
+  return block.size() * sizeof(block[0]) + uv.size() * sizeof(uv[0]) +
+         source.size() * sizeof(source[0]) + coarse.size() * sizeof(coarse[0]);
+}
+
+ReliefFeet reliefFeet(const SurfaceField& field, const TriangleMesh& mesh,
+                      std::span<const ReliefSource> sources, Progress& progress) {
+  return FeetMaker(field, mesh, sources, progress).run();
+}
+
+} // namespace patina

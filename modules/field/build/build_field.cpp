@@ -1,0 +1,168 @@
+#include "field/build/build_field.h"
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <optional>
+
+#include <tbb/parallel_for.h>
+
+#include "core/error.h"
+#include "field/build/distance_blocks.h"
+#include "field/build/plate.h"
+#include "field/signs/signs.h"
+#include "geometry/mesh/open_parts.h"
+#include "geometry/mesh/orientation.h"
+#include "geometry/tree/triangle_tree.h"
+#include "geometry/winding/winding_number.h"
+
+namespace patina {
+namespace {
+
+constexpr double kPastBack = 1.5; // [voxel], what plateCaps needs
+
+double cpuSeconds() {
+  std::timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// The sound triangles of a mesh, in order. Corners that only dropped triangles use may be NaN, so
+// they are moved to the origin.
+TriangleMesh onlyFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
+  TriangleMesh sound;
+  sound.positions = mesh.positions;
+  for (Vec3& p : sound.positions)
+    if (!p.allFinite()) p.setZero();
+  sound.triangles.reserve(faces.size());
+  for (const std::int32_t f : faces)
+    sound.triangles.push_back(mesh.triangles[static_cast<std::size_t>(f)]);
+  return sound;
+}
+
+std::vector<std::int32_t> someUsable(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> usable = usableTriangles(mesh);
+  if (usable.empty()) throw Error("field: the mesh has no triangle with an area");
+  return usable;
+}
+
+TriangleMesh closedPart(const TriangleMesh& mesh, const OpenParts& open) {
+  std::vector<std::int32_t> faces;
+  for (std::size_t f = 0; f < open.open.size(); ++f)
+    if (!open.open[f]) faces.push_back(static_cast<std::int32_t>(f));
+  return onlyFaces(mesh, faces);
+}
+
+// The front's distances and which nodes lie in the plates; then the distances to all of the plates.
+// Faces of `builder` are then those of `mesh`. Returns how much is doubtful.
+std::size_t makePlates(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
+                       const OpenParts& open, double band, Progress& progress) {
+  const PlateCaps caps = plateCaps(builder, mesh, tree, open, band);
+  progress.throwIfCancelled();
+  const auto own = static_cast<std::int32_t>(mesh.triangles.size());
+  const TriangleMesh plates = joined(mesh, caps.mesh);
+  FieldBuilder whole =
+      distanceBlocks(plates, TriangleTree(plates), builder.field.grid, band, progress, 0.7, 1);
+  signLike(whole, builder);
+  tbb::parallel_for(std::size_t{0}, whole.face.size(), [&](std::size_t slot) {
+    for (std::int32_t& face : whole.face[slot]->face)
+      if (face >= own) face = caps.face[static_cast<std::size_t>(face - own)];
+  });
+  builder = std::move(whole);
+  return caps.doubtful;
+}
+
+void renumberFaces(FieldBuilder& builder, const std::vector<std::int32_t>& face_of) {
+  tbb::parallel_for(std::size_t{0}, builder.face.size(), [&](std::size_t slot) {
+    for (std::int32_t& face : builder.face[slot]->face)
+      if (face >= 0) face = face_of[static_cast<std::size_t>(face)];
+  });
+}
+
+// grid_for(box of the sound triangles) chooses the grid.
+template <class GridFor>
+BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band, OpenSides sides,
+                 Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_start = cpuSeconds();
+  progress.throwIfCancelled();
+  progress.report(0, "triangles");
+
+  const std::vector<std::int32_t> usable = someUsable(mesh);
+  FieldReport report;
+  report.dropped_triangles = mesh.triangles.size() - usable.size();
+  std::optional<TriangleMesh> reduced;
+  if (report.dropped_triangles > 0) reduced = onlyFaces(mesh, usable);
+  const TriangleMesh& sound = reduced ? *reduced : mesh;
+
+  FieldGrid grid = grid_for(bounds(sound));
+  std::optional<TriangleMesh> turned;
+  if (const auto wrong = misorientedTriangles(sound); !wrong.empty()) {
+    turned = sound;
+    for (const std::int32_t f : wrong) {
+      Triangle& t = turned->triangles[static_cast<std::size_t>(f)];
+      std::swap(t[1], t[2]);
+    }
+  }
+  const TriangleMesh& oriented = turned ? *turned : sound;
+  WindingNumber winding(oriented);
+  const OpenParts open = openParts(oriented, winding);
+  if (open.any()) winding = WindingNumber(closedPart(oriented, open));
+  report.open_parts = open.parts;
+  report.open_triangles = open.triangles;
+  progress.throwIfCancelled();
+
+  const bool plates = open.any() && sides == OpenSides::one;
+  if (plates) grid = withRoomForPlates(grid, band);
+  const TriangleTree tree(sound);
+  progress.throwIfCancelled();
+  progress.report(0.1, "distances");
+  FieldBuilder builder =
+      distanceBlocks(sound, tree, grid, plates ? band + kPastBack : band, progress, 0.1, 0.7);
+  progress.report(0.7, "signs");
+  report.ambiguous_signs =
+      assignSigns(builder, oriented, tree, winding, open, plates ? band : 0, progress);
+  if (plates) report.ambiguous_signs += makePlates(builder, oriented, tree, open, band, progress);
+  signCoarse(builder);
+  progress.throwIfCancelled();
+  if (report.dropped_triangles > 0) renumberFaces(builder, usable);
+
+  auto field = std::make_shared<const SurfaceField>(frozen(std::move(builder)));
+  report.blocks = field->blockCount();
+  report.bytes = field->bytes();
+  report.dense_bytes = grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
+  report.cpu_seconds = cpuSeconds() - cpu_start;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  progress.report(1, "field");
+  return {std::move(field), report};
+}
+
+} // namespace
+
+FieldGrid withRoomForPlates(FieldGrid grid, double band) {
+  const int nodes = kBlockSide * static_cast<int>(std::ceil(band / kBlockSide));
+  grid.origin -= Vec3::Constant(nodes * grid.voxel);
+  for (int& n : grid.nodes) n += 2 * nodes;
+  return grid;
+}
+
+BuiltField buildField(const TriangleMesh& mesh, const FieldSpec& spec, Progress& progress) {
+  return build(
+      mesh, [&](const Box3& box) { return gridAround(box, spec); }, spec.band, spec.sides,
+      progress);
+}
+
+BuiltField buildField(const TriangleMesh& mesh, const FieldGrid& grid, double band,
+                      Progress& progress, OpenSides sides) {
+  return build(
+      mesh, [&](const Box3&) { return grid; }, band, sides, progress);
+}
+
+Box3 fieldBounds(const TriangleMesh& mesh) {
+  Box3 box;
+  for (const std::int32_t f : someUsable(mesh))
+    for (int c = 0; c < 3; ++c) box.extend(mesh.corner(static_cast<std::size_t>(f), c));
+  return box;
+}
+
+} // namespace patina

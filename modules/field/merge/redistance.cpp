@@ -1,0 +1,172 @@
+#include "field/merge/redistance.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+#include "field/merge/union_surface.h"
+#include "geometry/tree/triangle_tree.h"
+
+namespace patina {
+namespace {
+
+using Index3 = std::array<int, 3>;
+
+class Redistancer {
+ public:
+  Redistancer(const SurfaceField& merged, std::span<const FieldPart> parts,
+              const BlockLattice& lattice, const TriangleMesh& joint, const Progress& progress)
+      : merged_(merged), parts_(parts), nodes_(nodesOf(parts)), lattice_(lattice), joint_(joint),
+        progress_(progress), surface_(unionSurface(parts, lattice, joint, progress)),
+        tree_(surface_.mesh) {
+    BlockBox all;
+    for (const FieldPart& part : parts) all.extend(part.blocks());
+    low_ = all.low;
+  }
+
+  Redistanced run() {
+    SurfaceField& field = result_.field;
+    field = merged_;
+    std::vector<std::uint8_t> gone(field.blockCount());
+    tbb::parallel_for(std::size_t{0}, field.blockCount(), [&](std::size_t slot) {
+      if (!progress_.cancelled() && overlaps(merged_.block_at[slot], 0)) gone[slot] = !keep(slot);
+    });
+    progress_.throwIfCancelled();
+    coarse();
+    progress_.throwIfCancelled();
+    dropBlocks(gone);
+    result_.nodes = changed_;
+    return std::move(result_);
+  }
+
+ private:
+  // Whether two parts or more hold the block; of block corners each has one more along an axis.
+  bool overlaps(const Index3& block, int more) const {
+    int count = 0;
+    for (const FieldPart& part : parts_) {
+      BlockBox box = part.blocks();
+      for (int& high : box.high) high += more;
+      count += box.contains({block[0] + low_[0], block[1] + low_[1], block[2] + low_[2]});
+    }
+    return count > 1;
+  }
+
+  Vec3 footOn(std::int32_t face, const Vec3& p) const {
+    const auto f = static_cast<std::size_t>(face);
+    const Vec3 a = joint_.corner(f, 0), b = joint_.corner(f, 1), c = joint_.corner(f, 2);
+    const Vec3 w = closestBarycentric(p, a, b, c);
+    return w[0] * a + w[1] * b + w[2] * c;
+  }
+
+  // False if no node stays within the band.
+  bool keep(std::size_t slot) {
+    const FaceBlock& old_faces = *merged_.face[slot];
+    DistanceNodes distance;
+    merged_.distance[slot]->unpack(distance);
+    FaceNodes faces;
+    std::size_t count = 0;
+    bool any = false;
+    std::int32_t warm = -1;
+    for (std::size_t n = 0; n < kBlockNodes; ++n) {
+      const std::int32_t face = old_faces.at(n);
+      any = any || face >= 0;
+      if (face < 0 || !(distance.phi[n] < 0)) continue;
+      const Index3& at = merged_.block_at[slot];
+      const auto i = static_cast<int>(n);
+      const Vec3 p = merged_.grid.toWorld(Vec3(kBlockSide * at[0] + i % kBlockSide,
+                                               kBlockSide * at[1] + i / kBlockSide % kBlockSide,
+                                               kBlockSide * at[2] + i / (kBlockSide * kBlockSide)));
+      const Vec3 foot = (footOn(face, p) - lattice_.anchor) / lattice_.voxel;
+      if (!isHidden(parts_, nodes_, ownerOf(face, parts_), foot)) continue;
+      const auto found = tree_.closestPointWithin(p, merged_.band * lattice_.voxel, warm);
+      const float phi =
+          found ? -static_cast<float>(std::min(found->distance / lattice_.voxel, merged_.band))
+                : -kBeyondBand;
+      if (!(phi < distance.phi[n])) continue; // min is a lower bound of the depth
+      if (count++ == 0)
+        for (std::size_t k = 0; k < kBlockNodes; ++k) faces.face[k] = old_faces.at(k);
+      distance.phi[n] = phi;
+      faces.face[n] = -1;
+      if (found) {
+        warm = found->surface.face;
+        faces.face[n] = surface_.face[static_cast<std::size_t>(warm)];
+      }
+    }
+    if (count == 0) return any;
+    changed_ += count;
+    result_.field.distance[slot] = std::make_shared<const DistanceBlock>(distance);
+    result_.field.face[slot] = std::make_shared<const FaceBlock>(faces);
+    return std::any_of(faces.face.begin(), faces.face.end(), [](std::int32_t f) { return f >= 0; });
+  }
+
+  void coarse() {
+    const Index3 n{merged_.blocks[0] + 1, merged_.blocks[1] + 1, merged_.blocks[2] + 1};
+    tbb::parallel_for(std::size_t{0}, merged_.coarse.size(), [&](std::size_t i) {
+      CoarseNode& node = result_.field.coarse[i];
+      const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
+      const Index3 at{static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
+                      static_cast<int>(i / (nx * ny))};
+      if (progress_.cancelled() || !(node.phi < 0) || !overlaps(at, 1)) return;
+      const Vec3 p = merged_.grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
+      const ClosestPoint found = tree_.closestPoint(p);
+      const double depth = found.distance / lattice_.voxel;
+      constexpr double kSame = 1e-3; // [voxel]
+      if (!(depth > kSame - static_cast<double>(node.phi))) return;
+      const Vec3 g = (found.point - p) / found.distance;
+      node = {-static_cast<float>(depth), static_cast<float>(g[0]), static_cast<float>(g[1]),
+              static_cast<float>(g[2])};
+      ++changed_;
+    });
+  }
+
+  // What holds nothing of the band any more is inside.
+  void dropBlocks(const std::vector<std::uint8_t>& gone) {
+    SurfaceField& field = result_.field;
+    std::size_t kept = 0;
+    for (std::size_t slot = 0; slot < gone.size(); ++slot) {
+      const Index3 at = field.block_at[slot];
+      std::int32_t& top = field.top[static_cast<std::size_t>(
+          (at[2] * field.blocks[1] + at[1]) * field.blocks[0] + at[0])];
+      if (gone[slot]) {
+        top = SurfaceField::kInside;
+        continue;
+      }
+      top = static_cast<std::int32_t>(kept);
+      field.block_at[kept] = at;
+      field.distance[kept] = std::move(field.distance[slot]);
+      field.face[kept] = std::move(field.face[slot]);
+      ++kept;
+    }
+    field.block_at.resize(kept);
+    field.distance.resize(kept);
+    field.face.resize(kept);
+  }
+
+  const SurfaceField& merged_;
+  std::span<const FieldPart> parts_;
+  const std::deque<NodeReader> nodes_;
+  const BlockLattice& lattice_;
+  const TriangleMesh& joint_;
+  const Progress& progress_;
+  const UnionSurface surface_;
+  const TriangleTree tree_;
+  Index3 low_{};
+  Redistanced result_;
+  std::atomic<std::size_t> changed_{0};
+};
+
+} // namespace
+
+Redistanced redistanced(const SurfaceField& merged, std::span<const FieldPart> parts,
+                        const BlockLattice& lattice, const TriangleMesh& joint,
+                        const Progress& progress) {
+  if (merged.face.size() != merged.blockCount())
+    throw std::invalid_argument("redistanced: the field has no face layer");
+  return Redistancer(merged, parts, lattice, joint, progress).run();
+}
+
+} // namespace patina

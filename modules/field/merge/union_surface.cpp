@@ -1,0 +1,133 @@
+#include "field/merge/union_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+#include "geometry/mesh/mesh_report.h"
+
+namespace patina {
+namespace {
+
+using Corners = std::array<Vec3, 3>; // grid coordinates of the lattice
+using Pieces = std::vector<Corners>;
+
+constexpr double kLargestPiece = 1; // [voxel]
+// phi is 1-Lipschitz, but read between nodes it is not exact.
+constexpr double kAllowance = 0.5; // [voxel]
+
+Box3 boxOf(const FieldPart& part) {
+  const BlockBox blocks = part.blocks();
+  Box3 box;
+  box.min() = kBlockSide * Vec3(blocks.low[0], blocks.low[1], blocks.low[2]);
+  box.max() = kBlockSide * Vec3(blocks.high[0], blocks.high[1], blocks.high[2]);
+  return box;
+}
+
+Vec3 between(const Vec3& a, double fa, const Vec3& b, double fb) {
+  return a + fa / (fa - fb) * (b - a);
+}
+
+// What is left of a small triangle where f >= 0, f linear between the corners.
+void cut(const Corners& t, const std::array<double, 3>& f, Pieces& left) {
+  std::array<Vec3, 4> polygon;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    if (f[i] >= 0) polygon[count++] = t[i];
+    if ((f[i] >= 0) != (f[next] >= 0)) polygon[count++] = between(t[i], f[i], t[next], f[next]);
+  }
+  for (std::size_t i = 2; i < count; ++i) left.push_back({polygon[0], polygon[i - 1], polygon[i]});
+}
+
+void outsideOf(const FieldPart& part, const NodeReader& nodes, const Corners& triangle,
+               Pieces& left) {
+  Pieces todo{triangle};
+  while (!todo.empty()) {
+    const Corners t = todo.back();
+    todo.pop_back();
+    std::size_t longest = 0;
+    double length = 0;
+    std::array<double, 3> f{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double side = (t[(i + 1) % 3] - t[i]).norm();
+      if (side > length) {
+        length = side;
+        longest = i;
+      }
+      f[i] = phiOfPart(part, nodes, t[i]) + kHiddenFrom;
+    }
+    const auto [least, most] = std::minmax({f[0], f[1], f[2]});
+    if (most > length + kAllowance) {
+      left.push_back(t);
+    } else if (length <= kLargestPiece) {
+      cut(t, f, left);
+    } else if (!(least < -length - kAllowance)) {
+      const Vec3 a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3];
+      const Vec3 middle = 0.5 * (a + b);
+      todo.push_back({a, middle, c});
+      todo.push_back({middle, b, c});
+    }
+  }
+}
+
+} // namespace
+
+std::deque<NodeReader> nodesOf(std::span<const FieldPart> parts) {
+  std::deque<NodeReader> nodes;
+  for (const FieldPart& part : parts) nodes.emplace_back(*part.field);
+  return nodes;
+}
+
+bool isHidden(std::span<const FieldPart> parts, const std::deque<NodeReader>& nodes,
+              std::int32_t owner, const Vec3& q) {
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    if (static_cast<std::int32_t>(p) != owner && phiOfPart(parts[p], nodes[p], q) < -kHiddenFrom)
+      return true;
+  return false;
+}
+
+UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
+                          const TriangleMesh& joint, const Progress& progress) {
+  const std::vector<std::int32_t> usable = usableTriangles(joint);
+  std::vector<Box3> boxes;
+  for (const FieldPart& part : parts) boxes.push_back(boxOf(part));
+  const std::deque<NodeReader> nodes = nodesOf(parts);
+  std::vector<Pieces> visible(usable.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, usable.size(), 256), [&](const auto& range) {
+    if (progress.cancelled()) return;
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const auto owner = static_cast<std::size_t>(ownerOf(usable[i], parts));
+      Corners t;
+      Box3 box;
+      for (int c = 0; c < 3; ++c) {
+        const Vec3 p = joint.corner(static_cast<std::size_t>(usable[i]), c);
+        t[static_cast<std::size_t>(c)] = (p - lattice.anchor) / lattice.voxel;
+        box.extend(t[static_cast<std::size_t>(c)]);
+      }
+      visible[i] = {t};
+      for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (p == owner || !boxes[p].intersects(box)) continue;
+        Pieces left;
+        for (const Corners& piece : visible[i]) outsideOf(parts[p], nodes[p], piece, left);
+        visible[i] = std::move(left);
+      }
+    }
+  });
+  progress.throwIfCancelled();
+
+  UnionSurface surface;
+  for (std::size_t i = 0; i < usable.size(); ++i)
+    for (const Corners& piece : visible[i]) {
+      const auto first = static_cast<std::int32_t>(surface.mesh.positions.size());
+      for (const Vec3& q : piece)
+        surface.mesh.positions.push_back(lattice.anchor + lattice.voxel * q);
+      surface.mesh.triangles.push_back({first, first + 1, first + 2});
+      surface.face.push_back(usable[i]);
+    }
+  return surface;
+}
+
+} // namespace patina

@@ -1,0 +1,220 @@
+#include "field/signs/sign_components.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <tbb/parallel_for.h>
+
+namespace patina::signs {
+namespace {
+
+constexpr std::array<std::size_t, 3> kStride{1, kBlockSide, kBlockSide* kBlockSide};
+constexpr std::uint16_t kNone = 0xFFFF;
+
+bool safe(float d1, float d2) {
+  return d1 + d2 > 1 + kMargin;
+}
+
+std::uint16_t rootOf(Labels& parent, std::uint16_t label) {
+  while (parent[label] != label) label = parent[label] = parent[parent[label]];
+  return label;
+}
+
+// Two passes over the nodes: labels with equivalences, then labels without.
+void labelNodes(const float* d, Labels& label, std::vector<Part>& parts) {
+  Labels parent;
+  std::uint16_t count = 0;
+  std::size_t i = 0;
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    for (std::size_t y = 0; y < kBlockSide; ++y) {
+      for (std::size_t x = 0; x < kBlockSide; ++x, ++i) {
+        std::uint16_t mine = kNone;
+        const auto meet = [&](std::size_t before) {
+          if (!safe(d[i], d[before])) return;
+          const std::uint16_t other = rootOf(parent, label[before]);
+          if (mine == other) return;
+          if (mine != kNone) parent[std::max(mine, other)] = std::min(mine, other);
+          mine = std::min(mine, other);
+        };
+        if (x > 0) meet(i - kStride[0]);
+        if (y > 0) meet(i - kStride[1]);
+        if (z > 0) meet(i - kStride[2]);
+        if (mine == kNone) {
+          mine = count++;
+          parent[mine] = mine;
+        }
+        label[i] = mine;
+      }
+    }
+  }
+  Labels number;
+  for (std::uint16_t l = 0; l < count; ++l) { // a root comes before all that point at it
+    if (parent[l] != l) continue;
+    number[l] = static_cast<std::uint16_t>(parts.size());
+    parts.emplace_back();
+  }
+  for (std::uint16_t& l : label) l = number[rootOf(parent, l)];
+}
+
+struct BlockParts {
+  std::vector<Part> parts;
+  std::unique_ptr<Labels> labels;
+};
+
+BlockParts partsOfBlock(const float* d, std::int32_t slot, float most) {
+  BlockParts block;
+  float nearest = d[0];
+  for (std::size_t i = 1; i < kBlockNodes; ++i) nearest = d[i] < nearest ? d[i] : nearest;
+  if (safe(nearest, nearest)) {
+    block.parts.emplace_back();
+  } else {
+    block.labels = std::make_unique<Labels>();
+    labelNodes(d, *block.labels, block.parts);
+    if (block.parts.size() == 1) block.labels.reset();
+  }
+  for (Part& part : block.parts) {
+    part.slot = slot;
+    part.depth = -1;
+  }
+  for (std::size_t i = 0; i < kBlockNodes; ++i) {
+    Part& part = block.parts[block.labels ? (*block.labels)[i] : 0];
+    ++part.nodes;
+    if (d[i] <= part.depth) continue;
+    part.depth = d[i];
+    part.deepest = static_cast<std::uint16_t>(i);
+  }
+  for (Part& part : block.parts) part.depth = std::min(part.depth, most);
+  return block;
+}
+
+void addEdge(std::vector<Link>& links, std::size_t since, std::uint32_t a, std::uint32_t b) {
+  for (std::size_t i = links.size(); i-- > since;) {
+    if (links[i].a != a || links[i].b != b) continue;
+    ++links[i].edges;
+    return;
+  }
+  links.push_back({a, b, 1});
+}
+
+struct Linker {
+  const FieldBuilder& builder;
+  const Components& components;
+
+  // -1 outside the grid.
+  std::ptrdiff_t topIndex(const std::array<int, 3>& at) const {
+    const auto& n = builder.field.blocks;
+    for (std::size_t a = 0; a < 3; ++a)
+      if (at[a] < 0 || at[a] >= n[a]) return -1;
+    return (static_cast<std::ptrdiff_t>(at[2]) * n[1] + at[1]) * n[0] + at[0];
+  }
+
+  void linkStored(std::int32_t slot, std::vector<Link>& links) const {
+    const float* here = builder.distance[static_cast<std::size_t>(slot)]->phi.data();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t u = kStride[(axis + 1) % 3], v = kStride[(axis + 2) % 3];
+      for (int side : {-1, 1}) {
+        std::array<int, 3> at = builder.field.block_at[static_cast<std::size_t>(slot)];
+        at[axis] += side;
+        const std::ptrdiff_t index = topIndex(at);
+        if (index < 0) continue;
+        const std::int32_t other = builder.field.top[static_cast<std::size_t>(index)];
+        if (other >= 0 && side < 0) continue; // the other block's business
+        const float* there =
+            other >= 0 ? builder.distance[static_cast<std::size_t>(other)]->phi.data() : nullptr;
+        const std::size_t last = (kBlockSide - 1) * kStride[axis];
+        const std::size_t from = side > 0 ? last : 0;
+        const std::size_t since = links.size();
+        for (std::size_t j = 0; j < kBlockSide; ++j) {
+          for (std::size_t i = 0; i < kBlockSide; ++i) {
+            const std::size_t node = from + i * u + j * v;
+            const std::size_t opposite = last - from + i * u + j * v;
+            const float d = there ? there[opposite] : static_cast<float>(builder.field.band);
+            if (!safe(here[node], d)) continue;
+            addEdge(links, since, components.partOf(slot, node),
+                    there ? components.partOf(other, opposite)
+                          : components.partOfBlock(static_cast<std::size_t>(index)));
+          }
+        }
+      }
+    }
+  }
+
+  void linkUnstored(std::size_t index, std::vector<Link>& links) const {
+    const auto& top = builder.field.top;
+    const auto& n = builder.field.blocks;
+    const auto i = static_cast<std::ptrdiff_t>(index);
+    const std::array<int, 3> at{static_cast<int>(i % n[0]), static_cast<int>(i / n[0] % n[1]),
+                                static_cast<int>(i / n[0] / n[1])};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::array<int, 3> next = at;
+      ++next[axis];
+      const std::ptrdiff_t other = topIndex(next);
+      if (other < 0 || top[static_cast<std::size_t>(other)] >= 0) continue;
+      links.push_back({components.partOfBlock(index),
+                       components.partOfBlock(static_cast<std::size_t>(other)),
+                       kBlockSide * kBlockSide});
+    }
+  }
+};
+
+// Items in chunks of fixed size, so that the order of the links does not depend on the threads.
+template <typename Body>
+void collectLinks(std::size_t count, std::vector<Link>& links, const Body& body) {
+  constexpr std::size_t kChunk = 128;
+  std::vector<std::vector<Link>> chunks((count + kChunk - 1) / kChunk);
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
+    for (std::size_t i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) body(i, chunks[c]);
+  });
+  for (const auto& chunk : chunks) links.insert(links.end(), chunk.begin(), chunk.end());
+}
+
+std::vector<std::uint32_t> rootsOf(std::size_t parts, const std::vector<Link>& links) {
+  std::vector<std::uint32_t> root(parts);
+  std::iota(root.begin(), root.end(), 0U);
+  const auto find = [&](std::uint32_t part) {
+    while (root[part] != part) part = root[part] = root[root[part]];
+    return part;
+  };
+  for (const Link& link : links) {
+    const std::uint32_t a = find(link.a), b = find(link.b);
+    root[std::max(a, b)] = std::min(a, b);
+  }
+  for (std::uint32_t part = 0; part < parts; ++part) root[part] = root[root[part]]; // root <= part
+  return root;
+}
+
+} // namespace
+
+Components connectedComponents(const FieldBuilder& builder) {
+  const std::size_t slots = builder.distance.size();
+  const auto most = static_cast<float>(builder.field.band) + 1;
+  std::vector<BlockParts> blocks(slots);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots, 16), [&](const auto& range) {
+    for (std::size_t s = range.begin(); s < range.end(); ++s)
+      blocks[s] = partsOfBlock(builder.distance[s]->phi.data(), static_cast<std::int32_t>(s), most);
+  });
+
+  Components components;
+  components.first.reserve(slots + 1);
+  components.labels.reserve(slots);
+  for (BlockParts& block : blocks) {
+    components.first.push_back(static_cast<std::uint32_t>(components.parts.size()));
+    components.parts.insert(components.parts.end(), block.parts.begin(), block.parts.end());
+    components.labels.push_back(std::move(block.labels));
+  }
+  components.first.push_back(static_cast<std::uint32_t>(components.parts.size()));
+  components.parts.resize(components.parts.size() + builder.field.top.size());
+
+  const Linker linker{builder, components};
+  collectLinks(slots, components.links, [&](std::size_t s, std::vector<Link>& links) {
+    linker.linkStored(static_cast<std::int32_t>(s), links);
+  });
+  collectLinks(builder.field.top.size(), components.links,
+               [&](std::size_t i, std::vector<Link>& links) {
+                 if (builder.field.top[i] < 0) linker.linkUnstored(i, links);
+               });
+  components.root = rootsOf(components.parts.size(), components.links);
+  return components;
+}
+
+} // namespace patina::signs

@@ -1,0 +1,78 @@
+#include "field/signs/sign_slivers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "field/signs/sign_components.h"
+
+namespace patina::signs {
+
+std::array<int, 3> nodeAt(const FieldBuilder& builder, std::int32_t slot, std::size_t node) {
+  const auto& block = builder.field.block_at[static_cast<std::size_t>(slot)];
+  const int i = static_cast<int>(node);
+  return {block[0] * kBlockSide + i % kBlockSide,
+          block[1] * kBlockSide + i / kBlockSide % kBlockSide,
+          block[2] * kBlockSide + i / kBlockSide / kBlockSide};
+}
+
+bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, std::int32_t slot,
+                       std::size_t node, NodePlace& found) {
+  // More than both distances err. A sliver joins nothing else, so that cracks need no more.
+  constexpr float kExact = 1e-3F;
+  struct Candidate {
+    NodePlace place;
+    std::array<int, 3> step;
+    float margin; // by how much the distances exceed the length
+  };
+  std::array<Candidate, 26> candidates;
+  std::size_t count = 0;
+  const SurfaceField& field = builder.field;
+  const float depth = std::abs(builder.distance[static_cast<std::size_t>(slot)]->phi[node]);
+  const std::array<int, 3> at = nodeAt(builder, slot, node);
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int x = at[0] + dx, y = at[1] + dy, z = at[2] + dz;
+        if (x < 0 || y < 0 || z < 0) continue;
+        const int bx = x / kBlockSide, by = y / kBlockSide, bz = z / kBlockSide;
+        if (bx >= field.blocks[0] || by >= field.blocks[1] || bz >= field.blocks[2]) continue;
+        NodePlace place;
+        place.top_index =
+            static_cast<std::size_t>((bz * field.blocks[1] + by) * field.blocks[0] + bx);
+        place.slot = std::max(field.top[place.top_index], -1);
+        place.node = static_cast<std::size_t>(
+            (z % kBlockSide * kBlockSide + y % kBlockSide) * kBlockSide + x % kBlockSide);
+        const float d =
+            place.slot < 0
+                ? static_cast<float>(field.band)
+                : std::abs(builder.distance[static_cast<std::size_t>(place.slot)]->phi[place.node]);
+        if (d <= depth) continue;
+        constexpr std::array<float, 4> kLength{0, 1, 1.41421356F, 1.73205081F};
+        const float margin =
+            depth + d - kLength[static_cast<std::size_t>(dx * dx + dy * dy + dz * dz)];
+        if (margin > kExact) {
+          found = place;
+          return true;
+        }
+        candidates[count++] = {place, {dx, dy, dz}, margin};
+      }
+    }
+  }
+  // The likeliest first; beyond a few, the winding number is as cheap.
+  constexpr std::size_t kRays = 4;
+  const Vec3 origin = field.grid.toWorld(Vec3(at[0], at[1], at[2]));
+  for (std::size_t i = 0; i < std::min(count, kRays); ++i) {
+    const auto left = candidates.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto best = std::max_element(
+        left, candidates.begin() + static_cast<std::ptrdiff_t>(count),
+        [](const Candidate& a, const Candidate& b) { return a.margin < b.margin; });
+    std::swap(*left, *best);
+    const Vec3 step(left->step[0], left->step[1], left->step[2]);
+    if (tree.firstHit(origin, step, step.norm() * field.grid.voxel)) continue;
+    found = left->place;
+    return true;
+  }
+  return false;
+}
+
+} // namespace patina::signs

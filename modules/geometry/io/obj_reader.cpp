@@ -1,0 +1,198 @@
+#include <charconv>
+#include <limits>
+
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/text_scan.h"
+
+namespace patina {
+namespace {
+
+constexpr std::int64_t kMostIndices = std::numeric_limits<std::int32_t>::max();
+
+class ObjParser {
+ public:
+  ObjParser(std::string_view bytes, const std::string& name)
+      : name_(name), lines_(text::withoutByteOrderMark(bytes)) {}
+
+  TriangleMesh parse() {
+    std::string_view statement;
+    while (nextStatement(statement)) {
+      text::Words words(statement);
+      const std::string_view keyword = words.next();
+      if (keyword == "v")
+        readVertex(words);
+      else if (keyword == "f")
+        readFace(words);
+      else if (keyword == "vt")
+        readTexturePoint(words);
+      else if (keyword == "vn")
+        ++normals_;
+      else if (text::hasControl(statement))
+        fail("binary data where OBJ text should be");
+    }
+    if (lines_.number() == 0) throw FileError(name_, 1, "the file is empty");
+    checkHighest(highest_vertex_, static_cast<std::int64_t>(mesh_.positions.size()), "vertex");
+    checkHighest(highest_texture_, static_cast<std::int64_t>(texture_.size()), "texture point");
+    checkHighest(highest_normal_, normals_, "normal");
+    line_ = lines_.number();
+    if (mesh_.triangles.empty()) fail("the file ends without a face");
+    if (all_textured_) gatherTexture();
+    return std::move(mesh_);
+  }
+
+ private:
+  // An index may name a vertex that comes later in the file, so the check waits for the end.
+  struct Highest {
+    std::int64_t index = 0;
+    std::size_t line = 0;
+  };
+  struct Corner {
+    std::int32_t vertex = 0;
+    std::int32_t texture = -1;
+  };
+
+  [[noreturn]] void fail(const std::string& cause) const { throw FileError(name_, line_, cause); }
+
+  // One line without its comment; lines that end in a backslash are joined with the next.
+  bool nextStatement(std::string_view& statement) {
+    std::string_view line;
+    if (!lines_.next(line)) return false;
+    line_ = lines_.number();
+    if (!endsInBackslash(line)) {
+      statement = withoutComment(line);
+      return true;
+    }
+    joined_.clear();
+    bool more = true;
+    while (more && endsInBackslash(line)) {
+      joined_.append(line.substr(0, line.size() - 1));
+      joined_ += ' ';
+      more = lines_.next(line);
+    }
+    if (more) joined_.append(withoutComment(line));
+    statement = joined_;
+    return true;
+  }
+  static bool endsInBackslash(std::string_view& line) {
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return !line.empty() && line.back() == '\\' && line.find('#') == std::string_view::npos;
+  }
+  static std::string_view withoutComment(std::string_view line) {
+    return line.substr(0, line.find('#'));
+  }
+
+  void readVertex(text::Words& words) {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = text::number(words.next(), name_, line_, "a coordinate");
+    // A weight or a colour may follow; neither is used, but it must be numbers.
+    for (auto word = words.next(); !word.empty(); word = words.next())
+      text::number(word, name_, line_, "a number");
+    if (static_cast<std::int64_t>(mesh_.positions.size()) == kMostIndices)
+      fail("more vertices than this program can count");
+    mesh_.positions.push_back(p);
+  }
+
+  void readTexturePoint(text::Words& words) {
+    Vec2 uv(text::number(words.next(), name_, line_, "a texture coordinate"), 0);
+    const std::string_view second = words.next();
+    if (!second.empty()) uv[1] = text::number(second, name_, line_, "a texture coordinate");
+    if (static_cast<std::int64_t>(texture_.size()) == kMostIndices)
+      fail("more texture points than this program can count");
+    texture_.push_back(uv);
+  }
+
+  void readFace(text::Words& words) {
+    polygon_.clear();
+    for (auto word = words.next(); !word.empty(); word = words.next())
+      polygon_.push_back(readCorner(word));
+    if (polygon_.size() < 3)
+      fail("a face needs 3 corners or more, this one has " + std::to_string(polygon_.size()));
+    for (std::size_t k = 1; k + 1 < polygon_.size(); ++k) {
+      const Corner &a = polygon_[0], &b = polygon_[k], &c = polygon_[k + 1];
+      mesh_.triangles.push_back({a.vertex, b.vertex, c.vertex});
+      all_textured_ = all_textured_ && a.texture >= 0 && b.texture >= 0 && c.texture >= 0;
+      if (all_textured_) corner_textures_.push_back({a.texture, b.texture, c.texture});
+    }
+  }
+
+  // "v", "v/t", "v//n" or "v/t/n".
+  Corner readCorner(std::string_view word) {
+    Corner corner;
+    const char* at = word.data();
+    const char* end = at + word.size();
+    corner.vertex = readIndex(at, end, word, static_cast<std::int64_t>(mesh_.positions.size()),
+                              "vertex", highest_vertex_);
+    if (at != end && *at == '/') {
+      ++at;
+      if (at != end && *at != '/')
+        corner.texture = readIndex(at, end, word, static_cast<std::int64_t>(texture_.size()),
+                                   "texture point", highest_texture_);
+      if (at != end && *at == '/') {
+        ++at;
+        if (at != end) readIndex(at, end, word, normals_, "normal", highest_normal_);
+      }
+    }
+    if (at != end) throwBadCorner(word);
+    return corner;
+  }
+
+  std::int32_t readIndex(const char*& at, const char* end, std::string_view word,
+                         std::int64_t so_far, const char* what, Highest& highest) {
+    std::int64_t index = 0;
+    const auto [stop, error] = std::from_chars(at, end, index);
+    if (error == std::errc::invalid_argument) throwBadCorner(word);
+    if (error != std::errc() || index > kMostIndices || index < -kMostIndices)
+      fail("the face names " + std::string(what) + " " + text::quoted(word) +
+           ", more than a file can hold");
+    at = stop;
+    if (index == 0) fail(std::string("the face names ") + what + " 0; OBJ counts from 1");
+    if (index < 0) {
+      if (-index > so_far)
+        fail("the face names " + std::string(what) + " " + std::to_string(index) + ", but only " +
+             std::to_string(so_far) + " stand before it");
+      return static_cast<std::int32_t>(so_far + index);
+    }
+    if (index > highest.index) highest = {index, line_};
+    return static_cast<std::int32_t>(index - 1);
+  }
+
+  [[noreturn]] void throwBadCorner(std::string_view word) const {
+    if (text::hasControl(word)) fail("binary data where a face's corner should be");
+    fail(text::quoted(word) + " is not a face's corner (v, v/t, v//n or v/t/n)");
+  }
+
+  void checkHighest(const Highest& highest, std::int64_t count, const char* what) const {
+    if (highest.index <= count) return;
+    throw FileError(name_, highest.line,
+                    "the face names " + std::string(what) + " " + std::to_string(highest.index) +
+                        ", but the file has " + std::to_string(count));
+  }
+
+  void gatherTexture() {
+    mesh_.corner_uvs.reserve(corner_textures_.size());
+    for (const auto& t : corner_textures_)
+      mesh_.corner_uvs.push_back({texture_[static_cast<std::size_t>(t[0])],
+                                  texture_[static_cast<std::size_t>(t[1])],
+                                  texture_[static_cast<std::size_t>(t[2])]});
+  }
+
+  const std::string& name_;
+  text::Lines lines_;
+  std::size_t line_ = 0; // where the current statement begins
+  std::string joined_;
+  TriangleMesh mesh_;
+  std::vector<Vec2> texture_;
+  std::vector<std::array<std::int32_t, 3>> corner_textures_;
+  std::vector<Corner> polygon_;
+  std::int64_t normals_ = 0;
+  bool all_textured_ = true;
+  Highest highest_vertex_, highest_texture_, highest_normal_;
+};
+
+} // namespace
+
+TriangleMesh parseObj(std::string_view bytes, const std::string& name) {
+  return ObjParser(bytes, name).parse();
+}
+
+} // namespace patina

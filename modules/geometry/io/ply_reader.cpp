@@ -1,0 +1,227 @@
+#include <cmath>
+#include <limits>
+
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/ply_source.h"
+
+namespace patina {
+namespace {
+
+constexpr int kUnused = -1;
+constexpr int kU = 3; // roles of vertex properties: 0..2 position, 3..4 texture
+constexpr int kIndices = 0;
+constexpr int kTexture = 1; // roles of face properties
+
+int vertexRole(const PlyProperty& p) {
+  if (p.count_type) return kUnused;
+  if (p.name == "x" || p.name == "y" || p.name == "z") return p.name[0] - 'x';
+  if (p.name == "u" || p.name == "s" || p.name == "texture_u") return kU;
+  if (p.name == "v" || p.name == "t" || p.name == "texture_v") return kU + 1;
+  return kUnused;
+}
+
+int faceRole(const PlyProperty& p) {
+  if (!p.count_type) return kUnused;
+  if (p.name == "vertex_indices" || p.name == "vertex_index") return kIndices;
+  if (p.name == "texcoord") return kTexture;
+  return kUnused;
+}
+
+template <typename Source> class PlyParser {
+ public:
+  PlyParser(const PlyHeader& header, const std::string& name)
+      : header_(header), name_(name), in_(header, name) {}
+
+  TriangleMesh parse() {
+    const PlyElement& vertices = element("vertex");
+    const PlyElement& faces = element("face");
+    vertex_count_ = vertices.count;
+    if (vertices.count > std::numeric_limits<std::int32_t>::max())
+      fail(vertices, "more vertices than this program can count");
+    if (faces.count == 0) fail(faces, "the file has no face");
+    for (const PlyElement& e : header_.elements) {
+      if (&e == &vertices)
+        readVertices(e);
+      else if (&e == &faces)
+        readFaces(e);
+      else
+        skip(e);
+    }
+    in_.end();
+    if (!face_texture_ && has_vertex_texture_) gatherVertexTexture();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const PlyElement& e, const std::string& cause) const {
+    throw FileError(name_, e.line, cause);
+  }
+
+  const PlyElement& element(const char* wanted) const {
+    const PlyElement* found = nullptr;
+    for (const PlyElement& e : header_.elements) {
+      if (e.name != wanted) continue;
+      if (found) fail(e, std::string("element '") + wanted + "' appears twice");
+      found = &e;
+    }
+    if (!found)
+      throw FileError(name_, header_.lines,
+                      std::string("the header has no element '") + wanted + "'");
+    return *found;
+  }
+
+  // The role of each property; a role that two properties claim is an error.
+  template <typename RoleOf>
+  std::vector<int> roles(const PlyElement& e, RoleOf roleOf, std::array<bool, 5>& claimed) const {
+    std::vector<int> result;
+    for (const PlyProperty& p : e.properties) {
+      result.push_back(roleOf(p));
+      if (result.back() == kUnused) continue;
+      bool& is_claimed = claimed[static_cast<std::size_t>(result.back())];
+      if (is_claimed) fail(e, "two properties like " + text::quoted(p.name));
+      is_claimed = true;
+    }
+    return result;
+  }
+
+  void skipList(const PlyProperty& p) {
+    for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n) in_.value(p.type);
+  }
+
+  void skip(const PlyElement& e) {
+    if (e.properties.empty()) return;
+    for (std::uint64_t i = 0; i < e.count; ++i) {
+      in_.beginItem(e);
+      for (const PlyProperty& p : e.properties) {
+        if (p.count_type)
+          skipList(p);
+        else
+          in_.value(p.type);
+      }
+      in_.endItem();
+    }
+  }
+
+  void readVertices(const PlyElement& e) {
+    std::array<bool, 5> has{};
+    const std::vector<int> role = roles(e, vertexRole, has);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!has[k]) fail(e, std::string("the vertices have no property '") + "xyz"[k] + "'");
+    has_vertex_texture_ = has[kU] && has[kU + 1];
+    mesh_.positions.reserve(e.count);
+    if (has_vertex_texture_) vertex_texture_.reserve(e.count);
+    std::array<double, 5> values{};
+    for (std::uint64_t i = 0; i < e.count; ++i) {
+      in_.beginItem(e);
+      for (std::size_t k = 0; k < role.size(); ++k) {
+        const PlyProperty& p = e.properties[k];
+        if (p.count_type) {
+          skipList(p);
+          continue;
+        }
+        const double v = in_.value(p.type);
+        if (role[k] != kUnused) values[static_cast<std::size_t>(role[k])] = v;
+      }
+      in_.endItem();
+      mesh_.positions.emplace_back(values[0], values[1], values[2]);
+      if (has_vertex_texture_) vertex_texture_.emplace_back(values[kU], values[kU + 1]);
+    }
+  }
+
+  void readFaces(const PlyElement& e) {
+    std::array<bool, 5> has{};
+    const std::vector<int> role = roles(e, faceRole, has);
+    if (!has[kIndices]) fail(e, "the faces have no list 'vertex_indices'");
+    for (std::size_t k = 0; k < role.size(); ++k)
+      if (role[k] == kIndices && !isInteger(e.properties[k].type))
+        fail(e, "the faces' vertex indices must have an integer type");
+    face_texture_ = has[kTexture];
+    mesh_.triangles.reserve(e.count);
+    if (face_texture_) mesh_.corner_uvs.reserve(e.count);
+    for (std::uint64_t i = 0; i < e.count; ++i) {
+      in_.beginItem(e);
+      for (std::size_t k = 0; k < role.size(); ++k) {
+        const PlyProperty& p = e.properties[k];
+        if (role[k] == kIndices)
+          readIndices(p);
+        else if (role[k] == kTexture)
+          readFaceTexture(p);
+        else if (p.count_type)
+          skipList(p);
+        else
+          in_.value(p.type);
+      }
+      in_.endItem();
+      addPolygon();
+    }
+    if (!face_texture_) mesh_.corner_uvs.clear();
+  }
+
+  void readIndices(const PlyProperty& p) {
+    polygon_.clear();
+    for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n) {
+      const double index = in_.value(p.type);
+      if (!(index >= 0 && index < static_cast<double>(vertex_count_)) || index != std::floor(index))
+        in_.fail("the face names vertex " + formatNumber(index) + ", but the file has " +
+                 std::to_string(vertex_count_) + ", counted from 0");
+      polygon_.push_back(static_cast<std::int32_t>(index));
+    }
+    if (polygon_.size() < 3)
+      in_.fail("a face needs 3 corners or more, this one has " + std::to_string(polygon_.size()));
+  }
+
+  void readFaceTexture(const PlyProperty& p) {
+    polygon_texture_.clear();
+    for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n)
+      polygon_texture_.push_back(in_.value(p.type));
+  }
+
+  void addPolygon() {
+    // Texture is kept only where every face has it.
+    face_texture_ = face_texture_ && polygon_texture_.size() == 2 * polygon_.size();
+    const auto uv = [&](std::size_t k) {
+      return Vec2(polygon_texture_[2 * k], polygon_texture_[2 * k + 1]);
+    };
+    for (std::size_t k = 1; k + 1 < polygon_.size(); ++k) {
+      mesh_.triangles.push_back({polygon_[0], polygon_[k], polygon_[k + 1]});
+      if (face_texture_) mesh_.corner_uvs.push_back({uv(0), uv(k), uv(k + 1)});
+    }
+  }
+
+  void gatherVertexTexture() {
+    mesh_.corner_uvs.clear();
+    mesh_.corner_uvs.reserve(mesh_.triangles.size());
+    for (const Triangle& t : mesh_.triangles)
+      mesh_.corner_uvs.push_back({vertex_texture_[static_cast<std::size_t>(t[0])],
+                                  vertex_texture_[static_cast<std::size_t>(t[1])],
+                                  vertex_texture_[static_cast<std::size_t>(t[2])]});
+  }
+
+  const PlyHeader& header_;
+  const std::string& name_;
+  Source in_;
+  TriangleMesh mesh_;
+  std::uint64_t vertex_count_ = 0;
+  std::vector<std::int32_t> polygon_;
+  std::vector<double> polygon_texture_;
+  std::vector<Vec2> vertex_texture_;
+  bool has_vertex_texture_ = false;
+  bool face_texture_ = false;
+};
+
+} // namespace
+
+TriangleMesh parsePly(std::string_view bytes, const std::string& name) {
+  const PlyHeader header = parsePlyHeader(bytes, name);
+  switch (header.format) {
+  case PlyFormat::ascii:
+    return PlyParser<PlyAsciiSource>(header, name).parse();
+  case PlyFormat::little_endian:
+    return PlyParser<PlyBinarySource<false>>(header, name).parse();
+  case PlyFormat::big_endian:
+    break;
+  }
+  return PlyParser<PlyBinarySource<true>>(header, name).parse();
+}
+
+} // namespace patina

@@ -1,0 +1,169 @@
+#include <cctype>
+#include <cstring>
+
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/text_scan.h"
+#include "geometry/io/vertex_weld.h"
+
+namespace patina {
+namespace {
+
+constexpr std::size_t kHeader = 84; // 80 bytes of anything, then the count
+constexpr std::size_t kRecord = 50; // normal, three corners (floats), two bytes of anything
+
+template <typename T> T littleEndian(const char* at) {
+  static_assert(sizeof(T) == 4);
+  const auto* b = reinterpret_cast<const unsigned char*>(at);
+  const std::uint32_t bits =
+      static_cast<std::uint32_t>(b[0]) | static_cast<std::uint32_t>(b[1]) << 8 |
+      static_cast<std::uint32_t>(b[2]) << 16 | static_cast<std::uint32_t>(b[3]) << 24;
+  return std::bit_cast<T>(bits);
+}
+
+bool equalIgnoringCase(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+           return std::tolower(static_cast<unsigned char>(x)) ==
+                  std::tolower(static_cast<unsigned char>(y));
+         });
+}
+
+std::uint64_t binarySize(std::string_view bytes) {
+  return kHeader + std::uint64_t{littleEndian<std::uint32_t>(bytes.data() + 80)} * kRecord;
+}
+
+enum class Kind { binary, ascii, other_text };
+
+// A binary header may begin with "solid" too, so the size decides first, then the look of the text.
+Kind kindOf(std::string_view bytes) {
+  if (bytes.size() >= kHeader && binarySize(bytes) == bytes.size()) return Kind::binary;
+  if (text::hasControl(bytes.substr(0, kHeader))) return Kind::binary;
+  text::Lines lines(text::withoutByteOrderMark(bytes));
+  std::string_view line;
+  std::string_view word;
+  while (word.empty() && lines.next(line)) word = text::Words(line).next();
+  return equalIgnoringCase(word, "solid") ? Kind::ascii : Kind::other_text;
+}
+
+TriangleMesh parseBinary(std::string_view bytes, const std::string& name) {
+  if (bytes.size() < kHeader)
+    throw FileError(name, 0,
+                    "not an STL file: it has " + std::to_string(bytes.size()) +
+                        " bytes, fewer than a binary header");
+  const std::size_t count = littleEndian<std::uint32_t>(bytes.data() + 80);
+  if (binarySize(bytes) != bytes.size())
+    throw FileError(name, 0,
+                    "the header at byte 80 says " + std::to_string(count) + " triangles (" +
+                        std::to_string(binarySize(bytes)) + " bytes), but the file has " +
+                        std::to_string(bytes.size()) + " bytes");
+  if (count == 0) throw FileError(name, 0, "the file has no triangle (count at byte 80)");
+  TriangleMesh mesh;
+  mesh.triangles.resize(count);
+  VertexWeld weld(count / 2 + 3);
+  for (std::size_t t = 0; t < count; ++t) {
+    const char* corner = bytes.data() + kHeader + t * kRecord + 12;
+    for (std::size_t k = 0; k < 3; ++k, corner += 12)
+      mesh.triangles[t][k] =
+          weld.index(Vec3(littleEndian<float>(corner), littleEndian<float>(corner + 4),
+                          littleEndian<float>(corner + 8)));
+  }
+  mesh.positions = weld.takePoints();
+  return mesh;
+}
+
+class AsciiParser {
+ public:
+  AsciiParser(std::string_view bytes, const std::string& name)
+      : name_(name), lines_(bytes), weld_(bytes.size() / 500) {}
+
+  TriangleMesh parse() {
+    while (findWord()) {
+      expect("solid");
+      words_ = text::Words({}); // the rest of the line is a name
+      for (expectOneOf("facet", "endsolid"); equalIgnoringCase(word_, "facet");
+           expectOneOf("facet", "endsolid"))
+        readFacet();
+      words_ = text::Words({});
+    }
+    if (triangles_.empty()) throw FileError(name_, lines_.number(), "the file has no triangle");
+    TriangleMesh mesh;
+    mesh.triangles = std::move(triangles_);
+    mesh.positions = weld_.takePoints();
+    return mesh;
+  }
+
+ private:
+  bool findWord() {
+    for (;;) {
+      word_ = words_.next();
+      if (!word_.empty()) return true;
+      std::string_view line;
+      if (!lines_.next(line)) return false;
+      words_ = text::Words(line);
+    }
+  }
+  void nextWord(const char* wanted) {
+    if (!findWord())
+      throw FileError(name_, lines_.number(),
+                      std::string("the file ends where ") + wanted + " should be");
+  }
+  void expect(const char* wanted) {
+    if (!equalIgnoringCase(word_, wanted)) throwUnexpected(wanted);
+  }
+  void nextMustBe(const char* wanted) {
+    nextWord(wanted);
+    expect(wanted);
+  }
+  void expectOneOf(const char* one, const char* other) {
+    nextWord(other);
+    if (!equalIgnoringCase(word_, one)) expect(other);
+  }
+  [[noreturn]] void throwUnexpected(const char* wanted) const {
+    const std::string found =
+        text::hasControl(word_) ? std::string("binary data") : text::quoted(word_);
+    throw FileError(name_, lines_.number(), found + " where '" + wanted + "' should be");
+  }
+
+  void readFacet() {
+    nextMustBe("normal");
+    for (int k = 0; k < 3; ++k) nextWord("normal"); // recomputed from the corners when needed
+    nextMustBe("outer");
+    nextMustBe("loop");
+    Triangle triangle;
+    for (std::int32_t& corner : triangle) {
+      nextMustBe("vertex");
+      Vec3 p;
+      for (int k = 0; k < 3; ++k) {
+        nextWord("a coordinate");
+        p[k] = text::number(word_, name_, lines_.number(), "a coordinate");
+      }
+      corner = weld_.index(p);
+    }
+    nextMustBe("endloop");
+    nextMustBe("endfacet");
+    triangles_.push_back(triangle);
+  }
+
+  const std::string& name_;
+  text::Lines lines_;
+  text::Words words_{{}};
+  std::string_view word_;
+  VertexWeld weld_;
+  std::vector<Triangle> triangles_;
+};
+
+} // namespace
+
+TriangleMesh parseStl(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw FileError(name, 1, "the file is empty");
+  switch (kindOf(bytes)) {
+  case Kind::binary:
+    return parseBinary(bytes, name);
+  case Kind::ascii:
+    return AsciiParser(text::withoutByteOrderMark(bytes), name).parse();
+  case Kind::other_text:
+    break;
+  }
+  throw FileError(name, 1, "not an STL file: a text that does not begin with 'solid'");
+}
+
+} // namespace patina

@@ -1,0 +1,237 @@
+#include "geometry/mesh/mesh_report.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+enum class Fault : std::uint8_t { none, non_finite, degenerate, duplicate };
+
+Fault faultOf(const TriangleMesh& mesh, std::size_t t) {
+  const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
+  if (!a.allFinite() || !b.allFinite() || !c.allFinite()) return Fault::non_finite;
+  const Triangle& v = mesh.triangles[t];
+  if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return Fault::degenerate;
+  // In units of the largest extent, so that neither tiny nor huge squares leave the range of a
+  // double. The limit is far above the rounding of collinear points, far below any real sliver.
+  constexpr double kFlat = 1e-12;
+  Vec3 e1 = b - a, e2 = c - a, e3 = c - b;
+  const double size = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
+  if (!(size > 0) || !std::isfinite(size)) return Fault::degenerate;
+  e1 /= size;
+  e2 /= size;
+  e3 /= size;
+  const double longest = std::max({e1.squaredNorm(), e2.squaredNorm(), e3.squaredNorm()});
+  return e1.cross(e2).norm() > kFlat * longest ? Fault::none : Fault::degenerate;
+}
+
+std::vector<Fault> triangleFaults(const TriangleMesh& mesh) {
+  std::vector<Fault> faults(mesh.triangles.size());
+  for (std::size_t t = 0; t < faults.size(); ++t) faults[t] = faultOf(mesh, t);
+  return faults;
+}
+
+// Items filed under a vertex, as one array with offsets: sorting each short run replaces a hash
+// table of all edges.
+template <typename Item> class ByVertex {
+ public:
+  ByVertex(std::size_t vertices, std::size_t items) : ends_(vertices + 1, 0) {
+    items_.reserve(items);
+  }
+  void count(std::int32_t vertex) { ++ends_[static_cast<std::size_t>(vertex) + 1]; }
+  void startFilling() {
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    items_.resize(ends_.back());
+    next_.assign(ends_.begin(), ends_.end() - 1);
+  }
+  void file(std::int32_t vertex, const Item& item) {
+    items_[next_[static_cast<std::size_t>(vertex)]++] = item;
+  }
+  template <typename Visit> void forEachSortedRun(Visit visit) {
+    next_ = {};
+    for (std::size_t v = 0; v + 1 < ends_.size(); ++v) {
+      if (ends_[v] == ends_[v + 1]) continue;
+      Item* first = items_.data() + ends_[v];
+      Item* last = items_.data() + ends_[v + 1];
+      std::sort(first, last);
+      visit(first, last);
+    }
+  }
+
+ private:
+  std::vector<std::size_t> ends_;
+  std::vector<std::size_t> next_;
+  std::vector<Item> items_;
+};
+
+struct SameVertices {
+  std::int32_t middle, high, triangle;
+  auto operator<=>(const SameVertices&) const = default;
+};
+
+void markDuplicates(const TriangleMesh& mesh, std::vector<Fault>& faults) {
+  ByVertex<SameVertices> by_lowest(mesh.positions.size(), mesh.triangles.size());
+  const auto forEach = [&](auto visit) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (faults[t] != Fault::none) continue;
+      Triangle v = mesh.triangles[t];
+      std::sort(v.begin(), v.end());
+      visit(v, static_cast<std::int32_t>(t));
+    }
+  };
+  forEach([&](const Triangle& v, std::int32_t) { by_lowest.count(v[0]); });
+  by_lowest.startFilling();
+  forEach([&](const Triangle& v, std::int32_t t) { by_lowest.file(v[0], {v[1], v[2], t}); });
+  by_lowest.forEachSortedRun([&](const SameVertices* first, const SameVertices* last) {
+    for (const SameVertices* item = first + 1; item < last; ++item)
+      if (item[-1].middle == item->middle && item[-1].high == item->high)
+        faults[static_cast<std::size_t>(item->triangle)] = Fault::duplicate;
+  });
+}
+
+struct EdgeUse {
+  std::int32_t high;
+  bool upwards; // the face runs from the lower vertex to the higher
+  auto operator<=>(const EdgeUse&) const = default;
+};
+
+void countEdges(const TriangleMesh& mesh, const std::vector<Fault>& faults, MeshReport& report) {
+  ByVertex<EdgeUse> by_lower(mesh.positions.size(), 3 * mesh.triangles.size());
+  const auto forEach = [&](auto visit) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (faults[t] != Fault::none) continue;
+      const Triangle& v = mesh.triangles[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t from = v[k], to = v[k == 2 ? 0 : k + 1];
+        visit(std::min(from, to), EdgeUse{std::max(from, to), from < to});
+      }
+    }
+  };
+  forEach([&](std::int32_t low, const EdgeUse&) { by_lower.count(low); });
+  by_lower.startFilling();
+  forEach([&](std::int32_t low, const EdgeUse& use) { by_lower.file(low, use); });
+  by_lower.forEachSortedRun([&](const EdgeUse* first, const EdgeUse* last) {
+    while (first < last) {
+      const EdgeUse* next = first + 1;
+      while (next < last && next->high == first->high) ++next;
+      const auto uses = next - first;
+      if (uses == 1)
+        ++report.boundary_edges;
+      else if (uses > 2)
+        ++report.non_manifold_edges;
+      else if (first[0].upwards == first[1].upwards)
+        ++report.misoriented_edges;
+      first = next;
+    }
+  });
+}
+
+std::size_t countComponents(const TriangleMesh& mesh, const std::vector<Fault>& faults) {
+  constexpr std::int32_t kUnused = -1;
+  std::vector<std::int32_t> parent(mesh.positions.size(), kUnused);
+  const auto find = [&](std::int32_t v) {
+    while (parent[static_cast<std::size_t>(v)] != v) {
+      std::int32_t& up = parent[static_cast<std::size_t>(v)];
+      up = parent[static_cast<std::size_t>(up)];
+      v = up;
+    }
+    return v;
+  };
+  std::size_t components = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (faults[t] != Fault::none) continue;
+    const Triangle& v = mesh.triangles[t];
+    for (const std::int32_t vertex : v)
+      if (auto& up = parent[static_cast<std::size_t>(vertex)]; up == kUnused) {
+        up = vertex;
+        ++components;
+      }
+    for (std::size_t k = 1; k < 3; ++k) {
+      const std::int32_t a = find(v[0]), b = find(v[k]);
+      if (a == b) continue;
+      // The lower index becomes the root: meshes number neighbours closely, so paths stay short.
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      --components;
+    }
+  }
+  return components;
+}
+
+MeshReport inspect(const TriangleMesh& mesh, std::vector<Fault>& faults) {
+  MeshReport report;
+  report.triangles = mesh.triangles.size();
+  report.vertices = mesh.positions.size();
+  faults = triangleFaults(mesh);
+  markDuplicates(mesh, faults);
+  const auto count = [&](Fault fault) {
+    return static_cast<std::size_t>(std::count(faults.begin(), faults.end(), fault));
+  };
+  report.non_finite = count(Fault::non_finite);
+  report.degenerate = count(Fault::degenerate);
+  report.duplicate = count(Fault::duplicate);
+  report.components = countComponents(mesh, faults);
+  countEdges(mesh, faults, report);
+  report.watertight = report.components > 0 && report.boundary_edges == 0 &&
+                      report.non_manifold_edges == 0 && report.misoriented_edges == 0;
+  return report;
+}
+
+// Keeps the vertices that triangles use, in their order.
+void removeUnusedVertices(TriangleMesh& mesh) {
+  std::vector<std::int32_t> index_of(mesh.positions.size(), -1);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::int32_t v : t) index_of[static_cast<std::size_t>(v)] = 0;
+  std::int32_t used = 0;
+  for (std::size_t v = 0; v < index_of.size(); ++v) {
+    if (index_of[v] < 0) continue;
+    mesh.positions[static_cast<std::size_t>(used)] = mesh.positions[v];
+    index_of[v] = used++;
+  }
+  mesh.positions.resize(static_cast<std::size_t>(used));
+  for (Triangle& t : mesh.triangles)
+    for (std::int32_t& v : t) v = index_of[static_cast<std::size_t>(v)];
+}
+
+} // namespace
+
+MeshReport inspect(const TriangleMesh& mesh) {
+  std::vector<Fault> faults;
+  return inspect(mesh, faults);
+}
+
+std::vector<std::int32_t> usableTriangles(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> usable;
+  usable.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (faultOf(mesh, t) == Fault::none) usable.push_back(static_cast<std::int32_t>(t));
+  return usable;
+}
+
+CleanMesh cleaned(TriangleMesh mesh) {
+  std::vector<Fault> faults;
+  const MeshReport report = inspect(mesh, faults);
+  const std::size_t dropped = report.non_finite + report.degenerate;
+  if (dropped == mesh.triangles.size())
+    throw Error(dropped == 0
+                    ? "the mesh has no triangles"
+                    : "no triangle of the mesh is usable: " + std::to_string(report.non_finite) +
+                          " not finite, " + std::to_string(report.degenerate) + " degenerate");
+  if (dropped > 0) {
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (faults[t] == Fault::non_finite || faults[t] == Fault::degenerate) continue;
+      mesh.triangles[kept] = mesh.triangles[t];
+      if (!mesh.corner_uvs.empty()) mesh.corner_uvs[kept] = mesh.corner_uvs[t];
+      ++kept;
+    }
+    mesh.triangles.resize(kept);
+    if (!mesh.corner_uvs.empty()) mesh.corner_uvs.resize(kept);
+  }
+  removeUnusedVertices(mesh);
+  return {std::move(mesh), report, dropped};
+}
+
+} // namespace patina

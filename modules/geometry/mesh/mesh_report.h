@@ -1,0 +1,42 @@
+// What is wrong with a mesh, counted; and the mesh without what no engine can use.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/mesh/triangle_mesh.h"
+
+namespace patina {
+
+struct MeshReport {
+  std::size_t triangles = 0;
+  std::size_t vertices = 0;
+  std::size_t components = 0; // connected through shared vertices; as for the edges below
+  bool watertight = false;    // every edge has two faces with opposite directions
+  // Triangles:
+  std::size_t non_finite = 0; // a corner is NaN or infinite
+  // Twice the area is at most 1e-12 of the longest edge squared, or a vertex is repeated.
+  std::size_t degenerate = 0;
+  std::size_t duplicate = 0; // same three vertices as an earlier triangle (in any order)
+  // Edges, after the triangles above are left out:
+  std::size_t boundary_edges = 0;     // one face
+  std::size_t non_manifold_edges = 0; // three or more
+  std::size_t misoriented_edges = 0;  // two faces running the same way
+};
+
+MeshReport inspect(const TriangleMesh& mesh);
+
+// The triangles that are neither non-finite nor degenerate, ascending.
+std::vector<std::int32_t> usableTriangles(const TriangleMesh& mesh);
+
+struct CleanMesh {
+  TriangleMesh mesh;   // without non-finite and degenerate triangles; unused vertices removed
+  MeshReport report;   // of the mesh as given
+  std::size_t dropped; // non_finite + degenerate
+};
+// Duplicates and misoriented faces stay: distance does not mind them and the sign rule copes.
+// Throws Error if no triangle is left.
+CleanMesh cleaned(TriangleMesh mesh);
+
+} // namespace patina

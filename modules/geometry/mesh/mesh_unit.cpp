@@ -1,0 +1,67 @@
+#include "geometry/mesh/mesh_unit.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+struct UnitName {
+  MeshUnit unit;
+  std::string_view name;
+  double metres; // 0: depends on the mesh
+};
+constexpr std::array<UnitName, 5> kUnits = {{{MeshUnit::mm, "mm", 1e-3},
+                                             {MeshUnit::cm, "cm", 1e-2},
+                                             {MeshUnit::m, "m", 1.0},
+                                             {MeshUnit::in, "in", 0.0254},
+                                             {MeshUnit::fit, "fit", 0.0}}};
+
+const UnitName& entry(MeshUnit unit) {
+  return kUnits[static_cast<std::size_t>(unit)];
+}
+
+// Of the finite corners: a NaN in one of them must not decide the scale of all.
+double longestSide(const TriangleMesh& mesh) {
+  Box3 box;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      if (const Vec3 p = mesh.corner(t, k); p.allFinite()) box.extend(p);
+  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+}
+
+constexpr double kFitted = 0.1;
+constexpr double kSmall = 1e-3; // a result outside these was hardly meant
+constexpr double kLarge = 2.0;
+
+} // namespace
+
+MeshUnit parseMeshUnit(std::string_view text) {
+  for (const UnitName& known : kUnits)
+    if (known.name == text) return known.unit;
+  throw Error("unit '" + std::string(text) + "' is unknown; mm, cm, m, in and fit are");
+}
+
+std::string_view name(MeshUnit unit) {
+  return entry(unit).name;
+}
+
+ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit) {
+  ScaledMesh result;
+  const double side = longestSide(mesh);
+  result.scale = entry(unit).metres;
+  if (unit == MeshUnit::fit)
+    result.scale = side > 0 && std::isfinite(kFitted / side) ? kFitted / side : 1.0;
+  if (result.scale != 1.0)
+    for (Vec3& p : mesh.positions) p *= result.scale;
+  const double metres = side * result.scale;
+  if (side > 0 && !(metres >= kSmall && metres <= kLarge))
+    result.warning = "the mesh is " + formatLength(metres) + " long when its unit is " +
+                     std::string(name(unit)) + "; choose another with --unit (mm, cm, m, in, fit)";
+  result.mesh = std::move(mesh);
+  return result;
+}
+
+} // namespace patina

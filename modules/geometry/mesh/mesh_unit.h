@@ -1,0 +1,23 @@
+// Meshes carry no unit; this gives them one (DESIGN section 7).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "geometry/mesh/triangle_mesh.h"
+
+namespace patina {
+
+enum class MeshUnit { mm, cm, m, in, fit }; // fit: longest side becomes 100 mm
+
+MeshUnit parseMeshUnit(std::string_view text); // throws Error naming the choices
+std::string_view name(MeshUnit unit);
+
+struct ScaledMesh {
+  TriangleMesh mesh;   // [m]
+  double scale = 1;    // metres a file unit
+  std::string warning; // empty, or one line if the result is < 1 mm or > 2 m; names --unit
+};
+ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit);
+
+} // namespace patina

@@ -1,0 +1,177 @@
+#include "geometry/mesh/orientation.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "geometry/mesh/edge_uses.h"
+
+namespace patina {
+namespace {
+
+std::size_t index(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Faces joined over edges, each with whether it must be turned to agree with the lowest of them.
+class Parts {
+ public:
+  explicit Parts(std::size_t faces) : link_(faces), one_sided_(faces), open_(faces) {
+    for (std::size_t f = 0; f < faces; ++f) link_[f] = {static_cast<std::int32_t>(f), false};
+  }
+  struct Link {
+    std::int32_t root;
+    bool turned;
+  };
+  Link find(std::int32_t face) {
+    Link to = link_[index(face)];
+    bool turned = false;
+    while (to.root != face) {
+      const Link next = link_[index(to.root)];
+      link_[index(face)] = {next.root, to.turned != next.turned}; // halves the path
+      turned = turned != link_[index(face)].turned;
+      face = next.root;
+      to = link_[index(face)];
+    }
+    return {face, turned};
+  }
+  void join(std::int32_t f, std::int32_t g, bool opposed) {
+    const Link a = find(f), b = find(g);
+    const bool turned = (a.turned != b.turned) != opposed;
+    if (a.root == b.root) {
+      if (turned) one_sided_[index(a.root)] = 1;
+      return;
+    }
+    const std::int32_t low = std::min(a.root, b.root), high = std::max(a.root, b.root);
+    link_[index(high)] = {low, turned};
+    one_sided_[index(low)] |= one_sided_[index(high)];
+    open_[index(low)] |= open_[index(high)];
+  }
+  void markOpen(std::int32_t face) { open_[index(find(face).root)] = 1; }
+  bool oneSided(std::int32_t root) const { return one_sided_[index(root)] != 0; }
+  bool open(std::int32_t root) const { return open_[index(root)] != 0; }
+
+ private:
+  std::vector<Link> link_;
+  std::vector<std::uint8_t> one_sided_, open_; // by root
+};
+
+struct Use {
+  std::int32_t high, face;
+  bool upward; // from the edge's lower vertex to its higher
+};
+
+Parts connectedParts(const std::vector<Triangle>& triangles, std::size_t vertices) {
+  std::vector<std::uint32_t> offset(vertices + 1);
+  const auto forEdges = [&](const auto& visit) {
+    for (std::size_t f = 0; f < triangles.size(); ++f)
+      for (std::size_t k = 0; k < 3; ++k)
+        visit(static_cast<std::int32_t>(f), triangles[f][k], triangles[f][(k + 1) % 3]);
+  };
+  forEdges(
+      [&](std::int32_t, std::int32_t a, std::int32_t b) { ++offset[index(std::min(a, b)) + 1]; });
+  std::partial_sum(offset.begin(), offset.end(), offset.begin());
+  std::vector<Use> uses(offset.back());
+  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
+  forEdges([&](std::int32_t f, std::int32_t a, std::int32_t b) {
+    uses[next[index(std::min(a, b))]++] = {std::max(a, b), f, a < b};
+  });
+  Parts parts(triangles.size());
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto end = uses.begin() + offset[v + 1];
+    auto first = uses.begin() + offset[v];
+    std::sort(first, end, [](const Use& a, const Use& b) {
+      return a.high != b.high ? a.high < b.high : a.face < b.face;
+    });
+    while (first != end) {
+      auto last = first + 1;
+      while (last != end && last->high == first->high) ++last;
+      if (last - first == 2)
+        parts.join(first->face, first[1].face, first->upward == first[1].upward);
+      else
+        for (auto use = first; use != last; ++use) parts.markOpen(use->face);
+      first = last;
+    }
+  }
+  return parts;
+}
+
+struct Part {
+  double area = 0, turned_area = 0; // of all faces, and of those that find() calls turned
+  double volume = 0;                // as the part is to be turned
+  Box3 box;
+  bool turn_others = false; // those that find() does not call turned are fewer: turn them
+  bool turn_all = false;
+};
+
+// Marks closed parts that face against the others.
+void compareClosed(std::vector<Part*> closed) {
+  constexpr std::size_t kMostParts = 1U << 14; // their comparison is quadratic
+  if (closed.size() < 2 || closed.size() > kMostParts) return;
+  const auto size = [](const Part* p) { return p->box.volume(); };
+  std::stable_sort(closed.begin(), closed.end(),
+                   [&](const Part* a, const Part* b) { return size(a) > size(b); });
+  std::vector<Part*> outer;
+  std::vector<Part*> holder(closed.size());
+  double volume = 0;
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    for (Part* other : outer) // the last that holds it is the smallest
+      if (size(other) > size(closed[i]) && other->box.contains(closed[i]->box)) holder[i] = other;
+    if (holder[i]) continue;
+    outer.push_back(closed[i]);
+    volume += closed[i]->volume;
+  }
+  for (Part* part : outer) part->turn_all = part->volume * (volume < 0 ? -1 : 1) < 0;
+  for (std::size_t i = 0; i < closed.size(); ++i)
+    if (holder[i]) closed[i]->turn_all = holder[i]->turn_all;
+}
+
+} // namespace
+
+std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh) {
+  Parts links = connectedParts(weldedTriangles(mesh), mesh.positions.size());
+  const std::size_t faces = mesh.triangles.size();
+  std::vector<Parts::Link> link(faces);
+  std::vector<std::int32_t> part_of(faces, -1); // by root
+  std::vector<Part> parts;
+  for (std::size_t f = 0; f < faces; ++f) {
+    link[f] = links.find(static_cast<std::int32_t>(f));
+    if (index(link[f].root) != f) continue; // a root is its part's lowest face
+    part_of[f] = static_cast<std::int32_t>(parts.size());
+    parts.emplace_back();
+  }
+  const auto partOf = [&](std::size_t f) -> Part& {
+    return parts[index(part_of[index(link[f].root)])];
+  };
+  const Vec3 origin = mesh.positions.empty() ? Vec3(Vec3::Zero()) : mesh.positions.front();
+  for (std::size_t f = 0; f < faces; ++f) {
+    const Vec3 a = mesh.corner(f, 0) - origin, b = mesh.corner(f, 1) - origin,
+               c = mesh.corner(f, 2) - origin;
+    const Vec3 normal = (b - a).cross(c - a);
+    const double area = normal.norm();
+    Part& part = partOf(f);
+    part.area += area;
+    if (link[f].turned) part.turned_area += area;
+    part.volume += (link[f].turned ? -1 : 1) * a.dot(normal);
+    for (const Vec3& p : {a, b, c}) part.box.extend(p);
+  }
+  std::vector<Part*> closed;
+  for (std::size_t f = 0; f < faces; ++f) {
+    if (index(link[f].root) != f) continue;
+    Part& part = partOf(f);
+    part.turn_others = 2 * part.turned_area > part.area;
+    if (part.turn_others) part.volume = -part.volume;
+    const auto root = static_cast<std::int32_t>(f);
+    if (!links.open(root) && !links.oneSided(root)) closed.push_back(&part);
+  }
+  compareClosed(std::move(closed));
+  std::vector<std::int32_t> result;
+  for (std::size_t f = 0; f < faces; ++f) {
+    if (links.oneSided(link[f].root)) continue;
+    const Part& part = partOf(f);
+    if ((link[f].turned != part.turn_others) != part.turn_all)
+      result.push_back(static_cast<std::int32_t>(f));
+  }
+  return result;
+}
+
+} // namespace patina

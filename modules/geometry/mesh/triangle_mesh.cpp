@@ -1,0 +1,84 @@
+#include "geometry/mesh/triangle_mesh.h"
+
+#include <utility>
+
+namespace patina {
+
+Box3 bounds(const TriangleMesh& mesh) {
+  Box3 box;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) box.extend(mesh.corner(t, k));
+  return box;
+}
+
+Vec3 position(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const auto face = static_cast<std::size_t>(point.face);
+  return point.barycentric[0] * mesh.corner(face, 0) + point.barycentric[1] * mesh.corner(face, 1) +
+         point.barycentric[2] * mesh.corner(face, 2);
+}
+
+namespace {
+Vec3 doubleAreaVector(const TriangleMesh& mesh, std::size_t triangle) {
+  const Vec3 a = mesh.corner(triangle, 0);
+  return (mesh.corner(triangle, 1) - a).cross(mesh.corner(triangle, 2) - a);
+}
+} // namespace
+
+Vec3 faceNormal(const TriangleMesh& mesh, std::size_t triangle) {
+  // Edges are scaled to unit size first: squares of tiny lengths would underflow.
+  const Vec3 a = mesh.corner(triangle, 0);
+  Vec3 e1 = mesh.corner(triangle, 1) - a;
+  Vec3 e2 = mesh.corner(triangle, 2) - a;
+  const double size = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
+  if (!(size > 0)) return Vec3::Zero();
+  e1 /= size;
+  e2 /= size;
+  const Vec3 normal = e1.cross(e2);
+  const double length = normal.norm();
+  if (!(length > 0)) return Vec3::Zero();
+  return normal / length;
+}
+
+double area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) sum += doubleAreaVector(mesh, t).norm();
+  return sum / 2;
+}
+
+double volume(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return 0;
+  // About a point of the mesh: far from the origin the terms would cancel badly.
+  const Vec3 origin = mesh.corner(0, 0);
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    sum += (mesh.corner(t, 0) - origin).dot(doubleAreaVector(mesh, t));
+  return sum / 6;
+}
+
+TriangleMesh transformed(const TriangleMesh& mesh, const Eigen::Affine3d& target_from_mesh) {
+  TriangleMesh result = mesh;
+  for (Vec3& p : result.positions) p = target_from_mesh * p;
+  if (target_from_mesh.linear().determinant() < 0) {
+    for (Triangle& t : result.triangles) std::swap(t[1], t[2]);
+    for (auto& uv : result.corner_uvs) std::swap(uv[1], uv[2]);
+  }
+  return result;
+}
+
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+  if (a.triangles.empty()) return b;
+  if (b.triangles.empty()) return a;
+  TriangleMesh result = a;
+  const auto offset = static_cast<std::int32_t>(a.positions.size());
+  result.positions.insert(result.positions.end(), b.positions.begin(), b.positions.end());
+  result.triangles.reserve(a.triangles.size() + b.triangles.size());
+  for (const Triangle& t : b.triangles)
+    result.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  if (a.corner_uvs.empty() || b.corner_uvs.empty())
+    result.corner_uvs.clear();
+  else
+    result.corner_uvs.insert(result.corner_uvs.end(), b.corner_uvs.begin(), b.corner_uvs.end());
+  return result;
+}
+
+} // namespace patina

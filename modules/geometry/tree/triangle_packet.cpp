@@ -1,0 +1,49 @@
+// The kernel for any processor, and the choice at run time.
+#define PATINA_KERNEL packet_plain
+#include "geometry/tree/triangle_packet_kernel.h"
+
+namespace patina {
+
+#if defined(__x86_64__)
+namespace packet_avx2 {
+void lattice(const LatticeJob& job);
+void pointCandidates(PointJob& job);
+} // namespace packet_avx2
+#endif
+
+namespace {
+
+bool hasWideLanes() {
+#if defined(__x86_64__)
+  static const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return wide;
+#else
+  return false;
+#endif
+}
+
+} // namespace
+
+void closestOnLattice(const LatticeJob& job) {
+#if defined(__x86_64__)
+  if (hasWideLanes()) return packet_avx2::lattice(job);
+#endif
+  packet_plain::lattice(job);
+}
+
+void trianglesNear(PointJob& job) {
+#if defined(__x86_64__)
+  if (hasWideLanes()) return packet_avx2::pointCandidates(job);
+#endif
+  packet_plain::pointCandidates(job);
+}
+
+void trianglesNearPlain(PointJob& job) {
+  packet_plain::pointCandidates(job);
+}
+
+void closestOnLatticePlain(const LatticeJob& job) {
+  packet_plain::lattice(job);
+}
+
+} // namespace patina

@@ -1,0 +1,29 @@
+// The contact point as in the paper: where a ray along the field's direction leaves (K03, K05,
+// K06).
+#pragma once
+
+#include "field/sampling/field_sampler.h"
+#include "haptics/stages/stage.h"
+
+namespace patina {
+
+// Sets touching, normal, candidate, vcp (= candidate), depth and surface from the tip alone. Past
+// the middle of a part the force turns round (T-K12b); across creases the ray may miss the surface,
+// and loops may do work: ProxyStage does neither. Where the direction has no length the last one
+// holds; a ray that finds no surface takes the distance (F9). Deeper than the band the direction
+// is that of the coarse nodes.
+class RayStage final : public ForceStage {
+ public:
+  // iso [m]: the tip's radius plus the offset (K12).
+  RayStage(const FieldSampler& sampler, double iso);
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "contact"; }
+
+ private:
+  FieldSampler sampler_;
+  double voxel_;
+  double per_voxel_; // [1/m]
+  double iso_;       // voxels
+};
+
+} // namespace patina

@@ -1,0 +1,139 @@
+#include "haptics/servo/servo_loop.h"
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include "core/timing_window.h"
+#include "haptics/servo/cross_fade.h"
+#include "haptics/servo/realtime.h"
+#include "haptics/servo/tick_record.h"
+
+namespace patina {
+namespace {
+
+constexpr std::size_t kTimingTicks = 8192;
+constexpr double kNsPerSecond = 1e9;
+constexpr int kRateTicks = 250;
+
+} // namespace
+
+struct ServoLoop::Impl {
+  Impl(std::unique_ptr<Device> device_in, double rate_hz)
+      : device(std::move(device_in)), period_ns(periodNs(rate_hz)),
+        samples(std::max<std::size_t>(4096, static_cast<std::size_t>(rate_hz))),
+        window(kTimingTicks) {
+    if (!device) throw std::invalid_argument("servo loop: no device");
+  }
+
+  void run() noexcept {
+    grant.store(requestRealtime(), std::memory_order_release);
+
+    const std::int64_t start = monotonicNs();
+    rate_mark = start;
+    PeriodicClock clock(start, period_ns);
+    std::int64_t last_wake = start;
+    CrossFade law;
+    Vec3 force = Vec3::Zero();
+    while (!stopping.load(std::memory_order_relaxed)) {
+      const std::int64_t deadline = clock.nextDeadline();
+      sleepUntil(deadline);
+      const std::int64_t woke = monotonicNs();
+      missed.fetch_add(static_cast<std::uint64_t>(clock.woke(woke)), std::memory_order_relaxed);
+      const double dt = static_cast<double>(woke - last_wake) / kNsPerSecond;
+      last_wake = woke;
+
+      const Vec3 tip = device->exchange(force, dt);
+      if (!law.fading()) {
+        exchange.hold(law.felt()); // it may have to fade out
+        law.turnTo(exchange.latest());
+      }
+      ToolSample sample;
+      sample.t = static_cast<double>(woke - start) / kNsPerSecond;
+      const std::int64_t before = monotonicNs();
+      const Contact contact = law.tick(tip, dt);
+      record(contact, law.field(), sample);
+      force = contact.force;
+      const std::int64_t step = monotonicNs() - before;
+      sample.step_ns = static_cast<std::uint32_t>(std::min<std::int64_t>(step, UINT32_MAX));
+      sample.late_ns =
+          static_cast<std::uint32_t>(std::clamp<std::int64_t>(woke - deadline, 0, UINT32_MAX));
+      window.record(woke - deadline);
+      measureRate(woke);
+      samples.push(sample);
+    }
+    // A stopped loop leaves no force behind.
+    device->exchange(Vec3::Zero(), static_cast<double>(period_ns) / kNsPerSecond);
+  }
+
+  void measureRate(std::int64_t woke) noexcept {
+    if (++ticks_since_mark < kRateTicks) return;
+    measured_rate.store(kRateTicks * kNsPerSecond / static_cast<double>(woke - rate_mark),
+                        std::memory_order_relaxed);
+    rate_mark = woke;
+    ticks_since_mark = 0;
+  }
+
+  std::unique_ptr<Device> device;
+  std::int64_t period_ns;
+  SnapshotExchange<HapticSnapshot> exchange;
+  Ring<ToolSample> samples;
+  TimingWindow window;
+  std::thread thread;
+  std::atomic<bool> stopping{false};
+  std::atomic<std::uint64_t> missed{0};
+  std::atomic<double> measured_rate{0};
+  std::atomic<RealtimeGrant> grant{RealtimeGrant{-1, -1}}; // before the first start
+  std::int64_t rate_mark = 0;                              // servo thread's own, as the next
+  int ticks_since_mark = 0;
+};
+
+ServoLoop::ServoLoop(std::unique_ptr<Device> device, double rate_hz)
+    : impl_(std::make_unique<Impl>(std::move(device), rate_hz)) {}
+
+ServoLoop::~ServoLoop() {
+  stop();
+}
+
+void ServoLoop::start() {
+  if (running()) return;
+  impl_->stopping.store(false);
+  impl_->thread = std::thread([this] { impl_->run(); });
+}
+
+void ServoLoop::stop() {
+  if (!running()) return;
+  impl_->stopping.store(true);
+  impl_->thread.join();
+}
+
+bool ServoLoop::running() const {
+  return impl_->thread.joinable();
+}
+
+void ServoLoop::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
+  impl_->exchange.publish(std::move(snapshot));
+}
+
+void ServoLoop::collect() {
+  impl_->exchange.collect();
+}
+
+Ring<ToolSample>& ServoLoop::samples() {
+  return impl_->samples;
+}
+
+ServoTiming ServoLoop::timing() const {
+  const RealtimeGrant grant = impl_->grant.load(std::memory_order_acquire);
+  ServoTiming timing;
+  timing.policy = policyText(grant);
+  timing.realtime = grant.fifo_error == 0;
+  timing.ticks = impl_->window.count();
+  timing.missed = impl_->missed.load(std::memory_order_relaxed);
+  timing.late_p99 = impl_->window.late().p99 * 1e-3;
+  timing.rate_hz = impl_->measured_rate.load(std::memory_order_relaxed);
+  return timing;
+}
+
+} // namespace patina

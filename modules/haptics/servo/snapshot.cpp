@@ -1,0 +1,223 @@
+#include "haptics/servo/snapshot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "haptics/contact/offset_stage.h"
+#include "haptics/contact/proxy_stage.h"
+#include "haptics/contact/ray_stage.h"
+#include "haptics/stages/force_law.h"
+#include "haptics/stages/friction_stage.h"
+#include "haptics/stages/lateral_stage.h"
+#include "haptics/stages/limit_stage.h"
+#include "haptics/stages/magnet_stage.h"
+#include "haptics/stages/material_stage.h"
+#include "haptics/stages/relief_stage.h"
+
+namespace patina {
+namespace {
+
+constexpr double kMinVelocityPeriod = 1e-6; // [s]; less measures nothing
+// Of baked relief; what is steeper is not crossed unseen but for parts thinner than a voxel.
+constexpr double kBakedSteepness = 4;
+constexpr double kMaxVelocity = 1e6; // [m/s]; beyond it the tip was set, not moved
+
+void checkField(const SurfaceField* field, const HapticProperties& haptics, double relief,
+                double roughness) {
+  if (!field) throw std::invalid_argument("compileStages: no field");
+  if (field->sample.size() != field->blockCount()) {
+    throw std::invalid_argument("compileStages: the field has no sample layer");
+  }
+  const double reach = reachOf(haptics, relief + roughness) / field->grid.voxel;
+  if (reach + kBandBeyondReach > field->band) {
+    std::string what;
+    if (haptics.tip_radius) what = "tip.radius = " + formatLength(*haptics.tip_radius);
+    const auto with = [&](const char* key, double length) {
+      what += (what.empty() ? "" : " with ") + (key + (" = " + formatLength(length)));
+    };
+    if (haptics.offset) with("offset", *haptics.offset);
+    if (haptics.magnet) with("magnet.range", haptics.magnet->range);
+    if (relief > 0) with("relief, highest", relief);
+    if (roughness > 0) with("roughness, peak", roughness);
+    throw Error(what + " does not fit into the band of " + formatNumber(field->band) +
+                " voxels; set band to " + formatNumber(std::ceil(reach + kBandBeyondReach)) +
+                " or more");
+  }
+}
+
+std::size_t bytesRead(const SurfaceField& field) {
+  std::size_t bytes = 0;
+  for (const LayerBytes& layer : field.layerBytes()) {
+    if (layer.name == "top" || layer.name == "sample" || layer.name == "coarse") {
+      bytes += layer.bytes;
+    }
+  }
+  return bytes;
+}
+
+// v_max of the jump fault: the hand's, scaled up with a model larger than its workspace.
+double maxSpeed(const FieldGrid& grid) {
+  const int cells = *std::max_element(grid.nodes.begin(), grid.nodes.end()) - 1;
+  return kHandSpeed * std::max(1.0, cells * grid.voxel / kHandWorkspace);
+}
+
+// The shell over everything that is pulled, [m] above the field's surface.
+struct Shell {
+  double relief = 0, roughness = 0;
+};
+
+Shell shellOf(const PaintedRange& range) {
+  const bool rough = range.has(MaterialChannel::roughness);
+  return {range.relief, rough ? kRoughnessPeak * range.most.roughness : 0.0};
+}
+
+std::string namesOf(const PaintedRange& range) {
+  std::string text;
+  for (const MaterialChannel channel : kAllMaterialChannels)
+    if (range.has(channel)) text += (text.empty() ? "" : ", ") + std::string(name(channel));
+  return text + " painted";
+}
+
+} // namespace
+
+void HapticSnapshot::add(std::unique_ptr<const ForceStage> stage, std::string reason,
+                         std::size_t bytes) {
+  why.push_back({std::string(stage->name()), std::move(reason), bytes});
+  stages.push_back(std::move(stage));
+}
+
+double reachOf(const HapticProperties& haptics, double relief) {
+  return haptics.tip_radius.value_or(0) + relief +
+         std::max(haptics.offset.value_or(0), haptics.magnet ? haptics.magnet->range : 0.0);
+}
+
+double raisedBy(std::span<const FeltObject> objects) {
+  const Shell shell = shellOf(paintedRange({}, objects));
+  return shell.relief + shell.roughness;
+}
+
+StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects) {
+  const PaintedRange range = paintedRange(baseMaterial(scene.haptics), objects);
+  const std::optional<double> most_damping =
+      range.has(MaterialChannel::damping) ? std::optional(range.most.damping) : std::nullopt;
+  // The literal force has no part along the surface.
+  const bool leans = scene.relief.form == ForceForm::conservative;
+  return planStabilisers(hardest(scene.haptics, range), scene.device_model, scene.stabilisers,
+                         most_damping, leans ? range.bend : 0);
+}
+
+std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
+                                                    std::shared_ptr<const SurfaceField> field,
+                                                    std::span<const FeltObject> felt,
+                                                    const StabiliserPlan& plan) {
+  HapticProperties haptics = scene.haptics;
+  if (haptics.friction && haptics.friction->static_coefficient == 0) haptics.friction.reset();
+  if (haptics.damping == 0.0) haptics.damping.reset();
+  if (haptics.offset == 0.0) haptics.offset.reset();
+  if (haptics.magnet && haptics.magnet->range * haptics.magnet->strength == 0)
+    haptics.magnet.reset();
+
+  auto snapshot = std::make_shared<HapticSnapshot>();
+  snapshot->base = baseMaterial(haptics);
+  snapshot->objects.assign(felt.begin(), felt.end());
+  const std::span<const FeltObject> objects = snapshot->objects;
+  const PaintedRange range = paintedRange(snapshot->base, objects);
+  const Shell shell = shellOf(range);
+  checkField(field.get(), haptics, shell.relief, shell.roughness);
+  const FieldSampler sampler(*field, scene.sampler);
+  const double radius = haptics.tip_radius.value_or(0);
+  const double iso = radius + haptics.offset.value_or(0) + shell.relief + shell.roughness;
+  const std::string why = haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always";
+  if (haptics.contact == HapticProperties::Contact::ray)
+    snapshot->add(std::make_unique<RayStage>(sampler, iso), why, bytesRead(*field));
+  else
+    snapshot->add(std::make_unique<ProxyStage>(sampler, iso, range.baked ? kBakedSteepness : 1),
+                  why, bytesRead(*field));
+  if (haptics.offset)
+    snapshot->add(std::make_unique<OffsetStage>(sampler),
+                  "offset = " + formatNumber(*haptics.offset));
+  MagnetRelief raised;
+  raised.leans = scene.relief.form == ForceForm::conservative;
+  if (objects.size() > 1 && (range.any() || shell.relief > 0)) {
+    snapshot->add(std::make_unique<OwnerStage>(sampler, objects),
+                  std::to_string(objects.size()) + " objects, some painted");
+    if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(sampler, objects);
+  }
+  const bool slopes =
+      range.has(MaterialChannel::stiffness) && scene.material_form == ForceForm::conservative;
+  if (range.any()) {
+    std::size_t bytes = 0;
+    for (const FeltObject& object : objects)
+      bytes += object.material ? object.material->bytes() : 0;
+    snapshot->add(std::make_unique<MaterialStage>(sampler, objects, slopes), namesOf(range), bytes);
+  }
+  if (shell.relief > 0) raised.reliefs = std::make_shared<const Reliefs>(sampler, objects);
+  if (plan.lateral) {
+    snapshot->add(std::make_unique<LateralStage>(raised.reliefs, objects,
+                                                 shell.relief + shell.roughness, *plan.lateral),
+                  plan.lateral_why);
+  }
+  if (raised.reliefs)
+    snapshot->add(std::make_unique<ReliefStage>(raised.reliefs, shell.relief, scene.relief.form),
+                  "relief up to " + formatLength(shell.relief), raised.reliefs->bytes());
+  if (shell.roughness > 0)
+    snapshot->add(
+        std::make_unique<RoughnessStage>(sampler, objects, shell.roughness, scene.relief.form),
+        "roughness up to " + formatLength(range.most.roughness) + " rms");
+  const bool painted_friction =
+      std::max(range.most.static_friction, range.most.dynamic_friction) > 0 && range.any();
+  if (haptics.friction || painted_friction) {
+    const Friction friction = scene.haptics.friction.value_or(Friction{});
+    snapshot->add(
+        std::make_unique<FrictionStage>(sampler, iso, friction, shell.relief + shell.roughness > 0),
+        haptics.friction ? "friction.static = " + formatNumber(friction.static_coefficient)
+                         : "friction is painted");
+  }
+  std::unique_ptr<const ForceStage> magnet;
+  if (haptics.magnet) {
+    haptics.magnet->strength = plan.softened(haptics.magnet->strength);
+    magnet = std::make_unique<MagnetStage>(sampler, radius, *haptics.magnet, raised);
+  }
+  addForceLaw(*snapshot, haptics, range, plan, std::move(magnet), maxSpeed(field->grid), slopes);
+  snapshot->field = std::move(field);
+  return snapshot;
+}
+
+std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
+                                                    std::shared_ptr<const SurfaceField> field,
+                                                    std::span<const FeltObject> objects) {
+  return compileStages(scene, std::move(field), objects, planOf(scene, objects));
+}
+
+Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
+             double dt) noexcept {
+  Contact contact;
+  contact.tip = tip;
+  contact.candidate = tip;
+  contact.vcp = tip;
+  contact.surface = tip;
+  contact.material = snapshot.base;
+  const double period = dt > 0 && dt < 1e6 ? dt : 0;
+  contact.dt = memory.gap + period;
+  if (!tip.allFinite()) {
+    memory.gap = contact.dt;
+    memory.applied.setZero();
+    return contact;
+  }
+  memory.gap = 0;
+  if (memory.has_last_tip && contact.dt >= kMinVelocityPeriod) {
+    contact.velocity = 1 / contact.dt * (tip - memory.last_tip);
+    // Also where it is infinite or NaN, which no filter would ever forget.
+    if (!(contact.velocity.squaredNorm() < kMaxVelocity * kMaxVelocity)) contact.velocity.setZero();
+  }
+  for (const auto& stage : snapshot.stages) stage->apply(contact, memory);
+  memory.last_tip = tip;
+  memory.has_last_tip = true;
+  memory.applied = contact.force;
+  return contact;
+}
+
+} // namespace patina

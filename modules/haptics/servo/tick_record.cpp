@@ -1,0 +1,24 @@
+#include "haptics/servo/tick_record.h"
+
+#include "field/sampling/field_sampler.h"
+
+namespace patina {
+
+void record(const Contact& contact, const SurfaceField* field, ToolSample& sample) noexcept {
+  sample.tip = contact.tip;
+  sample.force = contact.force;
+  sample.vcp = contact.tip;
+  sample.surface = contact.tip;
+  sample.contact = contact.touching;
+  sample.attracted = contact.attracted;
+  sample.deep = contact.deep;
+  sample.fault = contact.fault;
+  if (!contact.touching && !contact.attracted) return;
+  sample.vcp = contact.vcp;
+  sample.surface = contact.surface;
+  sample.normal = contact.normal;
+  sample.depth = contact.depth;
+  if (field) sample.face = FieldSampler(*field, Sampler::kim).faceNear(contact.surface);
+}
+
+} // namespace patina

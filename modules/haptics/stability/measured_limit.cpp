@@ -1,0 +1,37 @@
+#include "haptics/stability/measured_limit.h"
+
+#include <cmath>
+#include <limits>
+
+#include "haptics/contact/plane.h"
+
+namespace patina {
+namespace {
+
+constexpr double kDepth = 1e-3;     // [m]
+constexpr double kAmplitude = 1e-6; // [m]
+constexpr double kTolerance = 1e-4;
+
+bool oscillationDecays(const HapticProperties& haptics, SimulationSpec spec) {
+  HapticProperties unlimited = haptics;
+  unlimited.force_limit = std::numeric_limits<double>::infinity();
+  spec.depth = kDepth;
+  spec.press = haptics.stiffness * kDepth;
+  spec.speed = kAmplitude * std::sqrt(haptics.stiffness / (spec.device.mass + spec.hand.mass));
+  Progress progress;
+  const SimulationReport run = simulate(*planeSnapshot(unlimited, {}), spec, progress);
+  return run.rms_velocity < run.rms_early;
+}
+
+} // namespace
+
+double measuredStiffnessLimit(HapticProperties haptics, const SimulationSpec& spec, double low,
+                              double high) {
+  while (high - low > kTolerance * high) {
+    haptics.stiffness = 0.5 * (low + high);
+    (oscillationDecays(haptics, spec) ? low : high) = haptics.stiffness;
+  }
+  return 0.5 * (low + high);
+}
+
+} // namespace patina

@@ -1,0 +1,51 @@
+#include "haptics/stages/force_law.h"
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "haptics/stages/coupling_stage.h"
+#include "haptics/stages/limit_stage.h"
+#include "haptics/stages/material_stage.h"
+#include "haptics/stages/spring_stage.h"
+
+namespace patina {
+
+void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
+                 const PaintedRange& range, StabiliserPlan plan,
+                 std::unique_ptr<const ForceStage> magnet, double max_speed, bool slopes) {
+  const auto says = [](const char* key, double value) {
+    return key + (" = " + formatNumber(value));
+  };
+  const bool pulls = magnet != nullptr;
+  const auto addMagnet = [&] {
+    if (pulls) snapshot.add(std::move(magnet), says("magnet.range", haptics.magnet->range));
+  };
+
+  LimitSpec limit{haptics.force_limit, pulls ? haptics.magnet->strength : 0.0, range.most.damping,
+                  max_speed};
+  if (plan.coupling) {
+    const CouplingPlan& coupling = *plan.coupling;
+    addMagnet();
+    limit.damping = std::max(coupling.damping, std::min(range.most.damping, coupling.most_damping));
+    snapshot.add(std::make_unique<CouplingStage>(coupling.stiffness, coupling.damping,
+                                                 coupling.most_damping, pulls),
+                 plan.why);
+  } else {
+    snapshot.add(std::make_unique<SpringStage>(), says("stiffness", haptics.stiffness));
+    addMagnet();
+    const bool painted = range.has(MaterialChannel::damping);
+    if (haptics.damping_cutoff && (haptics.damping || painted))
+      snapshot.add(std::make_unique<VelocityFilterStage>(*haptics.damping_cutoff),
+                   says("damping.cutoff", *haptics.damping_cutoff));
+    if (haptics.damping || painted)
+      snapshot.add(std::make_unique<DampingStage>(pulls),
+                   painted ? "damping is painted" : says("damping", *haptics.damping));
+  }
+  if (slopes)
+    snapshot.add(std::make_unique<StiffnessSlopeStage>(), "material.force = conservative");
+  if (plan.passivity) snapshot.add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
+  snapshot.add(std::make_unique<LimitStage>(limit), "always");
+  snapshot.stabilisers = std::move(plan);
+}
+
+} // namespace patina

@@ -1,0 +1,59 @@
+#include "haptics/stages/magnet_stage.h"
+
+#include <algorithm>
+
+#include "haptics/contact/pull_back.h"
+
+namespace patina {
+namespace {
+
+constexpr double kFadesFrom = 0.75; // of the range
+constexpr double kWholeGradient = 0.5;
+
+} // namespace
+
+MagnetStage::MagnetStage(const FieldSampler& sampler, double tip_radius, const Magnet& magnet,
+                         MagnetRelief relief)
+    : sampler_(sampler), magnet_(magnet), relief_(std::move(relief)),
+      per_voxel_(1 / sampler.grid().voxel), iso_(tip_radius * per_voxel_),
+      range_(magnet.range * per_voxel_) {}
+
+void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  const bool was = memory.attracted;
+  memory.attracted = false;
+  // memory.clearance is this tick's: the contact stage has looked.
+  if (!contact.touching && memory.clearance < range_) {
+    const FieldGrid& grid = sampler_.grid();
+    const GridSample at = sampler_.atGrid(per_voxel_ * (contact.tip - grid.origin));
+    double above = at.phi - iso_;
+    const double slope = at.gradient.norm();
+    Vec3 leaning = Vec3::Zero();
+    if (relief_.reliefs && slope > 0) {
+      const Vec3 n = at.gradient / slope, c = contact.tip - grid.voxel * at.phi * n;
+      const std::int32_t object = relief_.owners ? relief_.owners->ownerAt(c) : 0;
+      const ReliefAt raised = relief_.reliefs->at(object, c, memory);
+      above = std::max(0.0, above - per_voxel_ * raised.height);
+      if (relief_.leans)
+        leaning = pulledBack(sampler_, per_voxel_ * (c - grid.origin), n, at.phi, raised.slope);
+    }
+    if (at.region == FieldRegion::band && slope > 0 && above < range_) {
+      double pull = above;
+      contact.attraction = 1;
+      if (magnet_.fades && above > kFadesFrom * range_) {
+        contact.attraction = (range_ - above) / ((1 - kFadesFrom) * range_);
+        pull = kFadesFrom * range_ * contact.attraction;
+      }
+      const Vec3 toward = at.gradient / -std::max(slope, kWholeGradient) + leaning;
+      contact.force += magnet_.strength * pull * grid.voxel * toward;
+      contact.normal = at.gradient / slope;
+      contact.surface = contact.tip - grid.voxel * at.phi * contact.normal;
+      contact.vcp = contact.surface + iso_ * grid.voxel * contact.normal;
+      contact.attracted = true;
+      memory.attracted = true;
+    }
+  }
+  const bool stepped = memory.attracted != was && !magnet_.fades;
+  if (stepped) contact.known_step += magnet_.strength * magnet_.range;
+}
+
+} // namespace patina

@@ -1,0 +1,49 @@
+#include "haptics/stages/material_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptics/contact/pull_back.h"
+
+namespace patina {
+
+std::int32_t OwnerStage::ownerAt(const Vec3& p) const noexcept {
+  const std::int32_t face = sampler_.faceNear(p);
+  const auto next = std::ranges::upper_bound(objects_, face, {}, &FeltObject::first_face);
+  return static_cast<std::int32_t>(std::max<std::ptrdiff_t>(next - objects_.begin() - 1, 0));
+}
+
+void OwnerStage::apply(Contact& contact, ContactMemory&) const noexcept {
+  if (contact.touching) contact.object = ownerAt(contact.surface);
+}
+
+void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
+  const auto i = static_cast<std::size_t>(contact.object);
+  if (!contact.touching || i >= objects_.size() || !objects_[i].material) return;
+  const FeltObject& object = objects_[i];
+  const MaterialAt at = materialAt(*object.material, object.object_from_world * contact.surface);
+  contact.material = at.material;
+  const auto inWorld = [&](const Vec3& gradient) {
+    return Vec3(object.object_from_world.linear().transpose() * gradient);
+  };
+  if (!at.roughness_gradient.isZero(0)) contact.roughness_gradient = inWorld(at.roughness_gradient);
+  if (!gradients_ || at.stiffness_gradient.isZero(0)) return;
+  contact.stiffness_gradient = pulledBack(sampler_, contact, inWorld(at.stiffness_gradient));
+}
+
+void StiffnessSlopeStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  const double last = memory.sideways;
+  memory.sideways = 0;
+  if (contact.touching && contact.material.stiffness > 0) {
+    // d of the potential: along the surface's own normal, not the slope of its relief.
+    const double square = contact.depth * contact.depth / (1 + contact.slope.squaredNorm());
+    const double softened = contact.stiffness / contact.material.stiffness;
+    const Vec3 force = -0.5 * square * softened * softened * contact.stiffness_gradient;
+    contact.force += force;
+    memory.sideways = force.norm();
+  }
+  // It comes and goes with the cells of the map, which is no jump.
+  contact.known_step += last + memory.sideways;
+}
+
+} // namespace patina

@@ -1,0 +1,52 @@
+// What the contact is made of: painted values at the closest point of the surface (K12, K22, K23).
+#pragma once
+
+#include <span>
+
+#include "field/sampling/field_sampler.h"
+#include "haptics/servo/felt_object.h"
+#include "haptics/stages/stage.h"
+
+namespace patina {
+
+// Which object a contact belongs to: that of the face nearest to it. Only where there are several
+// and paint on one of them.
+class OwnerStage final : public ForceStage {
+ public:
+  OwnerStage(const FieldSampler& sampler, std::span<const FeltObject> objects)
+      : sampler_(sampler), objects_(objects) {}
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "owner"; }
+  std::int32_t ownerAt(const Vec3& p) const noexcept; // 0 where nothing is known
+
+ private:
+  FieldSampler sampler_;
+  std::span<const FeltObject> objects_;
+};
+
+// Sets Contact::material and, with `gradients`, how stiffness changes as the tip moves. Objects
+// without paint keep the snapshot's base.
+class MaterialStage final : public ForceStage {
+ public:
+  MaterialStage(const FieldSampler& sampler, std::span<const FeltObject> objects, bool gradients)
+      : sampler_(sampler), objects_(objects), gradients_(gradients) {}
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "material"; }
+
+ private:
+  FieldSampler sampler_;
+  std::span<const FeltObject> objects_;
+  bool gradients_;
+};
+
+// F6: K d along the normal alone does work round a loop where K changes along the surface. Behind
+// the law's own stage this one adds what makes the force the gradient of U = 1/2 K(c) d^2:
+// -1/2 d^2 grad K, through the coupling where there is one, whose k = K k_c / (K + k_c) takes the
+// place of K. Part of the surface and not of friction's grip.
+class StiffnessSlopeStage final : public ForceStage {
+ public:
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "stiffness slope"; }
+};
+
+} // namespace patina

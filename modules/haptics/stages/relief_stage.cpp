@@ -1,0 +1,161 @@
+#include "haptics/stages/relief_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "haptics/contact/pull_back.h"
+
+namespace patina {
+namespace {
+
+constexpr double kLostVoxels = 0.25;
+
+void notTouching(Contact& contact) noexcept {
+  contact.touching = contact.deep = contact.snap = false;
+  contact.candidate = contact.vcp = contact.surface = contact.tip;
+  contact.normal.setZero();
+  contact.slope.setZero();
+  contact.depth = 0;
+  contact.walls = 0;
+}
+
+// d -= gap, and the normal leans by `slope` more. n - slope is longer than 1: of a potential, the
+// depth along the leaning normal is not the distance.
+void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
+  const bool leans = !slope.isZero(0);
+  if (gap == 0 && !leans) return;
+  const double steep = std::sqrt(1 + contact.slope.squaredNorm());
+  const double depth = contact.depth / steep - gap;
+  if (!(depth > 0)) {
+    notTouching(contact);
+    return;
+  }
+  const Vec3 outward = steep * contact.normal - slope; // n - all slopes
+  contact.slope += slope;
+  const double length = std::sqrt(1 + contact.slope.squaredNorm());
+  for (int i = 0; i < contact.walls; ++i)
+    contact.wall[static_cast<std::size_t>(i)].load *= depth * length / contact.depth;
+  contact.depth = depth * length;
+  contact.normal = outward / length;
+  if (contact.walls == 1) contact.wall[0].normal = contact.normal;
+  contact.candidate = contact.tip + depth * outward;
+  contact.vcp = contact.candidate;
+}
+
+// By how much the relief itself has moved the VCP since the last tick, at most.
+void announceStep(Contact& contact, ContactMemory::Leaning& last, double height,
+                  const Vec3& slope) noexcept {
+  const ContactMemory::Leaning now{true, height, contact.depth,
+                                   contact.touching ? slope : Vec3(Vec3::Zero())};
+  if (last.known)
+    contact.relief_step +=
+        std::abs(now.height - last.height) *
+            std::sqrt(1 + std::max(now.slope.squaredNorm(), last.slope.squaredNorm())) +
+        std::max(now.depth, last.depth) * (now.slope - last.slope).norm();
+  last = now;
+}
+
+} // namespace
+
+Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects)
+    : sampler_(sampler), objects_(objects), lost_(kLostVoxels * sampler.grid().voxel) {}
+
+ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory,
+                     Eigen::Matrix3d* bend) const noexcept {
+  ReliefAt at;
+  if (bend) bend->setZero();
+  const auto i = static_cast<std::size_t>(object);
+  if (i >= objects_.size() || !objects_[i].relief) return at;
+  const FeltObject& part = objects_[i];
+  if (memory.relief_object == object) at = reliefAt(*part.relief, c, memory.relief_face, bend);
+  if (at.face < 0 || at.distance > lost_) {
+    const std::int32_t near = sampler_.faceNear(c);
+    Eigen::Matrix3d bent;
+    const ReliefAt afresh =
+        reliefAt(*part.relief, c, near < 0 ? -1 : near - part.first_face, bend ? &bent : nullptr);
+    if (afresh.face >= 0 && (at.face < 0 || afresh.distance < at.distance)) {
+      at = afresh;
+      if (bend) *bend = bent;
+    }
+  }
+  memory.relief_object = object;
+  memory.relief_face = at.face;
+  if (std::abs(at.height) > part.highest) { // between texels a cubic overshoots
+    at.height = std::copysign(part.highest, at.height);
+    at.slope.setZero();
+    if (bend) bend->setZero();
+  }
+  return at;
+}
+
+std::size_t Reliefs::bytes() const {
+  std::size_t sum = 0;
+  for (const FeltObject& object : objects_)
+    if (object.relief) sum += patina::bytes(*object.relief->faces);
+  return sum;
+}
+
+void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  if (!contact.touching || contact.normal.isZero(0)) {
+    memory.relief.known = false;
+    if (contact.touching) lower(contact, shell_, Vec3::Zero());
+    return;
+  }
+  const ReliefAt at = reliefs_->at(contact.object, contact.surface + contact.aside, memory);
+  const Vec3 slope = form_ == ForceForm::literal
+                         ? Vec3::Zero()
+                         : pulledBack(reliefs_->sampler(), contact, at.slope);
+  lower(contact, shell_ - at.height, slope);
+  announceStep(contact, memory.relief, at.height, slope);
+}
+
+RoughPattern roughPattern(const Vec3& p, Eigen::Matrix3d* bend) noexcept {
+  // Directions of a tetrahedron, turned; wavelengths about 1 mm whose ratios are no small
+  // fractions.
+  struct Wave {
+    double x, y, z, phase;
+  };
+  static constexpr std::array<Wave, 4> kWaves = {{{4931.2, 3021.7, 1987.3, 0.3},
+                                                  {-1264.9, -2718.6, 6012.4, 1.9},
+                                                  {2307.5, -5671.8, -2413.6, 4.1},
+                                                  {-5377.3, 2988.1, -1902.7, 5.2}}};
+  const double amplitude = std::numbers::sqrt2 / 2; // 4 a^2 / 2 = 1
+  RoughPattern pattern;
+  if (bend) bend->setZero();
+  for (const Wave& wave : kWaves) {
+    const Vec3 k(wave.x, wave.y, wave.z); // [rad/m]
+    const double angle = k.dot(p) + wave.phase;
+    pattern.height += amplitude * std::cos(angle);
+    pattern.slope -= amplitude * std::sin(angle) * k;
+    if (bend) *bend -= amplitude * std::cos(angle) * k * k.transpose();
+  }
+  return pattern;
+}
+
+void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  if (!contact.touching) {
+    memory.roughness.known = false;
+    return;
+  }
+  double height = 0;
+  Vec3 slope = Vec3::Zero();
+  const double roughness = contact.material.roughness;
+  const auto i = static_cast<std::size_t>(contact.object);
+  const bool rough = roughness > 0 && i < objects_.size() && !contact.normal.isZero(0);
+  if (rough) {
+    const Pose& object_from_world = objects_[i].object_from_world;
+    const RoughPattern pattern =
+        roughPattern(object_from_world * (contact.surface + contact.aside));
+    height = roughness * pattern.height;
+    if (form_ == ForceForm::conservative)
+      slope = pulledBack(sampler_, contact,
+                         roughness * (object_from_world.linear().transpose() * pattern.slope) +
+                             pattern.height * contact.roughness_gradient);
+  }
+  lower(contact, shell_ - height, slope);
+  announceStep(contact, memory.roughness, height, slope);
+}
+
+} // namespace patina

@@ -1,0 +1,86 @@
+// Relief read at the contact's closest point: not a voxel of it is in the field (K21, F6, F8).
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "field/sampling/field_sampler.h"
+#include "haptics/servo/felt_object.h"
+#include "haptics/stages/stage.h"
+#include "scene/paint/relief_settings.h"
+
+namespace patina {
+
+// The reliefs of a scene's objects, each |height| <= its `highest`.
+class Reliefs {
+ public:
+  Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects);
+  // At the closest point c [m, world] of the object, cut off at `highest`; flat where the object
+  // has none. The walk over its faces goes on from memory.relief_face.
+  // bend: as of reliefAt().
+  ReliefAt at(std::int32_t object, const Vec3& c, ContactMemory& memory,
+              Eigen::Matrix3d* bend = nullptr) const noexcept;
+  const FieldSampler& sampler() const noexcept { return sampler_; }
+  std::size_t bytes() const; // of the packed faces
+
+ private:
+  FieldSampler sampler_;
+  std::span<const FeltObject> objects_;
+  double lost_; // [m] from the mesh, where the walk begins afresh
+};
+
+// Behind a contact with a shell `shell` [m] outside everything, this lowers it to the relief:
+// d -= shell - h, and where nothing is left of d the tip does not touch. conservative: the force is
+// the gradient of 1/2 K d^2, K d (n - J^T grad h); literal: K d n (F6). The VCP is x + d (n - J^T
+// grad h): on the slope's own normal, beyond the relief itself by d |grad h|^2.
+//
+// Where the relief is as high as the shell, the image flat and the contact nothing but the contact
+// stage's, its bits stay as they are. Cliffs: the slope is not cut, since that would leave the
+// height without its gradient; the force they make is the limit stage's to bound, and what they
+// make it change in a tick is announced, so that it is no jump (Contact::relief_step).
+class ReliefStage final : public ForceStage {
+ public:
+  ReliefStage(std::shared_ptr<const Reliefs> reliefs, double shell, ForceForm form)
+      : reliefs_(std::move(reliefs)), shell_(shell), form_(form) {}
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "relief"; }
+
+ private:
+  std::shared_ptr<const Reliefs> reliefs_;
+  double shell_;
+  ForceForm form_;
+};
+
+// The rough pattern of a unit rms height is nowhere higher.
+inline constexpr double kRoughnessPeak = 2.8284271247461903; // sqrt(2 waves)
+
+// The material's roughness [m rms] as a fine solid pattern, fixed in the object: four plane waves
+// of about 1 mm in directions that no face is likely to have, so that on every surface
+// rms(h) = roughness in closed form: sqrt(sum a_i^2 / 2) with a_i = roughness / sqrt(2). Felt as
+// relief is; h = roughness(c) w(c), and the gradient is that of both.
+class RoughnessStage final : public ForceStage {
+ public:
+  // shell = kRoughnessPeak times the roughest there is [m].
+  RoughnessStage(const FieldSampler& sampler, std::span<const FeltObject> objects, double shell,
+                 ForceForm form)
+      : sampler_(sampler), objects_(objects), shell_(shell), form_(form) {}
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "roughness"; }
+
+ private:
+  FieldSampler sampler_;
+  std::span<const FeltObject> objects_;
+  double shell_;
+  ForceForm form_;
+};
+
+// w of the pattern and its gradient [1/m] at p [m, object frame]; bend, where asked for, becomes
+// its second derivative [1/m^2], nowhere above kRoughnessBend.
+struct RoughPattern {
+  double height = 0;
+  Vec3 slope = Vec3::Zero();
+};
+RoughPattern roughPattern(const Vec3& p, Eigen::Matrix3d* bend = nullptr) noexcept;
+inline constexpr double kRoughnessBend = 5.08e7; // [1/m^2], of the sum of a k k^T
+
+} // namespace patina

@@ -1,0 +1,19 @@
+// One term of the force. Stages are immutable and shared; what changes lives in ContactMemory.
+// Field and objects are the snapshot's: a stage views them.
+#pragma once
+
+#include <string_view>
+
+#include "haptics/contact/contact.h"
+
+namespace patina {
+
+class ForceStage {
+ public:
+  virtual ~ForceStage() = default;
+  // Servo thread: no lock, allocation, throw.
+  virtual void apply(Contact& contact, ContactMemory& memory) const noexcept = 0;
+  virtual std::string_view name() const noexcept = 0;
+};
+
+} // namespace patina

@@ -1,0 +1,40 @@
+// What the program asks of the library of pictures, which it loads with the first of them. Both
+// sides are built together, so that C++ types may cross; exceptions may not.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace patina {
+
+struct ImageRows {
+  int width = 0, height = 0, channels = 0;
+  std::vector<float> value; // channel fastest, the top row first
+  bool premultiplied = false;
+
+  std::size_t rowSize() const { // values
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  }
+};
+
+struct ImageLimits {
+  int side = 0;           // texels
+  std::size_t values = 0; // texels times channels
+  int channels = 4;       // what a file holds beyond them is passed over
+};
+
+// Each returns an empty text, or why it could not.
+struct ImageLibrary {
+  std::string (*read_file)(const std::string& path, const ImageLimits&, ImageRows& out);
+  std::string (*read_exr)(std::string_view bytes, const ImageLimits&, ImageRows& out);
+  std::string (*write_exr)(const ImageRows&, std::string& bytes);
+  std::string (*write_png)(const ImageRows&, std::string& bytes); // 16 bits; values in [0, 1]
+};
+
+// The one symbol that is looked up.
+inline constexpr const char* kImageLibrarySymbol = "patinaImageLibrary";
+using ImageLibraryFunction = const ImageLibrary*();
+
+} // namespace patina

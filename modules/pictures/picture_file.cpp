@@ -1,0 +1,73 @@
+#include "pictures/picture_file.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "pictures/image_library.h"
+
+namespace patina {
+namespace {
+
+constexpr ImageLimits kPictureLimits{16384, std::size_t{1} << 28, 4};
+
+// Files begin with the top row, images in memory with the bottom one.
+void flip(ImageRows& rows) {
+  const std::size_t size = rows.rowSize();
+  for (std::size_t low = 0, high = static_cast<std::size_t>(rows.height); low + 1 < high; ++low) {
+    --high;
+    std::swap_ranges(rows.value.data() + low * size, rows.value.data() + (low + 1) * size,
+                     rows.value.data() + high * size);
+  }
+}
+
+void divideByAlpha(ImageRows& rows) {
+  const auto channels = static_cast<std::size_t>(rows.channels);
+  for (std::size_t texel = 0; texel < rows.value.size(); texel += channels) {
+    const float alpha = rows.value[texel + channels - 1];
+    if (!(alpha > 0)) continue;
+    for (std::size_t c = 0; c + 1 < channels; ++c) rows.value[texel + c] /= alpha;
+  }
+}
+
+std::string extensionOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+} // namespace
+
+Picture readPicture(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  // Our own words for what the library would put in its own, or crash on.
+  std::error_code code;
+  if (!std::filesystem::exists(path, code)) throw FileError(name, 0, "does not exist");
+  if (!std::filesystem::is_regular_file(path, code)) throw FileError(name, 0, "is not a file");
+  if (std::filesystem::file_size(path, code) == 0) throw FileError(name, 0, "the file is empty");
+  ImageRows rows;
+  const std::string cause = imageLibrary(name).read_file(name, kPictureLimits, rows);
+  if (!cause.empty()) throw FileError(name, 0, "cannot be read as a picture: " + cause);
+  requireFinite(rows, name);
+  if (rows.premultiplied) divideByAlpha(rows);
+  flip(rows);
+  return {rows.width, rows.height, rows.channels, std::move(rows.value)};
+}
+
+void writePicture(const std::filesystem::path& path, const Picture& picture) {
+  const std::string name = path.string();
+  const std::string extension = extensionOf(path);
+  if (extension != ".png" && extension != ".exr")
+    throw FileError(name, 0, "a picture's name must end in .png or .exr");
+  ImageRows rows{picture.width, picture.height, picture.channels, picture.texel, false};
+  flip(rows);
+  const ImageLibrary& library = imageLibrary(name);
+  std::string bytes;
+  const std::string cause =
+      (extension == ".png" ? library.write_png : library.write_exr)(rows, bytes);
+  if (!cause.empty()) throw FileError(name, 0, "cannot be written: " + cause);
+  writeFileAtomically(path, bytes);
+}
+
+} // namespace patina

@@ -1,0 +1,19 @@
+// Pictures on disk, through OpenImageIO, which is loaded with the first of them (linking it would
+// cost every start 170 ms).
+#pragma once
+
+#include <filesystem>
+
+#include "pictures/picture.h"
+
+namespace patina {
+
+// PNG, JPEG, TIFF, EXR and what else OpenImageIO reads; the first image of a file. Bounded: at most
+// 16384 texels a side. Throws FileError naming file and cause, also where the library is missing.
+Picture readPicture(const std::filesystem::path& path);
+
+// By the extension: .png 16 bits a channel (values clamped to [0, 1]), .exr 32-bit floats, bit for
+// bit. Atomic.
+void writePicture(const std::filesystem::path& path, const Picture& picture);
+
+} // namespace patina

@@ -1,0 +1,265 @@
+#include "scene/paint/material_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+namespace {
+
+constexpr int kSide = kMaterialSide + 1;
+constexpr std::size_t kNodes = static_cast<std::size_t>(kSide) * kSide * kSide;
+// Every channel in the order of Material's members: a node's values copy straight into one.
+static_assert(sizeof(Material) == kMaterialChannels * sizeof(double));
+
+} // namespace
+
+// Node after node, x fastest, each with its painted channels in order. Doubles, so that what paint
+// does not cover is the base bit for bit and an affine field is one (T-K22a).
+struct MaterialSampleBlock {
+  std::vector<double> values;
+};
+
+namespace {
+
+using Index = MaterialMap::Index;
+using Painted = std::array<bool, kMaterialChannels>;
+
+// A dense table over a box of blocks.
+template <class T> struct Table {
+  std::array<int, 3> first{}, count{};
+  std::vector<T> cells;
+
+  bool find(const Index& b, std::size_t& cell) const {
+    std::array<std::size_t, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::int64_t i = std::int64_t{b[a]} - first[a];
+      if (i < 0 || i >= count[a]) return false;
+      at[a] = static_cast<std::size_t>(i);
+    }
+    cell =
+        (at[2] * static_cast<std::size_t>(count[1]) + at[1]) * static_cast<std::size_t>(count[0]) +
+        at[0];
+    return true;
+  }
+};
+
+// The blocks of samples that read a block of the map: itself and its seven lower neighbours.
+template <class Visit> void readersOf(const Index& b, const Visit& visit) {
+  for (int corner = 0; corner < 8; ++corner)
+    visit(Index{b[0] - (corner & 1), b[1] - (corner >> 1 & 1), b[2] - (corner >> 2)});
+}
+
+Table<char> tableAround(const MaterialMap& map) {
+  Table<char> table;
+  Index low{}, high{};
+  bool any = false;
+  for (const auto& [index, block] : map.blocks()) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = any ? std::min(low[a], index[a]) : index[a];
+      high[a] = any ? std::max(high[a], index[a]) : index[a];
+    }
+    any = true;
+  }
+  std::size_t cells = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    table.first[a] = low[a] - 1;
+    table.count[a] = high[a] - low[a] + 2;
+    cells *= static_cast<std::size_t>(table.count[a]);
+  }
+  table.cells.assign(any ? cells : 0, 0);
+  return table;
+}
+
+enum : char { kNothing = 0, kKept = 1, kMade = 2, kLost = 4 };
+
+// Marks what samples are needed, and which of them must be made anew. Both maps are in one order.
+void mark(const MaterialMap& map, const MaterialMap* before, Table<char>& table) {
+  const auto raise = [&](const Index& index, char to) {
+    readersOf(index, [&](const Index& reader) {
+      std::size_t cell = 0;
+      if (!table.find(reader, cell)) return;
+      char& mark = table.cells[cell];
+      mark = static_cast<char>((mark & kLost) | std::max<char>(mark & ~kLost, to));
+    });
+  };
+  static const std::map<Index, MaterialBlock> kNone;
+  const auto& now = map.blocks();
+  const auto& was = before ? before->blocks() : kNone;
+  auto n = now.begin();
+  auto w = was.begin();
+  while (n != now.end() || w != was.end()) {
+    const bool gone = n == now.end() || (w != was.end() && w->first < n->first);
+    const bool fresh = !gone && (w == was.end() || n->first < w->first);
+    if (gone) {
+      // Where its readers are still read by others, they have changed.
+      readersOf(w->first, [&](const Index& reader) {
+        std::size_t cell = 0;
+        if (table.find(reader, cell)) table.cells[cell] |= kLost;
+      });
+      ++w;
+      continue;
+    }
+    raise(n->first, fresh || n->second.layer != w->second.layer ? kMade : kKept);
+    if (!fresh) ++w;
+    ++n;
+  }
+  for (char& cell : table.cells)
+    if (cell & kLost) cell = cell & ~kLost ? kMade : kNothing;
+}
+
+Painted paintedIn(const MaterialMap& map) {
+  Painted painted{};
+  for (const auto& [index, block] : map.blocks())
+    for (std::size_t c = 0; c < kMaterialChannels; ++c) painted[c] |= block.layer[c] != nullptr;
+  return painted;
+}
+
+std::size_t countOf(const Painted& painted) {
+  return static_cast<std::size_t>(std::count(painted.begin(), painted.end(), true));
+}
+
+std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const Index& at,
+                                                const Painted& painted, const Material& base,
+                                                MaterialSamples::Extremes& extremes) {
+  std::array<const MaterialBlock*, 8> source{};
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto found =
+        map.blocks().find({at[0] + (corner & 1), at[1] + (corner >> 1 & 1), at[2] + (corner >> 2)});
+    if (found != map.blocks().end()) source[static_cast<std::size_t>(corner)] = &found->second;
+  }
+  auto block = std::make_shared<MaterialSampleBlock>();
+  const std::size_t channels = countOf(painted);
+  block->values.resize(kNodes * channels);
+  std::size_t slot = 0;
+  for (std::size_t c = 0; c < kMaterialChannels; ++c) {
+    const double own = valueOf(base, kAllMaterialChannels[c]);
+    const MaterialRange range = rangeOf(kAllMaterialChannels[c]);
+    extremes.least[c] = extremes.most[c] = own;
+    if (!painted[c]) continue;
+    double* value = block->values.data() + slot++;
+    for (int z = 0; z < kSide; ++z)
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x, value += channels) {
+          const int corner = (x >> 3) + 2 * (y >> 3) + 4 * (z >> 3);
+          const MaterialBlock* from = source[static_cast<std::size_t>(corner)];
+          const MaterialLayer* layer = from ? from->layer[c].get() : nullptr;
+          *value = own;
+          if (!layer) continue;
+          const auto node = static_cast<std::size_t>((z & 7) * 64 + (y & 7) * 8 + (x & 7));
+          *value = feltAt(*layer, node, own, range);
+          extremes.least[c] = std::min(extremes.least[c], *value);
+          extremes.most[c] = std::max(extremes.most[c], *value);
+        }
+  }
+  return block;
+}
+
+} // namespace
+
+std::size_t MaterialSamples::bytes() const {
+  const std::size_t channels = countOf(painted);
+  return sizeof *this + top.size() * sizeof(top[0]) +
+         block.size() * (sizeof(block[0]) + sizeof(Extremes) + sizeof(Index) +
+                         sizeof(MaterialSampleBlock) + kNodes * channels * sizeof(double));
+}
+
+std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, const Material& base,
+                                                       const MaterialMap* map_before,
+                                                       const MaterialSamples* before) {
+  const Painted painted = paintedIn(map);
+  if (countOf(painted) == 0) return nullptr;
+  const bool keeps = before && map_before && before->painted == painted && before->base == base &&
+                     map_before->origin() == map.origin() && map_before->voxel() == map.voxel();
+  Table<char> table = tableAround(map);
+  mark(map, keeps ? map_before : nullptr, table);
+
+  auto samples = std::make_shared<MaterialSamples>();
+  samples->origin = map.origin();
+  samples->per_voxel = 1 / map.voxel();
+  samples->first = table.first;
+  samples->blocks = table.count;
+  samples->painted = painted;
+  samples->base = samples->least = samples->most = base;
+  samples->top.assign(table.cells.size(), -1);
+  Table<char> old;
+  if (keeps) old = {before->first, before->blocks, {}};
+  std::size_t cell = 0;
+  for (int z = 0; z < table.count[2]; ++z)
+    for (int y = 0; y < table.count[1]; ++y)
+      for (int x = 0; x < table.count[0]; ++x, ++cell) {
+        if (table.cells[cell] == kNothing) continue;
+        const Index at{x + table.first[0], y + table.first[1], z + table.first[2]};
+        samples->top[cell] = static_cast<std::int32_t>(samples->block.size());
+        samples->block_at.push_back(at);
+        std::size_t was = 0;
+        const std::int32_t slot =
+            keeps && table.cells[cell] == kKept && old.find(at, was) ? before->top[was] : -1;
+        if (slot >= 0) {
+          const auto kept = static_cast<std::size_t>(slot);
+          samples->block.push_back(before->block[kept]);
+          samples->extremes.push_back(before->extremes[kept]);
+        } else {
+          samples->extremes.emplace_back();
+          samples->block.push_back(made(map, at, painted, base, samples->extremes.back()));
+        }
+      }
+  for (const MaterialSamples::Extremes& extremes : samples->extremes)
+    for (const MaterialChannel channel : kAllMaterialChannels) {
+      const auto c = static_cast<std::size_t>(channel);
+      double& least = valueOf(samples->least, channel);
+      double& most = valueOf(samples->most, channel);
+      least = std::min(least, extremes.least[c]);
+      most = std::max(most, extremes.most[c]);
+    }
+  return samples;
+}
+
+MaterialAt materialAt(const MaterialSamples& samples, const Vec3& p) noexcept {
+  MaterialAt at;
+  at.material = samples.base;
+  const Vec3 q = (p - samples.origin) * samples.per_voxel;
+  std::array<int, 3> node{};
+  Vec3 part;
+  std::size_t cell = 0;
+  for (std::size_t a = 3; a-- > 0;) {
+    // In nodes of the table; NaN fails the comparison.
+    const double x = q[static_cast<Eigen::Index>(a)] - kMaterialSide * samples.first[a];
+    if (!(x >= 0 && x < kMaterialSide * samples.blocks[a])) return at;
+    const int i = static_cast<int>(x);
+    part[static_cast<Eigen::Index>(a)] = x - i;
+    node[a] = i % kMaterialSide;
+    cell = cell * static_cast<std::size_t>(samples.blocks[a]) +
+           static_cast<std::size_t>(i / kMaterialSide);
+  }
+  const std::int32_t slot = samples.top[cell];
+  if (slot < 0) return at;
+  std::size_t channels = 0;
+  for (const bool painted : samples.painted) channels += painted;
+  const double* low =
+      samples.block[static_cast<std::size_t>(slot)]->values.data() +
+      channels * static_cast<std::size_t>((node[2] * kSide + node[1]) * kSide + node[0]);
+  const std::size_t right = channels, up = channels * kSide, above = channels * kSide * kSide;
+  const double fx = part[0], fy = part[1], fz = part[2];
+  for (const MaterialChannel channel : kAllMaterialChannels) {
+    if (!samples.painted[static_cast<std::size_t>(channel)]) continue;
+    // a + f (b - a) is exact for equal ends: where nothing is painted the base stays itself.
+    const double d00 = low[right] - low[0], d10 = low[up + right] - low[up];
+    const double d01 = low[above + right] - low[above];
+    const double d11 = low[above + up + right] - low[above + up];
+    const double x00 = low[0] + fx * d00, x10 = low[up] + fx * d10;
+    const double x01 = low[above] + fx * d01, x11 = low[above + up] + fx * d11;
+    const double y0 = x00 + fy * (x10 - x00), y1 = x01 + fy * (x11 - x01);
+    valueOf(at.material, channel) = y0 + fz * (y1 - y0);
+    const bool stiffness = channel == MaterialChannel::stiffness;
+    if (stiffness || channel == MaterialChannel::roughness) {
+      const double dx = (1 - fz) * ((1 - fy) * d00 + fy * d10) + fz * ((1 - fy) * d01 + fy * d11);
+      const Vec3 gradient(dx, (1 - fz) * (x10 - x00) + fz * (x11 - x01), y1 - y0);
+      (stiffness ? at.stiffness_gradient : at.roughness_gradient) = samples.per_voxel * gradient;
+    }
+    ++low;
+  }
+  return at;
+}
+
+} // namespace patina

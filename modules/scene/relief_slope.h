@@ -1,0 +1,62 @@
+// How steep painted relief is at a texel, for its shading.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "geometry/atlas/texel_map.h"
+#include "geometry/mesh/triangle_mesh.h"
+#include "scene/paint/tiled_image.h"
+
+namespace patina {
+
+// Refers to what it is made of, which must outlive it. One thread; quick along the texels of a
+// face.
+class ReliefSlope {
+ public:
+  ReliefSlope(const TriangleMesh& mesh, const CornerUvs& uvs, const TexelMap& texels);
+
+  // Gradient of g along the surface at texel (i, j) [1/m], in the mesh's frame and tangent to the
+  // texel's face: central differences, one-sided where a neighbour shows another place of the
+  // surface or repeats the chart's edge, so that no seam is seen. Second order in the texel inside
+  // a chart, first at its edge. Zero where the texel shows nothing.
+  Vec3 at(const TiledImage& g, int i, int j) const;
+
+ private:
+  // What all texels of a face share; made anew only where the face changes along the way.
+  struct Face {
+    std::int32_t index = -1;
+    bool flat = false;                       // without area, in space or in the image
+    Vec3 first, along_u, along_v;            // barycentric of texel (i, j): first + i u + j v
+    Eigen::Matrix<double, 3, 2> gradient_of; // differences a texel along i and j -> gradient
+    double step_u = 0, step_v = 0;           // of a texel on the surface [m]
+  };
+  struct Place {
+    std::int32_t face = -1;
+    Vec3 barycentric = Vec3::Zero();
+    bool covered = false; // the face covers the texel's centre
+  };
+  struct Slope {
+    Vec3 gradient = Vec3::Zero();
+    bool whole = false; // along both axes of the image
+  };
+  Face faceOf(std::int32_t index) const;
+  Place placeOf(int i, int j, Face& known) const;
+  Vec3 point(const Place& place) const;
+  Slope inside(const TiledImage& g, int i, int j, const Place& place, const Face& face) const;
+
+  const TriangleMesh* mesh_;
+  const CornerUvs* uvs_;
+  const TexelMap* texels_;
+  mutable Face last_; // one thread
+};
+
+// Whose texels matter to the slope at one: so far away along either axis, at most.
+inline constexpr int kSlopeReach = kGutter + 2;
+
+// Three bytes a texel, finer near zero; slopes beyond 2 count as 2. The shader's other half is
+// kSlopeShader in image_surface.cpp.
+inline constexpr double kSteepest = 2;
+std::array<unsigned char, 3> encodedSlope(const Vec3& slope);
+
+} // namespace patina

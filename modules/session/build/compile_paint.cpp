@@ -1,0 +1,342 @@
+#include "session/build/compile_paint.h"
+
+#include <algorithm>
+
+#include "haptics/stability/painted_range.h"
+#include "haptics/stages/relief_stage.h"
+#include "session/build/compile_scene.h"
+
+namespace patina {
+namespace {
+
+const ObjectPaint* paintOf(const Scene& scene, std::size_t object) {
+  return object < scene.objects.size() ? scene.objects[object].paint.get() : nullptr;
+}
+
+bool hasRelief(const Scene& scene) {
+  return scene.relief.height != 0 &&
+         std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
+           return o.paint && hasRelief(*o.paint, scene.relief.source);
+         });
+}
+
+bool isPainted(const Scene& scene) {
+  return hasRelief(scene) ||
+         std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const SceneObject& o) { return o.paint && o.paint->material; });
+}
+
+const FeltRelief* knownRelief(const CompiledScene* compiled, std::size_t object) {
+  return compiled && object < compiled->paint.relief.size() ? &compiled->paint.relief[object]
+                                                            : nullptr;
+}
+
+std::shared_ptr<const ImageRange> rangeOf(const std::shared_ptr<const TiledImage>& image,
+                                          const std::shared_ptr<const TiledImage>& before,
+                                          const std::shared_ptr<const ImageRange>& known) {
+  if (known && image == before) return known;
+  return std::make_shared<const ImageRange>(imageRange(*image, before.get(), known.get()));
+}
+
+// The image that stands for the relief, before it is smoothed.
+FeltRelief sourceOf(const Scene& scene, std::size_t object, const CompiledScene* before) {
+  FeltRelief relief;
+  const ObjectPaint* paint = paintOf(scene, object);
+  if (!paint) return relief;
+  static const FeltRelief kNone;
+  const FeltRelief* known = knownRelief(before, object);
+  if (!known) known = &kNone;
+  if (scene.relief.source == ReliefFrom::color) relief.grey = known->grey;
+  relief.source = reliefOf(*paint, scene.relief.source, &relief.grey);
+  if (relief.source)
+    relief.source_range = rangeOf(relief.source, known->source, known->source_range);
+  return relief;
+}
+
+// A pulled image is read through cubics, a baked one bilinearly.
+double overshoot(const Scene& scene) {
+  return scene.relief.mode == ReliefMode::pulled ? kReliefOvershoot : 1;
+}
+
+// One object's share of the work, with what an earlier version may lend.
+struct Maker {
+  const CompiledScene& compiled;
+  const CompiledScene* before; // null where nothing of it can be kept
+  FeltPaint& made;
+
+  const FeltObject* earlier(std::size_t i) const {
+    return before && i < before->paint.objects.size() ? &before->paint.objects[i] : nullptr;
+  }
+
+  std::shared_ptr<const MaterialSamples> material(std::size_t i, const Material& base) const {
+    const ObjectPaint* paint = paintOf(compiled.scene, i);
+    if (!paint || !paint->material) return nullptr;
+    const ObjectPaint* old_paint = before ? paintOf(before->scene, i) : nullptr;
+    const FeltObject* old = earlier(i);
+    const bool keeps = old && old->material && old_paint && old_paint->material &&
+                       old->material->base == base &&
+                       old_paint->material->origin() == paint->material->origin() &&
+                       old_paint->material->voxel() == paint->material->voxel();
+    if (keeps && old_paint->material == paint->material) return old->material;
+    return materialSamples(*paint->material, base, keeps ? old_paint->material.get() : nullptr,
+                           keeps ? old->material.get() : nullptr);
+  }
+
+  // Its source, as it is felt.
+  void smooth(std::size_t i, FeltRelief& relief) const {
+    relief.felt = relief.source;
+    relief.felt_range = relief.source_range;
+    const double deviation = compiled.scene.relief.smoothing;
+    if (!(deviation > 0)) return;
+    const ObjectPaint& paint = *paintOf(compiled.scene, i);
+    const ObjectPaint* old_paint = before ? paintOf(before->scene, i) : nullptr;
+    const FeltRelief* old = knownRelief(before, i);
+    const bool keeps = old && old->smoother && old_paint &&
+                       old_paint->layout.uvs == paint.layout.uvs &&
+                       old->source->width() == relief.source->width() &&
+                       old->source->height() == relief.source->height();
+    if (keeps && before->scene.relief.smoothing == deviation) {
+      relief.smoother = old->smoother;
+      relief.felt = old->source == relief.source
+                        ? old->felt
+                        : std::make_shared<const TiledImage>(relief.smoother->resmoothed(
+                              *old->felt, *old->source, *relief.source));
+      relief.felt_range = rangeOf(relief.felt, old->felt, old->felt_range);
+      return;
+    }
+    auto texels = keeps ? old->smoother->texels()
+                        : std::make_shared<const TexelMap>(texelMap(
+                              *paint.layout.uvs, relief.source->width(), relief.source->height()));
+    relief.smoother = std::make_shared<const ReliefSmoother>(
+        compiled.objects[i]->mesh, paint.layout.uvs, std::move(texels), deviation);
+    relief.felt = std::make_shared<const TiledImage>(relief.smoother->smoothed(*relief.source));
+    relief.felt_range = rangeOf(relief.felt, nullptr, nullptr);
+  }
+
+  // Worst |h''| [1/m] of what is felt, where a lateral coupling may be planned by it.
+  double bend(std::size_t i, FeltRelief& relief) const {
+    const Scene& scene = compiled.scene;
+    if (!(scene.device_model || scene.stabilisers)) return 0;
+    const std::shared_ptr<const CornerUvs>& uvs = paintOf(scene, i)->layout.uvs;
+    const TiledImage& image = *relief.felt;
+    const FeltRelief* old = knownRelief(before, i);
+    const bool keeps =
+        old && old->bend_map && old->bend_map->fits(*uvs, image.width(), image.height());
+    relief.bend_map = keeps ? old->bend_map
+                            : std::make_shared<const BendMap>(compiled.objects[i]->mesh, uvs,
+                                                              image.width(), image.height());
+    relief.bends = keeps && old->felt == relief.felt
+                       ? old->bends
+                       : relief.bend_map->byTile(image, keeps ? old->felt.get() : nullptr,
+                                                 keeps ? &old->bends : nullptr);
+    return std::abs(scene.relief.height) *
+           static_cast<double>(*std::max_element(relief.bends.begin(), relief.bends.end()));
+  }
+
+  std::shared_ptr<const ReliefSurface> pulled(std::size_t i) const {
+    const ObjectPaint& paint = *paintOf(compiled.scene, i);
+    auto surface = std::make_shared<ReliefSurface>();
+    const FeltObject* old = earlier(i);
+    const ObjectPaint* old_paint = before ? paintOf(before->scene, i) : nullptr;
+    if (old && old->relief && old_paint && old_paint->layout.uvs == paint.layout.uvs)
+      surface->faces = old->relief->faces;
+    else
+      surface->faces = reliefFaces(*compiled.objects[i]->mesh, *paint.layout.uvs);
+    surface->image = made.relief[i].felt;
+    surface->height = compiled.scene.relief.height;
+    return surface;
+  }
+};
+
+std::vector<ReliefSource> sourcesOf(const CompiledScene& compiled, const FeltPaint& paint) {
+  std::vector<ReliefSource> sources(compiled.objects.size());
+  std::int32_t first = 0;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    ReliefSource& source = sources[i];
+    source.first_face = first;
+    source.faces = static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
+    first += source.faces;
+    if (i >= paint.relief.size() || !paint.relief[i].felt) continue;
+    source.uvs = paintOf(compiled.scene, i)->layout.uvs;
+    source.image = paint.relief[i].felt;
+    source.range = paint.relief[i].felt_range;
+    source.height = compiled.scene.relief.height;
+  }
+  return sources;
+}
+
+bool sameLayouts(const Scene& a, const Scene& b) {
+  for (std::size_t i = 0; i < a.objects.size(); ++i) {
+    const ObjectPaint* left = paintOf(a, i);
+    const ObjectPaint* right = paintOf(b, i);
+    const bool relief_left = left && hasRelief(*left, a.relief.source);
+    const bool relief_right = right && hasRelief(*right, b.relief.source);
+    if (relief_left != relief_right) return false;
+    if (relief_left && left->layout.uvs != right->layout.uvs) return false;
+  }
+  return true;
+}
+
+void bake(const CompiledScene& compiled, const CompiledScene* before, FeltPaint& made,
+          Progress& progress) {
+  const std::vector<ReliefSource> sources = sourcesOf(compiled, made);
+  const bool keeps = before && before->paint.bake && sameLayouts(before->scene, compiled.scene);
+  if (!keeps) {
+    made.bake =
+        std::make_shared<const ReliefBake>(compiled.built.field, *compiled.mesh, sources, progress);
+    made.field = made.bake->baked(sources);
+    return;
+  }
+  made.bake = before->paint.bake;
+  const bool as_it_was =
+      before->scene.relief == compiled.scene.relief &&
+      std::equal(made.relief.begin(), made.relief.end(), before->paint.relief.begin(),
+                 before->paint.relief.end(),
+                 [](const FeltRelief& a, const FeltRelief& b) { return a.felt == b.felt; });
+  made.field = as_it_was ? before->paint.field
+                         : made.bake->rebaked(*before->paint.field,
+                                              sourcesOf(*before, before->paint), sources);
+}
+
+// Only where the two differ.
+std::vector<std::size_t> tilesApart(const std::shared_ptr<const TiledImage>& a,
+                                    const std::shared_ptr<const TiledImage>& b) {
+  std::vector<std::size_t> tiles;
+  if (a == b) return tiles;
+  const TiledImage& any = a ? *a : *b;
+  const bool alike = a && b && a->tileCount() == b->tileCount();
+  for (std::size_t i = 0; i < any.tileCount(); ++i) {
+    if (alike ? a->sharedTile(i) != b->sharedTile(i) : any.sharedTile(i) != nullptr)
+      tiles.push_back(i);
+  }
+  return tiles;
+}
+
+bool sameLayers(const MaterialBlock& a, const MaterialBlock& b) {
+  return a.layer == b.layer;
+}
+
+std::vector<MaterialMap::Index> blocksApart(const MaterialMap* a, const MaterialMap* b) {
+  std::vector<MaterialMap::Index> blocks;
+  const auto collect = [&](const MaterialMap* from, const MaterialMap* other, bool both) {
+    if (!from) return;
+    for (const auto& [index, block] : from->blocks()) {
+      const MaterialBlock* match = nullptr;
+      if (other) {
+        const auto found = other->blocks().find(index);
+        if (found != other->blocks().end()) match = &found->second;
+      }
+      if (!match || (both && !sameLayers(block, *match))) blocks.push_back(index);
+    }
+  };
+  collect(a, b, true);
+  collect(b, a, false);
+  return blocks;
+}
+
+} // namespace
+
+std::size_t FeltPaint::bytes() const {
+  std::size_t bytes = bake ? bake->bytes() : 0;
+  for (const FeltObject& object : objects) {
+    if (object.material) bytes += object.material->bytes();
+    if (object.relief) bytes += patina::bytes(*object.relief->faces);
+  }
+  for (const FeltRelief& image : relief) {
+    if (image.grey.grey) bytes += image.grey.grey->bytes();
+    if (image.smoother) bytes += image.smoother->bytes();
+    if (image.bend_map) bytes += image.bend_map->bytes();
+    if (image.felt && image.felt != image.source) bytes += image.felt->bytes();
+  }
+  return bytes;
+}
+
+double reachOf(const Scene& scene, const CompiledScene* before) {
+  float most = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (const FeltRelief relief = sourceOf(scene, i, before); relief.source)
+      most = std::max(most, relief.source_range->all.highest());
+  const double relief = std::abs(scene.relief.height) * static_cast<double>(most);
+  return reachOf(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
+}
+
+double reachAfter(const CompiledScene& compiled, const Brush& brush) {
+  const Scene& scene = compiled.scene;
+  const double now = reachOf(scene, &compiled);
+  if (brush.mode == StrokeMode::smooth) return now;
+  double value = 0; // no more than all of its layers together
+  if (scene.relief.source == ReliefFrom::color) {
+    if (const BrushLayer* layer = layerOf(brush, Tool::color))
+      value += overshoot(scene) * std::abs(scene.relief.height) * grey(layer->color);
+  } else if (const BrushLayer* layer = layerOf(brush, Tool::relief)) {
+    value += overshoot(scene) * std::abs(layer->value);
+  }
+  if (const BrushLayer* layer = layerOf(brush, Tool::roughness))
+    value += kRoughnessPeak * std::abs(layer->value);
+  const double bare = reachOf(scene.haptics);
+  return brush.mode == StrokeMode::add ? now + value : std::max(now, bare + value);
+}
+
+FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
+                    Progress& progress) {
+  FeltPaint made;
+  made.field = compiled.built.field;
+  const Scene& scene = compiled.scene;
+  if (!isPainted(scene)) return made;
+  // What was made for other meshes, or for the same ones elsewhere, is of no use.
+  if (before && before->objects != compiled.objects) before = nullptr;
+  const CompiledScene* same_field =
+      before && before->built.field == compiled.built.field ? before : nullptr;
+  Maker maker{compiled, before, made};
+  const bool relief = hasRelief(scene);
+  if (relief) made.relief.resize(scene.objects.size());
+  std::int32_t first = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    progress.throwIfCancelled();
+    FeltObject object;
+    object.first_face = first;
+    object.object_from_world = scene.objects[i].world_from_object.inverse();
+    object.material = maker.material(i, baseMaterial(scene.haptics));
+    if (relief) made.relief[i] = sourceOf(scene, i, before);
+    if (relief && made.relief[i].source) {
+      maker.smooth(i, made.relief[i]);
+      object.highest = overshoot(scene) * std::abs(scene.relief.height) *
+                       static_cast<double>(made.relief[i].felt_range->all.highest());
+      if (scene.relief.mode == ReliefMode::pulled && object.highest > 0) {
+        object.relief = maker.pulled(i);
+        object.bend = maker.bend(i, made.relief[i]);
+      }
+    }
+    first += static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
+    made.objects.push_back(std::move(object));
+  }
+  if (relief && scene.relief.mode == ReliefMode::baked) bake(compiled, same_field, made, progress);
+  return made;
+}
+
+std::vector<ReliefSource> reliefSources(const CompiledScene& compiled) {
+  return sourcesOf(compiled, compiled.paint);
+}
+
+std::vector<PaintChange> paintChanges(const Scene& before, const Scene& after) {
+  static const ObjectPaint kNothing;
+  std::vector<PaintChange> changes;
+  for (std::size_t i = 0; i < after.objects.size(); ++i) {
+    const ObjectPaint* old = paintOf(before, i);
+    const ObjectPaint* now = paintOf(after, i);
+    if (old == now) continue;
+    const ObjectPaint& a = old ? *old : kNothing;
+    const ObjectPaint& b = now ? *now : kNothing;
+    PaintChange change;
+    change.object = i;
+    change.color_tiles = tilesApart(a.color, b.color);
+    change.relief_tiles = tilesApart(a.relief, b.relief);
+    change.material_blocks = blocksApart(a.material.get(), b.material.get());
+    if (!change.color_tiles.empty() || !change.relief_tiles.empty() ||
+        !change.material_blocks.empty())
+      changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+} // namespace patina

@@ -1,0 +1,367 @@
+#include "session/build/compile_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <mutex>
+#include <unordered_set>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "field/merge/redistance.h"
+
+namespace patina {
+namespace {
+
+constexpr double kMostBand = 64; // voxels, as a scene may set
+
+using Objects = std::vector<std::shared_ptr<const CompiledObject>>;
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+  }
+  double cpuSeconds() const { return processSeconds() - cpu_; }
+
+ private:
+  static double processSeconds() {
+    std::timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  double cpu_ = processSeconds();
+};
+
+bool same(const SceneObject& a, const SceneObject& b) {
+  return a.mesh == b.mesh && a.world_from_object.matrix() == b.world_from_object.matrix();
+}
+
+bool same(const FieldSpec& a, const FieldSpec& b) {
+  return a.resolution == b.resolution && a.voxel == b.voxel && a.band == b.band &&
+         a.sides == b.sides;
+}
+
+bool readsFaces(const Scene& scene) {
+  return (scene.redistance && scene.objects.size() > 1) ||
+         std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const SceneObject& o) { return o.paint != nullptr; });
+}
+
+bool hasFaces(const SurfaceField& field) {
+  return field.face.size() == field.blockCount();
+}
+
+std::shared_ptr<const CompiledObject> withoutFaces(const CompiledObject& object) {
+  auto bare = std::make_shared<CompiledObject>(object);
+  auto field = std::make_shared<SurfaceField>(*object.built.field);
+  field->face = {};
+  bare->built.report.bytes = field->bytes();
+  bare->built.field = std::move(field);
+  return bare;
+}
+
+// Whether a lattice's voxel still suits what `spec` asks for.
+bool suits(double voxel, const FieldSpec& spec, const Box3& box) {
+  if (spec.voxel) return true;
+  const double cells = box.sizes().maxCoeff() / voxel + 2 * spec.band;
+  return cells <= 2 * spec.resolution && cells >= 0.5 * spec.resolution;
+}
+
+// fraction of all from the fractions of each.
+class SharedProgress {
+ public:
+  SharedProgress(Progress& whole, std::size_t count) : whole_(whole), fraction_(count) {}
+  Progress::Listener listener(std::size_t part) {
+    return [this, part](double fraction, std::string_view what) {
+      const std::lock_guard lock(mutex_);
+      sum_ += fraction - std::exchange(fraction_[part], fraction);
+      whole_.report(0.9 * sum_ / static_cast<double>(fraction_.size()), what);
+    };
+  }
+
+ private:
+  Progress& whole_;
+  std::mutex mutex_;
+  std::vector<double> fraction_;
+  double sum_ = 0;
+};
+
+std::shared_ptr<CompiledObject> prepared(const SceneObject& object) {
+  auto result = std::make_shared<CompiledObject>();
+  result->object = object;
+  result->mesh = std::make_shared<const TriangleMesh>(worldMesh(object));
+  result->mesh_report = inspect(*result->mesh);
+  return result;
+}
+
+void build(CompiledObject& object, const BlockLattice& lattice, double band, OpenSides sides,
+           Progress& progress) {
+  try {
+    const BlockBox blocks = blocksAround(lattice, fieldBounds(*object.mesh), band);
+    object.built = buildField(*object.mesh, gridOf(lattice, blocks), band, progress, sides);
+    object.first_block = firstBlock(lattice, object.built.field->grid);
+  } catch (const Error& error) {
+    throw Error("object '" + object.object.name + "': " + error.what());
+  }
+}
+
+// The voxel is that of the scene without paint: only the band grows with relief, so that raising
+// something does not coarsen all the rest.
+FieldSpec bandFor(const Scene& scene, const Box3& box, double reach) {
+  FieldSpec spec = widened(scene.field, box, reachOf(scene.haptics), kBandBeyondReach);
+  if (!(reach > reachOf(scene.haptics))) return spec;
+  spec.voxel = gridAround(box, spec).voxel;
+  spec = widened(spec, box, reach, kBandBeyondReach);
+  if (spec.band > kMostBand)
+    throw Error("relief that reaches " + formatLength(reach - reachOf(scene.haptics)) + " needs " +
+                formatNumber(spec.band) + " voxels of " + formatLength(*spec.voxel) +
+                " on each side of the surface; the most is " + formatNumber(kMostBand) +
+                ": make it lower, or choose a larger voxel");
+  return spec;
+}
+
+// The objects of compiled.scene, on compiled.lattice: kept from `old` where they can be. Sets
+// lattice and band.
+Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, double room,
+                        Progress& progress) {
+  const Scene& scene = compiled.scene;
+  BlockLattice& lattice = compiled.lattice;
+  Objects objects(scene.objects.size());
+  std::vector<std::shared_ptr<CompiledObject>> fresh(objects.size());
+  Box3 box;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (old)
+      for (const auto& kept : old->objects)
+        if (same(kept->object, scene.objects[i]) && hasFaces(*kept->built.field)) objects[i] = kept;
+    if (!objects[i]) objects[i] = fresh[i] = prepared(scene.objects[i]);
+    box.extend(fieldBounds(*objects[i]->mesh));
+    progress.throwIfCancelled();
+  }
+  const double reach = std::max(reachOf(scene), room);
+  const bool keep = old && same(old->scene.field, scene.field) &&
+                    suits(old->lattice.voxel, scene.field, box) &&
+                    reach / old->lattice.voxel + kBandBeyondReach <= old->band;
+  const FieldSpec spec = bandFor(scene, box, reach);
+  if (keep) {
+    lattice = old->lattice;
+    compiled.band = old->band;
+  } else {
+    const FieldGrid grid = gridAround(box, spec);
+    lattice = {grid.origin, grid.voxel};
+    compiled.band = spec.band;
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      if (!fresh[i]) objects[i] = fresh[i] = std::make_shared<CompiledObject>(*objects[i]);
+  }
+  std::vector<std::size_t> todo;
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (fresh[i]) todo.push_back(i);
+  if (scene.objects.size() == 1 && !todo.empty() && !keep) {
+    fresh[0]->built = buildField(*fresh[0]->mesh, spec, progress);
+    fresh[0]->first_block = firstBlock(lattice, fresh[0]->built.field->grid);
+    return objects;
+  }
+  SharedProgress shared(progress, todo.size());
+  tbb::parallel_for(std::size_t{0}, todo.size(), [&](std::size_t i) {
+    Progress part(progress, shared.listener(i));
+    // Isolated: a thread that waits for one object's loops must not begin another object.
+    tbb::this_task_arena::isolate(
+        [&] { build(*fresh[todo[i]], lattice, compiled.band, spec.sides, part); });
+  });
+  // Names may change while the field is kept.
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i]->object.name == scene.objects[i].name) continue;
+    auto renamed = std::make_shared<CompiledObject>(*objects[i]);
+    renamed->object.name = scene.objects[i].name;
+    objects[i] = std::move(renamed);
+  }
+  return objects;
+}
+
+std::vector<FieldPart> partsOf(const Objects& objects) {
+  std::vector<FieldPart> parts;
+  std::int32_t first_face = 0;
+  for (const auto& object : objects) {
+    parts.push_back({object->built.field, object->first_block, first_face});
+    first_face += static_cast<std::int32_t>(object->mesh->triangles.size());
+  }
+  return parts;
+}
+
+BuiltField united(const CompiledScene& compiled, Progress& progress) {
+  const std::vector<FieldPart> parts = partsOf(compiled.objects);
+  BuiltField built;
+  progress.report(0.9, "merging");
+  SurfaceField field = mergeFields(parts, compiled.lattice);
+  for (const auto& object : compiled.objects) {
+    built.report.dropped_triangles += object->built.report.dropped_triangles;
+    built.report.ambiguous_signs += object->built.report.ambiguous_signs;
+    built.report.open_parts += object->built.report.open_parts;
+    built.report.open_triangles += object->built.report.open_triangles;
+  }
+  progress.throwIfCancelled();
+  if (compiled.scene.redistance) {
+    progress.report(0.92, "depths");
+    Redistanced exact = redistanced(field, parts, compiled.lattice, *compiled.mesh, progress);
+    field = std::move(exact.field);
+    built.report.redistanced_nodes = exact.nodes;
+  }
+  built.field = std::make_shared<const SurfaceField>(std::move(field));
+  built.report.blocks = built.field->blockCount();
+  built.report.bytes = built.field->bytes();
+  built.report.dense_bytes = built.field->grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
+  progress.report(1, "field");
+  return built;
+}
+
+std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene scene, double room,
+                                                 FaceLayer faces, Progress& progress) {
+  validate(scene);
+  if (scene.objects.empty()) throw Error("the scene has no object: add a mesh to it");
+  progress.throwIfCancelled();
+  const Stopwatch watch;
+  auto compiled = std::make_shared<CompiledScene>();
+  compiled->scene = std::move(scene);
+  compiled->objects = compiledObjects(old, *compiled, room, progress);
+  if (faces == FaceLayer::if_read && !readsFaces(compiled->scene))
+    for (auto& object : compiled->objects) object = withoutFaces(*object);
+  progress.throwIfCancelled();
+  if (compiled->objects.size() == 1) {
+    const CompiledObject& only = *compiled->objects[0];
+    compiled->mesh = only.mesh;
+    compiled->mesh_report = only.mesh_report;
+    compiled->built = only.built;
+  } else {
+    std::vector<MeshReport> reports;
+    for (const auto& object : compiled->objects) reports.push_back(object->mesh_report);
+    compiled->mesh_report = sumOf(reports);
+    compiled->mesh = std::make_shared<const TriangleMesh>(worldMesh(compiled->scene));
+    compiled->built = united(*compiled, progress);
+    compiled->built.report.seconds = watch.seconds();
+    compiled->built.report.cpu_seconds = watch.cpuSeconds();
+  }
+  progress.throwIfCancelled();
+  compiled->built.field = withSamples(std::move(compiled->built.field));
+  compiled->paint = feltPaint(*compiled, nullptr, progress);
+  compiled->snapshot =
+      compileStages(compiled->scene, compiled->paint.field, compiled->paint.objects);
+  progress.throwIfCancelled();
+  return compiled;
+}
+
+} // namespace
+
+TriangleMesh worldMesh(const SceneObject& object) {
+  if (object.world_from_object.matrix().isIdentity(0.0)) return *object.mesh;
+  return transformed(*object.mesh, Eigen::Affine3d(object.world_from_object));
+}
+
+TriangleMesh worldMesh(const Scene& scene) {
+  if (scene.objects.size() == 1) return worldMesh(scene.objects[0]);
+  TriangleMesh world;
+  bool with_uvs = true;
+  for (const SceneObject& object : scene.objects) {
+    const TriangleMesh mesh = worldMesh(object);
+    const auto first = static_cast<std::int32_t>(world.positions.size());
+    world.positions.insert(world.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& t : mesh.triangles)
+      world.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    with_uvs = with_uvs && mesh.corner_uvs.size() == mesh.triangles.size();
+    if (with_uvs)
+      world.corner_uvs.insert(world.corner_uvs.end(), mesh.corner_uvs.begin(),
+                              mesh.corner_uvs.end());
+  }
+  if (!with_uvs) world.corner_uvs.clear();
+  return world;
+}
+
+MeshReport sumOf(const std::vector<MeshReport>& reports) {
+  MeshReport sum;
+  sum.watertight = !reports.empty();
+  for (const MeshReport& report : reports) {
+    sum.triangles += report.triangles;
+    sum.vertices += report.vertices;
+    sum.components += report.components;
+    sum.watertight = sum.watertight && report.watertight;
+    sum.non_finite += report.non_finite;
+    sum.degenerate += report.degenerate;
+    sum.duplicate += report.duplicate;
+    sum.boundary_edges += report.boundary_edges;
+    sum.non_manifold_edges += report.non_manifold_edges;
+    sum.misoriented_edges += report.misoriented_edges;
+  }
+  return sum;
+}
+
+std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress, FaceLayer faces) {
+  return compileFrom(nullptr, std::move(scene), 0, faces, progress);
+}
+
+std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
+                                               Progress& progress, double room) {
+  return compileFrom(&old, std::move(scene), room, FaceLayer::kept, progress);
+}
+
+bool fits(const CompiledScene& compiled, double reach) {
+  return reach / compiled.built.field->grid.voxel + kBandBeyondReach <= compiled.band;
+}
+
+bool canRetune(const CompiledScene& old, const Scene& scene) {
+  if (scene.objects.size() != old.objects.size()) return false;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (!same(old.objects[i]->object, scene.objects[i])) return false;
+  return same(old.scene.field, scene.field) && old.scene.redistance == scene.redistance &&
+         fits(old, reachOf(scene, &old)) && (!readsFaces(scene) || hasFaces(*old.built.field));
+}
+
+std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {
+  validate(scene);
+  auto compiled = std::make_shared<CompiledScene>(old);
+  compiled->scene = std::move(scene);
+  Progress progress;
+  compiled->paint = feltPaint(*compiled, &old, progress);
+  compiled->snapshot =
+      compileStages(compiled->scene, compiled->paint.field, compiled->paint.objects);
+  return compiled;
+}
+
+std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face) {
+  if (face < 0) return -1;
+  auto left = static_cast<std::size_t>(face);
+  for (std::size_t i = 0; i < compiled.objects.size(); ++i) {
+    const std::size_t faces = compiled.objects[i]->mesh->triangles.size();
+    if (left < faces) return static_cast<std::int32_t>(i);
+    left -= faces;
+  }
+  return -1;
+}
+
+UnionSurface feltTriangles(const CompiledScene& compiled, const Progress& progress) {
+  return unionSurface(partsOf(compiled.objects), compiled.lattice, *compiled.mesh, progress);
+}
+
+std::size_t mergeBytes(const CompiledScene& compiled) {
+  if (compiled.objects.size() < 2) return 0;
+  std::unordered_set<const void*> shared;
+  const SurfaceField& field = *compiled.built.field;
+  for (const auto& block : field.distance) shared.insert(block.get());
+  for (const auto& block : field.face) shared.insert(block.get());
+  std::size_t bytes = 0;
+  for (const auto& object : compiled.objects) {
+    const SurfaceField& own = *object->built.field;
+    bytes += own.bytes() + object->mesh->positions.size() * sizeof(Vec3) +
+             object->mesh->triangles.size() * sizeof(Triangle);
+    for (const auto& block : own.distance)
+      if (shared.contains(block.get())) bytes -= block->bytes();
+    for (const auto& block : own.face)
+      if (shared.contains(block.get())) bytes -= block->bytes();
+  }
+  return bytes;
+}
+
+} // namespace patina

@@ -1,0 +1,167 @@
+#include "session/build/session.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "field/surface/iso_surface.h"
+#include "geometry/io/mesh_io.h"
+#include "session/store/journal_fold.h"
+#include "session/store/replay.h"
+#include "session/store/workspace_link.h"
+#include "visualization/export/field_io.h"
+#include "workspace/manifest.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+
+namespace {
+
+std::string lowerExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// What scene.h allows in an object's name.
+std::string objectName(const std::filesystem::path& path) {
+  std::string name = path.stem().string();
+  for (char& c : name) {
+    const auto letter = static_cast<unsigned char>(c);
+    if (letter >= 128 || (!std::isalnum(letter) && c != '-' && c != '_')) c = '_';
+  }
+  return name.empty() ? "object" : name;
+}
+
+TriangleMesh meshOfVolume(const std::filesystem::path& path, const OpenOptions& options,
+                          bool& in_metres) {
+  if (isField(path)) {
+    in_metres = true;
+    const SurfaceField field = readField(path);
+    const double iso = options.iso.value_or(0.0), band = field.band * field.grid.voxel;
+    if (!(std::abs(iso) < band))
+      throw FileError(path.string(), 0,
+                      "--iso " + formatNumber(iso) + ": the field holds distances between " +
+                          formatNumber(-band) + " and " + formatNumber(band) + " m");
+    return isoSurface(field, iso);
+  }
+  if (!options.iso) {
+    const VolumeRange range = scalarRange(path);
+    throw FileError(path.string(), 0,
+                    "a volume is felt as an iso-surface: choose its value with --iso, between " +
+                        formatNumber(range.low) + " and " + formatNumber(range.high));
+  }
+  in_metres = false;
+  return isoSurfaceOfVolume(path, *options.iso);
+}
+
+} // namespace
+
+std::vector<std::string> meshWarnings(const MeshReport& report) {
+  std::vector<std::string> lines;
+  const auto count = [](std::size_t n, const char* what) {
+    return formatCount(n) + (n == 1 ? " triangle " : " triangles ") + what;
+  };
+  if (report.non_finite)
+    lines.push_back(count(report.non_finite, "with a NaN or infinite corner: left out"));
+  if (report.degenerate) lines.push_back(count(report.degenerate, "without area: left out"));
+  return lines;
+}
+
+std::optional<std::string> thinSheetWarning(const MeshReport& report) {
+  if (report.boundary_edges == 0) return std::nullopt;
+  return formatCount(report.boundary_edges) + (report.boundary_edges == 1 ? " edge" : " edges") +
+         " of one triangle: what is open has no inside and is felt from its front; set "
+         "surface.sides=two and tip.radius or offset to feel both sides";
+}
+
+namespace {
+
+void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMesh& mesh,
+                 bool both_sides) {
+  const MeshReport report = inspect(mesh);
+  if (report.non_finite + report.degenerate == report.triangles)
+    throw FileError(where, 0,
+                    "no triangle of it can be used: " + formatCount(report.non_finite) +
+                        " with a NaN or infinite corner, " + formatCount(report.degenerate) +
+                        " without area");
+  for (const std::string& line : meshWarnings(report))
+    opened.warnings.push_back(where + ": " + line);
+  const auto thin = thinSheetWarning(report);
+  if (thin && !both_sides) opened.warnings.push_back(where + ": " + *thin);
+}
+
+void openFolder(const std::filesystem::path& folder, OpenedScene& opened) {
+  OpenedWorkspace found = openWorkspace(folder);
+  const FoldedJournal fold = folded(found.journal, found.journal_file.string());
+  opened.history = {fold.position, fold.steps.size() - fold.position};
+  for (const std::string& note : found.notes) opened.warnings.push_back(note);
+  if (found.event >= found.journal.size()) {
+    opened.scene = std::move(found.scene);
+    return;
+  }
+  opened.scene =
+      WorkspaceLink::open(folder, Replayer(), kHistoryBudget, false, false).history->scene();
+}
+
+} // namespace
+
+bool isVolumeFile(const std::filesystem::path& path) {
+  return lowerExtension(path) == ".vti";
+}
+
+bool isFieldFile(const std::filesystem::path& path) {
+  return isVolumeFile(path) && isField(path);
+}
+
+std::filesystem::path inputPath(const std::filesystem::path& path) {
+  if (path.filename() != kManifestName || std::filesystem::is_directory(path)) return path;
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& options) {
+  const std::filesystem::path path = inputPath(input);
+  if (!std::filesystem::exists(path)) throw FileError(path.string(), 0, "no such file or folder");
+  OpenedScene opened;
+  const auto warnOf = [&](const char* option, const char* what) {
+    opened.warnings.push_back(path.string() + ": " + option + " has no effect on a " + what);
+  };
+  if (std::filesystem::is_directory(path)) {
+    if (!isWorkspace(path))
+      throw FileError(path.string(), 0, "is a folder without workspace.json, not a workspace");
+    openFolder(path, opened);
+    if (options.unit_chosen) warnOf("--unit", "workspace");
+    if (options.iso) warnOf("--iso", "workspace");
+    const bool both_sides = opened.scene.field.sides == OpenSides::two ||
+                            options.tip_radius_chosen ||
+                            opened.scene.haptics.tip_radius.value_or(0.0) > 0;
+    for (const SceneObject& object : opened.scene.objects)
+      addWarnings(opened, path.string() + ": " + object.name, *object.mesh, both_sides);
+    return opened;
+  }
+  bool in_metres = false;
+  const bool is_volume = isVolumeFile(path);
+  TriangleMesh mesh = is_volume ? meshOfVolume(path, options, in_metres) : readMesh(path);
+  if (options.unit_chosen && in_metres) warnOf("--unit", "field");
+  if (options.iso && !is_volume) warnOf("--iso", "mesh");
+  if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");
+  addWarnings(opened, path.string(), mesh, options.tip_radius_chosen);
+  ScaledMesh scaled = inMetres(std::move(mesh), in_metres ? MeshUnit::m : options.unit);
+  if (!scaled.warning.empty()) opened.warnings.push_back(path.string() + ": " + scaled.warning);
+  opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
+  return opened;
+}
+
+Scene sceneOf(TriangleMesh mesh, const std::string& name) {
+  Scene scene;
+  SceneObject& object = scene.objects.emplace_back();
+  object.name = name;
+  object.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
+  return scene;
+}
+
+} // namespace patina

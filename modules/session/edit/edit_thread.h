@@ -1,0 +1,98 @@
+// The editor on a thread of its own: whoever asks never waits, and hears of what was done.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/edit/editor.h"
+#include "session/store/autosave.h"
+
+namespace patina {
+
+// Where the history stands, and what of it is in the workspace's folder.
+struct EditStanding {
+  std::vector<std::string> edits; // of all edits, oldest first
+  std::size_t done = 0;           // how many of them are done; the others can be redone
+  bool unsaved = false;
+  std::optional<std::filesystem::path> folder{}; // absent: the scene has none of its own
+  bool operator==(const EditStanding&) const = default;
+};
+
+// What an edit that takes its time is at.
+struct EditDoing {
+  std::string title; // "Merging the objects"
+  double fraction = 0;
+  std::string what;
+};
+
+// All that has happened since the last take(), however many edits that were.
+struct EditNews {
+  std::shared_ptr<const CompiledScene> compiled; // null: the scene is as it was
+  bool anew = false;                             // it is another scene: see adopt()
+  std::shared_ptr<const EditStanding> standing;  // null: as it was
+  std::optional<EditDoing> doing;                // absent: nothing that takes time is under way
+  std::vector<std::string> problems;             // one line each: what could not be done, and why
+  std::vector<std::function<void()>> done;       // to be called, in this order
+};
+
+// All calls come from one thread, the window's, and none waits but the destructor.
+class EditThread {
+ public:
+  struct Spec {
+    // On the edit thread, first thing after an edit: the snapshot goes to the servo.
+    std::function<void(const CompiledScene&)> publish;
+    // On the edit thread: there is news. Once until it is taken; must not wait.
+    std::function<void()> wake;
+    // Where a scene without a folder is kept from its first edit on; empty: nowhere.
+    std::filesystem::path autosave_root;
+  };
+  explicit EditThread(Spec spec);
+  // What is asked for and not begun is dropped; what was painted is kept, journaled where there is
+  // a folder.
+  ~EditThread();
+
+  // How an editor that is made elsewhere reports to this thread; adopt() takes it over.
+  Editor::Listener listener();
+  // Takes the place of the editor that there is. `autosave`: the place of what is recovered.
+  void adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave = {});
+
+  // A stroke; samples may come in pieces of any size. When more of them come than can be painted,
+  // some are left out, evenly. Anything else that is asked for ends the stroke first.
+  void prepare(Tool tool);
+  void beginStroke(const Brush& brush);
+  void dabs(std::vector<StrokeSample> samples);
+  void endStroke();
+
+  using Done = std::function<void(const std::string& problem)>; // empty: it was done
+
+  // Felt at once, and one edit as soon as they rest or something else is asked for: so that a
+  // slider that is dragged is one step of the history.
+  void tryValues(std::function<void(Scene&)> set, Done done = {});
+
+  // Done is called by way of take(); without it problems are news.
+  // Another scene, made of the present one; one that waits is replaced by a newer one that
+  // `replaces` it. Null: nothing to do.
+  using Change = std::function<std::shared_ptr<const Scene>(const CompiledScene& present)>;
+  void apply(const std::string& what, Change change, bool replaces = false, Done done = {});
+  void goTo(std::size_t position, Done done = {}); // undo or redo until so many edits are done
+  void undo(Done done = {});
+  void redo(Done done = {});
+  void save(Done done = {});
+  void saveAs(const std::filesystem::path& folder, Done done = {});
+  // To what was last saved, as far as the history knows it; then nothing is unsaved.
+  void discard(Done done = {});
+  void cancel(); // what is under way, and what waits
+
+  EditNews take();
+  bool busy() const; // something is under way or waits
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace patina

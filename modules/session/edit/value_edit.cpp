@@ -1,0 +1,57 @@
+#include "session/edit/value_edit.h"
+
+#include <algorithm>
+#include <map>
+
+namespace patina {
+namespace {
+
+using List = std::vector<std::pair<std::string, std::string>>;
+
+const std::string* find(const List& list, const std::string& key) {
+  const auto at =
+      std::find_if(list.begin(), list.end(), [&](const auto& item) { return item.first == key; });
+  return at == list.end() ? nullptr : &at->second;
+}
+
+// Keys that values() leaves out where they have their usual value, and its word.
+std::string wordForAbsent(const std::string& key) {
+  static const std::map<std::string, std::string> kUsual = {{"contact", "proxy"},
+                                                            {"surface.sides", "one"},
+                                                            {"merge.redistance", "off"},
+                                                            {"relief.mode", "pulled"},
+                                                            {"relief.height", "0.001"},
+                                                            {"relief.force", "conservative"},
+                                                            {"material.force", "conservative"},
+                                                            {"paint.size", "512"},
+                                                            {"stabiliser", "auto"}};
+  const auto usual = kUsual.find(key);
+  return usual == kUsual.end() ? "none" : usual->second;
+}
+
+} // namespace
+
+std::optional<ValueEdit> valueEdit(const Scene& before, const Scene& after) {
+  const List old = values(before), now = values(after);
+  ValueEdit edit;
+  // What goes comes first: the new value of a pair that excludes one another takes its place.
+  for (const auto& [key, value] : old)
+    if (!find(now, key) && !(key == "resolution" && find(now, "voxel")))
+      edit.values.emplace_back(key, wordForAbsent(key));
+  for (const auto& [key, value] : now) {
+    const std::string* earlier = find(old, key);
+    if (!earlier || *earlier != value) edit.values.emplace_back(key, value);
+  }
+  if (edit.values.empty()) return std::nullopt;
+  return edit;
+}
+
+ValueEdit merged(const ValueEdit& first, const ValueEdit& then) {
+  ValueEdit edit;
+  for (const auto& item : first.values)
+    if (!find(then.values, item.first)) edit.values.push_back(item);
+  edit.values.insert(edit.values.end(), then.values.begin(), then.values.end());
+  return edit;
+}
+
+} // namespace patina

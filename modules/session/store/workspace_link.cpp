@@ -1,0 +1,198 @@
+#include "session/store/workspace_link.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/folder_lock.h"
+#include "session/store/journal_fold.h"
+
+namespace patina {
+namespace {
+
+// Samples of strokes between two stored scenes, at first: about a second of replay.
+constexpr double kLandmarkCost = 500;
+
+// Whether the scene that stood after `event` is the one at that position of the fold's end: its
+// steps must all be older than the event.
+bool stillThere(const FoldedJournal& fold, std::uint64_t event, std::size_t position) {
+  if (position > fold.steps.size()) return false;
+  for (std::size_t i = 0; i < position; ++i)
+    if (fold.steps[i].number > event) return false;
+  return true;
+}
+
+Edit editOf(const JournalEvent& event) {
+  if (const auto* stroke = std::get_if<Stroke>(&event)) return *stroke;
+  if (const auto* values = std::get_if<ValueEdit>(&event)) return *values;
+  return SceneEdit{std::get<StoredSceneEdit>(event).what, nullptr};
+}
+
+} // namespace
+
+void requireWorkspacePlace(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(folder) || isWorkspace(folder)) return;
+  if (!fs::is_directory(folder) || !fs::is_empty(folder))
+    throw FileError(folder.string(), 0, "exists and is not a workspace; choose another folder");
+}
+
+WorkspaceLink::WorkspaceLink(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+EditHistory::Load WorkspaceLink::loader(const std::string& state) const {
+  return [folder = folder_, state] { return loadState(folder, state); };
+}
+
+// Of edits that are replayed; saving removes the files of all other states.
+void WorkspaceLink::tieStates(EditHistory& history) const {
+  for (std::size_t i = 0; i + 1 < event_of_.size(); ++i) {
+    if (std::holds_alternative<SceneEdit>(history.edit(i))) continue;
+    const auto stored = std::find_if(states_.begin(), states_.end(), [&](const StoredState& s) {
+      return s.event == event_of_[i + 1];
+    });
+    history.store(i, stored == states_.end() ? EditHistory::Load() : loader(stored->file));
+  }
+}
+
+WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
+                                          EditHistory::Replay replay, std::size_t budget,
+                                          bool keep_journal, bool recover) {
+  OpenedWorkspace found = openWorkspace(folder, recover);
+  Opened opened;
+  opened.notes = std::move(found.notes);
+  opened.events = found.journal.size();
+  const FoldedJournal fold = folded(found.journal, found.journal_file.string());
+  std::map<std::size_t, std::string> state_at; // by position
+  for (const StoredState& state : found.states) {
+    if (state.event >= fold.position_at.size()) continue;
+    const std::size_t position = fold.position_at[state.event];
+    if (stillThere(fold, state.event, position)) state_at[position] = state.file;
+  }
+  const WorkspaceLink place(folder);
+  const auto first = state_at.find(0);
+  Scene start = first == state_at.end() ? found.scene : loadState(folder, first->second);
+  opened.history = std::make_unique<EditHistory>(std::move(start), std::move(replay), budget);
+  for (std::size_t i = 0; i < fold.steps.size(); ++i) {
+    EditHistory::Load load;
+    if (const auto* scene = std::get_if<StoredSceneEdit>(fold.steps[i].event))
+      load = place.loader(scene->state);
+    else if (const auto state = state_at.find(i + 1); state != state_at.end())
+      load = place.loader(state->second);
+    opened.history->appendStored(editOf(*fold.steps[i].event), std::move(load));
+  }
+  // The saved scene, where the history still has it; what the journal says beyond is replayed.
+  const std::uint64_t saved_event = std::min<std::uint64_t>(found.event, found.journal.size());
+  const std::size_t saved = fold.position_at[saved_event];
+  if (stillThere(fold, saved_event, saved)) opened.history->place(saved, found.scene);
+  opened.unsaved = saved_event < found.journal.size();
+  if (opened.unsaved || opened.history->undoable() != fold.position)
+    opened.history->place(fold.position, opened.history->sceneAt(fold.position));
+  if (!keep_journal) return opened;
+  if (found.states.empty() && recover) { // what could not be read may still be mended by hand
+    opened.notes.push_back(folder.string() + ": stays as it is; save the scene to another folder");
+    return opened;
+  }
+  if (found.states.empty()) { // of a version without history: it begins here
+    opened.link = create(folder, *opened.history);
+    return opened;
+  }
+  auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
+  link->journal_ = std::make_unique<JournalWriter>(found.journal_file, found.journal.size());
+  link->states_ = std::move(found.states);
+  link->event_of_.push_back(0);
+  for (const FoldedJournal::Step& step : fold.steps) link->event_of_.push_back(step.number);
+  opened.link = std::move(link);
+  return opened;
+}
+
+std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path& folder,
+                                                     EditHistory& history) {
+  makeFolder(folder);
+  const FolderLock alone(folder);
+  requireWorkspacePlace(folder);
+  return write(folder, history);
+}
+
+std::unique_ptr<WorkspaceLink> WorkspaceLink::createOver(const std::filesystem::path& folder,
+                                                         EditHistory& history) {
+  makeFolder(folder);
+  const FolderLock alone(folder);
+  return write(folder, history);
+}
+
+std::unique_ptr<WorkspaceLink> WorkspaceLink::write(const std::filesystem::path& folder,
+                                                    EditHistory& history) {
+  auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
+  std::map<std::size_t, std::string> scenes; // of the SceneEdits, by index
+  std::vector<JournalEvent> journal;
+  link->states_.push_back({0, storeState(history.start(), 0, folder)});
+  link->event_of_.push_back(0);
+  const std::size_t count = history.undoable() + history.redoable();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Edit& edit = history.edit(i);
+    const std::uint64_t event = i + 1;
+    if (const auto* stroke = std::get_if<Stroke>(&edit))
+      journal.emplace_back(*stroke);
+    else if (const auto* values = std::get_if<ValueEdit>(&edit))
+      journal.emplace_back(*values);
+    else
+      journal.emplace_back(
+          StoredSceneEdit{std::get<SceneEdit>(edit).what,
+                          scenes[i] = storeState(history.sceneAt(event), event, folder)});
+    link->event_of_.push_back(event);
+  }
+  for (const std::size_t position : history.landmarks(kLandmarkCost))
+    link->states_.push_back({position, storeState(history.sceneAt(position), position, folder)});
+  if (history.redoable() > 0) journal.emplace_back(UndoEvent{static_cast<int>(history.redoable())});
+  saveWorkspace(history.scene(), journal.size(), link->states_, journal, folder);
+  link->journal_ =
+      std::make_unique<JournalWriter>(openWorkspace(folder).journal_file, journal.size());
+  for (const auto& [index, state] : scenes) history.store(index, link->loader(state));
+  link->tieStates(history);
+  return link;
+}
+
+void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after) {
+  // What is on disk must be known here: no memory is taken after that.
+  if (event_of_.capacity() <= position_after) event_of_.reserve(2 * position_after + 1);
+  if (const auto* stroke = std::get_if<Stroke>(&edit)) {
+    journal_->append(*stroke);
+  } else if (const auto* values = std::get_if<ValueEdit>(&edit)) {
+    journal_->append(*values);
+  } else {
+    const SceneEdit& whole = std::get<SceneEdit>(edit);
+    const std::string state = storeState(*whole.scene, journal_->events() + 1, folder_);
+    journal_->append(StoredSceneEdit{whole.what, state});
+  }
+  event_of_.resize(position_after);
+  event_of_.push_back(journal_->events());
+}
+
+void WorkspaceLink::recordUndo(std::size_t steps) {
+  journal_->append(UndoEvent{static_cast<int>(steps)});
+}
+
+void WorkspaceLink::recordRedo(std::size_t steps) {
+  journal_->append(RedoEvent{static_cast<int>(steps)});
+}
+
+void WorkspaceLink::save(EditHistory& history) {
+  std::vector<StoredState> states;
+  if (!states_.empty() && states_.front().event == 0) states.push_back(states_.front());
+  for (const std::size_t position : history.landmarks(kLandmarkCost)) {
+    const std::uint64_t event = event_of_[position];
+    const auto stored = std::find_if(states_.begin(), states_.end(),
+                                     [&](const StoredState& s) { return s.event == event; });
+    states.push_back(
+        stored != states_.end()
+            ? *stored
+            : StoredState{event, storeState(history.sceneAt(position), event, folder_)});
+  }
+  saveWorkspace(history.scene(), journal_->events(), states, folder_);
+  states_ = std::move(states);
+  tieStates(history);
+}
+
+} // namespace patina

@@ -1,0 +1,98 @@
+#include "visualization/export/volume_file.h"
+
+#include <array>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include <vtkCommand.h>
+#include <vtkLogger.h>
+#include <vtkXMLImageDataReader.h>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+// Collects what VTK would print. Its first line is the cause; the rest is about our own caller.
+class ErrorCatcher : public vtkCommand {
+ public:
+  static ErrorCatcher* New() { return new ErrorCatcher; }
+  void Execute(vtkObject*, unsigned long, void* data) override {
+    if (!cause.empty() || data == nullptr) return;
+    cause = static_cast<const char*>(data);
+    // "ERROR: In file, line n\nvtkClass (0x..): cause\n"
+    if (const auto colon = cause.find("): "); colon != std::string::npos)
+      cause = cause.substr(colon + 3);
+    if (const auto end = cause.find('\n'); end != std::string::npos) cause.resize(end);
+  }
+  std::string cause = {};
+};
+
+// VTK's pipeline and decompressor print on stderr beside what they tell their observers.
+class QuietLog {
+ public:
+  QuietLog() { vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF); }
+  ~QuietLog() { vtkLogger::SetStderrVerbosity(before_); }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  vtkLogger::Verbosity before_ = vtkLogger::GetCurrentVerbosityCutoff();
+};
+
+// The reader allocates whatever the header asks for, so the header is read first.
+void checkHeader(const std::filesystem::path& path) {
+  std::error_code code;
+  if (!std::filesystem::exists(path, code)) throw FileError(path.string(), 0, "no such file");
+  if (std::filesystem::is_directory(path, code))
+    throw FileError(path.string(), 0, "is a folder, not a .vti volume");
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(8192, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  if (head.empty()) throw FileError(path.string(), 0, "is empty or cannot be read");
+  if (head.find("<VTKFile") == std::string::npos || head.find("\"ImageData\"") == std::string::npos)
+    throw FileError(path.string(), 0, "is not a VTK XML ImageData (.vti) file");
+  const auto at = head.find("WholeExtent=\"");
+  if (at == std::string::npos) throw FileError(path.string(), 0, "has no WholeExtent");
+  std::istringstream numbers(head.substr(at + 13, 200));
+  double nodes = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = 0, high = 0;
+    if (!(numbers >> low >> high) || high < low)
+      throw FileError(path.string(), 0, "has a WholeExtent that is not six ascending numbers");
+    nodes *= high - low + 1;
+  }
+  if (nodes > 1073741824.0)
+    throw FileError(path.string(), 0, "has more than 2^30 nodes: resample it to a smaller grid");
+}
+
+} // namespace
+
+vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path) {
+  checkHeader(path);
+  const QuietLog quiet;
+  const vtkNew<ErrorCatcher> errors;
+  const vtkNew<vtkXMLImageDataReader> reader;
+  reader->AddObserver(vtkCommand::ErrorEvent, errors);
+  reader->AddObserver(vtkCommand::WarningEvent, errors);
+  reader->SetFileName(path.c_str());
+  try {
+    // The XML parser is made inside; its complaints reach the reader's own error code.
+    reader->SetReaderErrorObserver(errors);
+    reader->SetParserErrorObserver(errors);
+    reader->Update();
+  } catch (const std::exception&) {
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
+  }
+  if (!errors->cause.empty() || reader->GetErrorCode() != 0)
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
+  vtkSmartPointer<vtkImageData> image = reader->GetOutput();
+  if (image == nullptr || image->GetNumberOfPoints() == 0)
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged, or without nodes");
+  return image;
+}
+
+} // namespace patina

@@ -1,0 +1,201 @@
+#include "visualization/layers/tool_layer.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <vtkCamera.h>
+#include <vtkConeSource.h>
+#include <vtkCylinderSource.h>
+#include <vtkMatrix4x4.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkSphereSource.h>
+#include <vtkTextProperty.h>
+
+#include "visualization/values/palette.h"
+
+namespace patina {
+namespace {
+
+constexpr double kSmallestForce = 0.005; // [N]; an arrow below it is a speck
+constexpr double kArrowPerNewton = 0.16; // of the picture's height
+constexpr double kPointRadius = 0.013;   // same
+
+vtkSmartPointer<vtkActor> actorOf(vtkAlgorithm* source, const palette::Color& color,
+                                  double opacity) {
+  const vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(source->GetOutputPort());
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  vtkProperty* property = actor->GetProperty();
+  property->SetColor(palette::forVtk(color));
+  property->SetOpacity(opacity);
+  property->SetAmbient(0.25);
+  property->SetDiffuse(0.75);
+  property->SetSpecular(0.25);
+  property->SetSpecularPower(30);
+  return actor;
+}
+
+vtkSmartPointer<vtkActor> unitBall(const palette::Color& color, double opacity) {
+  const vtkNew<vtkSphereSource> source;
+  source->SetRadius(1);
+  source->SetThetaResolution(28);
+  source->SetPhiResolution(20);
+  return actorOf(source, color, opacity);
+}
+
+// Along +y from 0 to 1, radius 1 at the bottom and `top` at the end.
+vtkSmartPointer<vtkActor> unitRod(const palette::Color& color) {
+  const vtkNew<vtkCylinderSource> source;
+  source->SetRadius(1);
+  source->SetHeight(1);
+  source->SetCenter(0, 0.5, 0);
+  source->SetResolution(20);
+  return actorOf(source, color, 1);
+}
+
+// Along +y, its base of radius 1 at 0 and its point at 1.
+vtkSmartPointer<vtkActor> unitCone(const palette::Color& color) {
+  const vtkNew<vtkConeSource> source;
+  source->SetRadius(1);
+  source->SetHeight(1);
+  source->SetDirection(0, 1, 0);
+  source->SetCenter(0, 0.5, 0);
+  source->SetResolution(24);
+  return actorOf(source, color, 1);
+}
+
+// Takes +y to the segment from a to b, and the unit radius to `radius`.
+void stretch(vtkActor& actor, const Vec3& a, const Vec3& b, double radius) {
+  const Vec3 along = b - a;
+  const double length = along.norm();
+  if (length <= 0) return;
+  const Vec3 y = along / length;
+  const Vec3 x = y.unitOrthogonal();
+  const Vec3 z = x.cross(y);
+  const vtkNew<vtkMatrix4x4> matrix;
+  for (int row = 0; row < 3; ++row) {
+    matrix->SetElement(row, 0, radius * x[row]);
+    matrix->SetElement(row, 1, along[row]);
+    matrix->SetElement(row, 2, radius * z[row]);
+    matrix->SetElement(row, 3, a[row]);
+  }
+  actor.SetUserMatrix(matrix);
+}
+
+void placeBall(vtkActor& actor, const Vec3& centre, double radius) {
+  actor.SetScale(radius);
+  actor.SetPosition(centre[0], centre[1], centre[2]);
+}
+
+} // namespace
+
+Vec3 seenContact(const ToolSample& sample) {
+  if (!sample.contact) return sample.surface;
+  const double reach = sample.depth - (sample.surface - sample.tip).dot(sample.normal);
+  return sample.vcp - reach * sample.normal;
+}
+
+ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
+    : ball_(unitBall(palette::kTool, 1)), neck_(unitCone(palette::kTool)),
+      shaft_(unitRod(palette::kToolShaft)), ghost_(unitBall(palette::kGhost, 0.45)),
+      spring_(unitRod(palette::kGhost)), stem_(unitRod(palette::kContactPoint)),
+      contact_(unitBall(palette::kContactPoint, 1)), arrow_shaft_(unitRod(palette::kForce)),
+      arrow_head_(unitCone(palette::kForce)),
+      label_(vtkSmartPointer<vtkBillboardTextActor3D>::New()) {
+  for (const auto& actor : {ball_, neck_, shaft_}) scene.AddActor(actor);
+  for (const auto& actor : {spring_, stem_, ghost_, contact_, arrow_shaft_, arrow_head_})
+    overlay.AddActor(actor);
+  vtkTextProperty* text = label_->GetTextProperty();
+  text->SetFontFamilyToArial();
+  text->SetFontSize(16);
+  text->BoldOn();
+  text->SetColor(palette::forVtk(palette::kForce));
+  text->SetBackgroundColor(1, 1, 1);
+  text->SetBackgroundOpacity(0.72);
+  text->SetVerticalJustificationToCentered();
+  label_->SetDisplayOffset(12, 0);
+  overlay.AddActor(label_);
+  place();
+}
+
+void ToolLayer::setTipRadius(double radius) {
+  tip_radius_ = radius;
+  place();
+}
+
+void ToolLayer::update(const ToolSample& sample) {
+  sample_ = sample;
+  place();
+}
+
+void ToolLayer::faceCamera(vtkCamera& camera) {
+  const Vec3 up(camera.GetViewUp());
+  const Vec3 back = Vec3(camera.GetPosition()) - Vec3(camera.GetFocalPoint());
+  const Vec3 right = up.cross(back).normalized();
+  lean_ =
+      (0.55 * right + 0.65 * back.cross(right).normalized() + 0.5 * back.normalized()).normalized();
+  length_ = 2 * back.norm() * std::tan(0.5 * camera.GetViewAngle() * M_PI / 180);
+  place();
+}
+
+void ToolLayer::setVisible(bool on) {
+  visible_ = on;
+  place();
+}
+
+std::optional<Vec3> ToolLayer::arrowEnd() const {
+  const double newtons = sample_.force.norm();
+  if (!visible_ || !(newtons > kSmallestForce)) return std::nullopt;
+  const Vec3 held = sample_.contact ? sample_.vcp : sample_.tip;
+  return held + sample_.force / newtons * (ballRadius() + kArrowPerNewton * newtons * length_);
+}
+
+double ToolLayer::ballRadius() const {
+  return tip_radius_ > 0 ? tip_radius_ : kPointRadius * length_;
+}
+
+void ToolLayer::place() {
+  const Vec3 held = sample_.contact ? sample_.vcp : sample_.tip;
+  const double radius = ballRadius();
+  const double shaft_radius = 0.006 * length_;
+  placeBall(*ball_, held, radius);
+  // The neck's base sits on the shaft and its point in the ball.
+  const Vec3 neck_end = held + lean_ * (0.8 * radius + 0.05 * length_);
+  stretch(*neck_, neck_end, held, shaft_radius);
+  stretch(*shaft_, neck_end, neck_end + lean_ * (0.32 * length_), shaft_radius);
+
+  placeBall(*ghost_, sample_.tip, radius);
+  const bool near = sample_.contact || sample_.attracted;
+  const Vec3 seen = seenContact(sample_);
+  placeBall(*contact_, seen, 0.004 * length_);
+  // Without a length there is nothing to stretch: the rod would be its own metre.
+  const bool apart = (seen - held).norm() > 1e-4 * length_;
+  if (apart) stretch(*stem_, held, seen, 0.0013 * length_);
+  stretch(*spring_, sample_.tip, held, 0.0016 * length_);
+
+  const double newtons = sample_.force.norm();
+  const bool pushed = newtons > kSmallestForce;
+  if (pushed) {
+    const Vec3 direction = sample_.force / newtons;
+    const double head = std::min(0.045, 0.5 * kArrowPerNewton * newtons) * length_;
+    const Vec3 begin = held + direction * radius;
+    const Vec3 end = begin + direction * (kArrowPerNewton * newtons * length_);
+    stretch(*arrow_shaft_, begin, end - direction * head, 0.0055 * length_);
+    stretch(*arrow_head_, end - direction * head, end, 0.35 * head);
+    label_->SetPosition(end[0], end[1], end[2]);
+    char words[32];
+    std::snprintf(words, sizeof words, " %.2f N ", newtons);
+    label_->SetInput(words);
+  }
+  for (const auto& actor : {ball_, neck_, shaft_}) actor->SetVisibility(visible_);
+  for (const auto& actor : {ghost_, spring_}) actor->SetVisibility(visible_ && sample_.contact);
+  contact_->SetVisibility(visible_ && near);
+  stem_->SetVisibility(visible_ && near && apart);
+  for (const auto& actor : {arrow_shaft_, arrow_head_}) actor->SetVisibility(visible_ && pushed);
+  label_->SetVisibility(visible_ && pushed);
+}
+
+} // namespace patina

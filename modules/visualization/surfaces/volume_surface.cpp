@@ -1,0 +1,90 @@
+#include <cmath>
+#include <string>
+
+#include <vtkCellArray.h>
+#include <vtkDataArray.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageData.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "visualization/export/field_io.h"
+#include "visualization/export/volume_file.h"
+
+namespace patina {
+namespace {
+
+vtkDataArray* scalarsOf(vtkImageData* image, const std::filesystem::path& path) {
+  auto* points = image->GetPointData();
+  vtkDataArray* scalars = points->GetScalars();
+  for (int i = 0; scalars == nullptr && i < points->GetNumberOfArrays(); ++i)
+    scalars = points->GetArray(i);
+  if (scalars == nullptr)
+    throw FileError(path.string(), 0,
+                    "has no values at its nodes (point data) to take a surface of");
+  if (scalars->GetNumberOfComponents() != 1)
+    throw FileError(path.string(), 0, "has several values a node; a surface needs one");
+  return scalars;
+}
+
+VolumeRange rangeOf(vtkDataArray* scalars) {
+  VolumeRange range;
+  double values[2] = {0, 0};
+  scalars->GetFiniteRange(values, 0);
+  range.low = values[0];
+  range.high = values[1];
+  return range;
+}
+
+} // namespace
+
+VolumeRange scalarRange(const std::filesystem::path& path) {
+  const auto image = readVolume(path);
+  return rangeOf(scalarsOf(image, path));
+}
+
+TriangleMesh isoSurfaceOfVolume(const std::filesystem::path& path, double iso) {
+  const auto image = readVolume(path);
+  auto* scalars = scalarsOf(image, path);
+  const int* nodes = image->GetDimensions();
+  if (nodes[0] < 2 || nodes[1] < 2 || nodes[2] < 2)
+    throw FileError(path.string(), 0, "is flat: a surface needs two nodes or more on each axis");
+  image->GetPointData()->SetActiveScalars(scalars->GetName());
+  image->GetPointData()->SetScalars(scalars);
+
+  const vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputData(image);
+  contour->SetValue(0, iso);
+  contour->ComputeNormalsOff();
+  contour->ComputeScalarsOff();
+  contour->Update();
+  vtkPolyData* surface = contour->GetOutput();
+
+  TriangleMesh mesh;
+  mesh.positions.resize(static_cast<std::size_t>(surface->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    surface->GetPoint(static_cast<vtkIdType>(i), mesh.positions[i].data());
+  mesh.triangles.reserve(static_cast<std::size_t>(surface->GetNumberOfPolys()));
+  vtkIdType size = 0;
+  const vtkIdType* corner = nullptr;
+  auto* polygons = surface->GetPolys();
+  for (polygons->InitTraversal(); polygons->GetNextCell(size, corner) != 0;)
+    if (size == 3)
+      mesh.triangles.push_back({static_cast<std::int32_t>(corner[0]),
+                                static_cast<std::int32_t>(corner[1]),
+                                static_cast<std::int32_t>(corner[2])});
+  if (mesh.triangles.empty()) {
+    const VolumeRange range = rangeOf(scalars);
+    throw FileError(path.string(), 0,
+                    "has no surface at " + formatNumber(iso) + ": its values run from " +
+                        formatNumber(range.low) + " to " + formatNumber(range.high));
+  }
+  // A distance grows outwards, a density inwards; contact wants outward normals of both.
+  if (volume(mesh) < 0)
+    for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  return mesh;
+}
+
+} // namespace patina

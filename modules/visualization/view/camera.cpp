@@ -1,0 +1,114 @@
+#include "visualization/view/camera.h"
+
+#include <cmath>
+
+namespace patina {
+namespace {
+
+constexpr double kHalfView = 15.0 * M_PI / 180; // VTK's default view angle of 30 degrees, halved
+constexpr double kMargin = 1.08;
+
+struct Frame {
+  Vec3 right, up, back;
+};
+Frame frameOf(vtkCamera& camera) {
+  const Vec3 back = (Vec3(camera.GetPosition()) - Vec3(camera.GetFocalPoint())).normalized();
+  const Vec3 right = Vec3(camera.GetViewUp()).cross(back).normalized();
+  return {right, back.cross(right), back};
+}
+
+double halfHeight(vtkCamera& camera) {
+  return camera.GetDistance() * std::tan(0.5 * camera.GetViewAngle() * M_PI / 180);
+}
+
+void look(vtkCamera& camera, const Vec3& eye, const Vec3& at, const Vec3& up) {
+  camera.SetPosition(eye[0], eye[1], eye[2]);
+  camera.SetFocalPoint(at[0], at[1], at[2]);
+  camera.SetViewUp(up[0], up[1], up[2]);
+}
+
+} // namespace
+
+void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& points,
+               double aspect) {
+  const Frame frame = frameOf(camera);
+  const double tangent = std::tan(kHalfView);
+  // The nearest distance at which every point is in the picture.
+  double distance = 0;
+  for (const Vec3& point : points) {
+    const Vec3 corner = point - centre;
+    const double across = std::abs(corner.dot(frame.right)) / aspect;
+    const double high = std::abs(corner.dot(frame.up));
+    distance =
+        std::max(distance, kMargin * std::max(across, high) / tangent + corner.dot(frame.back));
+  }
+  camera.SetViewAngle(2 * kHalfView * 180 / M_PI);
+  look(camera, centre + frame.back * distance, centre, frame.up);
+}
+
+void turnCamera(vtkCamera& camera, ViewPreset view) {
+  Vec3 back = Vec3::UnitX(), up = Vec3::UnitZ();
+  switch (view) {
+  case ViewPreset::plus_x:
+    back = Vec3::UnitX();
+    break;
+  case ViewPreset::minus_x:
+    back = -Vec3::UnitX();
+    break;
+  case ViewPreset::plus_y:
+    back = Vec3::UnitY();
+    break;
+  case ViewPreset::minus_y:
+    back = -Vec3::UnitY();
+    break;
+  case ViewPreset::plus_z:
+    back = Vec3::UnitZ();
+    up = Vec3::UnitY();
+    break;
+  case ViewPreset::minus_z:
+    back = -Vec3::UnitZ();
+    up = Vec3::UnitY();
+    break;
+  case ViewPreset::iso:
+    back = Vec3(0.65, -1, 0.55).normalized();
+    break;
+  }
+  const Vec3 centre(camera.GetFocalPoint());
+  look(camera, centre + back, centre, up);
+}
+
+void orbit(vtkCamera& camera, double dx, double dy) {
+  camera.Azimuth(-180 * dx);
+  camera.Elevation(-180 * dy);
+  camera.OrthogonalizeViewUp();
+}
+
+void pan(vtkCamera& camera, double dx, double dy) {
+  const Frame frame = frameOf(camera);
+  const Vec3 shift = -2 * halfHeight(camera) * (dx * frame.right + dy * frame.up);
+  look(camera, Vec3(camera.GetPosition()) + shift, Vec3(camera.GetFocalPoint()) + shift, frame.up);
+}
+
+void zoom(vtkCamera& camera, double factor) {
+  if (factor > 0) camera.Dolly(factor);
+}
+
+Ray rayThrough(vtkCamera& camera, double x, double y) {
+  const Frame frame = frameOf(camera);
+  const double tangent = 2 * std::tan(0.5 * camera.GetViewAngle() * M_PI / 180);
+  return {Vec3(camera.GetPosition()),
+          (x * tangent * frame.right + y * tangent * frame.up - frame.back).normalized()};
+}
+
+Vec3 viewDirection(vtkCamera& camera) {
+  return -frameOf(camera).back;
+}
+
+Vec3 pointInViewPlane(vtkCamera& camera, double x, double y, const Vec3& through) {
+  const Ray ray = rayThrough(camera, x, y);
+  const Vec3 normal = viewDirection(camera);
+  return ray.origin +
+         ray.direction * ((through - ray.origin).dot(normal) / ray.direction.dot(normal));
+}
+
+} // namespace patina

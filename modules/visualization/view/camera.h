@@ -1,0 +1,35 @@
+// Moving the camera and moving a point with the mouse: plain functions on a VTK camera.
+#pragma once
+
+#include <vector>
+
+#include <vtkCamera.h>
+
+#include "core/types.h"
+#include "visualization/view/view_options.h"
+
+namespace patina {
+
+// Looks at what it looked at before, from a preset side.
+void turnCamera(vtkCamera& camera, ViewPreset view);
+// Looks at `centre` from the present direction, as near as all points allow. aspect = width /
+// height.
+void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& points,
+               double aspect);
+
+// dx, dy in fractions of the picture's height, to the right and up.
+void orbit(vtkCamera& camera, double dx, double dy);
+void pan(vtkCamera& camera, double dx, double dy);
+void zoom(vtkCamera& camera, double factor); // > 1 comes nearer
+
+// The point under the mouse in the plane through `through` that faces the camera.
+// x, y in fractions of the picture's height from its centre, to the right and up.
+Vec3 pointInViewPlane(vtkCamera& camera, double x, double y, const Vec3& through);
+Vec3 viewDirection(vtkCamera& camera); // unit, away from the eye
+
+struct Ray {
+  Vec3 origin, direction; // direction is unit
+};
+Ray rayThrough(vtkCamera& camera, double x, double y);
+
+} // namespace patina

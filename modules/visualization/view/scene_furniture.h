@@ -1,0 +1,25 @@
+// What every scene's picture has: lights, materials, the axes in the corner.
+#pragma once
+
+#include <vtkActor.h>
+#include <vtkAxesActor.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include "core/types.h"
+#include "visualization/values/palette.h"
+
+namespace patina {
+
+// An actor with an empty mapper and the matt material of all surfaces.
+vtkSmartPointer<vtkActor> surfaceActor(const palette::Color& color);
+// Of objects that are drawn in their own frame.
+void place(vtkActor& actor, const Pose& world_from_object);
+// Three lamps that go with the camera.
+void addLights(vtkRenderer& renderer);
+vtkSmartPointer<vtkAxesActor> axesActor();
+// Of small text [pixel]: readable in a window, and in proportion in a large picture.
+int textSize(vtkRenderWindow* window);
+
+} // namespace patina
