@@ -1,4 +1,5 @@
 #include "pictures/picture_file.h"
+#include "workspace/painted_image.h"
 
 #include <cstdlib>
 #include <fstream>
