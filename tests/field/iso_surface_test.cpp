@@ -139,20 +139,6 @@ TEST(IsoSurface, OfNoiseIsClosedAndManifold) {
     ASSERT_GT(faceNormal(mesh, t).norm(), 0.5) << "a triangle without area";
 }
 
-TEST(IsoSurface, IsTheSumOfItsBlocksBitForBit) {
-  const FieldGrid grid = cubeGrid(0.05, 80);
-  const SurfaceField field = sampleFunction(torusDistance(0.033, 0.016), grid, 8);
-  const double iso = 1.3 * grid.voxel;
-  const TriangleMesh whole = isoSurface(field, iso);
-  std::size_t triangle = 0;
-  for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
-    const TriangleMesh part = isoSurfaceOfBlock(field, static_cast<std::int32_t>(slot), iso);
-    for (std::size_t t = 0; t < part.triangles.size(); ++t, ++triangle)
-      for (int c = 0; c < 3; ++c) ASSERT_EQ(part.corner(t, c), whole.corner(triangle, c));
-  }
-  EXPECT_EQ(triangle, whole.triangles.size());
-}
-
 TEST(IsoSurface, LeavesOutCellsAtTheBandsEndAndTheirVertices) {
   const FieldGrid grid = cubeGrid(0.05, 64);
   const SurfaceField field = sampleFunction(sphereDistance(0.05), grid, 8);
@@ -170,7 +156,6 @@ TEST(IsoSurface, RefusesAnIsoValueOutsideTheBand) {
   const SurfaceField field = sampleFunction(sphereDistance(0.05), grid, 8);
   EXPECT_THROW(isoSurface(field, 8 * grid.voxel), std::invalid_argument);
   EXPECT_THROW(isoSurface(field, std::nan("")), std::invalid_argument);
-  EXPECT_THROW(isoSurfaceOfBlock(field, -1, 0), std::invalid_argument);
 }
 
 TEST(Dinosaur, IsOneClosedBodyAHundredMillimetresLong) {

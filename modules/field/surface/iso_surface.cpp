@@ -83,30 +83,6 @@ void dropUnused(TriangleMesh& mesh) {
 
 } // namespace
 
-TriangleMesh isoSurfaceOfBlock(const SurfaceField& field, std::int32_t slot, double iso) {
-  if (slot < 0 || static_cast<std::size_t>(slot) >= field.blockCount())
-    throw std::invalid_argument("isoSurfaceOfBlock: no such block");
-  const float level = isoInVoxels(field, iso);
-  const CellPhi cells = gatherCells(NodeReader(field), slot);
-  const IsoBlock block(cells, level);
-
-  TriangleMesh mesh;
-  std::array<std::int32_t, 3 * kSampleSide * kSampleSide * kSampleSide> number;
-  number.fill(-1);
-  const auto vertex = [&](int x, int y, int z, int axis) {
-    std::int32_t& v = number[static_cast<std::size_t>(
-        ((axis * kSampleSide + z) * kSampleSide + y) * kSampleSide + x)];
-    if (v < 0) {
-      v = static_cast<std::int32_t>(mesh.positions.size());
-      mesh.positions.push_back(vertexOn(
-          field, cells, level, field.block_at[static_cast<std::size_t>(slot)], x, y, z, axis));
-    }
-    return v;
-  };
-  triangulate(block, vertex, [&](const Triangle& t) { mesh.triangles.push_back(t); });
-  return mesh;
-}
-
 TriangleMesh isoSurface(const SurfaceField& field, double iso) {
   const float level = isoInVoxels(field, iso);
   const std::size_t count = field.blockCount();
