@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "haptics/contact/proxy_stage.h"
 #include "haptics/contact/pull_back.h"
 #include "haptics/contact_fixture.h"
 
@@ -33,6 +34,49 @@ TEST(Crease, SlidingAcrossAnEdgeDeeperThanTheBandIsNoFault) {
       EXPECT_GT(contact.normal.x(), 0.99); // of the face where it came in
     }
   }
+}
+
+// P04 in the inner corner of a cube without one octant, where walls let c go far in one tick: tips
+// that jump about inside at up to 1 m/s, much deeper than the band.
+TEST(Crease, TheContactPointGoesNoFartherInATickThanItMay) {
+  constexpr double kVoxel = 1e-3, kOwn = kSnapSides * 100 * kVoxel; // [m], [m/s]
+  const Field corner = cubeField(
+      [](const Vec3& p) {
+        const Vec3 half = Vec3::Constant(0.04);
+        return std::max(boxDistance(p, half), -boxDistance(p - half, half));
+      },
+      kVoxel, 100);
+  const auto snapshot = compileStages(sceneOf(500), corner);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  double farthest = 0, excess = 0;
+  int touching = 0;
+  for (const double speed : {0.2, 1.0}) {
+    ContactMemory memory;
+    Vec3 tip(0.01, 0.012, 0.008), velocity = Vec3::Zero();
+    Contact last = tick(*snapshot, memory, tip, 1e-3);
+    for (int i = 0; i < 60000; ++i) {
+      velocity += 0.2 * speed * Vec3(uniform(random), uniform(random), uniform(random));
+      if (velocity.norm() > speed) velocity *= speed / velocity.norm();
+      const Vec3 next = tip + 1e-3 * velocity;
+      for (int a = 0; a < 3; ++a)
+        if (next[a] < -0.03 || next[a] > 0.014) velocity[a] = -velocity[a];
+      tip += 1e-3 * velocity;
+      const Contact now = tick(*snapshot, memory, tip, 1e-3);
+      const double step = (tip - last.tip).norm(), ball = step + kOwn * 1e-3;
+      if (now.touching && last.touching) {
+        ++touching;
+        farthest = std::max(farthest, (now.candidate - last.candidate).norm() / ball);
+        excess = std::max(excess, (now.force - last.force).norm() - 500 * (step + ball));
+      }
+      last = now;
+    }
+  }
+  std::printf("%d ticks in contact: c goes at most %.3f of what it may, step beyond it %.4f N\n",
+              touching, farthest, excess);
+  EXPECT_GT(touching, 60000);
+  EXPECT_LE(farthest, 1.1);
+  EXPECT_LE(excess, 0.01);
 }
 
 // J of the closest point, which such a crease holds too.

@@ -100,11 +100,9 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
   const double step = (tip - last_.tip).norm(), ball = step + kOwnSpeed * dt;
   const double excess =
       (now.force - last_.force).norm() - kJudgeStiffness * (2 * step + kOwnSpeed * dt);
-  if (!snapped(now)) {
-    // Not a number is worse than any.
-    report.worst_excess = std::max(report.worst_excess, std::isfinite(excess) ? excess : 1e9);
-    report.excesses += !(excess <= 0.05);
-  }
+  // Not a number is worse than any.
+  report.worst_excess = std::max(report.worst_excess, std::isfinite(excess) ? excess : 1e9);
+  report.excesses += !(excess <= 0.05);
 
   if (last_.touching)
     report.samples.push_back(now.samples);

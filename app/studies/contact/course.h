@@ -20,15 +20,15 @@ inline constexpr double kTick = 1e-3;    // [s]
 
 struct CourseReport {
   long ticks = 0;
-  long contacts = 0;         // ticks in contact by the oracle
-  long lost = 0;             // of these, without force
-  long pulls = 0;            // of these, force towards the inside
-  long faults = 0;           // ticks with contact.fault or a force that is not finite
-  long snaps = 0;            // ticks in contact that announce a step of their own
-  long unjudged = 0;         // no free place near the candidate: the oracle has no answer
-  double worst_excess = 0;   // [N], of |dF| beyond 2 K |dx| + K v_s dt, where no snap is announced
-  long excesses = 0;         // ticks with more than 0.05 N of it
-  std::vector<double> error; // [N], |F - K (c - x)| with c continued from the method's own
+  long contacts = 0;                 // ticks in contact by the oracle
+  long lost = 0;                     // of these, without force
+  long pulls = 0;                    // of these, force towards the inside
+  long faults = 0;                   // ticks with contact.fault or a force that is not finite
+  long snaps = 0;                    // ticks in contact that announce a step of their own
+  long unjudged = 0;                 // no free place near the candidate: the oracle has no answer
+  double worst_excess = 0;           // [N], of |dF| beyond 2 K |dx| + K v_s dt, snaps too
+  long excesses = 0;                 // ticks with more than 0.05 N of it
+  std::vector<double> error;         // [N], |F - K (c - x)| with c continued from the method's own
   std::vector<double> snap_error;    // the same where either of the two ran as far as it may
   std::vector<double> free_error;    // [N], with c continued from the oracle's own
   std::vector<double> samples;       // of the field, a tick that began in contact

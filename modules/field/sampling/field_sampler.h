@@ -57,6 +57,8 @@ class FieldSampler {
 
   GridSample atGrid(const Vec3& q) const noexcept; // q in grid coordinates
   // own: share of the value's own derivative in the gradient also where the nodes agree, 0 .. 1.
+  // With 0 a crease is told only where the blend's length is not 1 either, as beside every crease
+  // of a distance; between baked flanks of one slope it may be.
   SurfaceSample surfaceAtGrid(const Vec3& q, double own = 0) const noexcept;
   // Only the value, for root finding along a ray.
   double phiAtGrid(const Vec3& q) const noexcept;

@@ -95,7 +95,8 @@ struct Contact {
   Vec3 candidate = Vec3::Zero(); // frictionless VCP c
   Vec3 vcp = Vec3::Zero();       // p, after friction; the tip if not touching
   double depth = 0;              // d = |c - x| [m]
-  // What holds c, the one that bears most first: c - x is the sum of load times normal.
+  // What holds c, the one that bears most first: c - x is the sum of load times normal, but where c
+  // was held back (snap): there the loads are those of a c that had arrived.
   struct WallLoad {
     Vec3 normal = Vec3::Zero(); // unit, outward
     double load = 0;            // [m]

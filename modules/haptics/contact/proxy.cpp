@@ -27,7 +27,8 @@ constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
 constexpr double kLent = 4e-3;     // voxel^2, from where on it is taken back
 constexpr double kRoom = 1 + 1e-6; // of the square of a bound, for rounding
-constexpr int kMostSlides = 2, kFewLooks = 3, kMostLooks = 8, kMostShortenings = 4;
+constexpr double kAlwaysSpread = 1e-12;
+constexpr int kMostSlides = 2, kFewLooks = 3, kMostLooks = 8, kMostSecants = 4, kMostHalvings = 6;
 
 } // namespace
 
@@ -45,8 +46,10 @@ struct ProxySearch::Aim {
 };
 
 ProxySearch::Seen ProxySearch::look(const Vec3& q, double own) const noexcept {
-  const SurfaceSample sample =
-      sampler_->surfaceAtGrid(q, sampler_->sampler() == Sampler::high ? own : 0);
+  if (sampler_->sampler() != Sampler::high) own = 0;
+  // With relief baked in gradients are not of length 1, and a blend's length tells no crease.
+  if (per_steepness_ < 1) own = std::max(own, kAlwaysSpread);
+  const SurfaceSample sample = sampler_->surfaceAtGrid(q, own);
   Seen seen;
   seen.height = sample.phi - iso_;
   seen.known = sample.region == FieldRegion::band;
@@ -70,19 +73,29 @@ double ownShare(const Proxy& proxy) noexcept {
 }
 
 // A bounded move is the projection of a point nearer to the middle: cutting the way short instead
-// would leave the walls.
+// would leave the walls. A few secants find the point; where they do not, halving does, between it
+// and the point that no projection takes out of the ball, since none makes a distance longer.
 void shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
              WallProjection& to) noexcept {
-  double squared = (to.z - middle).squaredNorm();
-  const double most = radius * radius;
+  const double most = kRoom * radius * radius;
   const Vec3 whole = target - middle;
-  double share = 1;
-  for (int k = 0; k < kMostShortenings && squared > kRoom * most; ++k) {
-    share *= radius / std::sqrt(squared);
+  double inside = std::min(1.0, radius / whole.norm()), outside = 1;
+  const auto go = [&](double share) {
     target = middle + share * whole;
     to = projectOntoWalls(walls, target);
-    squared = (to.z - middle).squaredNorm();
+    return (to.z - middle).squaredNorm();
+  };
+  double squared = (to.z - middle).squaredNorm();
+  for (int k = 0; k < kMostSecants && squared > most; ++k) {
+    outside *= radius / std::sqrt(squared);
+    squared = go(outside);
   }
+  if (squared <= most) return;
+  for (int k = 0; k < kMostHalvings; ++k) {
+    const double share = 0.5 * (inside + outside);
+    (go(share) > most ? outside : inside) = share;
+  }
+  go(inside);
 }
 
 // Drops or mends what a look at z refutes (P08). Of a convex obstacle a wall seen elsewhere claims
@@ -126,10 +139,16 @@ ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec
   Aim aim;
   Vec3 target = x;
   aim.to = projectOntoWalls(walls, target);
-  aim.by_ball = (aim.to.z - start).squaredNorm() > ball * ball * kRoom;
+  const auto leaves = [&](const Vec3& middle, double radius) {
+    return (aim.to.z - middle).squaredNorm() > radius * radius * kRoom;
+  };
+  aim.by_ball = leaves(start, ball);
   if (aim.by_ball) shorten(walls, start, ball, target, aim.to);
-  aim.by_trust = (aim.to.z - anchor).squaredNorm() > trust * trust * kRoom;
-  if (aim.by_trust) shorten(walls, anchor, trust, target, aim.to);
+  aim.by_trust = leaves(anchor, trust);
+  if (aim.by_trust) {
+    shorten(walls, anchor, trust, target, aim.to);
+    if (leaves(start, ball)) shorten(walls, start, ball, target, aim.to);
+  }
   return aim;
 }
 

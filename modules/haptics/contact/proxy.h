@@ -40,12 +40,14 @@ class ProxySearch {
       : sampler_(&sampler), iso_(iso), per_steepness_(1 / steepness) {}
 
   // In contact: x is the new tip, from the last (proxy.c where contact begins, and nothing pulls
-  // yet); `ball` bounds how far c goes. Leaves proxy.c on
-  // the surface, or says that contact has ended.
+  // yet); `ball` bounds how far c goes, but for a last step
+  // out to the surface of at most .1 voxel. Leaves proxy.c on the surface, or says that contact has
+  // ended.
   ProxyMove follow(const Vec3& x, const Vec3& from, double ball, Proxy& proxy) const noexcept;
 
-  // Where the way from a free point to `to` first meets the surface, on its free side to 1e-5;
-  // parts thinner than 1/16 voxel may be missed. height: phi - iso at from and at to, where known.
+  // Where the way from a free point to `to` first meets the surface, on its free side to 1e-5, or
+  // a free place within a voxel of it where 128 looks ended; parts thinner than 1/16 voxel may be
+  // missed. height: phi - iso at from and at to, where known.
   std::optional<Vec3> firstCrossing(const Vec3& from, double height_from, const Vec3& to,
                                     std::optional<double> height_to, int& samples,
                                     double grazing = 0) const noexcept;

@@ -48,7 +48,10 @@ std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_f
       above = std::max(height, 0.0);
     }
   }
-  if (inside < 0) return std::nullopt;
+  if (inside < 0) { // a way that still grazes the surface is not known to be free
+    if (outside >= length || above >= kNoWay) return std::nullopt;
+    return from + outside * along;
+  }
   for (int k = 0; k < 24 && above > kOnSurface; ++k) {
     // False position, kept off the ends so that a kink cannot hold it up.
     const double share = std::clamp(above / (above - below), 0.05, 0.95);
