@@ -1,4 +1,4 @@
-// The house keeps its plan: DESIGN's rooms and their doors, checked on every source.
+// The house keeps its plan: its rooms and their doors, checked on every source.
 #include <algorithm>
 #include <fstream>
 #include <set>
