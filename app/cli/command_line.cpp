@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "app/cli/commands/command.h"
+#include "app/cli/commands/commands.h"
 #include "app/cli/output/help.h"
 #include "core/error.h"
 

@@ -1,4 +1,4 @@
-// One immutable value handed from a writer thread to one real-time reader (DESIGN section 4).
+// One immutable value handed from a writer thread to one real-time reader.
 //
 // The reader never locks, allocates or frees; it acknowledges the value that it uses, and the
 // writer frees what no acknowledged reader can still see. Not std::atomic<std::shared_ptr>:

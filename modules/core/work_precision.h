@@ -27,7 +27,7 @@ struct WorkPrecisionTable {
   std::string error_unit; // "m", "deg", "%"
   std::vector<WorkPrecisionRow> rows;
   std::optional<double> order_fitted;   // d log error / d log h over successive refinements
-  std::optional<double> order_expected; // theory, with its MATH item in the title
+  std::optional<double> order_expected; // theory, with its item in the title
 };
 
 // Least-squares slope of log(error) on log(h). Needs two points or more, all positive; throws

@@ -49,7 +49,7 @@ double highestRelief(const Scene& scene);
 // Throws Error in one line, naming the key and the allowed range, if a value makes no sense.
 void validate(const Scene& scene);
 
-// "friction.static", "0.5" and so on; the keys of DESIGN section 7. "none" makes a value absent.
+// "friction.static", "0.5" and so on; the keys of docs/file_formats.md; "none" makes one absent.
 // Throws Error for an unknown key (listing those known) or a bad value; the scene is then
 // unchanged. Lengths take a unit ("0.5mm"). Of resolution and voxel the last one set holds. A first
 // friction coefficient is both, so that the two may be set in either order; "none" for either

@@ -1,4 +1,4 @@
-// One stroke of the brush, as it is recorded, replayed and undone (DESIGN section 9, K15-K19).
+// One stroke of the brush, as it is recorded, replayed and undone (K15 to K19).
 #pragma once
 
 #include <array>

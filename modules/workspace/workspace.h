@@ -1,4 +1,4 @@
-// A scene with its history as a folder that opens again (DESIGN section 8).
+// A scene with its history as a folder that opens again.
 #pragma once
 
 #include <cstdint>

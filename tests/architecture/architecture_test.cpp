@@ -1,8 +1,6 @@
-// The house keeps its plan: DESIGN's rooms and their doors, checked on every source.
+// The house keeps its plan: its rooms and their doors, checked on every source.
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "architecture/include_rules.h"
 
@@ -11,28 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = PATINA_SOURCE_DIR;
 constexpr std::size_t kMaxLines = 400;
-
-bool isCode(const fs::path& path) {
-  static const std::set<std::string> kEndings{".h", ".cpp", ".sh", ".cmake"};
-  return kEndings.contains(path.extension()) || path.filename() == "CMakeLists.txt";
-}
-
-std::vector<SourceFile> filesUnder(const std::vector<std::string>& folders,
-                                   bool (*wanted)(const fs::path&)) {
-  std::vector<SourceFile> files;
-  for (const std::string& folder : folders) {
-    if (!fs::exists(kRoot / folder)) continue;
-    for (const fs::directory_entry& item : fs::recursive_directory_iterator(kRoot / folder)) {
-      if (!item.is_regular_file() || !wanted(item.path())) continue;
-      std::ostringstream text;
-      text << std::ifstream(item.path(), std::ios::binary).rdbuf();
-      files.push_back({fs::relative(item.path(), kRoot).generic_string(), text.str()});
-    }
-  }
-  return files;
-}
 
 std::vector<std::string> forbidden(const std::string& path, const std::string& line) {
   return includeViolations({path, "// first\n" + line + "\n"});

@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace patina::architecture {
+#include "architecture/project_files.h"
 
-struct SourceFile {
-  std::string path; // relative to the project's root, "modules/field/surface/models.cpp"
-  std::string text;
-};
+namespace patina::architecture {
 
 // One line for each #include that the rules forbid: "path:line: cause".
 std::vector<std::string> includeViolations(const SourceFile& file);

@@ -207,7 +207,7 @@ TEST(VolumeFill, ManyFillsLeaveNoTraceOfOneAnother) {
   EXPECT_EQ(filled(fill, Vec3(0, 0, 0.05), 0.02), filled(fresh, Vec3(0, 0, 0.05), 0.02));
 }
 
-// K15a: of all faces that the way goes through, the one nearest to its end.
+// K15: of all faces that the way goes through, the one nearest to its end.
 TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
   const auto surface = bareSurface(icosphere(0.05, 12));
   const TriangleMesh& mesh = *surface->mesh;

@@ -1,4 +1,4 @@
-// MATH section 3, (b), (c), (e): what a scene does not have costs neither bytes nor nanoseconds.
+// MATH 3: what a scene does not have costs neither bytes nor nanoseconds.
 #include <cstdio>
 
 #include <gtest/gtest.h>

@@ -15,7 +15,6 @@ using namespace test;
 
 constexpr double kRadius = 0.05;
 constexpr double kDegree = M_PI / 180;
-constexpr Sampler kSamplers[] = {Sampler::kim, Sampler::high};
 
 double slope(double error_coarse, double error_fine) {
   return std::log2(error_coarse / error_fine);
@@ -48,7 +47,7 @@ TEST(FieldSampler, PlanesAreExact) {
     const Vec3 normal = randomDirection(random);
     const auto plane = [&](const Vec3& p) { return normal.dot(p); };
     const auto field = sampledField(plane, grid);
-    for (const Sampler kind : kSamplers) {
+    for (const auto& [kind, label, caption] : kSamplers) {
       const FieldSampler sampler(*field, kind);
       for (int m = 0; m < 500; ++m) {
         Vec3 p(along(random), along(random), along(random));
@@ -172,7 +171,7 @@ TEST(FieldSampler, IsContinuousAcrossCellAndBlockFaces) {
   const auto field = sampledField(sphereDistance(kRadius), grid);
   std::mt19937 random(5);
   const double step = 1e-9 / grid.voxel;
-  for (const Sampler kind : kSamplers) {
+  for (const auto& [kind, label, caption] : kSamplers) {
     const FieldSampler sampler(*field, kind);
     for (int n = 0; n < 3000; ++n) {
       Vec3 q = grid.toGrid(randomDirection(random) * kRadius * 0.98);
@@ -192,7 +191,7 @@ TEST(FieldSampler, PhiAloneEqualsPhiWithGradient) {
   const auto field = sampledField(torusDistance(0.033, 0.016), grid);
   std::mt19937 random(6);
   std::uniform_real_distribution<double> anywhere(-5, 70);
-  for (const Sampler kind : kSamplers) {
+  for (const auto& [kind, label, caption] : kSamplers) {
     const FieldSampler sampler(*field, kind);
     for (int n = 0; n < 20000; ++n) {
       const Vec3 q(anywhere(random), anywhere(random), anywhere(random));
@@ -205,7 +204,7 @@ TEST(FieldSampler, DepthGrowsMonotonicallyAndContinuouslyBeyondTheBand) {
   const FieldGrid grid = cubeGrid(kRadius, 150);
   const auto field = sampledField(sphereDistance(kRadius), grid);
   std::mt19937 random(7);
-  for (const Sampler kind : kSamplers) {
+  for (const auto& [kind, label, caption] : kSamplers) {
     const FieldSampler sampler(*field, kind);
     for (int ray = 0; ray < 50; ++ray) {
       const Vec3 n = randomDirection(random);
@@ -229,7 +228,7 @@ TEST(FieldSampler, NarrowBandsAreExactAtTheSurface) {
   for (const double band : {2.0, 2.5, 2.75, 3.0}) {
     const FieldGrid grid = cubeGrid(kRadius, 100, band);
     const auto field = sampledField(sphereDistance(kRadius), grid, band);
-    for (const Sampler kind : kSamplers) {
+    for (const auto& [kind, label, caption] : kSamplers) {
       const FieldSampler sampler(*field, kind);
       for (int n = 0; n < 2000; ++n) {
         const Vec3 normal = randomDirection(random);
@@ -282,7 +281,7 @@ TEST(FieldSampler, AnyPointIsAnsweredWithFiniteNumbersOrNowhere) {
   const double odd[] = {0.0,     -0.0,         20,           40,           39.999999999, 41,
                         -1e-300, 5e-324,       1e18,         -1e300,       1e300,        inf,
                         -inf,    std::nan(""), 2147483648.0, -2147483649.0};
-  for (const Sampler kind : kSamplers) {
+  for (const auto& [kind, label, caption] : kSamplers) {
     const FieldSampler sampler(*field, kind);
     for (const double x : odd)
       for (const double y : odd)

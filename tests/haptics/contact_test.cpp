@@ -125,7 +125,7 @@ TEST(Contact, TipRadiusIsAnIsoValue) {
   }
 }
 
-// Section 2.8, field deeper than the band.
+// MATH 2.8, a field deeper than the band.
 TEST(Contact, DeeperThanTheBandForceGoesOnContinuously) {
   const Field sphere = sphereField();
   for (const Sampler sampler : {Sampler::kim, Sampler::high}) {

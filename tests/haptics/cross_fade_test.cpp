@@ -1,4 +1,4 @@
-// T-RAMP: with the tip held still, no edit changes the force by more than 0.05 N a tick (2.4).
+// T-RAMP: with the tip held still, no edit changes the force by more than 0.05 N a tick (MATH 2.4).
 #include "haptics/servo/cross_fade.h"
 
 #include <gtest/gtest.h>

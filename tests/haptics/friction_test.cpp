@@ -245,7 +245,7 @@ TEST(Friction, CreepingSlipOnACurveDoesNotChatter) {
   }
 }
 
-// Section 2.6: sign(v) friction chatters about zero velocity; the clamped VCP comes to rest.
+// MATH 2.6: sign(v) friction chatters about zero velocity; the clamped VCP comes to rest.
 TEST(Friction, MassComesToRestWithoutChatter) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.5), planeField());
   SimulatedDeviceSpec spec;
@@ -265,7 +265,7 @@ TEST(Friction, MassComesToRestWithoutChatter) {
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);
 }
 
-// Section 2.6: a wall steadied by damping along the normal alone would still buzz in stick.
+// MATH 2.6: a wall steadied by damping along the normal alone would still buzz in stick.
 TEST(Friction, DampingActsOnTheStuckPoint) {
   Scene scene = withFriction(sceneOf(1500), 2, 2);
   scene.haptics.damping = 1.5;

@@ -117,7 +117,7 @@ TEST(JumpFault, TeleportOutOfContactFadesTheLastForce) {
   EXPECT_FALSE(memory.faulted);
 }
 
-// Section 2.8: one missed 20 ms tick while pressing in at 0.3 m/s is no fault by itself.
+// MATH 2.8: one missed 20 ms tick while pressing in at 0.3 m/s is no fault by itself.
 TEST(JumpFault, MissedTickIsNoFault) {
   const auto snapshot = plane(500, 100);
   ContactMemory memory;

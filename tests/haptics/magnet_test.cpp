@@ -135,7 +135,7 @@ TEST(Magnet, DampingPullsOnRetreat) {
   }
 }
 
-// Section 2.8: a groove, where two points are equally near.
+// MATH 2.8: a groove, where two points are equally near.
 TEST(Magnet, InAGrooveTheForceIsContinuous) {
   const double k_m = 400, w = 2e-3, half = 1e-3, voxel = 0.1e-3;
   const Field groove =

@@ -111,7 +111,7 @@ TEST(Offset, BridgesADentNarrowerThanItself) {
   EXPECT_FALSE(touchOnce(*plain, Vec3(0, 0, -rho + voxel)).touching);
 }
 
-// Section 2.8: an offset below a voxel, and one wider than the gap between two parts.
+// MATH 2.8: an offset below a voxel, and one wider than the gap between two parts.
 TEST(Offset, SmallerThanAVoxelIsStillFelt) {
   const Field sphere = sphereField(); // h = 0.45 mm
   const auto snapshot = compileStages(offsetScene(1000, 20e-6), sphere);

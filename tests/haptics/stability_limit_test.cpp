@@ -8,7 +8,7 @@
 namespace patina {
 namespace {
 
-// K* without delay, B and hand spring, in closed form (2.1.2).
+// K* without delay, B and hand spring, in closed form (MATH 2.1.2).
 double undelayedLimit(double mass, double damping, double period) {
   const double x = damping * period / mass;
   const double m_per_b2 = mass / (damping * damping), period2_per_m = period * period / mass;
@@ -20,7 +20,7 @@ double undelayedLimit(double mass, double damping, double period) {
   return std::min(oscillating, alternating);
 }
 
-// 2.1.2, over the whole range of b T/m.
+// MATH 2.1.2, over the whole range of b T/m.
 TEST(StabilityLimit, IsTheClosedFormWithoutDelayAndVirtualDamping) {
   for (const double mass : {.01, .1, 1.})
     for (const double share : {1e-6, 1e-4, 1e-3, .01, .1, .5, 1., 2., 5.}) {

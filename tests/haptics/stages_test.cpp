@@ -79,7 +79,7 @@ void expectSameForces(const HapticSnapshot& pruned, const HapticSnapshot& full, 
   EXPECT_GT(touching, 2000);
 }
 
-// DESIGN: forces of the pruned pipeline are bitwise those of the full one with neutral values.
+// Forces of the pruned pipeline are bitwise those of the full one with neutral values.
 TEST(CompileStages, PruningChangesNoForce) {
   const Field sphere = sphereField();
   Scene damped = sceneOf(500);

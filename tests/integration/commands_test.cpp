@@ -1,4 +1,4 @@
-// Every command on our own data: exit codes, JSON keys (DESIGN section 9) and CSV headers.
+// Every command on our own data: exit codes, JSON keys and CSV headers.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -66,7 +66,7 @@ TEST_F(Commands, InfoReportsTheMeshItsLayersAndItsStages) {
     stages.push_back(stage.at("name").asString());
     EXPECT_LT(stage.at("ns").asNumber(), 1e6);
   }
-  // A scene with no friction, damping or offset has no stage for them (DESIGN section 3).
+  // A scene with no friction, damping or offset has no stage for them.
   EXPECT_EQ(std::count(stages.begin(), stages.end(), "friction"), 0);
   EXPECT_EQ(std::count(stages.begin(), stages.end(), "limit"), 1);
 }

@@ -1,4 +1,4 @@
-// patina simulate: the closed loop from the command line (DESIGN sections 7 and 9).
+// patina simulate: the closed loop from the command line.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -43,7 +43,7 @@ TEST(StabilityCommands, InfoTellsTheSmallestRatioOfTheScenesDevice) {
       sphereIn(folder, {"stiffness=500", "resolution=60", "device.delay=2", "stabiliser=none"});
   const Json report = runJson({"info", scene});
   const Json& stability = report.at("stability");
-  // 200.4 N/m with two samples of delay (2.1.3).
+  // 200.4 N/m with two samples of delay (MATH 2.1.3).
   EXPECT_NEAR(stability.at("ratio_min").asNumber(), 200.4 / 500, 0.01);
   EXPECT_NEAR(stability.at("limit").asNumber(), 200.4, 0.1);
   EXPECT_GT(stability.at("buzzing").asNumber(), 0.99);

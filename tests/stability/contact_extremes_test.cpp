@@ -1,4 +1,4 @@
-// The contact list of MATH section 2.8, each with its expected behaviour.
+// The contact list of MATH 2.8, each with its expected behaviour.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -60,7 +60,7 @@ struct Loop {
   }
 };
 
-// 2.1.2: the boundary of the sampled wall without delay.
+// MATH 2.1.2: the boundary of the sampled wall without delay.
 double exactBoundary(double m, double b, double T) {
   const double a = std::exp(-b * T / m), c = (1 - a) * m / b, d = (T - c) / b, e = (1 - a) / b;
   return std::min((1 - a) / (c * e - a * d), 2 * (1 + a) / (d * (1 + a) - c * e));
@@ -93,7 +93,7 @@ TEST(ContactExtremes, BoundaryHoldsForLightAndHeavyDevices) {
   }
 }
 
-// 2.1.3: n samples of delay, boundary near b / (T/2 + n T).
+// MATH 2.1.3: n samples of delay, boundary near b / (T/2 + n T).
 TEST(ContactExtremes, DelayLowersTheBoundaryAsPredicted) {
   for (const int delay : {1, 2, 5}) {
     Loop loop;

@@ -1,4 +1,4 @@
-// The field list of MATH section 2.8, each with its expected behaviour.
+// The field list of MATH 2.8, each with its expected behaviour.
 #include <gtest/gtest.h>
 
 #include <algorithm>

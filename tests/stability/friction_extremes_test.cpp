@@ -1,4 +1,4 @@
-// The friction list of MATH section 2.8, each with its expected behaviour.
+// The friction list of MATH 2.8, each with its expected behaviour.
 #include <gtest/gtest.h>
 
 #include <numbers>

@@ -1,4 +1,4 @@
-// The closed loop where things go wrong: section 2.8, Contact.
+// The closed loop where things go wrong: MATH 2.8, contact.
 #include <gtest/gtest.h>
 
 #include <cmath>

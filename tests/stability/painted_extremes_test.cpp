@@ -126,7 +126,7 @@ TEST(PaintedStiffness, TheConservativeFormDoesNoWorkAtAnyRatio) {
   }
 }
 
-// 2.1.7 with F6: on the slope between two paints the directions are coupled by d grad K.
+// MATH 2.1.7 with F6: on the slope between two paints the directions are coupled by d grad K.
 TEST(PaintedStiffness, TheMapSeesTheStiffestPaint) {
   const Field plane = planeField(kVoxel);
   Scene scene = sceneOf(200);

@@ -29,7 +29,7 @@ void expectMeasured(const SimulationSpec& spec, const Wall& wall, double toleran
       << " B " << wall.damping << " rate " << spec.device.rate;
 }
 
-// Table 2.1.2.
+// MATH 2.1.2.
 TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithoutDelay) {
   const struct {
     double mass, damping, limit;
@@ -42,7 +42,7 @@ TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithoutDelay) {
   }
 }
 
-// Table 2.1.3, and the delays between its rows.
+// MATH 2.1.3 over delays and virtual damping.
 TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithDelayAndVirtualDamping) {
   const struct {
     int delay;
@@ -82,7 +82,7 @@ TEST(SimulatedWall, EndsWhereTheEigenvaluesSayAtOtherRatesAndWithAHand) {
   expectMeasured(held, {.damping = 1}, 0.003);
 }
 
-// 2.1.4: a filter is a delay of the damping.
+// MATH 2.1.4: a filter is a delay of the damping.
 TEST(SimulatedWall, EndsEarlierTheLowerTheCutoffOfTheVelocity) {
   double before = limitOf(specOf(.1, .5), {.damping = 2});
   for (const double cutoff : {2000., 500., 200., 100.}) {
@@ -94,7 +94,7 @@ TEST(SimulatedWall, EndsEarlierTheLowerTheCutoffOfTheVelocity) {
   }
 }
 
-// 2.1.3: virtual damping alone buzzes from about 2m/T on.
+// MATH 2.1.3: virtual damping alone buzzes from about 2m/T on.
 TEST(SimulatedWall, DampingItselfBuzzesAboveItsOwnLimit) {
   for (const double mass : {.05, .1, .2}) {
     const double limit = dampingLimit(sampledLoop(specOf(mass, .5).device));

@@ -91,7 +91,7 @@ TEST(StabilisedLoop, NaiveLimiterIsWorseThanNothing) {
   EXPECT_FALSE(naive.stable);
 }
 
-// The table of 2.3, columns plain and B with its clamp [m/s, 8th second].
+// MATH 2.3 without a net and with damping alone, as docs/studies.md lists them [m/s, 8th second].
 TEST(StabilisedLoop, PlainAndDampedWallsFollowTheTable) {
   EXPECT_NEAR(runOn({.stiffness = 900}, pressed(.2)).rms_velocity, 2.0e-2, 4e-3);
   EXPECT_NEAR(runOn({.stiffness = 3000}, pressed(.2)).rms_velocity, .21, .02);
@@ -131,8 +131,8 @@ TEST(StabilisedLoop, SaturationBoundsForceAndMotionAndKeepsTheDirection) {
       });
 }
 
-// 2.6: in stick the wall is a spring along the surface too; damping along the normal alone would
-// leave it ringing.
+// MATH 2.6: in stick the wall is a spring along the surface too; damping along the normal alone
+// would leave it ringing.
 SimulationReport stopsWhileStuck(double stiffness, bool stabilised) {
   Scene scene = withFriction(sceneOf(stiffness), 5, 5);
   if (stabilised) scene.device_model = DeviceModel{};

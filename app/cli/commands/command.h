@@ -50,7 +50,4 @@ struct Command {
   Argument& flag(const std::string& names, const std::string& help, bool& target);
 };
 
-// The commands in the order in which --help lists them.
-std::vector<Command> allCommands();
-
 } // namespace patina::cli

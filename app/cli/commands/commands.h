@@ -1,4 +1,4 @@
-// Every command, one a source file of the same name (redo beside undo).
+// Every command, one a source file of the same name (redo beside undo), and their only list.
 #pragma once
 
 #include "app/cli/commands/command.h"
@@ -23,5 +23,13 @@ Command latencyTestCommand();
 Command devicesCommand();
 Command guiCommand();
 Command manCommand();
+
+// In the order in which --help lists them.
+inline std::vector<Command> allCommands() {
+  return {infoCommand(),        sceneCommand(),  fieldCommand(), sampleCommand(), feelCommand(),
+          simulateCommand(),    paintCommand(),  undoCommand(),  redoCommand(),   embossCommand(),
+          renderCommand(),      exportCommand(), studyCommand(), modelCommand(),  devicesCommand(),
+          latencyTestCommand(), guiCommand(),    manCommand()};
+}
 
 } // namespace patina::cli

@@ -54,8 +54,14 @@ void addFieldOptions(Command& command, SceneOptions& options) {
 }
 
 void addSamplerOption(Command& command, SceneOptions& options) {
-  addSetting(command, options, "--sampler", "sampler", "kim|high",
-             "How the field is read between nodes: kim as in the paper, high of higher order.",
+  std::string names, captions;
+  for (const SamplerEntry& entry : kSamplers) {
+    names += (names.empty() ? "" : "|") + std::string(entry.name);
+    captions +=
+        (captions.empty() ? "" : ", ") + std::string(entry.name) + " " + std::string(entry.caption);
+  }
+  addSetting(command, options, "--sampler", "sampler", names,
+             "How the field is read between nodes: " + captions + ".",
              std::string(name(Scene{}.sampler)));
 }
 

@@ -12,7 +12,7 @@ namespace patina::cli {
 std::string programHelp(const std::vector<Command>& commands);
 std::string commandHelp(const Command& command);
 
-// roff, section 1: patina.1 and patina-COMMAND.1.
+// The manual's pages, roff: patina.1 and patina-COMMAND.1.
 std::string programManPage(const std::vector<Command>& commands);
 std::string commandManPage(const Command& command);
 

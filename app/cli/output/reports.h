@@ -1,4 +1,4 @@
-// What several commands report in the same words (DESIGN section 9).
+// What several commands report in the same words.
 #pragma once
 
 #include <filesystem>

@@ -42,7 +42,7 @@ double timed(const FieldGrid& grid, const std::vector<Vec3>& points, const Query
 
 struct Contender {
   std::string name;
-  double value_order, direction_order; // on a smooth shape (F1, F15, MATH section 3)
+  double value_order, direction_order; // on a smooth shape (F1, F15, MATH 3)
   std::size_t bytes;
   Query query; // owns what it needs, but refers to the field
 };

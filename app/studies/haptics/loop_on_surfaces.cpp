@@ -270,7 +270,7 @@ WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
 
 WorkPrecisionTable loopLimitsOnSurfaces(const StudyOptions& options, Progress& progress) {
   WorkPrecisionTable table =
-      tableOf("Where the loop on a surface stops settling, against eigenvalues (2.1.7, F7)", "%");
+      tableOf("Where the loop on a surface stops settling, against eigenvalues (F7)", "%");
   for (const Place& place : corners()) {
     progress.throwIfCancelled();
     addSpringLimit(table, place, false, 0, 1e-3);

@@ -59,7 +59,7 @@ void addBoundary(WorkPrecisionTable& table, const DeviceModel& device, double da
 
 WorkPrecisionTable boundaries(bool quick, Progress& progress) {
   WorkPrecisionTable table =
-      tableOf("Where the loop stops settling, against eigenvalues (2.1.2, 2.1.3)", "%");
+      tableOf("Where the loop stops settling, against eigenvalues (MATH 2.1.2, 2.1.3)", "%");
   for (const auto& [mass, damping] :
        {std::pair{.05, .5}, {.1, .1}, {.1, .5}, {.1, 5.}, {.1, 50.}, {.2, 1.}})
     addBoundary(table, {mass, damping, 0, 0, 1000, 0}, 0, progress);

@@ -55,7 +55,7 @@ class Painter {
 Scene painted(std::shared_ptr<const PaintSurface> surface, const Scene& scene, const Stroke& stroke,
               PaintReport* report = nullptr);
 
-// w of MATH K17 for d >= 0; 0 from r on.
+// w of K17 for d >= 0; 0 from r on.
 double brushWeight(const Brush& brush, double distance, double radius);
 double brushRadius(const Brush& brush, double force); // K19
 

@@ -11,13 +11,16 @@
 namespace patina {
 
 Sampler parseSampler(std::string_view text) {
-  if (text == "kim") return Sampler::kim;
-  if (text == "high") return Sampler::high;
-  throw Error("unknown sampler '" + std::string(text) + "'; choose kim or high");
+  std::string choices;
+  for (const SamplerEntry& entry : kSamplers) {
+    if (text == entry.name) return entry.sampler;
+    choices += (choices.empty() ? "" : " or ") + std::string(entry.name);
+  }
+  throw Error("unknown sampler '" + std::string(text) + "'; choose " + choices);
 }
 
 std::string_view name(Sampler sampler) {
-  return sampler == Sampler::kim ? "kim" : "high";
+  return kSamplers[static_cast<std::size_t>(sampler)].name;
 }
 
 namespace {
@@ -46,7 +49,7 @@ GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
   BandCell cell;
   if (!findCell(*field_, last_node_, q, cell)) [[unlikely]]
     return beyondBand(q);
-  const Blend value = sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
+  const Blend value = blended(cell);
   GridSample sample;
   sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
   sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
@@ -114,7 +117,7 @@ double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {
   BandCell cell;
   if (!findCell(*field_, last_node_, q, cell)) [[unlikely]]
     return beyondBand(q).phi;
-  const Blend value = sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
+  const Blend value = blended(cell);
   const auto phi = static_cast<double>(value.sum[0] + value.taylor_half);
   if (phi < hand_over_) [[unlikely]]
     return atGrid(q).phi;

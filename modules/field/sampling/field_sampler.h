@@ -15,6 +15,14 @@ namespace patina {
 // O(h^3)).
 enum class Sampler : std::uint8_t { kim, high };
 
+struct SamplerEntry {
+  Sampler sampler;
+  std::string_view name, caption;
+};
+// All of them, in the order of the enum; commands and scenes know no other list.
+inline constexpr SamplerEntry kSamplers[] = {{Sampler::kim, "kim", "as in the paper"},
+                                             {Sampler::high, "high", "of higher order"}};
+
 Sampler parseSampler(std::string_view text); // throws Error naming the choices
 std::string_view name(Sampler sampler);
 
@@ -83,6 +91,9 @@ class FieldSampler {
   Sampler sampler() const noexcept { return sampler_; }
 
  private:
+  Blend blended(const BandCell& cell) const noexcept {
+    return sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
+  }
   void followCrease(const BandCell& cell, double own, SurfaceSample& sample) const noexcept;
   GridSample beyondBand(const Vec3& q) const noexcept;
   GridSample deepSample(const Vec3& q) const noexcept;
@@ -102,7 +113,7 @@ inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own) cons
     const GridSample beyond = beyondBand(q);
     return {beyond.phi, beyond.gradient, 0, beyond.region};
   }
-  const Blend value = sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
+  const Blend value = blended(cell);
   sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
   sample.region = FieldRegion::band;
   const float squared =

@@ -1,4 +1,4 @@
-// Meshes carry no unit; this gives them one (DESIGN section 7).
+// Meshes carry no unit; this gives them one.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Generalised winding number (MATH K01): about 1 inside, 0 outside, also for cracked, holed,
+// Generalised winding number (K01): about 1 inside, 0 outside, also for cracked, holed,
 // overlapping or partly inverted meshes.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The clock and the scheduling of a periodic thread (DESIGN section 4).
+// The clock and the scheduling of a periodic thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The servo thread: device -> stages -> limit -> device (DESIGN section 4).
+// The servo thread: device -> stages -> limit -> device.
 #pragma once
 
 #include <cstdint>

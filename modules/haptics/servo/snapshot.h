@@ -1,4 +1,4 @@
-// What the servo reads: compiled from a scene, immutable (DESIGN section 3).
+// What the servo reads: compiled from a scene, immutable.
 #pragma once
 
 #include <memory>

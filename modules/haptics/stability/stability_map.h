@@ -1,4 +1,4 @@
-// Where on a surface the sampled loop would buzz, before anyone touches it: K*(x)/K (F3, 2.1.7).
+// Where on a surface the sampled loop would buzz, before anyone touches it: K*(x)/K (MATH 2.1.7).
 #pragma once
 
 #include <cmath>
@@ -39,7 +39,7 @@ inline constexpr double kGrip = 300; // [N/m]
 // friction in stick is K in every direction, the magnet is k_m along the normal, just outside.
 // Infinite if nothing needs bearing.
 //
-// Directions are the eigenvectors of the wall's whole matrix. Those of its symmetric part (2.1.7)
+// Directions are the eigenvectors of the whole matrix (MATH 2.1.7). Those of its symmetric part
 // are the safe side of it: beside creases they see up to three K where nothing buzzes. A complex
 // pair is a force that goes round: the tip whirls at an angular frequency w where Im / w exceeds
 // what is left of the damping.
@@ -48,7 +48,7 @@ inline constexpr double kGrip = 300; // [N/m]
 // would need besides is left before it has grown.
 //
 // The criterion is local and linear: it says that the tip, held there, oscillates, not how far.
-// Encoder and dry friction of the device (2.2) and the passivity controller are left out.
+// Encoder and dry friction of the device (MATH 2.2) and the passivity controller are left out.
 double stabilityRatio(const LocalStiffness& at, const Scene& scene, const LoopLimits& limits);
 
 struct StabilityMap {

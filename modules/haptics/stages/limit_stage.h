@@ -1,4 +1,4 @@
-// The stage that is never left out: the magnitude limit and the jump fault (F13, section 2.8).
+// The stage that is never left out: the magnitude limit and the jump fault (F13, MATH 2.8).
 #pragma once
 
 #include "haptics/stages/stage.h"

@@ -13,7 +13,7 @@ class SpringStage final : public ForceStage {
 };
 
 // contact.velocity through a first-order low-pass: less noise of a coarse encoder for a delay that
-// lowers the stability limit of the damping behind it (2.1.4).
+// lowers the stability limit of the damping behind it (MATH 2.1.4).
 class VelocityFilterStage final : public ForceStage {
  public:
   explicit VelocityFilterStage(double cutoff_hz);
@@ -25,7 +25,7 @@ class VelocityFilterStage final : public ForceStage {
 };
 
 // While the VCP sticks, adds a tangential damper's force [N] as far as sticking can bear
-// (section 2.6).
+// (MATH 2.6).
 void dampSticking(Contact& contact, const Vec3& damper) noexcept;
 
 // Damps the tip's motion across the walls that hold its contact point: F -= B v as far as these can
@@ -33,7 +33,7 @@ void dampSticking(Contact& contact, const Vec3& damper) noexcept;
 // nearly two walls are one. A magnetic surface bears pulls too; then that of a magnet is damped as
 // well. It is the tip that is damped, not the way to the contact point: a point that turns round a
 // crease must not become a push. While the VCP sticks, the tip's motion along the walls is damped
-// as well (section 2.6), within what sticking can bear.
+// as well (MATH 2.6), within what sticking can bear.
 void dampWalls(Contact& contact, double damping, bool magnetic) noexcept;
 
 // dampWalls() with B of the contact's material, of the scene where a magnet pulls.
