@@ -192,31 +192,34 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   return compileStages(scene, std::move(field), objects, planOf(scene, objects));
 }
 
-Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
-             double dt) noexcept {
+Contact beginTick(const HapticSnapshot& snapshot, const ContactMemory& memory, const Vec3& tip,
+                  double dt) noexcept {
   Contact contact;
-  contact.tip = tip;
-  contact.candidate = tip;
-  contact.vcp = tip;
-  contact.surface = tip;
+  contact.tip = contact.candidate = contact.vcp = contact.surface = tip;
   contact.material = snapshot.base;
-  const double period = dt > 0 && dt < 1e6 ? dt : 0;
-  contact.dt = memory.gap + period;
-  if (!tip.allFinite()) {
-    memory.gap = contact.dt;
-    memory.applied.setZero();
-    return contact;
-  }
-  memory.gap = 0;
-  if (memory.has_last_tip && contact.dt >= kMinVelocityPeriod) {
-    contact.velocity = 1 / contact.dt * (tip - memory.last_tip);
+  contact.dt = memory.tip.gap + (dt > 0 && dt < 1e6 ? dt : 0);
+  contact.last_tip = memory.tip.last;
+  contact.applied = memory.tip.applied;
+  contact.lets_go = memory.limit.jumped;
+  if (contact.last_tip && contact.dt >= kMinVelocityPeriod) {
+    contact.velocity = 1 / contact.dt * (tip - *contact.last_tip);
     // Also where it is infinite or NaN, which no filter would ever forget.
     if (!(contact.velocity.squaredNorm() < kMaxVelocity * kMaxVelocity)) contact.velocity.setZero();
   }
+  return contact;
+}
+
+Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
+             double dt) noexcept {
+  Contact contact = beginTick(snapshot, memory, tip, dt);
+  if (!tip.allFinite()) {
+    memory.tip.gap = contact.dt;
+    memory.tip.applied.setZero();
+    return contact;
+  }
   for (const auto& stage : snapshot.stages) stage->apply(contact, memory);
-  memory.last_tip = tip;
-  memory.has_last_tip = true;
-  memory.applied = contact.force;
+  if (!memory.contact.c) memory.leaveContact();
+  memory.tip = {tip, 0, contact.force};
   return contact;
 }
 

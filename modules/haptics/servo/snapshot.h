@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "haptics/contact/contact_memory.h"
 #include "haptics/servo/felt_object.h"
 #include "haptics/stability/stabilisers.h"
-#include "haptics/stages/stage.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -54,6 +54,10 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
                                                     std::span<const FeltObject> objects,
                                                     const StabiliserPlan& plan);
+
+// A tick before its first stage.
+Contact beginTick(const HapticSnapshot& snapshot, const ContactMemory& memory, const Vec3& tip,
+                  double dt) noexcept;
 
 // One servo tick as a pure function of its arguments: dt is passed in, no clock is read.
 // A NaN or infinite tip: no contact, zero force.

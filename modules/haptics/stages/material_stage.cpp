@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "haptics/contact/contact_memory.h"
 #include "haptics/contact/pull_back.h"
 
 namespace patina {
@@ -32,18 +34,17 @@ void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
 }
 
 void StiffnessSlopeStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  const double last = memory.sideways;
-  memory.sideways = 0;
+  const double last = std::exchange(memory.stiffness_slope.force, 0);
   if (contact.touching && contact.material.stiffness > 0) {
     // d of the potential: along the surface's own normal, not the slope of its relief.
     const double square = contact.depth * contact.depth / (1 + contact.slope.squaredNorm());
     const double softened = contact.stiffness / contact.material.stiffness;
     const Vec3 force = -0.5 * square * softened * softened * contact.stiffness_gradient;
     contact.force += force;
-    memory.sideways = force.norm();
+    memory.stiffness_slope.force = force.norm();
   }
   // It comes and goes with the cells of the map, which is no jump.
-  contact.known_step += last + memory.sideways;
+  contact.known_step += last + memory.stiffness_slope.force;
 }
 
 } // namespace patina
