@@ -144,8 +144,6 @@ struct PassivityRun {
     contact.stiffness = stiffness;
     contact.dt = kPeriod;
     contact.force = force;
-    contact.last_tip = memory.tip.last;
-    contact.applied = memory.tip.applied;
     stage.apply(contact, memory);
     memory.tip = {contact.tip, 0, contact.force};
     return contact.force;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 #include "core/types.h"
 #include "scene/paint/material_map.h"
@@ -19,8 +18,6 @@ struct Contact {
   Vec3 tip = Vec3::Zero();      // [m], world
   Vec3 velocity = Vec3::Zero(); // [m/s], backward difference; VelocityFilterStage: filtered
   double dt = 0;                // [s], since the last finite tip
-  std::optional<Vec3> last_tip; // absent in the first tick
-  Vec3 applied = Vec3::Zero();  // [N], what the last tick gave to the device
 
   // tick(): the snapshot's base; MaterialStage: what is painted
   Material material;

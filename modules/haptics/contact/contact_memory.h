@@ -1,6 +1,9 @@
 // What survives a servo tick: one part a stage, declared beside the stage and written by it alone.
 #pragma once
 
+#include <limits>
+#include <optional>
+
 #include "haptics/contact/proxy.h"
 #include "haptics/contact/ray_stage.h"
 #include "haptics/stages/coupling_stage.h"
@@ -15,7 +18,7 @@
 
 namespace patina {
 
-// Of tick() itself.
+// Of tick() itself; stages read it.
 struct TipMemory {
   std::optional<Vec3> last;    // the last finite tip
   double gap = 0;              // [s] since then, spent on ticks without a finite tip

@@ -46,7 +46,7 @@ ProxyStage::ProxyStage(const FieldSampler& sampler, double iso, double steepness
 void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   ContactPointMemory& at = memory.contact;
   const Vec3 x = toGrid(contact.tip);
-  const Vec3 last = contact.last_tip ? toGrid(*contact.last_tip) : x;
+  const Vec3 last = memory.tip.last ? toGrid(*memory.tip.last) : x;
   const Vec3 from = last.cwiseAbs().maxCoeff() < kFarthest ? last : x;
   if (!(x.cwiseAbs().maxCoeff() < kFarthest)) // no place at all: squares would overflow
     return stayFree(contact, at);
@@ -63,8 +63,7 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
       if ((proxy.c - toGrid(*at.c)).squaredNorm() > kSamePlace * kSamePlace) contact.lets_go = true;
     }
   } else {
-    if (!enter(x, from, contact.last_tip ? at.clearance : kUnknown, contact, proxy.c))
-      return stayFree(contact, at);
+    if (!enter(x, from, memory, contact, proxy.c)) return stayFree(contact, at);
     proxy.walls.count = 0;
     proxy.lent = 0;
     ball += (x - proxy.c).norm();
@@ -105,10 +104,11 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   contact.surface = contact.candidate - iso_ * voxel_ * contact.wall[0].normal;
 }
 
-// Whether the tip has come into contact, and where. known: the clearance a tick ago.
-bool ProxyStage::enter(const Vec3& x, const Vec3& from, double known, Contact& contact,
-                       Vec3& c) const noexcept {
+// Whether the tip has come into contact, and where.
+bool ProxyStage::enter(const Vec3& x, const Vec3& from, const ContactMemory& memory,
+                       Contact& contact, Vec3& c) const noexcept {
   const double step = (x - from).norm();
+  double known = memory.tip.last ? memory.contact.clearance : kUnknown;
   if (std::isfinite(known) && known - step > kUnlooked) {
     contact.clearance = known - step;
     return false;
@@ -116,7 +116,7 @@ bool ProxyStage::enter(const Vec3& x, const Vec3& from, double known, Contact& c
   const double height = search_.heightAt(x);
   ++contact.samples;
   bool came = std::isfinite(known) && known >= 0;
-  if (!came && contact.last_tip && height < 0) {
+  if (!came && memory.tip.last && height < 0) {
     known = per_steepness_ * search_.heightAt(from);
     ++contact.samples;
     came = known >= 0;

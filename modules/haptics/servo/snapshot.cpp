@@ -198,11 +198,9 @@ Contact beginTick(const HapticSnapshot& snapshot, const ContactMemory& memory, c
   contact.tip = contact.candidate = contact.vcp = contact.surface = tip;
   contact.material = snapshot.base;
   contact.dt = memory.tip.gap + (dt > 0 && dt < 1e6 ? dt : 0);
-  contact.last_tip = memory.tip.last;
-  contact.applied = memory.tip.applied;
   contact.lets_go = memory.limit.jumped;
-  if (contact.last_tip && contact.dt >= kMinVelocityPeriod) {
-    contact.velocity = 1 / contact.dt * (tip - *contact.last_tip);
+  if (memory.tip.last && contact.dt >= kMinVelocityPeriod) {
+    contact.velocity = 1 / contact.dt * (tip - *memory.tip.last);
     // Also where it is infinite or NaN, which no filter would ever forget.
     if (!(contact.velocity.squaredNorm() < kMaxVelocity * kMaxVelocity)) contact.velocity.setZero();
   }
@@ -219,7 +217,9 @@ Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& 
   }
   for (const auto& stage : snapshot.stages) stage->apply(contact, memory);
   if (!memory.contact.c) memory.leaveContact();
-  memory.tip = {tip, 0, contact.force};
+  memory.tip.last = tip;
+  memory.tip.gap = 0;
+  memory.tip.applied = contact.force;
   return contact;
 }
 

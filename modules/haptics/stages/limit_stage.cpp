@@ -13,7 +13,7 @@ void LimitStage::apply(Contact& contact, ContactMemory& all) const noexcept {
   const Vec3 raw = finite ? contact.force : Vec3::Zero();
   memory.jumped = !finite || jumped(contact, memory);
   if (memory.jumped)
-    memory.fault = LimitMemory::Fault{memory.last ? contact.applied : Vec3::Zero(), 0};
+    memory.fault = LimitMemory::Fault{memory.last ? all.tip.applied : Vec3::Zero(), 0};
   memory.last = LimitMemory::Raw{raw, contact.stiffness};
   contact.force = scaledTo(raw, spec_.force_limit);
   if (!memory.fault) return;
