@@ -4,15 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/mesh/joint_mesh.h"
 #include "haptics/contact/contact_memory.h"
 #include "haptics/contact/pull_back.h"
 
 namespace patina {
 
 std::int32_t OwnerStage::ownerAt(const Vec3& p) const noexcept {
-  const std::int32_t face = sampler_.faceNear(p);
-  const auto next = std::ranges::upper_bound(objects_, face, {}, &FeltObject::first_face);
-  return static_cast<std::int32_t>(std::max<std::ptrdiff_t>(next - objects_.begin() - 1, 0));
+  return std::max(partOfFace(objects_, sampler_.faceNear(p), &FeltObject::first_face), 0);
 }
 
 void OwnerStage::apply(Contact& contact, ContactMemory&) const noexcept {

@@ -150,12 +150,10 @@ struct Maker {
 
 std::vector<ReliefSource> sourcesOf(const CompiledScene& compiled, const FeltPaint& paint) {
   std::vector<ReliefSource> sources(compiled.objects.size());
-  std::int32_t first = 0;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     ReliefSource& source = sources[i];
-    source.first_face = first;
+    source.first_face = compiled.parts[i].first_face;
     source.faces = static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
-    first += source.faces;
     if (i >= paint.relief.size() || !paint.relief[i].felt) continue;
     source.uvs = paintOf(compiled.scene, i)->layout.uvs;
     source.image = paint.relief[i].felt;
@@ -290,11 +288,10 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
   Maker maker{compiled, before, made};
   const bool relief = hasRelief(scene);
   if (relief) made.relief.resize(scene.objects.size());
-  std::int32_t first = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     progress.throwIfCancelled();
     FeltObject object;
-    object.first_face = first;
+    object.first_face = compiled.parts[i].first_face;
     object.object_from_world = scene.objects[i].world_from_object.inverse();
     object.material = maker.material(i, baseMaterial(scene.haptics));
     if (relief) made.relief[i] = sourceOf(scene, i, before);
@@ -307,7 +304,6 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
         object.bend = maker.bend(i, made.relief[i]);
       }
     }
-    first += static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
     made.objects.push_back(std::move(object));
   }
   if (relief && scene.relief.mode == ReliefMode::baked) bake(compiled, same_field, made, progress);

@@ -194,7 +194,7 @@ std::vector<FieldPart> partsOf(const Objects& objects) {
 }
 
 BuiltField united(const CompiledScene& compiled, Progress& progress) {
-  const std::vector<FieldPart> parts = partsOf(compiled.objects);
+  const std::vector<FieldPart>& parts = compiled.parts;
   BuiltField built;
   progress.report(0.9, "merging");
   SurfaceField field = mergeFields(parts, compiled.lattice);
@@ -230,6 +230,7 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
   compiled->objects = compiledObjects(old, *compiled, room, progress);
   if (faces == FaceLayer::if_read && !readsFaces(compiled->scene))
     for (auto& object : compiled->objects) object = withoutFaces(*object);
+  compiled->parts = partsOf(compiled->objects);
   progress.throwIfCancelled();
   if (compiled->objects.size() == 1) {
     const CompiledObject& only = *compiled->objects[0];
@@ -330,19 +331,8 @@ std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene sce
   return compiled;
 }
 
-std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face) {
-  if (face < 0) return -1;
-  auto left = static_cast<std::size_t>(face);
-  for (std::size_t i = 0; i < compiled.objects.size(); ++i) {
-    const std::size_t faces = compiled.objects[i]->mesh->triangles.size();
-    if (left < faces) return static_cast<std::int32_t>(i);
-    left -= faces;
-  }
-  return -1;
-}
-
 UnionSurface feltTriangles(const CompiledScene& compiled, const Progress& progress) {
-  return unionSurface(partsOf(compiled.objects), compiled.lattice, *compiled.mesh, progress);
+  return unionSurface(compiled.parts, compiled.lattice, *compiled.mesh, progress);
 }
 
 std::size_t mergeBytes(const CompiledScene& compiled) {

@@ -44,6 +44,7 @@ struct CompiledScene {
   BlockLattice lattice;
   double band = 0; // voxels: scene.field.band, or more where an offset or a magnet reaches farther
   std::vector<std::shared_ptr<const CompiledObject>> objects; // in the scene's order
+  std::vector<FieldPart> parts;                               // theirs; first_face is in `mesh`
 };
 
 // Nearest faces by node, a layer of the field: read by what is painted and by merge.redistance, and
@@ -72,9 +73,6 @@ bool canRetune(const CompiledScene& old, const Scene& scene);
 // for; throws Error if that does not fit. Quick: only what differs is made anew.
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene);
 
-// Index of the object that a face of the scene's mesh, and so a node that names it, belongs to;
-// -1 for -1.
-std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face);
 // The triangles that can be felt: without unusable ones, and of several objects what none hides, so
 // that a distance to them is one to the union. Faces are named as in compiled.mesh.
 UnionSurface feltTriangles(const CompiledScene& compiled, const Progress& progress);
