@@ -31,8 +31,8 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics, doub
   if (field->sample.size() != field->blockCount()) {
     throw std::invalid_argument("compileStages: the field has no sample layer");
   }
-  const double reach = reachOf(haptics, relief + roughness) / field->grid.voxel;
-  if (reach + kBandBeyondReach > field->band) {
+  const double band = feltReach(haptics, relief + roughness).band(field->grid.voxel);
+  if (band > field->band) {
     std::string what;
     if (haptics.tip_radius) what = "tip.radius = " + formatLength(*haptics.tip_radius);
     const auto with = [&](const char* key, double length) {
@@ -43,8 +43,7 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics, doub
     if (relief > 0) with("relief, highest", relief);
     if (roughness > 0) with("roughness, peak", roughness);
     throw Error(what + " does not fit into the band of " + formatNumber(field->band) +
-                " voxels; set band to " + formatNumber(std::ceil(reach + kBandBeyondReach)) +
-                " or more");
+                " voxels; set band to " + formatNumber(std::ceil(band)) + " or more");
   }
 }
 
@@ -89,9 +88,9 @@ void HapticSnapshot::add(std::unique_ptr<const ForceStage> stage, std::string re
   stages.push_back(std::move(stage));
 }
 
-double reachOf(const HapticProperties& haptics, double relief) {
-  return haptics.tip_radius.value_or(0) + relief +
-         std::max(haptics.offset.value_or(0), haptics.magnet ? haptics.magnet->range : 0.0);
+FeltReach feltReach(const HapticProperties& haptics, double raised) {
+  return {haptics.tip_radius.value_or(0), raised,
+          std::max(haptics.offset.value_or(0), haptics.magnet ? haptics.magnet->range : 0.0)};
 }
 
 double raisedBy(std::span<const FeltObject> objects) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "haptics/contact/contact_memory.h"
-#include "haptics/servo/felt_object.h"
+#include "haptics/servo/felt_reach.h"
 #include "haptics/stability/stabilisers.h"
 #include "scene/scene.h"
 
@@ -30,18 +30,10 @@ struct HapticSnapshot {
   void add(std::unique_ptr<const ForceStage> stage, std::string reason, std::size_t bytes = 0);
 };
 
-// How far from the surface its properties are felt: tip radius plus offset or magnetic range, and
-// the highest |height| of relief that is pulled, roughness included [m] (raisedBy()). The field's
-// band must be kBandBeyondReach voxels more; compileStages throws Error otherwise.
-inline constexpr double kBandBeyondReach = 3;
-double reachOf(const HapticProperties& haptics, double relief = 0);
-// [m], of the surface that is felt over the one in the field: kRoughnessPeak times the roughest
-// paint and the highest pulled relief.
-double raisedBy(std::span<const FeltObject> objects);
-
 // Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never
-// left out. `field` is the field of the scene's objects in the world frame, with relief in it where
-// it is baked. `objects`: in the scene's order; empty = nothing is painted on any.
+// left out. Throws Error where the field's band is less than FeltReach asks for. `field` is the
+// field of the scene's objects in the world frame, with relief in it where it is baked. `objects`:
+// in the scene's order; empty = nothing is painted on any.
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
                                                     std::span<const FeltObject> objects = {});

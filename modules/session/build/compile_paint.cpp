@@ -249,19 +249,19 @@ std::size_t FeltPaint::bytes() const {
   return bytes;
 }
 
-double reachOf(const Scene& scene, const CompiledScene* before) {
+FeltReach feltReach(const Scene& scene, const CompiledScene* before) {
   float most = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (const FeltRelief relief = sourceOf(scene, i, before); relief.source)
       most = std::max(most, relief.source_range->all.highest());
   const double relief = std::abs(scene.relief.height) * static_cast<double>(most);
-  return reachOf(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
+  return feltReach(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
 }
 
-double reachAfter(const CompiledScene& compiled, const Brush& brush) {
+FeltReach reachAfter(const CompiledScene& compiled, const Brush& brush) {
   const Scene& scene = compiled.scene;
-  const double now = reachOf(scene, &compiled);
-  if (brush.mode == StrokeMode::smooth) return now;
+  FeltReach reach = feltReach(scene, &compiled);
+  if (brush.mode == StrokeMode::smooth) return reach;
   double value = 0; // no more than all of its layers together
   if (scene.relief.source == ReliefFrom::color) {
     if (const BrushLayer* layer = layerOf(brush, Tool::color))
@@ -271,8 +271,9 @@ double reachAfter(const CompiledScene& compiled, const Brush& brush) {
   }
   if (const BrushLayer* layer = layerOf(brush, Tool::roughness))
     value += kRoughnessPeak * std::abs(layer->value);
-  const double bare = reachOf(scene.haptics);
-  return brush.mode == StrokeMode::add ? now + value : std::max(now, bare + value);
+  reach.raised =
+      brush.mode == StrokeMode::add ? reach.raised + value : std::max(reach.raised, value);
+  return reach;
 }
 
 FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,

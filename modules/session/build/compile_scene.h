@@ -60,12 +60,12 @@ std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress,
 // mesh and pose are kept (if they have their faces), so that only the others are built and the
 // union is made anew. The lattice and its voxel stay, too, until field values change or the scene
 // has outgrown them (more than twice or less than half the cells that `resolution` asks for); then
-// all is built as by compile(). `room` [m]: at least so far from the surface shall be felt, for
-// what is painted next.
+// all is built as by compile(). `room`: at least so far from the surface shall be felt, for what is
+// painted next.
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
-                                               Progress& progress, double room = 0);
-// Whether what reaches so far from the surface [m] lies in the band.
-bool fits(const CompiledScene& compiled, double reach);
+                                               Progress& progress, const FeltReach& room = {});
+// Whether what is felt so far from the surface lies in the band.
+bool fits(const CompiledScene& compiled, const FeltReach& reach);
 // Whether retuned() can make `scene` from `old`: the same objects in the same places and the same
 // field values, what is felt fits into the band, and faces are there if something reads them.
 bool canRetune(const CompiledScene& old, const Scene& scene);
