@@ -136,7 +136,7 @@ TEST_F(FeltPaints, HighReliefWidensTheBand) {
   Editor editor(scene, progress);
   editor.apply(dabAt(Tool::relief, 8e-3, 0.01, Vec3(0, 0, kBall)), progress);
   const auto compiled = compile(editor.scene(), progress);
-  EXPECT_GE(reachOf(editor.scene()), 7.99e-3);
+  EXPECT_GE(feltReach(editor.scene()).length(), 7.99e-3);
   EXPECT_GE(compiled->band * compiled->built.field->grid.voxel, 8e-3);
   EXPECT_GT(compiled->band, flat->band);
 }

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "field/sampling/field_sampler.h"
+#include "geometry/mesh/joint_mesh.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
@@ -70,9 +71,11 @@ TEST(CompileScene, FacesNameTheirObject) {
   for (std::int32_t i = 0; i < 3; ++i) {
     const Vec3 at =
         compiled->scene.objects[static_cast<std::size_t>(i)].world_from_object.translation();
-    EXPECT_EQ(objectOfFace(*compiled, sampler.faceNear(at + Vec3(0, 0, 0.01))), i);
+    EXPECT_EQ(partOfFace(compiled->parts, sampler.faceNear(at + Vec3(0, 0, 0.01)),
+                         &FieldPart::first_face),
+              i);
   }
-  EXPECT_EQ(objectOfFace(*compiled, -1), -1);
+  EXPECT_EQ(partOfFace(compiled->parts, -1, &FieldPart::first_face), -1);
 }
 
 TEST(CompileScene, AnAngleCostsNoAccuracy) {

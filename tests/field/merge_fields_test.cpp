@@ -11,6 +11,7 @@
 #include "field/analytic_fields.h"
 #include "field/merged_shapes.h"
 #include "field/sampling/field_sampler.h"
+#include "geometry/mesh/joint_mesh.h"
 #include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
 
@@ -89,12 +90,12 @@ TEST(MergeFields, NodesHoldTheLeastOfThePartsAndItsOwner) {
     ASSERT_EQ(test::phiAt(*m.field, i, j, k), least);
     ASSERT_EQ(m.field->faceAt(i, j, k), face);
     if (face < 0) return;
-    ASSERT_EQ(ownerOf(face, m.parts), owner);
+    ASSERT_EQ(partOfFace(m.parts, face, &FieldPart::first_face), owner);
     ++of[owner];
   });
   EXPECT_GT(of[0], 10000u);
   EXPECT_GT(of[1], 10000u);
-  EXPECT_EQ(ownerOf(-1, m.parts), -1);
+  EXPECT_EQ(partOfFace(m.parts, -1, &FieldPart::first_face), -1);
 }
 
 TEST(MergeFields, IdenticalObjectsAreOneBitForBit) {

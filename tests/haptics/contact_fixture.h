@@ -64,7 +64,7 @@ inline Scene withFriction(Scene scene, double fixed, double sliding, double gain
 // Ticks of 1 ms along a straight line at no more than `step` metres each; the last tick's record.
 inline Contact glide(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& to,
                      double step = 0.2e-3, double dt = 1e-3) {
-  const Vec3 from = memory.has_last_tip ? memory.last_tip : to;
+  const Vec3 from = memory.tip.last ? *memory.tip.last : to;
   const int count = std::max(1, static_cast<int>(std::ceil((to - from).norm() / step)));
   Contact contact;
   for (int i = 1; i <= count; ++i) {

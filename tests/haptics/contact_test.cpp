@@ -62,7 +62,7 @@ TEST(Contact, GoesAroundTheRim) {
   ContactMemory memory;
   tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
   tick(*snapshot, memory, Vec3(0, 0, -0.5e-3), 1e-3);
-  ASSERT_TRUE(memory.in_contact);
+  ASSERT_TRUE(memory.contact.c);
   Contact beyond = glide(*snapshot, memory, Vec3(3.5e-3, 0, -0.5e-3), 0.05e-3);
   for (int i = 0; i < 300; ++i) beyond = tick(*snapshot, memory, Vec3(3.5e-3, 0, -0.5e-3), 1e-3);
   EXPECT_FALSE(beyond.touching);

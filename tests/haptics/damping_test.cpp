@@ -115,7 +115,7 @@ TEST(Damping, ACutoffFiltersTheVelocityThatItSees) {
   for (int i = 0; i < 50; ++i) contact = tick(*snapshot, memory, Vec3(0, 0, 2e-4 * i), 1e-3);
   EXPECT_NEAR(contact.velocity.z(), 0.2, 1e-12);
   // The first tick of a step passes dt / (dt + 1 / (2 pi 200)).
-  contact = tick(*snapshot, memory, memory.last_tip, 1e-3);
+  contact = tick(*snapshot, memory, *memory.tip.last, 1e-3);
   EXPECT_NEAR(contact.velocity.z() / 0.2, 1 - 1 / (1 + 1 / (0.4 * std::numbers::pi)), 1e-9);
 }
 

@@ -59,7 +59,7 @@ TEST(Friction, SlipPersistsAtTheDynamicCoefficient) {
     // Back by a little: elastic again, no jump.
     const double reversed = tick(*snapshot, memory, Vec3(s - 0.06e-3, 0, -d), kPeriod).force.x();
     EXPECT_NEAR(reversed, -0.3 * K * d + K * 0.05e-3, 1e-6);
-    EXPECT_FALSE(memory.slipping);
+    EXPECT_FALSE(memory.friction.slipping());
   }
 }
 
@@ -156,8 +156,8 @@ TEST(Friction, StickSlipPeriodFollowsItsClosedForm) {
       const double t = i * dt;
       x = device.exchange(Vec3(friction + k * (V * t - x), 0, 0), dt).x();
       friction = tick(*snapshot, memory, Vec3(x, 0, -d), dt).force.x();
-      const bool onset = memory.slipping && !was_slipping;
-      was_slipping = memory.slipping;
+      const bool onset = memory.friction.slipping() && !was_slipping;
+      was_slipping = memory.friction.slipping();
       if (!onset || t - last_onset < 0.3 * expected) continue;
       if (last_onset > 0) periods.push_back(t - last_onset);
       last_onset = t;
@@ -191,7 +191,7 @@ TEST(Friction, LosingContactForgetsTheStuckPoint) {
   ContactMemory memory = pressed(*snapshot, 2e-3);
   EXPECT_GT(tangential(glide(*snapshot, memory, Vec3(1e-3, 0, -2e-3))), 0.1);
   glide(*snapshot, memory, Vec3(1e-3, 0, 1e-4));
-  EXPECT_FALSE(memory.has_stuck);
+  EXPECT_FALSE(memory.friction.grip);
   EXPECT_LT(tangential(tick(*snapshot, memory, Vec3(1e-3, 0, -1e-3), kPeriod)), 1e-12);
 }
 
@@ -220,7 +220,7 @@ TEST(Friction, DraggedVcpStaysOnTheSurface) {
     if (i < 1000) continue;
     EXPECT_LT(std::abs(surface.at(contact.vcp).phi), 1e-7);
     EXPECT_NEAR((contact.vcp - contact.candidate).norm(), 0.3 * contact.depth, 1e-10);
-    EXPECT_TRUE(memory.slipping);
+    EXPECT_TRUE(memory.friction.slipping());
   }
 }
 
@@ -239,7 +239,7 @@ TEST(Friction, CreepingSlipOnACurveDoesNotChatter) {
     for (int i = 0; i < 5000; ++i) { // 0.3 um a tick
       const double angle = 0.05 + 1e-5 * i;
       tick(*snapshot, memory, 0.028 * Vec3(std::sin(angle), 0, std::cos(angle)), kPeriod);
-      stuck += !memory.slipping;
+      stuck += !memory.friction.slipping();
     }
     EXPECT_EQ(stuck, 0);
   }
@@ -313,11 +313,11 @@ TEST(Friction, TwoWallsGripByTheWedgeFactor) {
       const double reach = mu * d / std::sin(alpha);
       for (const double dragged : {0.99 * reach, 1.01 * reach, 5 * reach}) {
         ContactMemory memory;
-        memory.has_stuck = true;
-        memory.stuck = Vec3(0, -dragged, 0);
+        memory.friction.grip =
+            FrictionMemory::Grip{Vec3(0, -dragged, 0), contact.candidate, contact.tip};
         Contact now = contact;
         stage.apply(now, memory);
-        EXPECT_EQ(memory.slipping, dragged > reach) << opening;
+        EXPECT_EQ(memory.friction.slipping(), dragged > reach) << opening;
         EXPECT_NEAR(now.vcp.norm(), std::min(dragged, reach), 1e-9) << opening;
       }
     }
@@ -341,7 +341,7 @@ TEST(Friction, ASnapCarriesTheStuckPointAlong) {
   for (int i = 0; i < 500; ++i) {
     const Contact now = tick(*snapshot, memory, tip, kPeriod);
     ASSERT_FALSE(now.fault);
-    ASSERT_FALSE(memory.slipping);
+    ASSERT_FALSE(memory.friction.slipping());
     if (now.snap) {
       ++snaps;
       way += (now.candidate - last.candidate).norm();

@@ -70,7 +70,7 @@ TEST(JumpFault, BreakingLooseIsNoFault) {
   glide(*snapshot, memory, Vec3(0, 0, 1e-4));
   glide(*snapshot, memory, Vec3(0, 0, -8e-3));
   double largest = 0;
-  Vec3 last = memory.last_raw;
+  Vec3 last = memory.limit.last->force;
   for (double x = 0; x < 12e-3; x += 0.1e-3) {
     const Contact contact = tick(*snapshot, memory, Vec3(x, 0, -8e-3), kPeriod);
     EXPECT_FALSE(contact.fault);
@@ -114,7 +114,7 @@ TEST(JumpFault, TeleportOutOfContactFadesTheLastForce) {
     EXPECT_LE(contact.force.z(), last);
     last = contact.force.z();
   }
-  EXPECT_FALSE(memory.faulted);
+  EXPECT_FALSE(memory.limit.fault);
 }
 
 // MATH 2.8: one missed 20 ms tick while pressing in at 0.3 m/s is no fault by itself.
@@ -172,7 +172,6 @@ TEST(JumpFault, FiresOnAModelOfAMetreToo) {
 TEST(JumpFault, NonFiniteForceIsAFault) {
   const LimitStage stage{LimitSpec{}};
   ContactMemory memory;
-  memory.has_last_tip = true;
   Contact contact;
   contact.dt = kPeriod;
   contact.touching = true;

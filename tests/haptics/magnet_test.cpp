@@ -55,7 +55,7 @@ TEST(Magnet, PullOffTakesItsClosedFormAndGivesItBack) {
   EXPECT_NEAR(peak / (k_m * w), 1, 2e-3);
   EXPECT_NEAR(out / (0.5 * k_m * w * w), 1, 2e-3);
   EXPECT_NEAR(back, out, 1e-3 * out);
-  EXPECT_FALSE(memory.faulted); // the step at the band's edge is the model's own
+  EXPECT_FALSE(memory.limit.fault); // the step at the band's edge is the model's own
 }
 
 // T-K13c: quasi-static loops of radius 0.7 mm inside the band.

@@ -68,7 +68,7 @@ TEST(Material, RoughnessReachesAsFarFromTheSceneAsFromItsSamples) {
   EXPECT_DOUBLE_EQ(roughnessPeak(scene), kRoughnessPeak * 0x1p-13);
   EXPECT_DOUBLE_EQ(raisedBy(std::span(&object, 1)), kRoughnessPeak * 0x1p-13);
   scene.haptics.tip_radius = 1e-3;
-  EXPECT_DOUBLE_EQ(reachOf(scene.haptics, 2e-3), 3e-3);
+  EXPECT_DOUBLE_EQ(feltReach(scene.haptics, 2e-3).length(), 3e-3);
 }
 
 TEST(Material, AnOwnerIsLookedUpOnlyAmongSeveralObjects) {

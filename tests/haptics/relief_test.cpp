@@ -246,7 +246,7 @@ TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
   EXPECT_NEAR(slid.force.x(), -mu * 500 * d, 1e-4);
   const Contact off = glide(*snapshot, memory, Vec3(4e-3, 0, 0.51e-3));
   EXPECT_FALSE(off.touching);
-  EXPECT_FALSE(memory.has_stuck);
+  EXPECT_FALSE(memory.friction.grip);
   EXPECT_TRUE(off.force.isZero(0));
   EXPECT_EQ(off.vcp, off.tip);
 }
@@ -338,7 +338,7 @@ TEST(PulledRelief, IsThatOfTheObjectTouched) {
   ContactMemory memory;
   for (int round = 0; round < 3; ++round)
     for (const double x : {-0.015, 0.015}) {
-      glide(*snapshot, memory, Vec3(memory.last_tip.x(), 1e-3, 6e-3));
+      glide(*snapshot, memory, Vec3(memory.tip.last->x(), 1e-3, 6e-3));
       glide(*snapshot, memory, Vec3(x, 1e-3, 6e-3));
       const double top = x < 0 ? 0.5e-3 : 1.5e-3;
       EXPECT_FALSE(glide(*snapshot, memory, Vec3(x, 1e-3, top + 1e-5)).touching);

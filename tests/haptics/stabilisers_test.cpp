@@ -145,9 +145,7 @@ struct PassivityRun {
     contact.dt = kPeriod;
     contact.force = force;
     stage.apply(contact, memory);
-    memory.last_tip = contact.tip;
-    memory.has_last_tip = true;
-    memory.applied = contact.force;
+    memory.tip = {contact.tip, 0, contact.force};
     return contact.force;
   }
 };
@@ -157,13 +155,13 @@ TEST(Passivity, PaysBackWithinATickWhatWasGiven) {
   const Vec3 pushes(1, 0, 0);
   EXPECT_EQ(run.tickAt(0, pushes), pushes);
   // 1 N along 0.1 mm gave 0.1 mJ; at 0.1 m/s, alpha = 1e-4 / (1e-3 * 0.01) = 10 N s/m.
-  EXPECT_NEAR(run.memory.energy, 0, 0);
+  EXPECT_NEAR(run.memory.passivity.energy, 0, 0);
   const Vec3 damped = run.tickAt(1e-4, Vec3::Zero());
-  EXPECT_NEAR(run.memory.energy, -1e-4, 1e-18);
+  EXPECT_NEAR(run.memory.passivity.energy, -1e-4, 1e-18);
   EXPECT_NEAR(damped.x(), -10 * .1, 1e-12);
   // Moving on at the same speed, the debt is paid.
   run.tickAt(2e-4, Vec3::Zero());
-  EXPECT_NEAR(run.memory.energy, 0, 1e-18);
+  EXPECT_NEAR(run.memory.passivity.energy, 0, 1e-18);
 }
 
 TEST(Passivity, NeverDampsMoreThanItsLimit) {
@@ -177,15 +175,15 @@ TEST(Passivity, ForgetsWhatWasDissipatedButNoDebt) {
   // An hour of rubbing: 1 N against the motion.
   double x = 0;
   for (int i = 0; i < 1000; ++i) run.tickAt(x += 1e-4, Vec3(-1, 0, 0));
-  EXPECT_LE(run.memory.energy, 0) << "no credit";
-  EXPECT_GT(run.memory.energy, -1e-12);
+  EXPECT_LE(run.memory.passivity.energy, 0) << "no credit";
+  EXPECT_GT(run.memory.passivity.energy, -1e-12);
   // A spring holds what it can give back and no more.
   for (int i = 0; i < 100; ++i) run.tickAt(1e-3, Vec3(-1, 0, 0), 1000);
-  EXPECT_LE(run.memory.energy, 0.5 * 1000 * 1e-6 + 1e-15);
-  run.memory.energy = -1e-3;
+  EXPECT_LE(run.memory.passivity.energy, 0.5 * 1000 * 1e-6 + 1e-15);
+  run.memory.passivity.energy = -1e-3;
   run.tickAt(1e-3, Vec3::Zero());
   run.tickAt(1e-3, Vec3::Zero());
-  EXPECT_DOUBLE_EQ(run.memory.energy, -1e-3) << "contact ended, the debt did not";
+  EXPECT_DOUBLE_EQ(run.memory.passivity.energy, -1e-3) << "contact ended, the debt did not";
 }
 
 TEST(Passivity, CountsTheForceThatWasOnItsWay) {
@@ -195,7 +193,7 @@ TEST(Passivity, CountsTheForceThatWasOnItsWay) {
   const double given[] = {0, 0, 0, 1e-4, 3e-4, 6e-4, 10e-4, 10e-4};
   for (int i = 0; i < 8; ++i) {
     run.tickAt(1e-4 * i, Vec3(pushes[i], 0, 0));
-    EXPECT_NEAR(run.memory.energy, -given[i], 1e-15) << i;
+    EXPECT_NEAR(run.memory.passivity.energy, -given[i], 1e-15) << i;
   }
 }
 

@@ -39,7 +39,7 @@ Loops worstLoop(const HapticSnapshot& snapshot, const Vec3& centre, const std::v
       last_force = force;
       last_tip = tip;
     }
-    EXPECT_FALSE(memory.faulted);
+    EXPECT_FALSE(memory.limit.fault);
     loops.worst = std::max(loops.worst, std::abs(work));
     loops.created = std::max(loops.created, work);
   }

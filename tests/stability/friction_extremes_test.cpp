@@ -94,7 +94,7 @@ TEST(FrictionExtremes, SlidesOverACrease) {
         EXPECT_GT(contact.normal.z(), 0.99) << x;
       }
     }
-    EXPECT_FALSE(memory.in_contact);
+    EXPECT_FALSE(memory.contact.c);
     // On the side: plain Coulomb again.
     const Contact side = glide(*snapshot, memory, Vec3(8e-3 - d, 0, 2e-3), 0.05e-3);
     ASSERT_TRUE(side.touching);
@@ -117,7 +117,7 @@ TEST(FrictionExtremes, SlidesOffAnEdge) {
     EXPECT_LE(contact.force.norm(), 0.2) << x;
   }
   EXPECT_FALSE(contact.touching);
-  EXPECT_FALSE(memory.has_stuck);
+  EXPECT_FALSE(memory.friction.grip);
 }
 
 } // namespace

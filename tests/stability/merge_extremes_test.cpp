@@ -70,7 +70,7 @@ Walk walk(const HapticSnapshot& snapshot, ContactMemory& memory, const std::vect
           double step = 1e-4) {
   Walk result;
   Vec3 force = Vec3::Zero();
-  Vec3 from = memory.has_last_tip ? memory.last_tip : path.front();
+  Vec3 from = memory.tip.last ? *memory.tip.last : path.front();
   bool first = true;
   for (const Vec3& to : path) {
     const int count = std::max(1, static_cast<int>(std::ceil((to - from).norm() / step)));

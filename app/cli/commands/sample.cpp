@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/sampling/field_sampler.h"
+#include "geometry/mesh/joint_mesh.h"
 #include "geometry/tree/triangle_tree.h"
 #include "visualization/export/field_io.h"
 
@@ -56,7 +57,7 @@ Material materialAt(const SampledSurface& surface, std::int32_t face, const Vec3
   if (!surface.compiled) return baseMaterial({});
   const Scene& scene = surface.compiled->scene;
   const Material base = baseMaterial(scene.haptics);
-  const std::int32_t index = objectOfFace(*surface.compiled, face);
+  const std::int32_t index = partOfFace(surface.compiled->parts, face, &FieldPart::first_face);
   if (index < 0) return base;
   const SceneObject& object = scene.objects[static_cast<std::size_t>(index)];
   if (!object.paint || !object.paint->material) return base;

@@ -181,11 +181,11 @@ Periods stickSlipPeriods(const HapticSnapshot& snapshot, const Drag& drag, doubl
     const double t = ticks * period;
     const Vec3 tip(kBegin + motion.x + drag.speed * t, 0, -drag.depth);
     motion = step(motion, tick(snapshot, memory, tip, period).force.x());
-    if (memory.slipping && !slipped && (slips == 0 || t - last > 0.3 * about)) {
+    if (memory.friction.slipping() && !slipped && (slips == 0 || t - last > 0.3 * about)) {
       if (++slips > 2) periods.lasted.push_back(t - last); // the first one began otherwise
       last = t;
     }
-    slipped = memory.slipping;
+    slipped = memory.friction.slipping();
   }
   const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
   periods.ns = taken.count() / ticks;

@@ -66,10 +66,9 @@ void layMaterial(Scene& slab, double side, double voxel, double depth, MaterialC
       for (std::int32_t bx = 0; bx < blocks(side); ++bx) {
         MaterialLayer& layer = map->writable({bx, by, bz}, channel);
         for (std::size_t n = 0; n < kMaterialNodes; ++n) {
-          const Vec3 node(static_cast<double>(8 * bx) + static_cast<double>(n % 8),
-                          static_cast<double>(8 * by) + static_cast<double>(n / 8 % 8),
-                          static_cast<double>(8 * bz) + static_cast<double>(n / 64));
-          layer.value[n] = static_cast<float>(value(origin + voxel * node));
+          const Index3 node = BlockNode{{bx, by, bz}, n}.at();
+          layer.value[n] =
+              static_cast<float>(value(origin + voxel * Vec3(node[0], node[1], node[2])));
           layer.weight[n] = 1;
         }
       }

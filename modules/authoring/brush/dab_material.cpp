@@ -57,10 +57,8 @@ void MaterialStroke::forNodes(const Dab& local, const Brush& brush, const Index&
 }
 
 Vec3 MaterialStroke::placeOf(const Index& block, std::size_t node) const {
-  const int n = static_cast<int>(node);
-  return map_.origin() + map_.voxel() * Vec3(kMaterialSide * block[0] + n % kMaterialSide,
-                                             kMaterialSide * block[1] + n / 8 % kMaterialSide,
-                                             kMaterialSide * block[2] + n / 64);
+  const Index3 at = BlockNode{block, node}.at();
+  return map_.origin() + map_.voxel() * Vec3(at[0], at[1], at[2]);
 }
 
 // No contact reads a node beyond the band.
@@ -149,15 +147,13 @@ std::size_t MaterialStroke::smooth(const Dab& local, const Brush& brush) {
     if (!isNearSurface(block)) return;
     forNodes(local, brush, block, [&](std::size_t node, double weight) {
       ++count;
-      const int n = static_cast<int>(node);
-      const std::array<std::int32_t, 3> at{8 * block[0] + n % 8, 8 * block[1] + n / 8 % 8,
-                                           8 * block[2] + n / 64};
+      const Index3 at = BlockNode{block, node}.at();
       for (const MaterialInk& ink : inks_) {
         const MaterialChannel channel = ink.channel;
         Pair mean;
         for (std::size_t axis = 0; axis < 3; ++axis)
           for (const int step : {-1, 1}) {
-            std::array<std::int32_t, 3> beside = at;
+            Index3 beside = at;
             beside[axis] += step;
             const Pair pair = pairAt(beside, channel);
             mean.value += pair.value / 6;
@@ -176,9 +172,9 @@ std::size_t MaterialStroke::smooth(const Dab& local, const Brush& brush) {
 
 MaterialStroke::Pair MaterialStroke::pairAt(const std::array<std::int32_t, 3>& node,
                                             MaterialChannel channel) const {
-  const MaterialLayer* layer = map_.layer({node[0] >> 3, node[1] >> 3, node[2] >> 3}, channel);
+  const auto [block, n] = BlockNode::of(node);
+  const MaterialLayer* layer = map_.layer(block, channel);
   if (!layer) return {};
-  const auto n = static_cast<std::size_t>((node[2] & 7) * 64 + (node[1] & 7) * 8 + (node[0] & 7));
   return {static_cast<double>(layer->value[n]), static_cast<double>(layer->weight[n])};
 }
 

@@ -8,6 +8,7 @@
 #include "authoring/brush/stroke_path.h"
 #include "authoring/brush/volume_fill.h"
 #include "core/error.h"
+#include "geometry/mesh/joint_mesh.h"
 
 namespace patina {
 namespace {
@@ -193,10 +194,7 @@ void Painter::Impl::apply(const Dab& dab, std::span<const std::int32_t> faces,
 }
 
 std::size_t Painter::Impl::objectOf(std::int32_t face) const {
-  const auto after = std::upper_bound(
-      surface->objects.begin(), surface->objects.end(), face,
-      [](std::int32_t f, const PaintObject& object) { return f < object.first_face; });
-  return static_cast<std::size_t>(after - surface->objects.begin()) - 1;
+  return static_cast<std::size_t>(partOfFace(surface->objects, face, &PaintObject::first_face));
 }
 
 void Painter::Impl::publish() {

@@ -168,8 +168,7 @@ void VolumeFill::seedFromNodes() {
       for (int j = first(1); j <= end(1); ++j)
         for (int i = first(0); i <= end(0); ++i) {
           if (!((Vec3(i, j, k) - q).squaredNorm() <= r * r)) continue;
-          const int node = ((k & 7) * kBlockSide + (j & 7)) * kBlockSide + (i & 7);
-          const std::int32_t face = faces.at(static_cast<std::size_t>(node));
+          const std::int32_t face = faces.at(BlockNode::of(Index3{i, j, k}).node);
           if (face >= 0 && face != last) visit(face);
           last = face;
         }

@@ -17,8 +17,6 @@
 namespace patina {
 namespace {
 
-using Index3 = std::array<int, 3>;
-
 std::vector<ReliefImage> imagesOf(std::span<const ReliefSource> sources, double voxel) {
   std::vector<ReliefImage> images;
   images.reserve(sources.size());

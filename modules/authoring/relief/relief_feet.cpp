@@ -7,12 +7,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "geometry/mesh/joint_mesh.h"
 #include "geometry/tree/triangle_tree.h"
 
 namespace patina {
 namespace {
-
-using Index3 = std::array<int, 3>;
 
 bool isStored(float phi) {
   return std::abs(phi) < kBeyondBand;
@@ -30,11 +29,10 @@ class FaceSources {
   }
 
   std::int32_t of(std::int32_t face) const {
-    const auto after =
-        std::upper_bound(order_.begin(), order_.end(), face,
-                         [&](std::int32_t f, std::int32_t s) { return f < source(s).first_face; });
-    if (after == order_.begin()) return BlockFeet::kNone;
-    const std::int32_t s = *(after - 1);
+    const std::int32_t at =
+        partOfFace(order_, face, [&](std::int32_t s) { return source(s).first_face; });
+    if (at < 0) return BlockFeet::kNone;
+    const std::int32_t s = order_[static_cast<std::size_t>(at)];
     return face - source(s).first_face < source(s).faces ? s : BlockFeet::kNone;
   }
   const ReliefSource& source(std::int32_t s) const { return sources_[static_cast<std::size_t>(s)]; }

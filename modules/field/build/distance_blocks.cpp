@@ -12,8 +12,6 @@
 namespace patina {
 namespace {
 
-using Index3 = std::array<int, 3>;
-
 constexpr int kTile = 4; // lattice points a side in queries over blocks and their corners
 
 std::size_t cellCount(const Index3& n) {
@@ -151,8 +149,7 @@ Block blockAt(const TriangleMesh& mesh, const TriangleTree& tree, const FieldGri
               double band, const Index3& at) {
   Block block{std::make_unique_for_overwrite<DistanceNodes>(),
               std::make_unique_for_overwrite<FaceNodes>()};
-  const Index3 first{kBlockSide * at[0], kBlockSide * at[1], kBlockSide * at[2]};
-  const Vec3 corner = grid.toWorld(Vec3(first[0], first[1], first[2]));
+  const Vec3 corner = grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
   auto& phi = block.distance->phi;
   auto& face = block.face->face;
   tree.closestOnLattice(corner, grid.voxel, kBlockSide, band * grid.voxel, phi, face);
@@ -163,8 +160,8 @@ Block blockAt(const TriangleMesh& mesh, const TriangleTree& tree, const FieldGri
       phi[i] = kBeyondBand;
       continue;
     }
-    const Index3 in = cellAt(i, {kBlockSide, kBlockSide, kBlockSide});
-    const Vec3 p = grid.toWorld(Vec3(first[0] + in[0], first[1] + in[1], first[2] + in[2]));
+    const Index3 node = BlockNode{at, i}.at();
+    const Vec3 p = grid.toWorld(Vec3(node[0], node[1], node[2]));
     const double d = distanceTo(mesh, face[i], p) / grid.voxel;
     phi[i] = static_cast<float>(std::min(d, band));
   }

@@ -14,8 +14,6 @@
 namespace patina {
 namespace {
 
-using Index3 = std::array<int, 3>;
-
 constexpr int kHalvings = 10; // 1e-3 voxel
 constexpr float kClose = 1;   // [voxel]
 

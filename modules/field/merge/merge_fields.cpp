@@ -10,8 +10,6 @@
 namespace patina {
 namespace {
 
-using Index3 = std::array<int, 3>;
-
 std::size_t linear(const Index3& at, const Index3& n) {
   return static_cast<std::size_t>((at[2] * n[1] + at[1]) * n[0] + at[0]);
 }
@@ -197,14 +195,6 @@ SurfaceField mergeFields(std::span<const FieldPart> parts, const BlockLattice& l
     });
   });
   return merged;
-}
-
-std::int32_t ownerOf(std::int32_t face, std::span<const FieldPart> parts) {
-  if (face < 0) return -1;
-  const auto after =
-      std::upper_bound(parts.begin(), parts.end(), face,
-                       [](std::int32_t f, const FieldPart& part) { return f < part.first_face; });
-  return static_cast<std::int32_t>(after - parts.begin()) - 1;
 }
 
 double phiOfPart(const FieldPart& part, const NodeReader& nodes, const Vec3& q) {

@@ -17,7 +17,7 @@ namespace patina {
 struct FieldPart {
   std::shared_ptr<const SurfaceField> field; // need not have samples
   std::array<int, 3> first_block{};          // where its block (0, 0, 0) lies on the lattice
-  std::int32_t first_face = 0;               // of its mesh in the joint mesh of all parts
+  std::int32_t first_face = 0;               // of its mesh in the joint mesh; ascends
 
   BlockBox blocks() const;
 };
@@ -32,10 +32,6 @@ struct FieldPart {
 // No sample layer. Parallel. Throws invalid_argument without parts or if voxels or bands differ;
 // Error if the parts are too far apart for one grid.
 SurfaceField mergeFields(std::span<const FieldPart> parts, const BlockLattice& lattice);
-
-// Which part a face of the joint mesh belongs to: the owner of the nodes that name it. -1 for -1.
-// first_face ascends.
-std::int32_t ownerOf(std::int32_t face, std::span<const FieldPart> parts);
 
 // phi [voxel] of one part, whose field's nodes are given, at a point in grid coordinates of the
 // lattice: trilinear in the band, beyond it a bound of the right sign that is nearer to zero. Not

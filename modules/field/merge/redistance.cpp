@@ -9,12 +9,11 @@
 #include <tbb/parallel_for.h>
 
 #include "field/merge/union_surface.h"
+#include "geometry/mesh/joint_mesh.h"
 #include "geometry/tree/triangle_tree.h"
 
 namespace patina {
 namespace {
-
-using Index3 = std::array<int, 3>;
 
 class Redistancer {
  public:
@@ -75,13 +74,11 @@ class Redistancer {
       const std::int32_t face = old_faces.at(n);
       any = any || face >= 0;
       if (face < 0 || !(distance.phi[n] < 0)) continue;
-      const Index3& at = merged_.block_at[slot];
-      const auto i = static_cast<int>(n);
-      const Vec3 p = merged_.grid.toWorld(Vec3(kBlockSide * at[0] + i % kBlockSide,
-                                               kBlockSide * at[1] + i / kBlockSide % kBlockSide,
-                                               kBlockSide * at[2] + i / (kBlockSide * kBlockSide)));
+      const Index3 at = BlockNode{merged_.block_at[slot], n}.at();
+      const Vec3 p = merged_.grid.toWorld(Vec3(at[0], at[1], at[2]));
       const Vec3 foot = (footOn(face, p) - lattice_.anchor) / lattice_.voxel;
-      if (!isHidden(parts_, nodes_, ownerOf(face, parts_), foot)) continue;
+      if (!isHidden(parts_, nodes_, partOfFace(parts_, face, &FieldPart::first_face), foot))
+        continue;
       const auto found = tree_.closestPointWithin(p, merged_.band * lattice_.voxel, warm);
       const float phi =
           found ? -static_cast<float>(std::min(found->distance / lattice_.voxel, merged_.band))

@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "geometry/mesh/joint_mesh.h"
 #include "geometry/mesh/mesh_report.h"
 
 namespace patina {
@@ -99,7 +100,8 @@ UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& 
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, usable.size(), 256), [&](const auto& range) {
     if (progress.cancelled()) return;
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const auto owner = static_cast<std::size_t>(ownerOf(usable[i], parts));
+      const auto owner =
+          static_cast<std::size_t>(partOfFace(parts, usable[i], &FieldPart::first_face));
       Corners t;
       Box3 box;
       for (int c = 0; c < 3; ++c) {

@@ -8,11 +8,7 @@
 namespace patina::signs {
 
 std::array<int, 3> nodeAt(const FieldBuilder& builder, std::int32_t slot, std::size_t node) {
-  const auto& block = builder.field.block_at[static_cast<std::size_t>(slot)];
-  const int i = static_cast<int>(node);
-  return {block[0] * kBlockSide + i % kBlockSide,
-          block[1] * kBlockSide + i / kBlockSide % kBlockSide,
-          block[2] * kBlockSide + i / kBlockSide / kBlockSide};
+  return BlockNode{builder.field.block_at[static_cast<std::size_t>(slot)], node}.at();
 }
 
 bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, std::int32_t slot,
@@ -34,14 +30,14 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
       for (int dx = -1; dx <= 1; ++dx) {
         const int x = at[0] + dx, y = at[1] + dy, z = at[2] + dz;
         if (x < 0 || y < 0 || z < 0) continue;
-        const int bx = x / kBlockSide, by = y / kBlockSide, bz = z / kBlockSide;
+        const BlockNode next = BlockNode::of(Index3{x, y, z});
+        const auto& [bx, by, bz] = next.block;
         if (bx >= field.blocks[0] || by >= field.blocks[1] || bz >= field.blocks[2]) continue;
         NodePlace place;
         place.top_index =
             static_cast<std::size_t>((bz * field.blocks[1] + by) * field.blocks[0] + bx);
         place.slot = std::max(field.top[place.top_index], -1);
-        place.node = static_cast<std::size_t>(
-            (z % kBlockSide * kBlockSide + y % kBlockSide) * kBlockSide + x % kBlockSide);
+        place.node = next.node;
         const float d =
             place.slot < 0
                 ? static_cast<float>(field.band)

@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <memory>
 
-namespace patina {
+#include "field/store/block_node.h"
 
-inline constexpr int kBlockSide = 8;                                     // nodes
-inline constexpr int kBlockNodes = kBlockSide * kBlockSide * kBlockSide; // 512, x fastest
+namespace patina {
 
 // While a field is being made: one face a node, -1 where phi is beyond the band.
 struct FaceNodes {

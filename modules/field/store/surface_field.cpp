@@ -21,10 +21,8 @@ std::size_t layerSize(const std::vector<std::shared_ptr<const Block>>& layer) {
 SurfaceField::Place SurfaceField::placeOf(int i, int j, int k) const {
   const auto& n = grid.nodes;
   if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2]) return {kOutside, 0};
-  const int mask = kBlockSide - 1;
-  return {
-      slotOf(i / kBlockSide, j / kBlockSide, k / kBlockSide),
-      static_cast<std::size_t>(((k & mask) * kBlockSide + (j & mask)) * kBlockSide + (i & mask))};
+  const auto [block, node] = BlockNode::of(Index3{i, j, k});
+  return {slotOf(block[0], block[1], block[2]), node};
 }
 
 std::int32_t SurfaceField::faceAt(int i, int j, int k) const {

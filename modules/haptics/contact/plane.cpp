@@ -16,7 +16,7 @@ class PlaneStage final : public ForceStage {
   void apply(Contact& contact, ContactMemory& memory) const noexcept override {
     const double depth = -contact.tip.z();
     if (!(depth > 0)) {
-      memory.leaveContact();
+      memory.contact.c.reset();
       return;
     }
     contact.touching = true;
@@ -26,8 +26,8 @@ class PlaneStage final : public ForceStage {
     contact.vcp = contact.candidate;
     contact.wall[0] = {contact.normal, depth};
     contact.walls = 1;
-    memory.in_contact = true;
-    memory.last_candidate = contact.candidate;
+    if (memory.contact.c) contact.drawn = contact.candidate - *memory.contact.c;
+    memory.contact.c = contact.candidate;
   }
   std::string_view name() const noexcept override { return "plane"; }
 };

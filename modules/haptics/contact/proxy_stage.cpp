@@ -4,17 +4,25 @@
 #include <cmath>
 #include <limits>
 
+#include "haptics/contact/contact_memory.h"
+
 namespace patina {
 namespace {
 
 constexpr double kLongestTick = 0.05; // [s], of those that a proxy may run on its own
 constexpr double kUnlooked = 0.1;     // voxels of clearance that nobody needs to look at
 constexpr double kFarthest = 1e9;     // voxels
-constexpr double kNoDepth = 1e-9;     // voxels
-constexpr double kSamePlace = 0.1;    // voxels, of a surface before and after an edit
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+constexpr double kNoDepth = 1e-9;  // voxels
+constexpr double kSamePlace = 0.1; // voxels, of a surface before and after an edit
 
 double sideOf(const FieldGrid& grid) {
   return grid.voxel * (*std::max_element(grid.nodes.begin(), grid.nodes.end()) - 1);
+}
+
+void stayFree(const Contact& contact, ContactPointMemory& memory) noexcept {
+  memory.c.reset();
+  memory.clearance = contact.clearance;
 }
 
 void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Contact& contact) {
@@ -36,51 +44,43 @@ ProxyStage::ProxyStage(const FieldSampler& sampler, double iso, double steepness
       snap_speed_(kSnapSides * sideOf(sampler.grid())) {}
 
 void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  ContactPointMemory& at = memory.contact;
   const Vec3 x = toGrid(contact.tip);
-  const Vec3 last = memory.has_last_tip ? toGrid(memory.last_tip) : x;
+  const Vec3 last = memory.tip.last ? toGrid(*memory.tip.last) : x;
   const Vec3 from = last.cwiseAbs().maxCoeff() < kFarthest ? last : x;
-  if (!(x.cwiseAbs().maxCoeff() < kFarthest)) { // no place at all: squares would overflow
-    memory.leaveContact();
-    memory.clearance = std::numeric_limits<double>::infinity();
-    return;
-  }
+  if (!(x.cwiseAbs().maxCoeff() < kFarthest)) // no place at all: squares would overflow
+    return stayFree(contact, at);
   Proxy& proxy = memory.proxy;
   double ball =
       (x - from).norm() + snap_speed_ * per_voxel_ * std::clamp(contact.dt, 0.0, kLongestTick);
-  if (memory.in_contact) {
-    proxy.c = toGrid(memory.last_candidate);
-    if (memory.reseat) {
+  if (at.c) {
+    proxy.c = toGrid(*at.c);
+    if (at.reseat) {
       proxy.walls.count = 0;
       proxy.lent = 0;
-      if (!search_.seat(x, proxy.c, contact.samples)) {
-        memory.leaveContact();
-        memory.clearance = std::numeric_limits<double>::infinity();
-        return;
-      }
+      if (!search_.seat(x, proxy.c, contact.samples)) return stayFree(contact, at);
       // What stuck to a surface that is elsewhere now would hold the old one's force.
-      if ((proxy.c - toGrid(memory.last_candidate)).squaredNorm() > kSamePlace * kSamePlace)
-        memory.has_stuck = false;
+      if ((proxy.c - toGrid(*at.c)).squaredNorm() > kSamePlace * kSamePlace) contact.lets_go = true;
     }
   } else {
-    if (!enter(x, from, contact, memory, proxy.c)) return;
+    if (!enter(x, from, memory, contact, proxy.c)) return stayFree(contact, at);
     proxy.walls.count = 0;
     proxy.lent = 0;
     ball += (x - proxy.c).norm();
   }
-  memory.reseat = false;
-  const ProxyMove move = search_.follow(x, memory.in_contact ? from : proxy.c, ball, proxy);
+  at.reseat = false;
+  const ProxyMove move = search_.follow(x, at.c ? from : proxy.c, ball, proxy);
   contact.samples += move.samples;
   if (!move.touching) {
-    memory.leaveContact();
-    memory.clearance = per_steepness_ * move.clearance;
-    return;
+    contact.clearance = per_steepness_ * move.clearance;
+    return stayFree(contact, at);
   }
   contact.touching = true;
   contact.candidate = sampler_.grid().origin + voxel_ * proxy.c;
   contact.vcp = contact.candidate;
-  memory.in_contact = true;
-  memory.clearance = 0;
-  memory.last_candidate = contact.candidate;
+  if (at.c) contact.drawn = contact.candidate - *at.c;
+  at.c = contact.candidate;
+  at.clearance = contact.clearance = 0;
   if (move.smooth) {
     contact.normal = proxy.walls[0].normal;
     contact.depth = voxel_ * move.held.load[0];
@@ -105,24 +105,24 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
 }
 
 // Whether the tip has come into contact, and where.
-bool ProxyStage::enter(const Vec3& x, const Vec3& from, Contact& contact, ContactMemory& memory,
-                       Vec3& c) const noexcept {
+bool ProxyStage::enter(const Vec3& x, const Vec3& from, const ContactMemory& memory,
+                       Contact& contact, Vec3& c) const noexcept {
   const double step = (x - from).norm();
-  double known = memory.has_last_tip ? memory.clearance : std::numeric_limits<double>::infinity();
+  double known = memory.tip.last ? memory.contact.clearance : kUnknown;
   if (std::isfinite(known) && known - step > kUnlooked) {
-    memory.clearance = known - step;
+    contact.clearance = known - step;
     return false;
   }
   const double height = search_.heightAt(x);
   ++contact.samples;
   bool came = std::isfinite(known) && known >= 0;
-  if (!came && memory.has_last_tip && height < 0) {
+  if (!came && memory.tip.last && height < 0) {
     known = per_steepness_ * search_.heightAt(from);
     ++contact.samples;
     came = known >= 0;
   }
   if (height >= 0 && (!came || per_steepness_ * height + known >= step)) {
-    memory.clearance = per_steepness_ * height;
+    contact.clearance = per_steepness_ * height;
     return false;
   }
   std::optional<Vec3> at;
@@ -131,9 +131,7 @@ bool ProxyStage::enter(const Vec3& x, const Vec3& from, Contact& contact, Contac
   else
     at = search_.seekSurface(x, contact.samples);
   if (at) c = *at;
-  if (!at)
-    memory.clearance =
-        height >= 0 ? per_steepness_ * height : std::numeric_limits<double>::infinity();
+  if (!at && height >= 0) contact.clearance = per_steepness_ * height;
   contact.deep = at && !came;
   return at.has_value();
 }

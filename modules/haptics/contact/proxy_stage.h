@@ -26,7 +26,7 @@ class ProxyStage final : public ForceStage {
   std::string_view name() const noexcept override { return "contact"; }
 
  private:
-  bool enter(const Vec3& x, const Vec3& from, Contact& contact, ContactMemory& memory,
+  bool enter(const Vec3& x, const Vec3& from, const ContactMemory& memory, Contact& contact,
              Vec3& c) const noexcept;
   Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - sampler_.grid().origin); }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptics/contact/contact_memory.h"
+
 namespace patina {
 namespace {
 
@@ -79,7 +81,7 @@ RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n, doubl
 Vec3 directionAt(const GridSample& sample, const ContactMemory& memory) noexcept {
   const double squared = sample.gradient.squaredNorm();
   if (squared >= kMinGradient * kMinGradient) return sample.gradient / std::sqrt(squared);
-  return memory.in_contact ? memory.last_normal : Vec3::Zero();
+  return memory.contact.c ? memory.ray.normal : Vec3::Zero();
 }
 
 } // namespace
@@ -92,15 +94,16 @@ void RayStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const Vec3 q = per_voxel_ * (contact.tip - sampler_.grid().origin);
   const GridSample sample = sampler_.atGrid(q);
   contact.samples = 1;
-  memory.clearance = sample.phi - iso_;
-  if (!(memory.clearance < 0)) {
-    memory.leaveContact();
+  contact.clearance = memory.contact.clearance = sample.phi - iso_;
+  std::optional<Vec3>& last = memory.contact.c;
+  if (!(contact.clearance < 0)) {
+    last.reset();
     return;
   }
   contact.touching = true;
   contact.deep = sample.region == FieldRegion::deep;
   contact.normal = directionAt(sample, memory);
-  double depth = -memory.clearance;
+  double depth = -contact.clearance;
   if (!contact.normal.isZero()) {
     const RayRoot root = rayRoot(sampler_, q, contact.normal, depth, iso_);
     contact.samples += root.samples;
@@ -114,11 +117,13 @@ void RayStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   contact.surface = contact.candidate - iso_ * voxel_ * contact.normal;
   contact.wall[0] = {contact.normal, contact.depth};
   contact.walls = 1;
-  contact.snap = memory.in_contact && contact.normal.dot(memory.last_normal) < 0;
-  if (contact.snap) contact.slip_step = (contact.candidate - memory.last_candidate).norm();
-  memory.in_contact = true;
-  memory.last_candidate = contact.candidate;
-  memory.last_normal = contact.normal;
+  if (last) {
+    contact.drawn = contact.candidate - *last;
+    contact.snap = contact.normal.dot(memory.ray.normal) < 0;
+    if (contact.snap) contact.slip_step = contact.drawn.norm();
+  }
+  last = contact.candidate;
+  memory.ray.normal = contact.normal;
 }
 
 } // namespace patina

@@ -7,6 +7,10 @@
 
 namespace patina {
 
+struct RayMemory {
+  Vec3 normal = Vec3::Zero(); // last valid direction of this contact (K05); zero: there was none
+};
+
 // Sets touching, normal, candidate, vcp (= candidate), depth and surface from the tip alone. Past
 // the middle of a part the force turns round (T-K12b); across creases the ray may miss the surface,
 // and loops may do work: ProxyStage does neither. Where the direction has no length the last one

@@ -20,15 +20,8 @@ void CrossFade::turnTo(const HapticSnapshot* next) noexcept {
   weight_ = 0;
   next_memory_ = memory_;
   if (!felt_ || !next) next_memory_.leaveContact();
-  if (!felt_) next_memory_.has_last_tip = false; // nobody has followed the tip
-  next_memory_.reseat = true;
-  // What the old law measured is not the new one's: neither its force nor its clearance.
-  next_memory_.has_last_raw = false;
-  next_memory_.clearance = std::numeric_limits<double>::infinity();
-  next_memory_.relief.known = next_memory_.roughness.known = false;
-  // A stage that only the new law has begins afresh.
-  next_memory_.aside.setZero();
-  next_memory_.has_damped = false;
+  if (!felt_) next_memory_.tip.last.reset(); // nobody has followed the tip
+  next_memory_.changeLaw();
 }
 
 Contact CrossFade::tick(const Vec3& tip, double dt) noexcept {
@@ -39,7 +32,7 @@ Contact CrossFade::tick(const Vec3& tip, double dt) noexcept {
   weight_ = apart * (1 - weight_) <= kEditStep ? 1 : weight_ + kEditStep / apart;
   contact.force = old + weight_ * (contact.force - old);
   // What the device holds, for the ledgers of both.
-  memory_.applied = next_memory_.applied = contact.force;
+  memory_.tip.applied = next_memory_.tip.applied = contact.force;
   if (weight_ < 1) return contact;
   felt_ = next_;
   memory_ = next_memory_;

@@ -31,8 +31,8 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics, doub
   if (field->sample.size() != field->blockCount()) {
     throw std::invalid_argument("compileStages: the field has no sample layer");
   }
-  const double reach = reachOf(haptics, relief + roughness) / field->grid.voxel;
-  if (reach + kBandBeyondReach > field->band) {
+  const double band = feltReach(haptics, relief + roughness).band(field->grid.voxel);
+  if (band > field->band) {
     std::string what;
     if (haptics.tip_radius) what = "tip.radius = " + formatLength(*haptics.tip_radius);
     const auto with = [&](const char* key, double length) {
@@ -43,8 +43,7 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics, doub
     if (relief > 0) with("relief, highest", relief);
     if (roughness > 0) with("roughness, peak", roughness);
     throw Error(what + " does not fit into the band of " + formatNumber(field->band) +
-                " voxels; set band to " + formatNumber(std::ceil(reach + kBandBeyondReach)) +
-                " or more");
+                " voxels; set band to " + formatNumber(std::ceil(band)) + " or more");
   }
 }
 
@@ -89,9 +88,9 @@ void HapticSnapshot::add(std::unique_ptr<const ForceStage> stage, std::string re
   stages.push_back(std::move(stage));
 }
 
-double reachOf(const HapticProperties& haptics, double relief) {
-  return haptics.tip_radius.value_or(0) + relief +
-         std::max(haptics.offset.value_or(0), haptics.magnet ? haptics.magnet->range : 0.0);
+FeltReach feltReach(const HapticProperties& haptics, double raised) {
+  return {haptics.tip_radius.value_or(0), raised,
+          std::max(haptics.offset.value_or(0), haptics.magnet ? haptics.magnet->range : 0.0)};
 }
 
 double raisedBy(std::span<const FeltObject> objects) {
@@ -192,31 +191,34 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   return compileStages(scene, std::move(field), objects, planOf(scene, objects));
 }
 
-Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
-             double dt) noexcept {
+Contact beginTick(const HapticSnapshot& snapshot, const ContactMemory& memory, const Vec3& tip,
+                  double dt) noexcept {
   Contact contact;
-  contact.tip = tip;
-  contact.candidate = tip;
-  contact.vcp = tip;
-  contact.surface = tip;
+  contact.tip = contact.candidate = contact.vcp = contact.surface = tip;
   contact.material = snapshot.base;
-  const double period = dt > 0 && dt < 1e6 ? dt : 0;
-  contact.dt = memory.gap + period;
-  if (!tip.allFinite()) {
-    memory.gap = contact.dt;
-    memory.applied.setZero();
-    return contact;
-  }
-  memory.gap = 0;
-  if (memory.has_last_tip && contact.dt >= kMinVelocityPeriod) {
-    contact.velocity = 1 / contact.dt * (tip - memory.last_tip);
+  contact.dt = memory.tip.gap + (dt > 0 && dt < 1e6 ? dt : 0);
+  contact.lets_go = memory.limit.jumped;
+  if (memory.tip.last && contact.dt >= kMinVelocityPeriod) {
+    contact.velocity = 1 / contact.dt * (tip - *memory.tip.last);
     // Also where it is infinite or NaN, which no filter would ever forget.
     if (!(contact.velocity.squaredNorm() < kMaxVelocity * kMaxVelocity)) contact.velocity.setZero();
   }
+  return contact;
+}
+
+Contact tick(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip,
+             double dt) noexcept {
+  Contact contact = beginTick(snapshot, memory, tip, dt);
+  if (!tip.allFinite()) {
+    memory.tip.gap = contact.dt;
+    memory.tip.applied.setZero();
+    return contact;
+  }
   for (const auto& stage : snapshot.stages) stage->apply(contact, memory);
-  memory.last_tip = tip;
-  memory.has_last_tip = true;
-  memory.applied = contact.force;
+  if (!memory.contact.c) memory.leaveContact();
+  memory.tip.last = tip;
+  memory.tip.gap = 0;
+  memory.tip.applied = contact.force;
   return contact;
 }
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "haptics/servo/felt_object.h"
+#include "haptics/contact/contact_memory.h"
+#include "haptics/servo/felt_reach.h"
 #include "haptics/stability/stabilisers.h"
-#include "haptics/stages/stage.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -30,18 +30,10 @@ struct HapticSnapshot {
   void add(std::unique_ptr<const ForceStage> stage, std::string reason, std::size_t bytes = 0);
 };
 
-// How far from the surface its properties are felt: tip radius plus offset or magnetic range, and
-// the highest |height| of relief that is pulled, roughness included [m] (raisedBy()). The field's
-// band must be kBandBeyondReach voxels more; compileStages throws Error otherwise.
-inline constexpr double kBandBeyondReach = 3;
-double reachOf(const HapticProperties& haptics, double relief = 0);
-// [m], of the surface that is felt over the one in the field: kRoughnessPeak times the roughest
-// paint and the highest pulled relief.
-double raisedBy(std::span<const FeltObject> objects);
-
 // Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never
-// left out. `field` is the field of the scene's objects in the world frame, with relief in it where
-// it is baked. `objects`: in the scene's order; empty = nothing is painted on any.
+// left out. Throws Error where the field's band is less than FeltReach asks for. `field` is the
+// field of the scene's objects in the world frame, with relief in it where it is baked. `objects`:
+// in the scene's order; empty = nothing is painted on any.
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
                                                     std::span<const FeltObject> objects = {});
@@ -54,6 +46,10 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                                                     std::shared_ptr<const SurfaceField> field,
                                                     std::span<const FeltObject> objects,
                                                     const StabiliserPlan& plan);
+
+// A tick before its first stage.
+Contact beginTick(const HapticSnapshot& snapshot, const ContactMemory& memory, const Vec3& tip,
+                  double dt) noexcept;
 
 // One servo tick as a pure function of its arguments: dt is passed in, no clock is read.
 // A NaN or infinite tip: no contact, zero force.

@@ -88,7 +88,7 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point,
   const double voxel = sampler_.grid().voxel;
   tick(*wall_, outside, surface + (raised_ + kStart * voxel) * outward, kRest);
   // In a cleft the way in is not free: the tip is there without having come from anywhere.
-  if (outside.in_contact) outside.reset();
+  if (outside.contact.c) outside.reset();
 
   double stiffness = wall_->base.stiffness;
   if (painted_) { // what is felt there, and how high

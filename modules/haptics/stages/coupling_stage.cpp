@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptics/contact/contact_memory.h"
 #include "haptics/contact/hold.h"
-#include "haptics/stages/spring_stage.h"
 
 namespace patina {
 
@@ -18,11 +18,11 @@ namespace {
 
 // Of the tip's motion along the walls what the contact point does not take part in: it is what the
 // surface's curvature holds (K d / (R + d) of a bowl), and as stiff.
-Vec3 heldBack(const Contact& contact, const Vec3& drawn) noexcept {
+Vec3 heldBack(const Contact& contact) noexcept {
   const Vec3 along = contact.dt * (contact.velocity - Hold(contact).across(contact.velocity));
   const double squared = along.squaredNorm();
   if (!(squared > 0)) return Vec3::Zero();
-  const double share = std::clamp(1 - drawn.dot(along) / squared, 0.0, 1.0);
+  const double share = std::clamp(1 - contact.drawn.dot(along) / squared, 0.0, 1.0);
   return share * share / contact.dt * along;
 }
 
@@ -35,11 +35,9 @@ void CouplingStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   }
   const double damping = std::max(damping_, std::min(contact.material.damping, most_damping_));
   dampWalls(contact, damping, magnetic_);
-  const Vec3& c = memory.last_candidate;
-  if (contact.touching && memory.has_damped && !(contact.stick_radius > 0))
-    contact.force -= damping * heldBack(contact, c - memory.damped);
-  memory.damped = c;
-  memory.has_damped = contact.touching;
+  if (contact.touching && memory.coupling.touched && !(contact.stick_radius > 0))
+    contact.force -= damping * heldBack(contact);
+  memory.coupling.touched = contact.touching;
 }
 
 } // namespace patina

@@ -8,6 +8,10 @@ namespace patina {
 // Two springs in a row; finite where either is infinite.
 double inSeries(double stiffness, double coupling) noexcept;
 
+struct CouplingMemory {
+  bool touched = false; // a tick ago
+};
+
 // Takes the place of spring, velocity filter and damping. The tip is tied to the virtual contact
 // point by a spring k_c in series with the surface's own, and damped (dampWalls; B is the plan's,
 // or the material's where that damps more, up to most_damping):

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptics/contact/contact_memory.h"
+
 namespace patina {
 namespace {
 
@@ -25,32 +27,26 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
   const double slip = contact.material.dynamic_friction * gain * borne;
   const double stick = std::max(contact.material.static_friction * gain * borne, slip);
   if (!contact.touching || !(stick > 0)) {
-    memory.has_stuck = false;
-    memory.slipping = false;
+    memory.friction.grip.reset();
     return;
   }
   const Vec3& c = contact.candidate;
-  if (!memory.has_stuck) {
-    memory.stuck = memory.last_slipped = c;
-    memory.trail = contact.tip;
-    memory.last_slide.setZero();
-    memory.has_stuck = true;
-    memory.slipping = false;
-  }
+  if (!memory.friction.grip || contact.lets_go)
+    memory.friction.grip = FrictionMemory::Grip{c, c, contact.tip};
+  FrictionMemory::Grip& grip = *memory.friction.grip;
   // What runs by itself does not slip: the stuck point goes with it.
-  if (contact.snap) memory.stuck += c - memory.last_slipped;
-  memory.last_slipped = c;
-  const Vec3 against = slip_ == Friction::SlipDirection::displacement
-                           ? againstMotion(contact, memory)
-                           : Vec3::Zero();
+  if (contact.snap) grip.stuck += c - grip.candidate;
+  grip.candidate = c;
+  const Vec3 against =
+      slip_ == Friction::SlipDirection::displacement ? againstMotion(contact, grip) : Vec3::Zero();
 
-  const double radius = memory.slipping ? slip : stick;
-  const Vec3 dragged = memory.stuck - c;
+  const double radius = grip.slipping ? slip : stick;
+  const Vec3 dragged = grip.stuck - c;
   const double dragged_squared = dragged.squaredNorm();
   if (dragged_squared <= radius * radius) {
-    memory.slipping = false;
+    grip.slipping = false;
     contact.stick_radius = stick;
-    contact.vcp = memory.stuck;
+    contact.vcp = grip.stuck;
     return;
   }
   Vec3 p = c;
@@ -59,26 +55,27 @@ void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcep
         slip * (against.isZero(0) ? Vec3(dragged / std::sqrt(dragged_squared)) : against);
     p = c + (raised_ ? offset : ontoSurface(contact, offset, slip));
   }
-  if (!memory.slipping) contact.slip_step += (p - memory.stuck).norm();
-  memory.slipping = true;
-  memory.stuck = p;
+  if (!grip.slipping) contact.slip_step += (p - grip.stuck).norm();
+  grip.slipping = true;
+  grip.stuck = p;
   contact.vcp = p;
 }
 
 // Draws the trail behind the tip over the tangent plane at the candidate. A chord is the direction
 // half its length ago; it is turned on as much as the path turned since the chord before. Zero
 // while the trail is too short to say.
-Vec3 FrictionStage::againstMotion(const Contact& contact, ContactMemory& memory) const noexcept {
+Vec3 FrictionStage::againstMotion(const Contact& contact,
+                                  FrictionMemory::Grip& grip) const noexcept {
   const auto tangential = [&n = contact.normal](const Vec3& v) { return Vec3(v - v.dot(n) * n); };
-  const Vec3 behind = tangential(memory.trail - contact.tip);
+  const Vec3 behind = tangential(grip.trail - contact.tip);
   const double length = behind.norm();
-  memory.trail = contact.tip + behind;
+  grip.trail = contact.tip + behind;
   if (!(length > 0.5 * trail_)) return Vec3::Zero();
   const Vec3 direction = 1 / length * behind;
-  if (length > trail_) memory.trail = contact.tip + trail_ * direction;
+  if (length > trail_) grip.trail = contact.tip + trail_ * direction;
 
-  const Vec3 before = tangential(memory.last_slide);
-  memory.last_slide = behind;
+  const Vec3 before = tangential(grip.slide);
+  grip.slide = behind;
   const double length_before = before.norm();
   const double between = 0.5 * (length + length_before) - trail_;
   // At less than a trail's length a tick the noise of the tip would be turned on with it.

@@ -1,6 +1,8 @@
 // Friction as a limit to the movement of the VCP (K09, K10).
 #pragma once
 
+#include <optional>
+
 #include "field/sampling/field_sampler.h"
 #include "haptics/stages/stage.h"
 #include "scene/scene.h"
@@ -8,6 +10,19 @@
 namespace patina {
 
 inline constexpr double kFrictionDepthReference = 1e-3; // d_ref of K10 [m]
+
+struct FrictionMemory {
+  struct Grip {
+    Vec3 stuck;                // p_s of K09, world
+    Vec3 candidate;            // c, a tick ago
+    Vec3 trail;                // trails the tip closely over the surface: where it comes from
+    Vec3 slide = Vec3::Zero(); // from tip to trail, a tick ago
+    bool slipping = false;     // until |p_s - c| < mu_d d
+  };
+  std::optional<Grip> grip; // while the tip touches and there is friction
+
+  bool slipping() const noexcept { return grip && grip->slipping; }
+};
 
 // mu_s and mu_d are the material's; painted so that mu_s < mu_d, a surface sticks as it slides.
 // The VCP p stays where it is until |p - c| exceeds mu_s d, then trails the frictionless candidate
@@ -28,7 +43,7 @@ class FrictionStage final : public ForceStage {
   std::string_view name() const noexcept override { return "friction"; }
 
  private:
-  Vec3 againstMotion(const Contact& contact, ContactMemory& memory) const noexcept;
+  Vec3 againstMotion(const Contact& contact, FrictionMemory::Grip& grip) const noexcept;
   Vec3 ontoSurface(const Contact& contact, const Vec3& offset, double length) const noexcept;
 
   FieldSampler sampler_;

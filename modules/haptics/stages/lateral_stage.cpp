@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "haptics/contact/contact_memory.h"
 #include "haptics/contact/hold.h"
 #include "haptics/stability/painted_range.h"
 #include "haptics/stages/coupling_stage.h"
@@ -36,11 +37,11 @@ LateralStage::LateralStage(std::shared_ptr<const Reliefs> reliefs,
 }
 
 LateralStage::Height LateralStage::heightAt(const Contact& contact, const Vec3& aside,
-                                            ContactMemory& memory) const noexcept {
+                                            ReliefWalk& walk) const noexcept {
   Height height;
   const Vec3 at = contact.surface + aside;
   if (reliefs_) {
-    const ReliefAt relief = reliefs_->at(contact.object, at, memory, &height.bend);
+    const ReliefAt relief = reliefs_->at(contact.object, at, walk, &height.bend);
     height.h = relief.height;
     height.slope = relief.slope;
   }
@@ -61,7 +62,7 @@ LateralStage::Height LateralStage::heightAt(const Contact& contact, const Vec3& 
 void LateralStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const auto object = static_cast<std::size_t>(contact.object);
   if (!contact.touching || contact.normal.isZero(0) || object >= stiff_.size() || !stiff_[object]) {
-    memory.aside.setZero();
+    memory.lateral.aside.setZero();
     return;
   }
   const double stiffness = inSeries(contact.material.stiffness, plan_.coupling);
@@ -69,9 +70,9 @@ void LateralStage::apply(Contact& contact, ContactMemory& memory) const noexcept
   const double bowl = plan_.stiffness + viscous; // of spring and damper
   const double depth = contact.depth - shell_;
   const Mat32 free = Hold(contact).free();
-  const Vec2 before = free.transpose() * memory.aside;
+  const Vec2 before = free.transpose() * memory.lateral.aside;
 
-  const auto heightOf = [&](const Vec2& u) { return heightAt(contact, free * u, memory); };
+  const auto heightOf = [&](const Vec2& u) { return heightAt(contact, free * u, memory.walk); };
   const auto energyOf = [&](const Vec2& u, const Height& at) {
     const double deep = std::max(depth + at.h, 0.0);
     return 0.5 * (plan_.stiffness * u.squaredNorm() + viscous * (u - before).squaredNorm() +
@@ -115,11 +116,10 @@ void LateralStage::apply(Contact& contact, ContactMemory& memory) const noexcept
   }
   contact.aside = free * u;
   contact.lateral = plan_.stiffness;
-  const Vec3 drawn = contact.surface - memory.aside_of;
+  const Vec3 drawn = contact.surface - memory.lateral.surface;
   const Vec2 ran = u - before;
   if (ran.norm() > drawn.norm() + kOwnSpeed * contact.dt) contact.snap = true;
-  memory.aside = contact.aside;
-  memory.aside_of = contact.surface;
+  memory.lateral = {contact.aside, contact.surface};
 }
 
 } // namespace patina

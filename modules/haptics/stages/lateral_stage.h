@@ -12,6 +12,11 @@
 
 namespace patina {
 
+struct LateralMemory {
+  Vec3 aside = Vec3::Zero();   // Contact::aside, a tick ago
+  Vec3 surface = Vec3::Zero(); // the surface's point that it is from
+};
+
 // Texture of slope h' and second derivative h'' under a normal force P makes P h'' of stiffness
 // along the surface, whatever K is. Here the point at which relief and roughness are read is not
 // held beneath the tip, but tied to it by a spring k_l and a damper B along the surface. With s the
@@ -36,7 +41,7 @@ class LateralStage final : public ForceStage {
 
  private:
   struct Height;
-  Height heightAt(const Contact& contact, const Vec3& aside, ContactMemory& memory) const noexcept;
+  Height heightAt(const Contact& contact, const Vec3& aside, ReliefWalk& walk) const noexcept;
 
   std::shared_ptr<const Reliefs> reliefs_;
   std::span<const FeltObject> objects_;

@@ -3,44 +3,42 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptics/contact/contact_memory.h"
+
 namespace patina {
 
-void LimitStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+void LimitStage::apply(Contact& contact, ContactMemory& all) const noexcept {
+  LimitMemory& memory = all.limit;
   const bool finite = contact.force.allFinite();
   const Vec3 raw = finite ? contact.force : Vec3::Zero();
-  if (!finite || jumped(contact, memory)) {
-    memory.faulted = true;
-    memory.since_fault = 0;
-    memory.fault_force = memory.has_last_raw ? memory.applied : Vec3::Zero();
-    memory.has_stuck = false; // a stuck point does not outlive the jump
-  }
-  memory.last_raw = raw;
-  memory.last_stiffness = contact.stiffness;
-  memory.has_last_raw = true;
+  memory.jumped = !finite || jumped(contact, memory);
+  if (memory.jumped)
+    memory.fault = LimitMemory::Fault{memory.last ? all.tip.applied : Vec3::Zero(), 0};
+  memory.last = LimitMemory::Raw{raw, contact.stiffness};
   contact.force = scaledTo(raw, spec_.force_limit);
-  if (!memory.faulted) return;
+  if (!memory.fault) return;
   contact.fault = true;
-  memory.since_fault += std::max(contact.dt, 0.0);
-  const double left = memory.since_fault - kFaultFadeTime;
+  memory.fault->since += std::max(contact.dt, 0.0);
+  const double left = memory.fault->since - kFaultFadeTime;
   if (left < 0) {
-    contact.force = -left / kFaultFadeTime * memory.fault_force;
+    contact.force = -left / kFaultFadeTime * memory.fault->force;
   } else if (left < kFaultReturnTime && (contact.touching || contact.attracted)) {
     contact.force *= left / kFaultReturnTime;
   } else {
-    memory.faulted = false;
+    memory.fault.reset();
   }
 }
 
-bool LimitStage::jumped(const Contact& contact, const ContactMemory& memory) const noexcept {
-  if (!memory.has_last_raw) return false;
+bool LimitStage::jumped(const Contact& contact, const LimitMemory& memory) const noexcept {
+  if (!memory.last) return false;
   const double period = std::clamp(contact.dt, 1e-4, 0.05);
-  const double stiffness = std::max({contact.stiffness, memory.last_stiffness, spec_.pull});
+  const double stiffness = std::max({contact.stiffness, memory.last->stiffness, spec_.pull});
   const double per_speed = 2 * (stiffness * period + spec_.damping);
   const double cap = std::max(spec_.force_limit, kHandSpeed * per_speed);
   const double allowed =
       std::min(spec_.max_speed * per_speed, cap) + stiffness * contact.slip_step +
       (stiffness + spec_.damping / period) * contact.relief_step + contact.known_step;
-  return (contact.force - memory.last_raw).squaredNorm() > allowed * allowed;
+  return (contact.force - memory.last->force).squaredNorm() > allowed * allowed;
 }
 
 Vec3 scaledTo(const Vec3& force, double limit) noexcept {

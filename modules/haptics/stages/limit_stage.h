@@ -1,6 +1,8 @@
 // The stage that is never left out: the magnitude limit and the jump fault (F13, MATH 2.8).
 #pragma once
 
+#include <optional>
+
 #include "haptics/stages/stage.h"
 
 namespace patina {
@@ -15,6 +17,20 @@ struct LimitSpec {
   double pull = 0;               // [N/m], of a magnet
   double damping = 0;            // B [N s/m], of the most damped one
   double max_speed = kHandSpeed; // v_max [m/s]
+};
+
+struct LimitMemory {
+  struct Raw {
+    Vec3 force;       // [N], before limit and fade
+    double stiffness; // [N/m], of the place where it was
+  };
+  std::optional<Raw> last; // a tick ago; absent: nothing that the next one can be compared with
+  struct Fault {
+    Vec3 force;   // [N], what is being faded
+    double since; // [s]
+  };
+  std::optional<Fault> fault;
+  bool jumped = false; // a tick ago
 };
 
 // The force scaled so that its magnitude is at most `limit`.
@@ -36,7 +52,7 @@ class LimitStage final : public ForceStage {
   std::string_view name() const noexcept override { return "limit"; }
 
  private:
-  bool jumped(const Contact& contact, const ContactMemory& memory) const noexcept;
+  bool jumped(const Contact& contact, const LimitMemory& memory) const noexcept;
 
   LimitSpec spec_;
 };

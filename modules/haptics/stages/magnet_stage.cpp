@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "haptics/contact/contact_memory.h"
 #include "haptics/contact/pull_back.h"
 
 namespace patina {
@@ -19,10 +20,7 @@ MagnetStage::MagnetStage(const FieldSampler& sampler, double tip_radius, const M
       range_(magnet.range * per_voxel_) {}
 
 void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  const bool was = memory.attracted;
-  memory.attracted = false;
-  // memory.clearance is this tick's: the contact stage has looked.
-  if (!contact.touching && memory.clearance < range_) {
+  if (!contact.touching && contact.clearance < range_) {
     const FieldGrid& grid = sampler_.grid();
     const GridSample at = sampler_.atGrid(per_voxel_ * (contact.tip - grid.origin));
     double above = at.phi - iso_;
@@ -31,7 +29,7 @@ void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
     if (relief_.reliefs && slope > 0) {
       const Vec3 n = at.gradient / slope, c = contact.tip - grid.voxel * at.phi * n;
       const std::int32_t object = relief_.owners ? relief_.owners->ownerAt(c) : 0;
-      const ReliefAt raised = relief_.reliefs->at(object, c, memory);
+      const ReliefAt raised = relief_.reliefs->at(object, c, memory.walk);
       above = std::max(0.0, above - per_voxel_ * raised.height);
       if (relief_.leans)
         leaning = pulledBack(sampler_, per_voxel_ * (c - grid.origin), n, at.phi, raised.slope);
@@ -49,10 +47,10 @@ void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
       contact.surface = contact.tip - grid.voxel * at.phi * contact.normal;
       contact.vcp = contact.surface + iso_ * grid.voxel * contact.normal;
       contact.attracted = true;
-      memory.attracted = true;
     }
   }
-  const bool stepped = memory.attracted != was && !magnet_.fades;
+  const bool stepped = contact.attracted != memory.magnet.attracted && !magnet_.fades;
+  memory.magnet.attracted = contact.attracted;
   if (stepped) contact.known_step += magnet_.strength * magnet_.range;
 }
 

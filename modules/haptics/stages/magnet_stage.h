@@ -18,6 +18,10 @@ struct MagnetRelief {
   bool leans = false;                       // conservative
 };
 
+struct MagnetMemory {
+  bool attracted = false; // a tick ago
+};
+
 // Out of contact, in the band 0 < phi < w above the surface that the tip's radius makes:
 // F = -k_m phi n. Inside, contact's own stages act. With `fades` the pull falls linearly from its
 // value at 3/4 w to zero at w. Where two parts are equally near (a groove) the blended gradient is

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "geometry/mesh/joint_mesh.h"
+#include "haptics/contact/contact_memory.h"
 #include "haptics/contact/pull_back.h"
 
 namespace patina {
 
 std::int32_t OwnerStage::ownerAt(const Vec3& p) const noexcept {
-  const std::int32_t face = sampler_.faceNear(p);
-  const auto next = std::ranges::upper_bound(objects_, face, {}, &FeltObject::first_face);
-  return static_cast<std::int32_t>(std::max<std::ptrdiff_t>(next - objects_.begin() - 1, 0));
+  return std::max(partOfFace(objects_, sampler_.faceNear(p), &FeltObject::first_face), 0);
 }
 
 void OwnerStage::apply(Contact& contact, ContactMemory&) const noexcept {
@@ -32,18 +33,17 @@ void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
 }
 
 void StiffnessSlopeStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  const double last = memory.sideways;
-  memory.sideways = 0;
+  const double last = std::exchange(memory.stiffness_slope.force, 0);
   if (contact.touching && contact.material.stiffness > 0) {
     // d of the potential: along the surface's own normal, not the slope of its relief.
     const double square = contact.depth * contact.depth / (1 + contact.slope.squaredNorm());
     const double softened = contact.stiffness / contact.material.stiffness;
     const Vec3 force = -0.5 * square * softened * softened * contact.stiffness_gradient;
     contact.force += force;
-    memory.sideways = force.norm();
+    memory.stiffness_slope.force = force.norm();
   }
   // It comes and goes with the cells of the map, which is no jump.
-  contact.known_step += last + memory.sideways;
+  contact.known_step += last + memory.stiffness_slope.force;
 }
 
 } // namespace patina

@@ -39,6 +39,10 @@ class MaterialStage final : public ForceStage {
   bool gradients_;
 };
 
+struct StiffnessSlopeMemory {
+  double force = 0; // [N], a tick ago
+};
+
 // F6: K d along the normal alone does work round a loop where K changes along the surface. Behind
 // the law's own stage this one adds what makes the force the gradient of U = 1/2 K(c) d^2:
 // -1/2 d^2 grad K, through the coupling where there is one, whose k = K k_c / (K + k_c) takes the

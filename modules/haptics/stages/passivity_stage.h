@@ -2,6 +2,7 @@
 #pragma once
 
 #include "haptics/stages/stage.h"
+#include "scene/device_model.h"
 
 namespace patina {
 
@@ -19,6 +20,14 @@ struct PassivitySpec {
   double most = 0;    // alpha [N s/m]
   double reserve = 0; // [J]
   int delay = 0;      // samples, at most kMaxDelay
+};
+
+struct PassivityMemory {
+  double energy = 0; // [J], what the surface may still give back
+  double brake = 0;  // [N], of the last tick
+  Eigen::Matrix<double, 3, kMaxDelay + 1> in_flight =
+      Eigen::Matrix<double, 3, kMaxDelay + 1>::Zero(); // [N], forces on their way, a ring
+  int newest = 0;                                      // of them
 };
 
 class PassivityStage final : public ForceStage {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "haptics/contact/contact_memory.h"
 #include "haptics/contact/pull_back.h"
 
 namespace patina {
@@ -45,16 +46,16 @@ void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
 }
 
 // By how much the relief itself has moved the VCP since the last tick, at most.
-void announceStep(Contact& contact, ContactMemory::Leaning& last, double height,
+void announceStep(Contact& contact, TextureMemory& memory, double height,
                   const Vec3& slope) noexcept {
-  const ContactMemory::Leaning now{true, height, contact.depth,
-                                   contact.touching ? slope : Vec3(Vec3::Zero())};
-  if (last.known)
+  const TextureMemory::Felt now{height, contact.depth,
+                                contact.touching ? slope : Vec3(Vec3::Zero())};
+  if (const auto& last = memory.last)
     contact.relief_step +=
-        std::abs(now.height - last.height) *
-            std::sqrt(1 + std::max(now.slope.squaredNorm(), last.slope.squaredNorm())) +
-        std::max(now.depth, last.depth) * (now.slope - last.slope).norm();
-  last = now;
+        std::abs(now.height - last->height) *
+            std::sqrt(1 + std::max(now.slope.squaredNorm(), last->slope.squaredNorm())) +
+        std::max(now.depth, last->depth) * (now.slope - last->slope).norm();
+  memory.last = now;
 }
 
 } // namespace
@@ -62,14 +63,14 @@ void announceStep(Contact& contact, ContactMemory::Leaning& last, double height,
 Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects)
     : sampler_(sampler), objects_(objects), lost_(kLostVoxels * sampler.grid().voxel) {}
 
-ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory,
+ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
                      Eigen::Matrix3d* bend) const noexcept {
   ReliefAt at;
   if (bend) bend->setZero();
   const auto i = static_cast<std::size_t>(object);
   if (i >= objects_.size() || !objects_[i].relief) return at;
   const FeltObject& part = objects_[i];
-  if (memory.relief_object == object) at = reliefAt(*part.relief, c, memory.relief_face, bend);
+  if (walk.object == object) at = reliefAt(*part.relief, c, walk.face, bend);
   if (at.face < 0 || at.distance > lost_) {
     const std::int32_t near = sampler_.faceNear(c);
     Eigen::Matrix3d bent;
@@ -80,8 +81,7 @@ ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ContactMemory& memory,
       if (bend) *bend = bent;
     }
   }
-  memory.relief_object = object;
-  memory.relief_face = at.face;
+  walk = {object, at.face};
   if (std::abs(at.height) > part.highest) { // between texels a cubic overshoots
     at.height = std::copysign(part.highest, at.height);
     at.slope.setZero();
@@ -99,11 +99,11 @@ std::size_t Reliefs::bytes() const {
 
 void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (!contact.touching || contact.normal.isZero(0)) {
-    memory.relief.known = false;
+    memory.relief.last.reset();
     if (contact.touching) lower(contact, shell_, Vec3::Zero());
     return;
   }
-  const ReliefAt at = reliefs_->at(contact.object, contact.surface + contact.aside, memory);
+  const ReliefAt at = reliefs_->at(contact.object, contact.surface + contact.aside, memory.walk);
   const Vec3 slope = form_ == ForceForm::literal
                          ? Vec3::Zero()
                          : pulledBack(reliefs_->sampler(), contact, at.slope);
@@ -136,7 +136,7 @@ RoughPattern roughPattern(const Vec3& p, Eigen::Matrix3d* bend) noexcept {
 
 void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (!contact.touching) {
-    memory.roughness.known = false;
+    memory.roughness.last.reset();
     return;
   }
   double height = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "field/sampling/field_sampler.h"
@@ -11,14 +12,29 @@
 
 namespace patina {
 
+// Where the next look-up begins.
+struct ReliefWalk {
+  std::int32_t object = -1, face = -1;
+};
+
+// Of relief and of roughness, each its own.
+struct TextureMemory {
+  struct Felt {
+    double height = 0; // [m]
+    double depth = 0;  // [m]
+    Vec3 slope = Vec3::Zero();
+  };
+  std::optional<Felt> last; // a tick ago
+};
+
 // The reliefs of a scene's objects, each |height| <= its `highest`.
 class Reliefs {
  public:
   Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects);
   // At the closest point c [m, world] of the object, cut off at `highest`; flat where the object
-  // has none. The walk over its faces goes on from memory.relief_face.
+  // has none. The walk over its faces goes on from walk.
   // bend: as of reliefAt().
-  ReliefAt at(std::int32_t object, const Vec3& c, ContactMemory& memory,
+  ReliefAt at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
               Eigen::Matrix3d* bend = nullptr) const noexcept;
   const FieldSampler& sampler() const noexcept { return sampler_; }
   std::size_t bytes() const; // of the packed faces

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "haptics/contact/contact_memory.h"
 #include "haptics/contact/half_spaces.h"
 #include "haptics/contact/hold.h"
 
@@ -19,8 +20,9 @@ VelocityFilterStage::VelocityFilterStage(double cutoff_hz)
 
 void VelocityFilterStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const double share = contact.dt > 0 ? contact.dt / (contact.dt + time_) : 0;
-  memory.velocity += share * (contact.velocity - memory.velocity);
-  contact.velocity = memory.velocity;
+  Vec3& filtered = memory.filter.velocity;
+  filtered += share * (contact.velocity - filtered);
+  contact.velocity = filtered;
 }
 
 void dampSticking(Contact& contact, const Vec3& damper) noexcept {

@@ -12,6 +12,10 @@ class SpringStage final : public ForceStage {
   std::string_view name() const noexcept override { return "spring"; }
 };
 
+struct VelocityFilterMemory {
+  Vec3 velocity = Vec3::Zero(); // [m/s]
+};
+
 // contact.velocity through a first-order low-pass: less noise of a coarse encoder for a delay that
 // lowers the stability limit of the damping behind it (MATH 2.1.4).
 class VelocityFilterStage final : public ForceStage {

@@ -8,6 +8,8 @@
 
 namespace patina {
 
+struct ContactMemory;
+
 class ForceStage {
  public:
   virtual ~ForceStage() = default;

@@ -13,14 +13,6 @@ bool isEmpty(const MaterialLayer& layer) {
   return std::memcmp(&layer, &kEmpty, sizeof layer) == 0;
 }
 
-std::int32_t blockOf(std::int64_t node) {
-  return static_cast<std::int32_t>(node >> 3);
-}
-
-std::size_t nodeIn(const std::array<std::int64_t, 3>& node) {
-  return static_cast<std::size_t>((node[2] & 7) * 64 + (node[1] & 7) * 8 + (node[0] & 7));
-}
-
 bool sameLayer(const std::shared_ptr<MaterialLayer>& a, const std::shared_ptr<MaterialLayer>& b) {
   if (a == b) return true;
   if (!a || !b) return isEmpty(a ? *a : *b);
@@ -143,8 +135,9 @@ template <typename Visit> void MaterialMap::forCorners(const Vec3& p, const Visi
       node[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(low[axis]) + high;
       share *= high ? part[axis] : 1 - part[axis];
     }
-    const auto block = blocks_.find({blockOf(node[0]), blockOf(node[1]), blockOf(node[2])});
-    if (block != blocks_.end() && share != 0) visit(block->second, nodeIn(node), share);
+    const BlockNode at = BlockNode::of(node);
+    const auto block = blocks_.find(at.block);
+    if (block != blocks_.end() && share != 0) visit(block->second, at.node, share);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/types.h"
+#include "field/store/block_node.h"
 #include "scene/paint/own_parts.h"
 
 namespace patina {
@@ -47,8 +48,8 @@ struct MaterialRange {
 };
 MaterialRange rangeOf(MaterialChannel channel);
 
-inline constexpr int kMaterialSide = 8; // nodes
-inline constexpr std::size_t kMaterialNodes = 512;
+inline constexpr int kMaterialSide = kBlockSide; // nodes
+inline constexpr std::size_t kMaterialNodes = kBlockNodes;
 
 // Paint over the object's own value: what is felt at a node is value + (1 - weight) * base, so that
 // a change of the base is felt wherever paint does not cover it (K18). Nothing painted: 0, 0.
@@ -67,7 +68,7 @@ struct MaterialBlock {
 // nodes 8 b .. 8 b + 7. Copies share layers; writable() copies the one that is shared.
 class MaterialMap {
  public:
-  using Index = std::array<std::int32_t, 3>;
+  using Index = Index3;
 
   MaterialMap(const Vec3& origin, double voxel); // invalid_argument unless finite and voxel > 0
 

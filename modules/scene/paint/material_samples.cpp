@@ -141,12 +141,12 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
     for (int z = 0; z < kSide; ++z)
       for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x, value += channels) {
-          const int corner = (x >> 3) + 2 * (y >> 3) + 4 * (z >> 3);
+          const auto [in, node] = BlockNode::of(Index3{x, y, z});
+          const int corner = in[0] + 2 * in[1] + 4 * in[2];
           const MaterialBlock* from = source[static_cast<std::size_t>(corner)];
           const MaterialLayer* layer = from ? from->layer[c].get() : nullptr;
           *value = own;
           if (!layer) continue;
-          const auto node = static_cast<std::size_t>((z & 7) * 64 + (y & 7) * 8 + (x & 7));
           *value = feltAt(*layer, node, own, range);
           extremes.least[c] = std::min(extremes.least[c], *value);
           extremes.most[c] = std::max(extremes.most[c], *value);

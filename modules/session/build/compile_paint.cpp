@@ -150,12 +150,10 @@ struct Maker {
 
 std::vector<ReliefSource> sourcesOf(const CompiledScene& compiled, const FeltPaint& paint) {
   std::vector<ReliefSource> sources(compiled.objects.size());
-  std::int32_t first = 0;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     ReliefSource& source = sources[i];
-    source.first_face = first;
+    source.first_face = compiled.parts[i].first_face;
     source.faces = static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
-    first += source.faces;
     if (i >= paint.relief.size() || !paint.relief[i].felt) continue;
     source.uvs = paintOf(compiled.scene, i)->layout.uvs;
     source.image = paint.relief[i].felt;
@@ -251,19 +249,19 @@ std::size_t FeltPaint::bytes() const {
   return bytes;
 }
 
-double reachOf(const Scene& scene, const CompiledScene* before) {
+FeltReach feltReach(const Scene& scene, const CompiledScene* before) {
   float most = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (const FeltRelief relief = sourceOf(scene, i, before); relief.source)
       most = std::max(most, relief.source_range->all.highest());
   const double relief = std::abs(scene.relief.height) * static_cast<double>(most);
-  return reachOf(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
+  return feltReach(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
 }
 
-double reachAfter(const CompiledScene& compiled, const Brush& brush) {
+FeltReach reachAfter(const CompiledScene& compiled, const Brush& brush) {
   const Scene& scene = compiled.scene;
-  const double now = reachOf(scene, &compiled);
-  if (brush.mode == StrokeMode::smooth) return now;
+  FeltReach reach = feltReach(scene, &compiled);
+  if (brush.mode == StrokeMode::smooth) return reach;
   double value = 0; // no more than all of its layers together
   if (scene.relief.source == ReliefFrom::color) {
     if (const BrushLayer* layer = layerOf(brush, Tool::color))
@@ -273,8 +271,9 @@ double reachAfter(const CompiledScene& compiled, const Brush& brush) {
   }
   if (const BrushLayer* layer = layerOf(brush, Tool::roughness))
     value += kRoughnessPeak * std::abs(layer->value);
-  const double bare = reachOf(scene.haptics);
-  return brush.mode == StrokeMode::add ? now + value : std::max(now, bare + value);
+  reach.raised =
+      brush.mode == StrokeMode::add ? reach.raised + value : std::max(reach.raised, value);
+  return reach;
 }
 
 FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
@@ -290,11 +289,10 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
   Maker maker{compiled, before, made};
   const bool relief = hasRelief(scene);
   if (relief) made.relief.resize(scene.objects.size());
-  std::int32_t first = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     progress.throwIfCancelled();
     FeltObject object;
-    object.first_face = first;
+    object.first_face = compiled.parts[i].first_face;
     object.object_from_world = scene.objects[i].world_from_object.inverse();
     object.material = maker.material(i, baseMaterial(scene.haptics));
     if (relief) made.relief[i] = sourceOf(scene, i, before);
@@ -307,7 +305,6 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
         object.bend = maker.bend(i, made.relief[i]);
       }
     }
-    first += static_cast<std::int32_t>(compiled.objects[i]->mesh->triangles.size());
     made.objects.push_back(std::move(object));
   }
   if (relief && scene.relief.mode == ReliefMode::baked) bake(compiled, same_field, made, progress);

@@ -8,7 +8,7 @@
 #include "authoring/relief/relief_bake.h"
 #include "authoring/relief/relief_limits.h"
 #include "authoring/relief/relief_smoothing.h"
-#include "haptics/servo/felt_object.h"
+#include "haptics/servo/felt_reach.h"
 #include "scene/paint/grey_relief.h"
 #include "scene/scene.h"
 
@@ -37,11 +37,10 @@ struct FeltPaint {
   std::size_t bytes() const; // beyond the scene's own images and maps
 };
 
-// How far from the surface its properties reach [m], relief included. `before` may be null: only
-// tiles that differ from its are looked at.
-double reachOf(const Scene& scene, const CompiledScene* before = nullptr);
+// `before` may be null: only tiles that differ from its are looked at.
+FeltReach feltReach(const Scene& scene, const CompiledScene* before = nullptr);
 // The same once a stroke with this brush has been painted, whatever its samples.
-double reachAfter(const CompiledScene& compiled, const Brush& brush);
+FeltReach reachAfter(const CompiledScene& compiled, const Brush& brush);
 
 // `compiled` has objects, mesh and field; its scene may have changed in paint and values since
 // `before` (null: nothing is kept).

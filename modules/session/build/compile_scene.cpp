@@ -113,13 +113,14 @@ void build(CompiledObject& object, const BlockLattice& lattice, double band, Ope
 
 // The voxel is that of the scene without paint: only the band grows with relief, so that raising
 // something does not coarsen all the rest.
-FieldSpec bandFor(const Scene& scene, const Box3& box, double reach) {
-  FieldSpec spec = widened(scene.field, box, reachOf(scene.haptics), kBandBeyondReach);
-  if (!(reach > reachOf(scene.haptics))) return spec;
+FieldSpec bandFor(const Scene& scene, const Box3& box, const FeltReach& reach) {
+  const FeltReach bare = feltReach(scene.haptics);
+  FieldSpec spec = bare.widened(scene.field, box);
+  if (!(reach.length() > bare.length())) return spec;
   spec.voxel = gridAround(box, spec).voxel;
-  spec = widened(spec, box, reach, kBandBeyondReach);
+  spec = reach.widened(spec, box);
   if (spec.band > kMostBand)
-    throw Error("relief that reaches " + formatLength(reach - reachOf(scene.haptics)) + " needs " +
+    throw Error("relief that reaches " + formatLength(reach.length() - bare.length()) + " needs " +
                 formatNumber(spec.band) + " voxels of " + formatLength(*spec.voxel) +
                 " on each side of the surface; the most is " + formatNumber(kMostBand) +
                 ": make it lower, or choose a larger voxel");
@@ -128,7 +129,7 @@ FieldSpec bandFor(const Scene& scene, const Box3& box, double reach) {
 
 // The objects of compiled.scene, on compiled.lattice: kept from `old` where they can be. Sets
 // lattice and band.
-Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, double room,
+Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, const FeltReach& room,
                         Progress& progress) {
   const Scene& scene = compiled.scene;
   BlockLattice& lattice = compiled.lattice;
@@ -143,10 +144,11 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, doubl
     box.extend(fieldBounds(*objects[i]->mesh));
     progress.throwIfCancelled();
   }
-  const double reach = std::max(reachOf(scene), room);
+  FeltReach reach = feltReach(scene);
+  if (room.length() > reach.length()) reach = room;
   const bool keep = old && same(old->scene.field, scene.field) &&
                     suits(old->lattice.voxel, scene.field, box) &&
-                    reach / old->lattice.voxel + kBandBeyondReach <= old->band;
+                    reach.band(old->lattice.voxel) <= old->band;
   const FieldSpec spec = bandFor(scene, box, reach);
   if (keep) {
     lattice = old->lattice;
@@ -194,7 +196,7 @@ std::vector<FieldPart> partsOf(const Objects& objects) {
 }
 
 BuiltField united(const CompiledScene& compiled, Progress& progress) {
-  const std::vector<FieldPart> parts = partsOf(compiled.objects);
+  const std::vector<FieldPart>& parts = compiled.parts;
   BuiltField built;
   progress.report(0.9, "merging");
   SurfaceField field = mergeFields(parts, compiled.lattice);
@@ -219,8 +221,9 @@ BuiltField united(const CompiledScene& compiled, Progress& progress) {
   return built;
 }
 
-std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene scene, double room,
-                                                 FaceLayer faces, Progress& progress) {
+std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene scene,
+                                                 const FeltReach& room, FaceLayer faces,
+                                                 Progress& progress) {
   validate(scene);
   if (scene.objects.empty()) throw Error("the scene has no object: add a mesh to it");
   progress.throwIfCancelled();
@@ -230,6 +233,7 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
   compiled->objects = compiledObjects(old, *compiled, room, progress);
   if (faces == FaceLayer::if_read && !readsFaces(compiled->scene))
     for (auto& object : compiled->objects) object = withoutFaces(*object);
+  compiled->parts = partsOf(compiled->objects);
   progress.throwIfCancelled();
   if (compiled->objects.size() == 1) {
     const CompiledObject& only = *compiled->objects[0];
@@ -299,16 +303,16 @@ MeshReport sumOf(const std::vector<MeshReport>& reports) {
 }
 
 std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress, FaceLayer faces) {
-  return compileFrom(nullptr, std::move(scene), 0, faces, progress);
+  return compileFrom(nullptr, std::move(scene), {}, faces, progress);
 }
 
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
-                                               Progress& progress, double room) {
+                                               Progress& progress, const FeltReach& room) {
   return compileFrom(&old, std::move(scene), room, FaceLayer::kept, progress);
 }
 
-bool fits(const CompiledScene& compiled, double reach) {
-  return reach / compiled.built.field->grid.voxel + kBandBeyondReach <= compiled.band;
+bool fits(const CompiledScene& compiled, const FeltReach& reach) {
+  return reach.band(compiled.built.field->grid.voxel) <= compiled.band;
 }
 
 bool canRetune(const CompiledScene& old, const Scene& scene) {
@@ -316,7 +320,7 @@ bool canRetune(const CompiledScene& old, const Scene& scene) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (!same(old.objects[i]->object, scene.objects[i])) return false;
   return same(old.scene.field, scene.field) && old.scene.redistance == scene.redistance &&
-         fits(old, reachOf(scene, &old)) && (!readsFaces(scene) || hasFaces(*old.built.field));
+         fits(old, feltReach(scene, &old)) && (!readsFaces(scene) || hasFaces(*old.built.field));
 }
 
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {
@@ -330,19 +334,8 @@ std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene sce
   return compiled;
 }
 
-std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face) {
-  if (face < 0) return -1;
-  auto left = static_cast<std::size_t>(face);
-  for (std::size_t i = 0; i < compiled.objects.size(); ++i) {
-    const std::size_t faces = compiled.objects[i]->mesh->triangles.size();
-    if (left < faces) return static_cast<std::int32_t>(i);
-    left -= faces;
-  }
-  return -1;
-}
-
 UnionSurface feltTriangles(const CompiledScene& compiled, const Progress& progress) {
-  return unionSurface(partsOf(compiled.objects), compiled.lattice, *compiled.mesh, progress);
+  return unionSurface(compiled.parts, compiled.lattice, *compiled.mesh, progress);
 }
 
 std::size_t mergeBytes(const CompiledScene& compiled) {

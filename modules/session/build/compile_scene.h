@@ -44,6 +44,7 @@ struct CompiledScene {
   BlockLattice lattice;
   double band = 0; // voxels: scene.field.band, or more where an offset or a magnet reaches farther
   std::vector<std::shared_ptr<const CompiledObject>> objects; // in the scene's order
+  std::vector<FieldPart> parts;                               // theirs; first_face is in `mesh`
 };
 
 // Nearest faces by node, a layer of the field: read by what is painted and by merge.redistance, and
@@ -59,12 +60,12 @@ std::shared_ptr<const CompiledScene> compile(Scene scene, Progress& progress,
 // mesh and pose are kept (if they have their faces), so that only the others are built and the
 // union is made anew. The lattice and its voxel stay, too, until field values change or the scene
 // has outgrown them (more than twice or less than half the cells that `resolution` asks for); then
-// all is built as by compile(). `room` [m]: at least so far from the surface shall be felt, for
-// what is painted next.
+// all is built as by compile(). `room`: at least so far from the surface shall be felt, for what is
+// painted next.
 std::shared_ptr<const CompiledScene> recompile(const CompiledScene& old, Scene scene,
-                                               Progress& progress, double room = 0);
-// Whether what reaches so far from the surface [m] lies in the band.
-bool fits(const CompiledScene& compiled, double reach);
+                                               Progress& progress, const FeltReach& room = {});
+// Whether what is felt so far from the surface lies in the band.
+bool fits(const CompiledScene& compiled, const FeltReach& reach);
 // Whether retuned() can make `scene` from `old`: the same objects in the same places and the same
 // field values, what is felt fits into the band, and faces are there if something reads them.
 bool canRetune(const CompiledScene& old, const Scene& scene);
@@ -72,9 +73,6 @@ bool canRetune(const CompiledScene& old, const Scene& scene);
 // for; throws Error if that does not fit. Quick: only what differs is made anew.
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene);
 
-// Index of the object that a face of the scene's mesh, and so a node that names it, belongs to;
-// -1 for -1.
-std::int32_t objectOfFace(const CompiledScene& compiled, std::int32_t face);
 // The triangles that can be felt: without unusable ones, and of several objects what none hides, so
 // that a distance to them is one to the union. Faces are named as in compiled.mesh.
 UnionSurface feltTriangles(const CompiledScene& compiled, const Progress& progress);

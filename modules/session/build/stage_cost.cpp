@@ -55,10 +55,7 @@ std::vector<double> stageNs(const CompiledScene& compiled) {
       const Vec3 tip = strokeTip(centre, normal, radius, voxel, i);
       // The stages are timed on a copy of the memory; the tick itself keeps the books.
       ContactMemory trial = memory;
-      Contact contact;
-      contact.tip = tip;
-      contact.velocity = memory.velocity;
-      contact.dt = kDt;
+      Contact contact = beginTick(snapshot, memory, tip, kDt);
       for (std::size_t s = 0; s < snapshot.stages.size(); ++s) {
         const Clock::time_point begin = Clock::now();
         snapshot.stages[s]->apply(contact, trial);

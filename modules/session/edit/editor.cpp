@@ -154,7 +154,7 @@ void Editor::beginStroke(const Brush& brush, Progress& progress) {
   painter->begin(brush);
   at.before_stroke = at.compiled;
   // A field that must grow for the stroke is built now, not under its dabs.
-  const double reach = reachAfter(*at.compiled, brush);
+  const FeltReach reach = reachAfter(*at.compiled, brush);
   if (!fits(*at.compiled, reach)) {
     at.compiled = recompile(*at.compiled, at.compiled->scene, progress, reach);
     at.tell(std::nullopt);

@@ -12,7 +12,7 @@ namespace {
 
 FieldSpec plainSpec(const CompiledScene& compiled, Box3& box) {
   for (const auto& object : compiled.objects) box.extend(fieldBounds(*object->mesh));
-  return widened(compiled.scene.field, box, 0, kBandBeyondReach);
+  return compiled.scene.field;
 }
 
 bool isOn(const SurfaceField& field, const FieldGrid& grid, double band) {

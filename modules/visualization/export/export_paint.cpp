@@ -199,12 +199,8 @@ void writeMaterialVti(const std::filesystem::path& path, const Scene& scene, std
       const MaterialLayer* layer = block.layer[static_cast<std::size_t>(channel)].get();
       if (layer == nullptr) continue;
       for (std::size_t n = 0; n < kMaterialNodes; ++n) {
-        const std::array<vtkIdType, 3> in{vtkIdType(n % kMaterialSide),
-                                          vtkIdType(n / kMaterialSide % kMaterialSide),
-                                          vtkIdType(n / kMaterialSide / kMaterialSide)};
-        std::array<vtkIdType, 3> node{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          node[axis] = kMaterialSide * (vtkIdType{index[axis]} - low[axis]) + in[axis];
+        const Index3 node =
+            BlockNode{{index[0] - low[0], index[1] - low[1], index[2] - low[2]}, n}.at();
         array->SetValue((node[2] * nodes[1] + node[1]) * nodes[0] + node[0],
                         feltAt(*layer, n, own, rangeOf(channel)));
       }
