@@ -3,6 +3,7 @@
 
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/window/main_window.h"
+#include "core/error.h"
 #include "haptics/devices/device_catalog.h"
 #include "haptics/stability/stabilisers.h"
 #include "scene/paint/grey_relief.h"
@@ -215,7 +216,11 @@ void MainWindow::openFeelAt(const Vec3& start) {
   const auto target = std::make_shared<TipTarget>(start);
   const DeviceModel model =
       entry.takes_numbers ? scene.device_model.value_or(entry.model) : entry.model;
-  feel_.open(openDevice(entry, {.target = target, .model = model}), target, model.rate);
+  try {
+    feel_.open(openDevice(entry, {.target = target, .model = model}), target, model.rate);
+  } catch (const DeviceError& error) {
+    haptics_->setProblem(QString::fromUtf8(error.what()));
+  }
 }
 
 void MainWindow::showValues() {
