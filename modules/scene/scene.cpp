@@ -159,8 +159,6 @@ void validate(const Scene& scene) {
       !(scene.haptics.tip_radius.value_or(0) > 0 || scene.haptics.offset.value_or(0) > 0))
     throw Error("surface.sides = two: both sides of a sheet are felt only by what has a size; set "
                 "tip.radius or offset above 0, too");
-  if (scene.device != "mouse" && scene.device != "simulated")
-    throw Error("device = " + scene.device + ": it must be mouse or simulated");
   if (scene.device_model) validate(*scene.device_model);
   requireBetween("relief.height", scene.relief.height, -kMostReliefHeight, kMostReliefHeight, "m");
   requireBetween("relief.smoothing", scene.relief.smoothing, 0, kMostReliefHeight, "m");

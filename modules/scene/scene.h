@@ -36,7 +36,7 @@ struct Scene {
   ReliefSettings relief;                             // of painted relief, where there is any
   ForceForm material_form = ForceForm::conservative; // of painted stiffness (F6)
   int paint_size = 512;                              // texels a side of images that painting makes
-  std::string device = "mouse";                      // "mouse", "simulated"
+  std::string device = "mouse";            // named in the catalogue of devices; who opens it judges
   std::optional<DeviceModel> device_model; // absent: nothing is known that could be unstable
   std::optional<Stabilisers> stabilisers;  // absent: chosen from device_model (auto)
 };

@@ -31,7 +31,7 @@ class ResolvedDevice final : public Device {
     std::int64_t ns;
     double force;
   };
-  Vec3 exchange(const Vec3& force, double dt) noexcept override {
+  DeviceState exchange(const Vec3& force, double dt) noexcept override {
     if (count_ < ticks_.size()) ticks_[count_++] = {monotonicNs(), force.norm()};
     return rest_->exchange(force, dt);
   }

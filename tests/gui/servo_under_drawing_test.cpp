@@ -27,17 +27,17 @@ class WatchedDevice final : public Device {
     double wait = 0, exchange = 0; // [us]
   };
 
-  Vec3 exchange(const Vec3& force, double dt) noexcept override {
+  DeviceState exchange(const Vec3& force, double dt) noexcept override {
     const std::int64_t begin = monotonicNs();
     if (!wait_) wait_.emplace(); // the first tick: in the servo's thread
     const std::optional<std::int64_t> total = wait_->total();
     known_ = known_ && total;
-    const Vec3 tip = rest_->exchange(force, dt);
+    const DeviceState state = rest_->exchange(force, dt);
     if (count_ < ticks_.size())
       ticks_[count_++] = {1e-3 * static_cast<double>(total.value_or(0) - before_),
                           1e-3 * static_cast<double>(monotonicNs() - begin)};
     before_ = total.value_or(0);
-    return tip;
+    return state;
   }
 
   // When the loop has stopped. Absent where the system keeps no account of the wait.

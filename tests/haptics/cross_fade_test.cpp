@@ -157,7 +157,7 @@ TEST(CrossFade, EditsDoNotShakeAStableContact) {
     if (i < 3000 && i % 33 == 0 && !law.fading())
       law.turnTo(law.felt() == soft.get() ? stiff.get() : soft.get());
     const Vec3 last = tip;
-    tip = device.exchange(force, 1e-3);
+    tip = device.exchange(force, 1e-3).position;
     force = law.tick(tip, 1e-3).force;
     deepest = std::max(deepest, -tip.z());
     if (i > 11000) fastest = std::max(fastest, (tip - last).norm() / 1e-3);

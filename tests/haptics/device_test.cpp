@@ -1,45 +1,180 @@
-#include "haptics/devices/device.h"
+// The built-in devices: a target that a pointer moves, the mouse's tip, the simulated and the
+// replayed hand, and the one list of them.
+#include "haptics/devices/device_catalog.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <thread>
 
+#include "core/error.h"
+#include "haptics/devices/replayed_hand.h"
+#include "haptics/devices/simulated_hand.h"
+
 namespace patina {
 namespace {
 
 constexpr double kPeriod = 1e-3;
+const double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(MouseDevice, NeverMovesFasterThanItsLimitAndArrives) {
-  const auto mouse = makeMouseDevice(Vec3::Zero(), 0.5);
-  mouse->setTarget(Vec3(0.05, 0, 0));
+std::shared_ptr<TipTarget> targetAt(const Vec3& place) {
+  return std::make_shared<TipTarget>(place);
+}
+
+TEST(Mouse, NeverMovesFasterThanItsLimitAndArrives) {
+  const auto target = targetAt(Vec3::Zero());
+  const auto mouse = makeMouse(target, 0.5);
+  target->set(Vec3(0.05, 0, 0));
   Vec3 last = Vec3::Zero();
   for (int i = 0; i < 400; ++i) {
-    const Vec3 tip = mouse->exchange(Vec3::Zero(), kPeriod);
+    const Vec3 tip = mouse->exchange(Vec3::Zero(), kPeriod).position;
     EXPECT_LE((tip - last).norm(), 0.5 * kPeriod * (1 + 1e-12));
     last = tip;
   }
   EXPECT_NEAR(last.x(), 0.05, 1e-6);
 }
 
-TEST(MouseDevice, IgnoresATargetThatIsNotFinite) {
-  const auto mouse = makeMouseDevice(Vec3(0, 0, 0.01));
-  mouse->setTarget(Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
-  EXPECT_EQ(mouse->exchange(Vec3::Zero(), kPeriod), Vec3(0, 0, 0.01));
+TEST(TipTarget, IgnoresWhatIsNotFinite) {
+  const auto target = targetAt(Vec3(0, 0, 0.01));
+  target->set(Vec3(kNan, 0, 0));
+  EXPECT_EQ(makeMouse(target)->exchange(Vec3::Zero(), kPeriod).position, Vec3(0, 0, 0.01));
+  EXPECT_THROW(TipTarget(Vec3(kNan, 0, 0)), std::invalid_argument);
 }
 
-TEST(MouseDevice, NeverReadsHalfOfATarget) {
+TEST(TipTarget, IsNeverReadByHalf) {
   // Every target lies on the diagonal; a torn read would leave it.
-  const auto mouse = makeMouseDevice(Vec3::Zero(), 1e9);
+  const auto target = targetAt(Vec3::Zero());
+  const auto mouse = makeMouse(target, 1e9);
   std::thread writer([&] {
-    for (int i = 1; i <= 20000; ++i) mouse->setTarget(Vec3::Constant(i));
+    for (int i = 1; i <= 20000; ++i) target->set(Vec3::Constant(i));
   });
   for (int i = 0; i < 20000; ++i) {
-    const Vec3 tip = mouse->exchange(Vec3::Zero(), kPeriod);
+    const Vec3 tip = mouse->exchange(Vec3::Zero(), kPeriod).position;
     ASSERT_EQ(tip.x(), tip.y());
     ASSERT_EQ(tip.x(), tip.z());
   }
   writer.join();
+}
+
+struct Held {
+  std::shared_ptr<TipTarget> target = targetAt(Vec3::Zero());
+  std::unique_ptr<Device> hand;
+  explicit Held(const HandSpec& spec = {}) : hand(makeSimulatedHand(target, spec)) {}
+  Vec3 after(int ticks, const Vec3& force) {
+    Vec3 tip = Vec3::Zero();
+    for (int i = 0; i < ticks; ++i) tip = hand->exchange(force, kPeriod).position;
+    return tip;
+  }
+};
+
+TEST(SimulatedHand, RestsWhereItsSpringBearsTheForce) {
+  const Vec3 force(0.5, -1, 0.25), place(0.01, 0, 0.02);
+  Held held;
+  held.target->set(place);
+  EXPECT_LT((held.after(3000, force) - (place + force / HandSpec{}.stiffness)).norm(), 1e-9);
+}
+
+TEST(SimulatedHand, NeverPullsHarderThanItMay) {
+  Held held;
+  held.target->set(Vec3(1, 0, 0));
+  // Held still by a wall that gives way to more than the hand's most.
+  for (int tick = 0; tick < 2000; ++tick)
+    ASSERT_LT(held.after(1, Vec3(-1.001 * HandSpec{}.max_force, 0, 0)).x(), 1e-9);
+}
+
+TEST(SimulatedHand, AForceArrivesAfterTheDelayOfTheModel) {
+  Held held({.device = {.delay = 3}});
+  for (int tick = 0; tick < 3; ++tick)
+    EXPECT_EQ(held.after(1, Vec3(1, 0, 0)), Vec3::Zero()) << tick;
+  EXPECT_GT(held.after(1, Vec3(1, 0, 0)).x(), 0);
+}
+
+TEST(SimulatedHand, IsReadInWholeStepsOfItsEncoder) {
+  constexpr double kStep = 50e-6;
+  Held held({.device = {.encoder_step = kStep}});
+  held.target->set(Vec3(0.01, -0.004, 0));
+  for (int tick = 0; tick < 500; ++tick) {
+    const Vec3 counts = held.after(1, Vec3::Zero()) / kStep;
+    ASSERT_LT((counts - counts.array().round().matrix()).norm(), 1e-9);
+  }
+}
+
+TEST(SimulatedHand, DryFrictionHoldsEachAxisUpToItsForce) {
+  constexpr double kFriction = 0.4;
+  Held held({.device = {.coulomb = kFriction}});
+  EXPECT_EQ(held.after(200, Vec3(0.39, -0.39, 0.2)), Vec3::Zero());
+  // Past it the tip goes to where the hand's spring bears the rest.
+  const Vec3 tip = Held({.device = {.coulomb = kFriction}}).after(3000, Vec3(1, 0.3, 0));
+  EXPECT_NEAR(tip.x(), (1 - kFriction) / HandSpec{}.stiffness, 1e-6);
+  EXPECT_EQ(tip.y(), 0);
+}
+
+TEST(SimulatedHand, RefusesADeviceThatIsNone) {
+  EXPECT_THROW(Held({.device = {.delay = -1}}), std::invalid_argument);
+  EXPECT_THROW(Held({.device = {.delay = kMaxDelay + 1}}), std::invalid_argument);
+  EXPECT_THROW(Held({.device = {.mass = 0}}), std::invalid_argument);
+  EXPECT_THROW(makeSimulatedHand(nullptr), std::invalid_argument);
+}
+
+TEST(ReplayedHand, GoesStraightBetweenRowsAndRestsAtTheLast) {
+  const auto hand = makeReplayedHand(
+      {{5, Vec3(0, 0, 0)}, {5.25, Vec3(1, 0, 0)}, {5.5, Vec3(1, 2, 0)}, {6, Vec3(1, 2, 4)}});
+  const Vec3 force(1, 2, 3); // whatever it is
+  EXPECT_EQ(hand->exchange(force, 0).position, Vec3(0, 0, 0));
+  EXPECT_EQ(hand->exchange(force, 0.125).position, Vec3(0.5, 0, 0));
+  EXPECT_EQ(hand->exchange(force, 0.25).position, Vec3(1, 1, 0));
+  EXPECT_EQ(hand->exchange(force, 0.375).position, Vec3(1, 2, 2));
+  for (int tick = 0; tick < 3; ++tick)
+    EXPECT_EQ(hand->exchange(force, 0.25).position, Vec3(1, 2, 4));
+}
+
+TEST(ReplayedHand, RefusesAPathThatIsNone) {
+  EXPECT_THROW(makeReplayedHand({}), std::invalid_argument);
+  EXPECT_THROW(makeReplayedHand({{0, Vec3::Zero()}, {0, Vec3::Zero()}}), std::invalid_argument);
+  EXPECT_THROW(makeReplayedHand({{0, Vec3(0, kNan, 0)}}), std::invalid_argument);
+}
+
+TEST(DeviceState, IsJudgedByItsStatusAndThenByItsAge) {
+  const auto judged = [](DeviceStatus status, double age) {
+    DeviceState state;
+    state.status = status;
+    state.age = age;
+    return judge(state);
+  };
+  EXPECT_EQ(judged(DeviceStatus::ok, 0), DeviceStatus::ok);
+  EXPECT_EQ(judged(DeviceStatus::ok, kOldestAge), DeviceStatus::ok);
+  EXPECT_EQ(judged(DeviceStatus::ok, 1.01 * kOldestAge), DeviceStatus::silent);
+  EXPECT_EQ(judged(DeviceStatus::ok, kNan), DeviceStatus::silent);
+  EXPECT_EQ(judged(DeviceStatus::gone, 1), DeviceStatus::gone);
+}
+
+TEST(DeviceCatalog, OpensEachOfItsDevicesAtItsStart) {
+  const Vec3 start(0.01, 0.02, 0.03);
+  for (const DeviceEntry& entry : deviceCatalog()) {
+    if (!entry.usb.empty()) continue;
+    const auto device =
+        openDevice(entry, {.target = targetAt(start), .path = {{0, start}, {1, start}}});
+    const DeviceState state = device->exchange(Vec3::Zero(), kPeriod);
+    EXPECT_EQ(state.position, start) << entry.name;
+    EXPECT_EQ(judge(state), DeviceStatus::ok) << entry.name;
+    EXPECT_NE(std::string(entry.note), "") << entry.name;
+  }
+}
+
+TEST(DeviceCatalog, FindsWhatASceneMayNameAndListsItForWhatItMayNot) {
+  EXPECT_FALSE(deviceNamed("mouse").takes_numbers);
+  EXPECT_TRUE(deviceNamed("simulated").takes_numbers);
+  for (const char* name : {"telephone", "replay", ""}) {
+    try {
+      (void)deviceNamed(name);
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_TRUE(
+          std::string(error.what())
+              .starts_with("device = " + std::string(name) + ": it must be mouse or simulated"))
+          << error.what();
+    }
+  }
 }
 
 } // namespace

@@ -103,7 +103,7 @@ TEST(Friction, RestsOnASlopeWithoutCreep) {
     for (int i = 0; i < end; ++i) {
       const double share = std::min(1.0, static_cast<double>(i) / ramp);
       const Vec3 load(share * weight * std::sin(theta), 0, -weight * std::cos(theta));
-      tip = device.exchange(force + load, kPeriod);
+      tip = device.exchange(force + load, kPeriod).position;
       if (tip.x() > 5e-3) break; // it slides
       force = tick(*snapshot, memory, tip, kPeriod).force;
       if (i == settle) after_settling = tip;
@@ -154,7 +154,7 @@ TEST(Friction, StickSlipPeriodFollowsItsClosedForm) {
     std::vector<double> periods;
     for (int i = 0; i * dt < 6.5 * expected; ++i) { // the held depth keeps the normal force
       const double t = i * dt;
-      x = device.exchange(Vec3(friction + k * (V * t - x), 0, 0), dt).x();
+      x = device.exchange(Vec3(friction + k * (V * t - x), 0, 0), dt).position.x();
       friction = tick(*snapshot, memory, Vec3(x, 0, -d), dt).force.x();
       const bool onset = memory.friction.slipping() && !was_slipping;
       was_slipping = memory.friction.slipping();
@@ -259,7 +259,7 @@ TEST(Friction, MassComesToRestWithoutChatter) {
   Vec3 tip = spec.position, last = tip, force = Vec3::Zero();
   for (int i = 0; i < 10000; ++i) {
     last = tip;
-    tip = device.exchange(force, kPeriod);
+    tip = device.exchange(force, kPeriod).position;
     force = tick(*snapshot, memory, tip, kPeriod).force;
   }
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);
@@ -281,7 +281,7 @@ TEST(Friction, DampingActsOnTheStuckPoint) {
   Vec3 tip = spec.position, last = tip, force = Vec3::Zero();
   for (int i = 0; i < 8000; ++i) {
     last = tip;
-    tip = device.exchange(force, kPeriod);
+    tip = device.exchange(force, kPeriod).position;
     force = tick(*snapshot, memory, tip, kPeriod).force;
   }
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);

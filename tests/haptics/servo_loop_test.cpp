@@ -28,11 +28,11 @@ std::shared_ptr<const HapticSnapshot> sphereSnapshot(double stiffness) {
 // A device that stands still inside the sphere and keeps what it was asked to render.
 class WitnessDevice final : public Device {
  public:
-  Vec3 exchange(const Vec3& force, double dt) noexcept override {
+  DeviceState exchange(const Vec3& force, double dt) noexcept override {
     force_x.store(force.x());
     if (dt <= 0) bad_dt.store(true);
     exchanges.fetch_add(1);
-    return Vec3(0.049, 0, 0);
+    return {Vec3(0.049, 0, 0)};
   }
 
   std::atomic<double> force_x{-1};
@@ -111,6 +111,97 @@ TEST(ServoLoop, ReportsEveryTickThroughTheRing) {
   EXPECT_FALSE(timing.policy.empty());
   // Between them, ticks and missed deadlines account for the whole time.
   EXPECT_NEAR(static_cast<double>(timing.ticks + timing.missed), 300, 60);
+}
+
+// Rests in the sphere until the test gives it another status, or lets it age.
+class FailingDevice final : public Device {
+ public:
+  DeviceState exchange(const Vec3& force, double) noexcept override {
+    DeviceState state{Vec3(0.049, 0, 0)};
+    state.status = status.load();
+    state.age = age.load();
+    force_x.store(force.x());
+    exchanges.fetch_add(1);
+    return state;
+  }
+
+  std::atomic<DeviceStatus> status{DeviceStatus::ok};
+  std::atomic<double> age{0}, force_x{-1};
+  std::atomic<int> exchanges{0};
+};
+
+void pause(int milliseconds) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+}
+
+// What is published fades in.
+void waitForForce(const FailingDevice& device, double force) {
+  for (int i = 0; i < 5000 && std::abs(device.force_x.load() - force) > 0.02; ++i) pause(1);
+  EXPECT_NEAR(device.force_x.load(), force, 0.02);
+}
+
+TEST(ServoLoop, EndsWithoutForceWhenItsDeviceFailsAndTellsWhat) {
+  struct Case {
+    DeviceStatus status;
+    double age;
+    DeviceStatus told;
+  };
+  for (const Case& failure : {Case{DeviceStatus::gone, 0, DeviceStatus::gone},
+                              Case{DeviceStatus::garbled, 0, DeviceStatus::garbled},
+                              Case{DeviceStatus::silent, 0, DeviceStatus::silent},
+                              Case{DeviceStatus::ok, 2 * kOldestAge, DeviceStatus::silent}}) {
+    auto owned = std::make_unique<FailingDevice>();
+    FailingDevice& device = *owned;
+    ServoLoop loop(std::move(owned));
+    loop.publish(sphereSnapshot(500));
+    loop.start();
+    waitForForce(device, 0.5);
+    EXPECT_EQ(loop.timing().device, DeviceStatus::ok);
+    device.age = failure.age;
+    device.status = failure.status;
+    for (int i = 0; i < 2000 && loop.timing().device == DeviceStatus::ok; ++i) pause(1);
+    EXPECT_EQ(loop.timing().device, failure.told);
+    pause(50);
+    EXPECT_EQ(device.force_x.load(), 0);
+    const int ended = device.exchanges.load();
+    device.status = DeviceStatus::ok; // too late
+    device.age = 0;
+    pause(50);
+    EXPECT_EQ(device.exchanges.load(), ended);
+    EXPECT_EQ(loop.timing().device, failure.told);
+    loop.stop(); // and a loop that has ended can be started anew
+    loop.start();
+    waitForForce(device, 0.5);
+    EXPECT_EQ(loop.timing().device, DeviceStatus::ok);
+  }
+}
+
+TEST(ServoLoop, HoldsWithoutForceWhileItsDeviceIsCalibrated) {
+  auto owned = std::make_unique<FailingDevice>();
+  FailingDevice& device = *owned;
+  device.status = DeviceStatus::calibrating;
+  ServoLoop loop(std::move(owned));
+  loop.publish(sphereSnapshot(500));
+  loop.start();
+  for (int i = 0; i < 2000 && device.exchanges.load() < 50; ++i) pause(1);
+  EXPECT_GE(device.exchanges.load(), 50);
+  EXPECT_EQ(device.force_x.load(), 0);
+  EXPECT_EQ(loop.timing().device, DeviceStatus::calibrating);
+  ToolSample sample;
+  EXPECT_FALSE(loop.samples().pop(sample)) << "a place that means nothing is not felt";
+  device.status = DeviceStatus::ok;
+  waitForForce(device, 0.5);
+  EXPECT_EQ(loop.timing().device, DeviceStatus::ok);
+}
+
+TEST(ServoLoop, FeelsAStateThatIsNotTooOld) {
+  auto owned = std::make_unique<FailingDevice>();
+  FailingDevice& device = *owned;
+  device.age = 0.5 * kOldestAge;
+  ServoLoop loop(std::move(owned));
+  loop.publish(sphereSnapshot(500));
+  loop.start();
+  waitForForce(device, 0.5);
 }
 
 TEST(ServoLoop, StartsAndStopsAgainAndAgain) {

@@ -94,13 +94,20 @@ class WanderingDevice final : public Device {
   static constexpr int kWarmUp = 500;
   static constexpr int kTicks = 6000;
 
-  Vec3 exchange(const Vec3&, double) noexcept override {
+  DeviceState exchange(const Vec3&, double) noexcept override {
     if (tick_ == kWarmUp) before = costOfThisThread();
     if (tick_ == kTicks) {
       after = costOfThisThread();
       done.store(true);
     }
-    const int phase = tick_++ % 1000;
+    return {place(tick_++ % 1000)};
+  }
+
+  Cost before, after;
+  std::atomic<bool> done{false};
+
+ private:
+  static Vec3 place(int phase) noexcept {
     const double s = phase * 1e-3;
     if (phase < 400) return Vec3(0.01 * std::sin(40 * s), 0, 0.021 - 0.003 * s);
     if (phase < 600) return Vec3(0, 0, 0.02 - 0.05 * (s - 0.4));
@@ -110,10 +117,6 @@ class WanderingDevice final : public Device {
     return Vec3(0, 0, phase % 2 ? 0.05 : 0.015);
   }
 
-  Cost before, after;
-  std::atomic<bool> done{false};
-
- private:
   int tick_ = 0;
 };
 

@@ -325,6 +325,18 @@ TEST_F(Commands, DevicesListsTheBuiltInOnes) {
   }
 }
 
+TEST_F(Commands, ADeviceThatASceneMayNotNameIsRefused) {
+  for (const char* name : {"telephone", "replay"}) {
+    const Outcome outcome = run(
+        {"scene", "-o", folder / "felt", "--add", sphere, "--set", std::string("device=") + name});
+    EXPECT_EQ(outcome.exit, 2);
+    EXPECT_TRUE(outcome.err.starts_with("patina: device = " + std::string(name) +
+                                        ": it must be mouse or simulated"))
+        << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "felt"));
+  }
+}
+
 TEST_F(Commands, ExportWritesWhatParaViewOpens) {
   const Json report =
       runJson({"export", sphere, "-o", folder / "out", "--path", path, "--resolution", "60"});

@@ -50,7 +50,6 @@ TEST(Scene, RefusesValuesThatMakeNoSenseAndNamesTheirKey) {
   EXPECT_TRUE(broken([](Scene& s) { s.field.voxel = 0; }).starts_with("voxel"));
   EXPECT_TRUE(broken([](Scene& s) { s.field.resolution = 18; }).starts_with("resolution = 18"));
   EXPECT_TRUE(broken([](Scene& s) { s.haptics.force_limit = 0; }).starts_with("force.limit"));
-  EXPECT_TRUE(broken([](Scene& s) { s.device = "telephone"; }).starts_with("device = telephone"));
 }
 
 TEST(Scene, ExtremesInRangeAreValid) {

@@ -48,7 +48,7 @@ struct Loop {
     std::deque<Vec3> sent(static_cast<std::size_t>(delay) + 1, Vec3(0, 0, press));
     double early = 0, late = 0;
     for (int i = 0; i < ticks; ++i) {
-      const Vec3 tip = device.exchange(sent.front(), period);
+      const Vec3 tip = device.exchange(sent.front(), period).position;
       sent.pop_front();
       sent.push_back(tick(snapshot, memory, tip, period).force);
       EXPECT_LE(sent.back().norm(), kLimit);
@@ -129,7 +129,7 @@ TEST(ContactExtremes, ImpactBouncesWithThePredictedRestitution) {
     Vec3 force = Vec3::Zero(), last = spec.position;
     bool touched = false;
     for (int i = 0; i < 1000; ++i) {
-      const Vec3 tip = device.exchange(force, kPeriod);
+      const Vec3 tip = device.exchange(force, kPeriod).position;
       const Contact contact = tick(*snapshot, memory, tip, kPeriod);
       EXPECT_FALSE(contact.fault);
       force = contact.force;
@@ -162,7 +162,7 @@ TEST(ContactExtremes, JitteringServoSettles) {
   Vec3 force = Vec3::Zero(), tip;
   for (int i = 0; i < 20000; ++i) {
     const double dt = period(random);
-    tip = device.exchange(force, dt);
+    tip = device.exchange(force, dt).position;
     const Contact contact = tick(*snapshot, memory, tip, dt);
     EXPECT_FALSE(contact.fault);
     force = contact.force;
@@ -182,7 +182,7 @@ TEST(ContactExtremes, MissedTickOf20MsIsAbsorbed) {
   Vec3 force = Vec3(0, 0, 1), tip;
   for (int i = 0; i < 30000; ++i) {
     const double dt = i % 5000 == 50 && i < 20000 ? 20e-3 : kPeriod;
-    tip = device.exchange(force, dt);
+    tip = device.exchange(force, dt).position;
     const Contact contact = tick(*snapshot, memory, tip, dt);
     EXPECT_FALSE(contact.fault) << i;
     force = contact.force;

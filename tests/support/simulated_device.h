@@ -2,7 +2,7 @@
 #pragma once
 
 #include "haptics/devices/device.h"
-#include "haptics/devices/exact_step.h"
+#include "haptics/devices/held_body.h"
 
 namespace patina {
 
@@ -17,23 +17,26 @@ struct SimulatedDeviceSpec {
 
 class SimulatedDevice final : public Device {
  public:
-  explicit SimulatedDevice(const SimulatedDeviceSpec& spec) : spec_(spec) {}
-  Vec3 exchange(const Vec3& force, double dt) noexcept override {
-    const HeldStep step = heldStep({spec_.mass, spec_.damping, 0, 0}, dt);
-    const Vec3 total = force + spec_.hand_force;
-    spec_.position += step.xv * spec_.velocity + step.xf * total;
-    spec_.velocity = step.vv * spec_.velocity + step.vf * total;
-    return spec_.position;
+  explicit SimulatedDevice(const SimulatedDeviceSpec& spec)
+      : start_(spec.position), hand_force_(spec.hand_force),
+        body_({spec.mass, spec.damping, 0, 0}) {
+    for (int i = 0; i < 3; ++i) body_.axes[static_cast<std::size_t>(i)].v = spec.velocity[i];
+  }
+  DeviceState exchange(const Vec3& force, double dt) noexcept override {
+    body_.hold(force + hand_force_, dt);
+    return {start_ + body_.position()};
   }
 
  private:
-  SimulatedDeviceSpec spec_;
+  Vec3 start_;
+  Vec3 hand_force_;
+  HeldBody body_;
 };
 
 class StillDevice final : public Device {
  public:
   explicit StillDevice(const Vec3& tip) : tip_(tip) {}
-  Vec3 exchange(const Vec3&, double) noexcept override { return tip_; }
+  DeviceState exchange(const Vec3&, double) noexcept override { return {tip_}; }
 
  private:
   Vec3 tip_;

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "haptics/devices/device_catalog.h"
 #include "haptics/servo/latency.h"
 #ifdef PATINA_HAS_USB
 #include "usb/usb_bus.h"
@@ -17,16 +19,27 @@ struct DevicesOptions {
   bool diagnose = false;
 };
 
-void addBuiltIn(const char* name, const std::string& note, Json& list, TextRows& rows) {
-  Json entry = Json::object();
-  entry.set("name", name);
-  entry.set("kind", "built-in");
-  entry.set("device", name);
-  entry.set("max_force", 0.0);
-  entry.set("max_stiffness", 0.0);
-  entry.set("note", note);
-  list.push(entry);
-  rows.emplace_back(name, "built in; " + note);
+Json known(const std::optional<double>& limit) {
+  return limit ? Json(*limit) : Json();
+}
+
+void setLimits(const DeviceEntry& device, Json& entry) {
+  entry.set("device", device.name);
+  entry.set("max_force", known(device.limits.max_force));
+  entry.set("max_stiffness", known(device.limits.max_stiffness));
+  entry.set("note", device.note);
+}
+
+void addBuiltIn(Json& list, TextRows& rows) {
+  for (const DeviceEntry& device : deviceCatalog()) {
+    if (!device.usb.empty()) continue;
+    Json entry = Json::object();
+    entry.set("name", device.name);
+    entry.set("kind", "built-in");
+    setLimits(device, entry);
+    list.push(entry);
+    rows.emplace_back(device.name, std::string("built in; ") + device.note);
+  }
 }
 
 #ifdef PATINA_HAS_USB
@@ -58,10 +71,16 @@ void addUsb(bool diagnose, Json& list, TextRows& rows) {
     entry.set("haptic", device.haptic);
     entry.set("openable", device.openable);
     entry.set("advice", device.advice);
+    const auto driver = std::ranges::find(deviceCatalog(), device.haptic, &DeviceEntry::usb);
+    const bool driven = !device.haptic.empty() && driver != deviceCatalog().end();
+    if (driven) setLimits(*driver, entry);
     list.push(entry);
     std::string text = device.name;
     if (!device.haptic.empty())
-      text += " (" + device.haptic + "; recognised; this version renders no force on it)";
+      text += " (" + device.haptic + "; " +
+              (driven ? std::string("device = ") + driver->name
+                      : "recognised; this version renders no force on it") +
+              ")";
     if (!device.advice.empty()) text += "; " + device.advice;
     rows.emplace_back(usbId(device), text);
   }
@@ -76,9 +95,7 @@ void addUsb(bool diagnose, Json& list, TextRows& rows) {
 int runDevices(const DevicesOptions& options, Console& console) {
   Json list = Json::array();
   TextRows rows;
-  addBuiltIn("mouse", "seen, not felt: the drawn tool is held out by the contact", list, rows);
-  addBuiltIn("simulated", "point mass with viscous damping, exact zero-order hold", list, rows);
-  addBuiltIn("replay", "plays a recorded tip path", list, rows);
+  addBuiltIn(list, rows);
   addUsb(options.diagnose, list, rows);
   Json json = Json::object();
   json.set("devices", list);

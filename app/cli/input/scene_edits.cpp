@@ -5,6 +5,7 @@
 #include "app/cli/input/pose_file.h"
 #include "authoring/images/lay_image.h"
 #include "core/error.h"
+#include "haptics/devices/device_catalog.h"
 #include "pictures/picture_file.h"
 #include "session/store/replay.h"
 
@@ -155,6 +156,7 @@ Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& giv
   for (const std::string& text : edits.added) addObject(after, readObject(text, open, console));
   applySettings(after, edits.settings);
   validate(after);
+  (void)deviceNamed(after.device);
   if (!edits.images.empty()) layImages(after, edits.images, console);
   return after;
 }

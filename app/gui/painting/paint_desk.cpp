@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/gui/servo/hand_device.h"
 #include "authoring/brush/painter.h"
 #include "core/numbers.h"
 #include "field/sampling/field_sampler.h"
+#include "haptics/devices/device_catalog.h"
 #include "scene/surface_pick.h"
 #include "visualization/values/palette.h"
 
@@ -108,8 +108,8 @@ void PaintDesk::press(const Vec3& surface, double newtons) {
   // is followed, or an engraved place would be out of reach.
   const auto values = valuesAt(surface);
   double depth = newtons / haptics.stiffness;
-  // The simulated hand is a spring itself: it must reach deeper for the same force.
-  if (scene_->scene.device == "simulated") depth += newtons / HandSpec{}.stiffness;
+  // A simulated hand is a spring itself: it must reach deeper for the same force.
+  depth += newtons * deviceNamed(scene_->scene.device).hand_compliance;
   const SurfaceField& field = *scene_->built.field;
   depth = std::min(depth, 0.5 * field.band * field.grid.voxel);
   const double skin = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);

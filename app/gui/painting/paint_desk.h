@@ -10,9 +10,9 @@
 #include "app/gui/painting/brush_book.h"
 #include "app/gui/painting/brush_panel.h"
 #include "app/gui/painting/stroke_tracker.h"
-#include "app/gui/servo/feel_host.h"
 #include "app/gui/window/scene_widget.h"
 #include "app/gui/window/tool_bar.h"
+#include "haptics/servo/tip_servo.h"
 #include "session/edit/edit_thread.h"
 
 namespace patina {
@@ -26,7 +26,7 @@ class PaintDesk : public QObject {
     ToolBar& bar;
     BrushPanel& panel;
     SceneWidget& view;
-    FeelHost& feel;
+    TipServo& feel;
     EditThread& edits;
   };
   explicit PaintDesk(const Parts& parts, QObject* parent = nullptr);

@@ -6,11 +6,10 @@
 #include <QSignalBlocker>
 
 #include "app/gui/panels/value_row.h"
+#include "haptics/devices/device_catalog.h"
 
 namespace patina {
 namespace {
-
-const char* const kDevices[] = {"mouse", "simulated"};
 
 // In the order of the list that a person chooses from.
 const std::optional<Stabilisers> kStabilisers[] = {
@@ -68,9 +67,13 @@ DevicePanel::DevicePanel(QWidget* parent)
   };
   caption(tr("Felt with"), 0);
   device_->setObjectName(QStringLiteral("device"));
-  device_->addItems({tr("Mouse"), tr("Simulated device")});
-  device_->setToolTip(tr("The mouse's tip is where it is told to be. A simulated device is a mass "
-                         "in a hand: it yields, and rests where the forces are equal."));
+  QStringList notes;
+  for (const DeviceEntry& entry : deviceCatalog()) {
+    if (!entry.in_scenes) continue;
+    device_->addItem(tr(entry.caption), QString::fromUtf8(entry.name));
+    notes << tr(entry.caption) + QStringLiteral(": ") + tr(entry.note);
+  }
+  device_->setToolTip(notes.join(QLatin1Char('\n')));
   grid->addWidget(device_, 0, 1);
   caption(tr("Stabiliser"), 1);
   stabiliser_->setObjectName(QStringLiteral("stabiliser"));
@@ -88,7 +91,7 @@ DevicePanel::DevicePanel(QWidget* parent)
   note_->hide();
   layout_->addWidget(note_);
   connect(device_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
-    choice_.device = kDevices[index];
+    choice_.device = device_->itemData(index).toString().toStdString();
     rebuild();
     emit edited();
   });
@@ -101,7 +104,7 @@ DevicePanel::DevicePanel(QWidget* parent)
 void DevicePanel::setValues(const DeviceChoice& choice) {
   choice_ = choice;
   const QSignalBlocker quiet(device_), quiet_too(stabiliser_);
-  device_->setCurrentIndex(choice.device == kDevices[1] ? 1 : 0);
+  device_->setCurrentIndex(device_->findData(QString::fromStdString(choice.device)));
   for (int i = 0; i < 5; ++i)
     if (kStabilisers[i] == choice.stabilisers) stabiliser_->setCurrentIndex(i);
   rebuild();
@@ -114,7 +117,7 @@ void DevicePanel::setNote(const QString& words) {
 
 void DevicePanel::rebuild() {
   takeAway(numbers_);
-  if (!choice_.model && choice_.device == kDevices[0]) return;
+  if (!choice_.model && !deviceNamed(choice_.device).takes_numbers) return;
   numbers_ = new QWidget(this);
   auto* column = new QVBoxLayout(numbers_);
   column->setContentsMargins(0, 0, 0, 0);

@@ -20,12 +20,12 @@
 #include "app/gui/panels/history_panel.h"
 #include "app/gui/panels/object_list.h"
 #include "app/gui/panels/object_panel.h"
-#include "app/gui/servo/feel_host.h"
 #include "app/gui/servo/live_plots.h"
 #include "app/gui/servo/recording.h"
 #include "app/gui/servo/stability_job.h"
 #include "app/gui/window/scene_widget.h"
 #include "app/gui/window/status_line.h"
+#include "haptics/servo/tip_servo.h"
 #include "session/edit/edit_thread.h"
 
 namespace patina {
@@ -57,7 +57,7 @@ class MainWindow : public QMainWindow {
   DevicePanel& device() { return *device_; }
   ObjectList& objects() { return *objects_; }
   SceneLoader& loader() { return *loader_; }
-  FeelHost& feel() { return feel_; }
+  TipServo& feel() { return feel_; }
   StabilityJob& stability() { return *stability_; }
   EnergyPlot& energyPlot() { return *energy_plot_; }
   StatusLine& status() { return *status_; }
@@ -163,7 +163,7 @@ class MainWindow : public QMainWindow {
   QList<QAction*> views_;  // fit and the camera's places
   QList<QAction*> panels_; // show and hide the docks
 
-  FeelHost feel_;
+  TipServo feel_;
   std::unique_ptr<EditThread> edits_; // goes before feel_, to which it publishes
   QTimer timer_;
   std::shared_ptr<const CompiledScene> current_;

@@ -56,7 +56,9 @@ void StatusLine::showTiming(const ServoTiming& timing, bool running) {
     rate_->setText(tr("servo rests"));
     return;
   }
-  rate_->setText(tr("%1 Hz").arg(timing.rate_hz, 0, 'f', 0));
+  rate_->setText(timing.device == DeviceStatus::ok
+                     ? tr("%1 Hz").arg(timing.rate_hz, 0, 'f', 0)
+                     : tr("no force: the device %1").arg(tr(text(timing.device))));
   late_->setText(tr("p99 late %1 µs").arg(timing.late_p99, 0, 'f', 0));
   missed_->setText(tr("missed %1").arg(timing.missed));
   policy_->setText(timing.realtime ? tr("real time") : tr("no real time"));

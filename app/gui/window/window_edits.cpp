@@ -6,13 +6,15 @@
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/window/main_window.h"
 #include "core/error.h"
+#include "haptics/devices/device_catalog.h"
 #include "session/build/compile_warnings.h"
 
 namespace patina {
 namespace {
 
 bool sameDevice(const Scene& a, const Scene& b) {
-  return a.device == b.device && (a.device == "mouse" || a.device_model == b.device_model);
+  return a.device == b.device &&
+         (!deviceNamed(a.device).takes_numbers || a.device_model == b.device_model);
 }
 
 bool sameValues(const Scene& a, const Scene& b) {

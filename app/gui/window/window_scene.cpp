@@ -2,8 +2,9 @@
 #include <algorithm>
 
 #include "app/gui/loading/load_dialogs.h"
-#include "app/gui/servo/hand_device.h"
 #include "app/gui/window/main_window.h"
+#include "core/error.h"
+#include "haptics/devices/device_catalog.h"
 #include "haptics/stability/stabilisers.h"
 #include "scene/paint/grey_relief.h"
 
@@ -211,11 +212,15 @@ void MainWindow::openFeelAt(const Vec3& start) {
   energy_plot_->restart();
   view_->setTarget(start);
   const Scene& scene = current_->scene;
-  const bool simulated = scene.device == "simulated";
-  HandSpec hand;
-  hand.device = scene.device_model.value_or(DeviceModel{});
-  feel_.open(simulated ? makeHandDevice(start, hand) : makeMouseDevice(start),
-             simulated ? hand.device.rate : DeviceModel{}.rate);
+  const DeviceEntry& entry = deviceNamed(scene.device);
+  const auto target = std::make_shared<TipTarget>(start);
+  const DeviceModel model =
+      entry.takes_numbers ? scene.device_model.value_or(entry.model) : entry.model;
+  try {
+    feel_.open(openDevice(entry, {.target = target, .model = model}), target, model.rate);
+  } catch (const DeviceError& error) {
+    haptics_->setProblem(QString::fromUtf8(error.what()));
+  }
 }
 
 void MainWindow::showValues() {

@@ -1,26 +1,45 @@
-// The hand's side of the loop.
+// A force-feedback device as the servo sees it.
 #pragma once
 
-#include <memory>
+#include <cstdint>
+#include <optional>
 
 #include "core/types.h"
 
 namespace patina {
 
+enum class DeviceStatus : std::uint8_t {
+  ok,
+  calibrating, // its position means nothing yet: the loop holds, without force, until it does
+  // What follows is final: the loop ends without force.
+  silent,  // no answer for longer than kOldestAge
+  garbled, // an answer that is none
+  gone,    // unplugged, or taken by another program
+};
+// "answers", "is being calibrated", "has stopped answering" ...: after "the device".
+const char* text(DeviceStatus status) noexcept;
+
+// What is older is not felt: the force would be that of another place. [s]
+inline constexpr double kOldestAge = 0.02;
+
+struct DeviceState {
+  Vec3 position = Vec3::Zero();                                    // [m]
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity(); // of the handle
+  std::optional<Vec3> velocity{}; // [m/s], only where the device measures it
+  std::uint32_t buttons = 0;      // bit i: button i is down
+  DeviceStatus status = DeviceStatus::ok;
+  double age = 0; // [s] since the position was measured; grows while answers fail to come
+};
+// The status, or what the age says against it.
+DeviceStatus judge(const DeviceState& state) noexcept;
+
 class Device {
  public:
   virtual ~Device() = default;
-  // Servo thread: sends the force [N] and reads the tip [m, world] dt later. No lock, allocation or
-  // throw.
-  virtual Vec3 exchange(const Vec3& force, double dt) noexcept = 0;
+  // Servo thread: sends the force [N] and reads the state dt later, both in the world's frame or,
+  // below a DeviceMount, in the device's own. No lock, allocation or throw. The force goes to zero
+  // where the device is closed, too.
+  virtual DeviceState exchange(const Vec3& force, double dt) noexcept = 0;
 };
-
-// The mouse: the window sets a target from its thread, the servo glides to it at no more than
-// max_speed, so that a jump of the pointer is not a jump of the tip. It feels no force.
-class MouseDevice : public Device {
- public:
-  virtual void setTarget(const Vec3& world) noexcept = 0; // UI thread, wait-free
-};
-std::unique_ptr<MouseDevice> makeMouseDevice(const Vec3& start, double max_speed = 1.0);
 
 } // namespace patina

@@ -1,5 +1,6 @@
 #include "haptics/devices/exact_step.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -47,12 +48,23 @@ HeldStep heldStep(const Oscillator& body, double dt) noexcept {
           step(1, 0), step(1, 1), step(1, 2) / body.mass};
 }
 
+double masslessShare(double time_constant, double dt) noexcept {
+  return -std::expm1(-dt / time_constant);
+}
+
 ExactStep::ExactStep(const Oscillator& body, double dt) : body_(body), dt_(dt) {
   const bool sound = body.mass > 0 && body.damping >= 0 && body.spring >= 0 && body.friction >= 0 &&
                      dt >= 0 &&
                      std::isfinite(body.mass + body.damping + body.spring + body.friction + dt);
   if (!sound) throw std::invalid_argument("exact step: mass must be > 0 and the rest >= 0");
   whole_ = heldStep(body, dt);
+}
+
+void ExactStep::setLength(double dt) noexcept {
+  if (dt == dt_) return;
+  assert(dt >= 0 && std::isfinite(dt));
+  dt_ = dt;
+  whole_ = heldStep(body_, dt);
 }
 
 Motion ExactStep::operator()(const Motion& from, double force) const noexcept {

@@ -22,6 +22,9 @@ struct HeldStep {
 };
 // Keeps its digits where b or k goes to zero and where b dt/m is large.
 HeldStep heldStep(const Oscillator& body, double dt) noexcept;
+// Where there is no mass, only a damper and a spring of this time constant b/k [s]: the share of
+// the way to its rest that dt takes.
+double masslessShare(double time_constant, double dt) noexcept;
 
 // Steps of one length. With dry friction a step is cut where the velocity passes zero, so that it
 // is exact there too; where the body then stays at rest, v is exactly 0.
@@ -29,6 +32,7 @@ class ExactStep {
  public:
   // Throws std::invalid_argument unless mass > 0, the rest >= 0 and everything is finite.
   ExactStep(const Oscillator& body, double dt);
+  void setLength(double dt) noexcept; // dt >= 0 and finite; cheap where it stays
   Motion operator()(const Motion& from, double force) const noexcept;
 
  private:

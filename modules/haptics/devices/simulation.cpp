@@ -1,13 +1,11 @@
 #include "haptics/devices/simulation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>
-#include <vector>
 
-#include "haptics/devices/exact_step.h"
+#include "haptics/devices/held_body.h"
 #include "haptics/stages/limit_stage.h"
 
 namespace patina {
@@ -53,77 +51,43 @@ Eigen::Matrix3d axesFrom(const Vec3& inward) {
 class Body {
  public:
   explicit Body(const SimulationSpec& spec)
-      : axes_(axesFrom(spec.inward)), surface_(spec.surface), start_(spec.depth, 0, 0),
+      : frame_(axesFrom(spec.inward)), surface_(spec.surface), start_(spec.depth, 0, 0),
         press_(spec.press),
         encoder_(spec.device.encoder_step), oscillator_{spec.device.mass + spec.hand.mass,
                                                         spec.device.damping + spec.hand.damping,
                                                         spec.hand.stiffness, spec.device.coulomb},
-        step_(oscillator_, 1 / spec.device.rate), length_(1 / spec.device.rate) {
-    axis_[0].v = spec.speed;
+        held_(oscillator_, 1 / spec.device.rate) {
+    held_.axes[0].v = spec.speed;
   }
 
-  double depth() const { return start_[0] + axis_[0].x; }
-  double inwardVelocity() const { return axis_[0].v; }
-  Vec3 fromSurface() const { return start_ + Vec3(axis_[0].x, axis_[1].x, axis_[2].x); }
-  Vec3 position() const { return surface_ + axes_ * fromSurface(); }
-  Vec3 velocity() const { return axes_ * Vec3(axis_[0].v, axis_[1].v, axis_[2].v); }
-  Vec3 measured() const {
-    if (encoder_ == 0) return position();
-    return surface_ + axes_ * (encoder_ * (fromSurface() / encoder_).array().round().matrix());
-  }
+  double depth() const { return start_[0] + held_.axes[0].x; }
+  double inwardVelocity() const { return held_.axes[0].v; }
+  Vec3 fromSurface() const { return start_ + held_.position(); }
+  Vec3 position() const { return surface_ + frame_ * fromSurface(); }
+  Vec3 velocity() const { return frame_ * held_.velocity(); }
+  Vec3 measured() const { return surface_ + frame_ * encoded(fromSurface(), encoder_); }
   // Kinetic and of the hand's spring, less what the press has done.
   double energy() const {
-    double sum = -press_ * axis_[0].x;
-    for (const Motion& axis : axis_)
+    double sum = -press_ * held_.axes[0].x;
+    for (const Motion& axis : held_.axes)
       sum += 0.5 * (oscillator_.mass * axis.v * axis.v + oscillator_.spring * axis.x * axis.x);
     return sum;
   }
-  void teleport(const Vec3& by) { start_ += axes_.transpose() * by; }
+  void teleport(const Vec3& by) { start_ += frame_.transpose() * by; }
 
   // Returns how far it went.
   Vec3 hold(const Vec3& force, double seconds) {
-    if (seconds != length_) {
-      step_ = ExactStep(oscillator_, seconds);
-      length_ = seconds;
-    }
-    const Vec3 along = axes_.transpose() * force + Vec3(press_, 0, 0);
-    Vec3 moved;
-    for (int i = 0; i < 3; ++i) {
-      Motion& axis = axis_[static_cast<std::size_t>(i)];
-      const double from = axis.x;
-      axis = step_(axis, along[i]);
-      moved[i] = axis.x - from;
-    }
-    return axes_ * moved;
+    return frame_ * held_.hold(frame_.transpose() * force + Vec3(press_, 0, 0), seconds);
   }
 
  private:
-  Eigen::Matrix3d axes_; // world_from_device
+  Eigen::Matrix3d frame_; // world_from_device
   Vec3 surface_;
   Vec3 start_; // device frame
-  std::array<Motion, 3> axis_;
   double press_;
   double encoder_;
   Oscillator oscillator_;
-  ExactStep step_;
-  double length_; // [s], of step_
-};
-
-// Forces on their way to the device.
-class DelayLine {
- public:
-  explicit DelayLine(int delay) : forces_(static_cast<std::size_t>(delay), Vec3::Zero()) {}
-  Vec3 exchange(const Vec3& force) {
-    if (forces_.empty()) return force;
-    const Vec3 due = forces_[next_];
-    forces_[next_] = force;
-    next_ = (next_ + 1) % forces_.size();
-    return due;
-  }
-
- private:
-  std::vector<Vec3> forces_;
-  std::size_t next_ = 0;
+  HeldBody held_;
 };
 
 // Lengths of the ticks.

@@ -44,7 +44,14 @@ struct ServoLoop::Impl {
       const double dt = static_cast<double>(woke - last_wake) / kNsPerSecond;
       last_wake = woke;
 
-      const Vec3 tip = device->exchange(force, dt);
+      const DeviceState state = device->exchange(force, dt);
+      const DeviceStatus status = judge(state);
+      device_status.store(status, std::memory_order_relaxed);
+      if (status != DeviceStatus::ok) {
+        force.setZero();
+        if (status != DeviceStatus::calibrating) break;
+        continue;
+      }
       if (!law.fading()) {
         exchange.hold(law.felt()); // it may have to fade out
         law.turnTo(exchange.latest());
@@ -52,7 +59,7 @@ struct ServoLoop::Impl {
       ToolSample sample;
       sample.t = static_cast<double>(woke - start) / kNsPerSecond;
       const std::int64_t before = monotonicNs();
-      const Contact contact = law.tick(tip, dt);
+      const Contact contact = law.tick(state.position, dt);
       record(contact, law.field(), sample);
       force = contact.force;
       const std::int64_t step = monotonicNs() - before;
@@ -63,7 +70,7 @@ struct ServoLoop::Impl {
       measureRate(woke);
       samples.push(sample);
     }
-    // A stopped loop leaves no force behind.
+    // A loop that has ended leaves no force behind.
     device->exchange(Vec3::Zero(), static_cast<double>(period_ns) / kNsPerSecond);
   }
 
@@ -84,6 +91,7 @@ struct ServoLoop::Impl {
   std::atomic<bool> stopping{false};
   std::atomic<std::uint64_t> missed{0};
   std::atomic<double> measured_rate{0};
+  std::atomic<DeviceStatus> device_status{DeviceStatus::ok};
   std::atomic<RealtimeGrant> grant{RealtimeGrant{-1, -1}}; // before the first start
   std::int64_t rate_mark = 0;                              // servo thread's own, as the next
   int ticks_since_mark = 0;
@@ -99,6 +107,7 @@ ServoLoop::~ServoLoop() {
 void ServoLoop::start() {
   if (running()) return;
   impl_->stopping.store(false);
+  impl_->device_status.store(DeviceStatus::ok);
   impl_->thread = std::thread([this] { impl_->run(); });
 }
 
@@ -133,6 +142,7 @@ ServoTiming ServoLoop::timing() const {
   timing.missed = impl_->missed.load(std::memory_order_relaxed);
   timing.late_p99 = impl_->window.late().p99 * 1e-3;
   timing.rate_hz = impl_->measured_rate.load(std::memory_order_relaxed);
+  timing.device = impl_->device_status.load(std::memory_order_relaxed);
   return timing;
 }
 

@@ -20,6 +20,8 @@ struct ServoTiming {
   std::uint64_t missed = 0; // deadlines that passed by more than a period
   double late_p99 = 0;      // [us], exact, of the last 8192 ticks at least
   double rate_hz = 0;
+  // Calibrating: the loop holds, without force. Any failure: it has ended, without force.
+  DeviceStatus device = DeviceStatus::ok;
 };
 
 // All of it belongs to one thread (the window's), except what says otherwise.
@@ -33,7 +35,7 @@ class ServoLoop {
 
   void start();
   void stop();
-  bool running() const;
+  bool running() const; // started and not stopped, even if the device has failed
 
   // publish: felt at the next tick, never waits. collect: frees snapshots that the servo has left,
   // as publish does too; call it now and then.

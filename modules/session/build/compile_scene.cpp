@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/merge/redistance.h"
+#include "haptics/devices/device_catalog.h"
 
 namespace patina {
 namespace {
@@ -225,6 +226,7 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
                                                  const FeltReach& room, FaceLayer faces,
                                                  Progress& progress) {
   validate(scene);
+  (void)deviceNamed(scene.device);
   if (scene.objects.empty()) throw Error("the scene has no object: add a mesh to it");
   progress.throwIfCancelled();
   const Stopwatch watch;
@@ -325,6 +327,7 @@ bool canRetune(const CompiledScene& old, const Scene& scene) {
 
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {
   validate(scene);
+  (void)deviceNamed(scene.device);
   auto compiled = std::make_shared<CompiledScene>(old);
   compiled->scene = std::move(scene);
   Progress progress;

@@ -1,11 +1,12 @@
-#include "app/gui/servo/feel_host.h"
+#include "haptics/servo/tip_servo.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace patina {
 
-void FeelHost::open(std::unique_ptr<MouseDevice> device, double rate) {
+void TipServo::open(std::unique_ptr<Device> device, std::shared_ptr<TipTarget> target,
+                    double rate) {
   close();
   const auto now = std::chrono::steady_clock::now();
   if (began_once_) {
@@ -15,7 +16,7 @@ void FeelHost::open(std::unique_ptr<MouseDevice> device, double rate) {
     began_ = now;
     began_once_ = true;
   }
-  mouse_ = device.get();
+  target_ = std::move(target);
   auto loop = std::make_unique<ServoLoop>(std::move(device), rate);
   const std::lock_guard lock(publishers_);
   loop_ = std::move(loop);
@@ -23,14 +24,14 @@ void FeelHost::open(std::unique_ptr<MouseDevice> device, double rate) {
   loop_->start();
 }
 
-void FeelHost::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
+void TipServo::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
   const std::lock_guard lock(publishers_);
   newest_ = std::move(snapshot);
   if (loop_) loop_->publish(newest_);
 }
 
-void FeelHost::close() {
-  mouse_ = nullptr;
+void TipServo::close() {
+  target_.reset();
   if (!loop_) return;
   loop_->stop();
   empty(left_);
@@ -39,7 +40,7 @@ void FeelHost::close() {
   loop_.reset();
 }
 
-void FeelHost::empty(std::vector<ToolSample>& into) {
+void TipServo::empty(std::vector<ToolSample>& into) {
   // A servo that outruns this loop must not hold up the window.
   const std::size_t most = into.size() + 20000;
   ToolSample sample;
@@ -49,11 +50,11 @@ void FeelHost::empty(std::vector<ToolSample>& into) {
   }
 }
 
-void FeelHost::setTarget(const Vec3& target) {
-  if (mouse_ != nullptr) mouse_->setTarget(target);
+void TipServo::setTarget(const Vec3& target) {
+  if (target_) target_->set(target);
 }
 
-std::vector<ToolSample> FeelHost::drain() {
+std::vector<ToolSample> TipServo::drain() {
   if (loop_)
     if (const std::unique_lock lock(publishers_, std::try_to_lock); lock) loop_->collect();
   std::vector<ToolSample> samples = std::exchange(left_, {});
@@ -61,11 +62,11 @@ std::vector<ToolSample> FeelHost::drain() {
   return samples;
 }
 
-ServoTiming FeelHost::timing() const {
+ServoTiming TipServo::timing() const {
   return loop_ ? loop_->timing() : ServoTiming{};
 }
 
-std::size_t FeelHost::dropped() const {
+std::size_t TipServo::dropped() const {
   return dropped_before_ + (loop_ ? loop_->samples().dropped() : 0);
 }
 

@@ -1,4 +1,4 @@
-// The servo as the window sees it: publish, aim, drain. Window's thread, but publish().
+// A servo loop that is opened again and again: publish, aim, drain. One thread, but publish().
 #pragma once
 
 #include <chrono>
@@ -6,15 +6,16 @@
 #include <mutex>
 #include <vector>
 
+#include "haptics/devices/tip_target.h"
 #include "haptics/servo/servo_loop.h"
 
 namespace patina {
 
-class FeelHost {
+class TipServo {
  public:
-  // Starts a new loop with this device, which setTarget() moves; it feels what was published last.
-  // The old loop, if any, stops first. rate in 100 .. 10000 Hz.
-  void open(std::unique_ptr<MouseDevice> device, double rate = 1000);
+  // Starts a new loop with this device; it feels what was published last. setTarget() moves the
+  // target, where the device has one. The old loop, if any, stops first. rate in 100 .. 10000 Hz.
+  void open(std::unique_ptr<Device> device, std::shared_ptr<TipTarget> target, double rate = 1000);
   // Any thread: contact goes on, with the next tick by the new law. Waits at most for another
   // publisher, never for the servo.
   void publish(std::shared_ptr<const HapticSnapshot> snapshot);
@@ -33,8 +34,8 @@ class FeelHost {
 
   std::mutex publishers_; // of newest_, and of loop_ where another thread may see it
   std::shared_ptr<const HapticSnapshot> newest_;
-  std::unique_ptr<ServoLoop> loop_; // set by the window's thread alone
-  MouseDevice* mouse_ = nullptr;    // owned by the loop
+  std::unique_ptr<ServoLoop> loop_; // set by the one thread alone
+  std::shared_ptr<TipTarget> target_;
   std::vector<ToolSample> left_;
   std::chrono::steady_clock::time_point began_;
   bool began_once_ = false;
