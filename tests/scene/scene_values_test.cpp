@@ -81,7 +81,7 @@ TEST(SceneValues, NoneMakesAFeatureAbsent) {
   EXPECT_FALSE(scene.haptics.friction);
   EXPECT_FALSE(scene.haptics.tip_radius);
   EXPECT_FALSE(scene.field.voxel);
-  for (const char* key : {"stiffness", "force.limit", "resolution", "band", "sampler", "device"})
+  for (const char* key : {"stiffness", "force.limit", "resolution", "band", "sampler"})
     EXPECT_THROW(setValue(scene, key, "none"), Error) << key;
 }
 
@@ -192,7 +192,6 @@ TEST(SceneValues, ARefusedValueLeavesTheSceneAsItWas) {
                                        {"resolution", "1e9"},
                                        {"band", "0"},
                                        {"sampler", "best"},
-                                       {"device", "none"},
                                        {"colour", "red"},
                                        {"", "1"}}) {
     EXPECT_THROW(setValue(scene, key, value), Error) << key << "=" << value;
@@ -208,14 +207,14 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
     setValue(scene, "stifness", "5");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(
-        std::string(error.what()),
-        "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
-        "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
-        "magnet.fades contact tip.radius force.limit resolution voxel band sampler "
-        "surface.sides merge.redistance relief.mode relief.source relief.height relief.force "
-        "relief.smoothing material.force paint.size stabiliser device.mass device.damping device.coulomb "
-        "device.encoder device.rate device.delay device");
+    EXPECT_EQ(std::string(error.what()),
+              "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
+              "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
+              "magnet.fades contact tip.radius force.limit resolution voxel band sampler "
+              "surface.sides merge.redistance relief.mode relief.source relief.height relief.force "
+              "relief.smoothing material.force paint.size stabiliser device.mass device.damping "
+              "device.coulomb "
+              "device.encoder device.rate device.delay device");
   }
 }
 
