@@ -1,7 +1,9 @@
 // The mouse feels: what a person without a device sees and gets.
 #include <cmath>
 
+#include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
+#include <vtkGenericOpenGLRenderWindow.h>
 
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
@@ -82,6 +84,37 @@ TEST_F(MouseFeels, ShiftMiddleAndRightMoveTheCameraAndNotTheTip) {
   dragFromTo(middle(), middle() + QPoint(0, -60), Qt::RightButton);
   EXPECT_LT(camera->GetDistance(), distance);
   EXPECT_EQ(view().target(), target);
+}
+
+// Pictures that the window draws, not those that a test asks for.
+TEST_F(MouseFeels, EveryMoveOfTheCameraIsDrawnAtOnce) {
+  settle();
+  int drawn = 0;
+  const vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&drawn);
+  count->SetCallback(
+      [](vtkObject*, unsigned long, void* into, void*) { ++*static_cast<int*>(into); });
+  view().renderWindow()->AddObserver(vtkCommand::EndEvent, count);
+  const auto isDrawn = [&](const std::function<void()>& move) {
+    waitUntil([&] { return view().settled(); }, 5000);
+    drawn = 0;
+    move();
+    return waitUntil([&] { return drawn > 0; }, 500);
+  };
+  for (const SceneWidget::Mode mode : {SceneWidget::Mode::feel, SceneWidget::Mode::navigate}) {
+    window_->setMode(mode);
+    const bool feels = mode == SceneWidget::Mode::feel;
+    for (int i = 0; i < 6; ++i) {
+      const QPoint to = middle() + QPoint(5, i - 2);
+      const auto turn = feels ? Qt::ShiftModifier : Qt::NoModifier;
+      EXPECT_TRUE(isDrawn([&] { dragFromTo(middle(), to, Qt::LeftButton, turn); })) << i;
+      EXPECT_TRUE(isDrawn([&] { dragFromTo(middle(), to, Qt::MiddleButton); })) << i;
+      EXPECT_TRUE(isDrawn([&] { dragFromTo(middle(), middle() + QPoint(0, 4), Qt::RightButton); }));
+      if (!feels) {
+        EXPECT_TRUE(isDrawn([&] { turnWheel(1); })) << i;
+      }
+    }
+  }
 }
 
 TEST_F(MouseFeels, NavigateModeGivesTheLeftButtonToTheCamera) {

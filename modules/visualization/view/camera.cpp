@@ -111,4 +111,15 @@ Vec3 pointInViewPlane(vtkCamera& camera, double x, double y, const Vec3& through
          ray.direction * ((through - ray.origin).dot(normal) / ray.direction.dot(normal));
 }
 
+CameraPose poseOf(vtkCamera& camera) {
+  CameraPose pose;
+  camera.GetPosition(pose.data());
+  camera.GetFocalPoint(pose.data() + 3);
+  camera.GetViewUp(pose.data() + 6);
+  pose[9] = camera.GetViewAngle();
+  pose[10] = camera.GetParallelScale();
+  pose[11] = camera.GetParallelProjection();
+  return pose;
+}
+
 } // namespace patina

@@ -1,6 +1,7 @@
 // Moving the camera and moving a point with the mouse: plain functions on a VTK camera.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <vtkCamera.h>
@@ -26,6 +27,11 @@ void zoom(vtkCamera& camera, double factor); // > 1 comes nearer
 // x, y in fractions of the picture's height from its centre, to the right and up.
 Vec3 pointInViewPlane(vtkCamera& camera, double x, double y, const Vec3& through);
 Vec3 viewDirection(vtkCamera& camera); // unit, away from the eye
+
+// Where it stands and how it looks: position, focal point, up, angle, parallel scale, and whether
+// it is parallel. Not its clipping range, which follows what is drawn.
+using CameraPose = std::array<double, 12>;
+CameraPose poseOf(vtkCamera& camera);
 
 struct Ray {
   Vec3 origin, direction; // direction is unit

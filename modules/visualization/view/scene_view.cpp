@@ -265,9 +265,9 @@ bool SceneView::prepare() {
   my.applyVisibility();
   my.syncCorner();
   my.scene->ResetCameraClippingRange();
-  const bool camera_moved = camera->GetViewTransformObject()->GetMTime() != my.camera_time;
-  my.camera_time = camera->GetViewTransformObject()->GetMTime();
-  const bool changed = my.dirty || camera_moved;
+  const CameraPose pose = poseOf(*camera);
+  const bool changed = my.dirty || pose != my.drawn_from;
+  my.drawn_from = pose;
   my.dirty = false;
   return changed;
 }

@@ -14,6 +14,7 @@
 #include "visualization/layers/stability_layer.h"
 #include "visualization/layers/tool_layer.h"
 #include "visualization/values/palette.h"
+#include "visualization/view/camera.h"
 #include "visualization/view/scene_furniture.h"
 #include "visualization/view/scene_view.h"
 
@@ -50,7 +51,7 @@ struct SceneView::Impl {
   bool paint_stale = false, brush_stale = false;
   bool dirty = true, has_stability = false;
   bool cut_keeps_positive = true, cut_on = false;
-  vtkMTimeType camera_time = 0;
+  CameraPose drawn_from{};
 
   Box3 mesh_box; // empty without a mesh
   Box3 gridBox() const {
