@@ -51,19 +51,6 @@ std::size_t sharedBlocks(const SurfaceField& a, const SurfaceField& b) {
   return count;
 }
 
-// Where phi changes sign from `outside` inwards [m along the way].
-double surfaceAt(const SurfaceField& field, const Vec3& outside, const Vec3& inwards) {
-  const FieldSampler sampler(field, Sampler::kim);
-  double t = 0;
-  while (sampler.at(outside + t * inwards).phi > 0) t += 0.1 * field.grid.voxel;
-  double low = t - 0.1 * field.grid.voxel, high = t;
-  for (int i = 0; i < 50; ++i) {
-    t = 0.5 * (low + high);
-    (sampler.at(outside + t * inwards).phi > 0 ? low : high) = t;
-  }
-  return t;
-}
-
 double constant(double, double) {
   return 1;
 }

@@ -8,6 +8,7 @@
 
 #include "authoring/relief/relief_bake.h"
 #include "field/build/build_field.h"
+#include "field/sampling/field_sampler.h"
 #include "geometry/mesh/shapes.h"
 #include "support/relief_image.h"
 
@@ -40,6 +41,19 @@ inline ReliefBake bakeOf(const std::shared_ptr<const SurfaceField>& field, const
                          const std::vector<ReliefSource>& sources) {
   Progress progress;
   return ReliefBake(field, mesh, sources, progress);
+}
+
+// Where phi changes sign from `outside` inwards [m along the way].
+inline double surfaceAt(const SurfaceField& field, const Vec3& outside, const Vec3& inwards) {
+  const FieldSampler sampler(field, Sampler::kim);
+  double t = 0;
+  while (sampler.at(outside + t * inwards).phi > 0) t += 0.1 * field.grid.voxel;
+  double low = t - 0.1 * field.grid.voxel, high = t;
+  for (int i = 0; i < 50; ++i) {
+    t = 0.5 * (low + high);
+    (sampler.at(outside + t * inwards).phi > 0 ? low : high) = t;
+  }
+  return t;
 }
 
 } // namespace patina::test

@@ -28,8 +28,9 @@ inline MergedShapes mergedShapes(const std::vector<TriangleMesh>& meshes, double
   Progress progress;
   for (const TriangleMesh& mesh : meshes) {
     const BlockBox blocks = blocksAround(m.lattice, fieldBounds(mesh), band);
-    m.parts.push_back({buildField(mesh, gridOf(m.lattice, blocks), band, progress).field,
-                       blocks.low, static_cast<std::int32_t>(m.joint.triangles.size())});
+    const BuiltField built = buildField(mesh, gridOf(m.lattice, blocks), band, progress);
+    m.parts.push_back({built.field, firstBlock(m.lattice, built.field->grid),
+                       static_cast<std::int32_t>(m.joint.triangles.size()), built.caps});
     m.joint = m.joint.triangles.empty() ? mesh : joined(m.joint, mesh);
   }
   SurfaceField field = mergeFields(m.parts, m.lattice);

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -37,21 +38,54 @@ TEST(DistanceBlock, GivesBackEveryBitOfAnyNodes) {
       }
 }
 
-// Four nodes of one width and four of another, wherever in a word they begin.
+constexpr std::size_t kFours = kBlockNodes / 4;
+constexpr std::array<unsigned, 16> kWidths = {0,  2,  4,  6,  8,  10, 12, 14,
+                                              16, 18, 20, 22, 24, 26, 28, 32};
+
+// Floats in their order as integers; its own inverse.
+std::int32_t ordered(std::int32_t bits) {
+  return bits < 0 ? bits ^ 0x7FFFFFFF : bits;
+}
+
+// What the rows before its own lead to at a node.
+float foreseen(const std::array<float, kBlockNodes>& phi, std::size_t n) {
+  const std::size_t y = n / 8 % 8, z = n / 64;
+  if (y > 0 && z > 0) return phi[n - 8] + (phi[n - 64] - phi[n - 72]);
+  if (y == 0 && z == 0) return 0;
+  const std::size_t step = y > 0 ? 8 : 64;
+  const float last = phi[n - step];
+  return y + z > 1 ? last + (last - phi[n - 2 * step]) : last;
+}
+
+// A node whose difference from what is foreseen takes just so many bits; never far from zero.
+float nodeOfWidth(float expected, unsigned width, std::mt19937& random) {
+  const std::int32_t from = ordered(std::bit_cast<std::int32_t>(expected));
+  if (width == 0) return expected;
+  const unsigned bits = std::min(width, 30U); // of the code: twice the difference, and its sign
+  const std::uint32_t least = std::uint32_t{1} << (bits - 2);
+  auto by = static_cast<std::int32_t>(least / 2 + 1 + random() % std::max(least / 2, 1U));
+  if (from > 0x40000000 || (from > -0x40000000 && random() % 2 == 0)) by = -by;
+  return std::bit_cast<float>(ordered(from + by));
+}
+
+// Each width before each other in the packed order. That they are those is seen from the bytes.
 TEST(DistanceBlock, KeepsDifferencesOfEveryWidthBesideAnyOther) {
   std::mt19937 random(7);
-  for (unsigned width = 0; width <= 30; ++width)
-    for (unsigned other = 0; other <= 30; ++other) {
-      DistanceNodes nodes;
-      for (std::size_t n = 0; n < kBlockNodes; ++n) {
-        const unsigned bits = std::bernoulli_distribution(0.5)(random) ? width : other;
-        const std::uint64_t noise = random() & ((std::uint64_t{1} << bits) - 1);
-        // From 4 voxels on, through larger numbers, but never to one that is not finite.
-        nodes.phi[n] = std::bit_cast<float>(
-            static_cast<std::uint32_t>(std::bit_cast<std::uint32_t>(4.0F) + noise % 0x3E000000U));
-      }
-      expectKept(nodes);
+  std::set<std::pair<unsigned, unsigned>> met;
+  for (int round = 0; round < 40; ++round) {
+    std::array<unsigned, kFours> width;
+    std::size_t bits = 0;
+    for (unsigned& w : width) bits += w = kWidths[random() % kWidths.size()];
+    for (std::size_t four = 1; four < kFours; ++four) met.insert({width[four - 1], width[four]});
+    DistanceNodes nodes;
+    for (std::size_t n = 0; n < kBlockNodes; ++n) {
+      nodes.phi[n] = nodeOfWidth(foreseen(nodes.phi, n), width[n / 4], random);
+      ASSERT_TRUE(std::isfinite(nodes.phi[n]));
     }
+    expectKept(nodes);
+    EXPECT_EQ(DistanceBlock(nodes).bytes(), sizeof(DistanceBlock) + 16 * (bits / 32 + 2));
+  }
+  EXPECT_EQ(met.size(), kWidths.size() * kWidths.size());
 }
 
 TEST(DistanceBlock, KeepsTheSignOfZeroAndTheSmallestNumbers) {
@@ -87,11 +121,18 @@ TEST(DistanceBlock, HoldsAPlaneInAFewBitsANode) {
 }
 
 // Noise is what it cannot foresee: then it may be little more than the nodes themselves.
-TEST(DistanceBlock, IsAtMostATwelfthLargerThanItsNodes) {
+TEST(DistanceBlock, IsAtMostAnEleventhLargerThanItsNodes) {
   std::mt19937 random(3);
-  DistanceNodes nodes;
-  for (float& phi : nodes.phi) phi = std::uniform_real_distribution<float>(-1e6F, 1e6F)(random);
-  EXPECT_LE(12 * DistanceBlock(nodes).bytes(), 13 * sizeof(DistanceNodes));
+  std::size_t most = 0;
+  for (int round = 0; round < 100; ++round) {
+    DistanceNodes nodes;
+    for (float& phi : nodes.phi) do
+        phi = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+      while (!(std::abs(phi) < kBeyondBand));
+    most = std::max(most, DistanceBlock(nodes).bytes());
+  }
+  EXPECT_EQ(most, 2224U); // 144 and 128 fours of 16 bytes, and two more that are read
+  EXPECT_LE(11 * most, 12 * sizeof(DistanceNodes));
 }
 
 } // namespace

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "field/build/build_field.h"
+#include "field/build/distance_blocks.h"
+#include "field/build/plate.h"
 #include "field/store/node_reader.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
@@ -155,6 +157,20 @@ TEST(Plate, HasTheFacesOfItsFront) {
     ASSERT_LE((p - centre).norm(), 2 * field.band * field.grid.voxel + 0.01);
   });
   EXPECT_GT(faces, 100000U);
+}
+
+TEST(Plate, ItsCapsStopWhenCancelled) {
+  const TriangleMesh mesh = sheet(kSide, kSide, 4);
+  const TriangleTree tree(mesh);
+  FieldSpec spec;
+  spec.resolution = 40;
+  Progress running, stopped;
+  stopped.cancel();
+  const FieldBuilder builder =
+      distanceBlocks(mesh, tree, withRoomForPlates(gridAround(bounds(mesh), spec), spec.band),
+                     spec.band + 1.5, running, 0, 1);
+  EXPECT_THROW((void)plateCaps(builder, mesh, tree, openParts(mesh), spec.band, stopped),
+               Cancelled);
 }
 
 } // namespace

@@ -150,6 +150,46 @@ TEST(Redistance, ObjectsThatDoNotMeetOrCoincideChangeNothing) {
   EXPECT_EQ(twice.redistanced, 0u);
 }
 
+// A sheet whose front is `front` voxels high and a cube that it runs through: the depth under the
+// cube is that to the plate's back, or to where the cube's sides come out of the front.
+TEST(Redistance, KnowsTheBackOfAPlate) {
+  const double voxel = 0x1p-10;
+  for (const int front : {0, -2}) {
+    const TriangleMesh plate = movedBy(sheet(60 * voxel, 60 * voxel, 6), Vec3(0, 0, front * voxel));
+    const TriangleMesh cube =
+        movedBy(box(Vec3::Constant(20 * voxel), 4), Vec3(0, 0, (front + 8) * voxel));
+    const MergedShapes before = mergedShapes({plate, cube}, voxel);
+    const MergedShapes after = mergedShapes({plate, cube}, voxel, true);
+    const auto phiAt = [&](const SurfaceField& field, int x, int z) {
+      const Vec3 at = field.grid.toGrid(voxel * Vec3(x, 0, z));
+      return test::phiAt(field, static_cast<int>(std::lround(at.x())),
+                         static_cast<int>(std::lround(at.y())),
+                         static_cast<int>(std::lround(at.z())));
+    };
+    for (const int x : {-3, 0, 5})
+      for (int depth = 1; depth < 8; ++depth)
+        EXPECT_NEAR(-phiAt(*after.field, x, front - depth),
+                    std::min(8.0 - depth, std::hypot(10 - std::abs(x), depth)), 1.5 * kHiddenFrom)
+            << x << ' ' << depth;
+    for (const int x : {-3, 0, 5, 20})
+      for (int depth = 5; depth < 12; ++depth)
+        EXPECT_EQ(phiAt(*after.field, x, front - depth), phiAt(*before.field, x, front - depth))
+            << x << ' ' << depth;
+    std::size_t i = 0, judged = 0;
+    for (int z = 0; z <= after.field->blocks[2]; ++z)
+      for (int y = 0; y <= after.field->blocks[1]; ++y)
+        for (int x = 0; x <= after.field->blocks[0]; ++x, ++i) {
+          const Vec3 p =
+              after.field->grid.toWorld(kBlockSide * Vec3(x, y, z)) / voxel - Vec3(0, 0, front);
+          if (std::max(std::abs(p.x()), std::abs(p.y())) > 20 || !(p.z() < -4 && p.z() > -8))
+            continue;
+          EXPECT_NEAR(after.field->coarse[i].phi, -8 - p.z(), 0.01) << p.transpose();
+          ++judged;
+        }
+    EXPECT_EQ(judged > 0, front == -2);
+  }
+}
+
 TEST(Redistance, UnionSurfaceHasTheAreaOfTheClosedForm) {
   const MergedShapes& m = thePair();
   Progress progress;

@@ -1,15 +1,19 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkSignedCharArray.h>
 #include <vtkXMLImageDataWriter.h>
 
 #include "core/error.h"
@@ -148,6 +152,61 @@ TEST_F(FieldIo, DamagedBytesNeverCrashAndNeverGiveAnInfiniteField) {
     }
   }
   EXPECT_GT(refused, 20);
+}
+
+// One block; every node holds the same.
+struct HandMade {
+  double voxel = 1e-3;
+  float phi = 1e-3F; // [m]
+  int rounding = 0;
+  float coarse = 1;
+};
+
+void writeByHand(const fs::path& path, const HandMade& of) {
+  const vtkNew<vtkImageData> image;
+  image->SetDimensions(kBlockSide, kBlockSide, kBlockSide);
+  const auto fill = [](auto* array, const char* name, int components, vtkIdType tuples,
+                       double value) {
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    array->SetNumberOfTuples(tuples);
+    array->Fill(value);
+  };
+  const vtkNew<vtkFloatArray> phi, coarse;
+  const vtkNew<vtkSignedCharArray> rounding;
+  const vtkNew<vtkDoubleArray> grid, band;
+  fill(phi.Get(), "phi [m]", 1, kBlockNodes, static_cast<double>(of.phi));
+  fill(rounding.Get(), "phi rounding [ulp]", 1, kBlockNodes, of.rounding);
+  fill(coarse.Get(), "coarse [voxel]", 4, 8, static_cast<double>(of.coarse));
+  fill(band.Get(), "band [voxel]", 1, 1, 8);
+  fill(grid.Get(), "grid [m]", 4, 1, 0);
+  grid->SetValue(3, of.voxel);
+  image->GetPointData()->SetScalars(phi);
+  image->GetPointData()->AddArray(rounding);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{coarse, band, grid})
+    image->GetFieldData()->AddArray(array);
+  const vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName(path.c_str());
+  ASSERT_EQ(writer->Write(), 1);
+}
+
+TEST_F(FieldIo, RefusesNumbersThatNoFieldHolds) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                  kInfinity = std::numeric_limits<float>::infinity();
+  writeByHand(file("good.vti"), {});
+  EXPECT_EQ(messageOf(file("good.vti")), "");
+  writeByHand(file("beyond.vti"), {.phi = 1e37F, .rounding = 127}); // only its sign counts
+  EXPECT_EQ(messageOf(file("beyond.vti")), "");
+  for (const HandMade& bad :
+       {HandMade{.phi = 1e37F}, HandMade{.phi = -1e37F}, HandMade{.voxel = 1e-300},
+        HandMade{.phi = 1e3F}, HandMade{.phi = 0, .rounding = -1}, HandMade{.phi = kNan},
+        HandMade{.phi = kNan, .rounding = 127}, HandMade{.coarse = kNan},
+        HandMade{.coarse = -kInfinity}}) {
+    writeByHand(file("bad.vti"), bad);
+    EXPECT_NE(messageOf(file("bad.vti")).find("is damaged"), std::string::npos)
+        << bad.voxel << ' ' << bad.phi << ' ' << bad.rounding << ' ' << bad.coarse;
+  }
 }
 
 TEST_F(FieldIo, RefusesWhatIsNotAFieldInOneLine) {

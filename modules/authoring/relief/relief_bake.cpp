@@ -60,6 +60,17 @@ struct ReliefBake::Impl {
     if (!fits) throw std::invalid_argument("ReliefBake: not the sources that it was made for");
   }
 
+  // A plate is as thick as the band, and half of it counts from its back: there nothing moves.
+  void checkPlate(double engraved) const {
+    const double most = std::max(base->band / 2 - kPlateBelowRelief, 0.0) * voxel();
+    if (engraved > most)
+      throw Error("relief: an open surface is a plate as thick as its band, of " +
+                  formatNumber(base->band) + " voxels: it can be engraved by " +
+                  formatLength(most) + ", not by " + formatLength(engraved) + "; set band to " +
+                  formatNumber(std::ceil(2 * (engraved / voxel() + kPlateBelowRelief))) +
+                  " or lower relief.height");
+  }
+
   ReliefRange rangeThatFits(std::span<const ReliefSource> sources) const {
     const ReliefRange range = reliefRange(sources);
     const double highest = std::max(range.high, -range.low);
@@ -69,6 +80,8 @@ struct ReliefBake::Impl {
                   " that a band of " + formatNumber(base->band) + " voxels holds; set band to " +
                   formatNumber(std::ceil(highest / voxel() + kBandBeyondRelief)) +
                   " or lower relief.height");
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      if (feet.plates[i]) checkPlate(-reliefRange(sources.subspan(i, 1)).low);
     return range;
   }
 
@@ -83,7 +96,7 @@ struct ReliefBake::Impl {
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
         if (!(std::abs(phi[n]) < kBeyondBand)) continue;
         const ReliefImage* image = image_of(entry);
-        const float fall = image ? image->at(uv[entry]) : 0.0F;
+        const float fall = image && uv[entry] != kNoFoot ? image->at(uv[entry]) : 0.0F;
         ++entry;
         if (fall == 0) continue; // -0 less -0 would lose its sign
         const float moved = phi[n] - fall;

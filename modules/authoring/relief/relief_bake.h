@@ -26,6 +26,9 @@ struct ReliefSource {
 // Voxels of band that a baked field keeps beyond its relief: down to there contact is as deep as it
 // looks.
 inline constexpr double kBandBeyondRelief = 3;
+// Voxels that engraving leaves of the nearer half of a plate: those that the cells of the new
+// surface and their gradients read.
+inline constexpr double kPlateBelowRelief = 2;
 
 // Where each node of the band reads its height: the point of its nearest face that is closest to
 // it. Immutable; made once for a field and its layouts. Any thread.
@@ -34,9 +37,9 @@ inline constexpr double kBandBeyondRelief = 3;
 // highest relief up or down, for only that far from the new surface is every node stored. Coarse
 // nodes inside move by the height at their foot, or by the mean of their neighbours' where they
 // have no single one; those outside the band by the highest relief, so that they remain lower
-// bounds. phi' is exact displacement along normals, not a distance: |grad phi'| is
-// sqrt(1 + slope^2). Of several merged objects a node reads its face where that comes nearest, also
-// where another object hides that place.
+// bounds. The back and the sides of a plate stay where they are. phi' is exact displacement along
+// normals, not a distance: |grad phi'| is sqrt(1 + slope^2). Of several merged objects a node reads
+// its face where that comes nearest, also where another object hides that place.
 class ReliefBake {
  public:
   // `mesh` (world) is what the base was built from. Throws Cancelled; invalid_argument without a
@@ -48,7 +51,8 @@ class ReliefBake {
   // Always from the base, so that twice is once and no image is the base itself, bit for bit;
   // blocks that relief leaves as they are are shared with it. With samples. Parallel. `sources` are
   // those of the constructor with any images and heights. Throws Error that names the band if less
-  // than kBandBeyondRelief would be left of it, or if an image holds a value that is not finite.
+  // than kBandBeyondRelief, or in a plate kPlateBelowRelief, would be left of it, or if an image
+  // holds a value that is not finite.
   std::shared_ptr<const SurfaceField> baked(std::span<const ReliefSource> sources) const;
   // baked(sources), bit for bit; `before` = baked(old_sources). Only what reads a texel that
   // differs is made anew, wherever on the surface that is; images that share tiles are compared

@@ -1,12 +1,14 @@
 #include "authoring/relief/relief_feet.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "field/build/plate.h"
 #include "geometry/mesh/joint_mesh.h"
 #include "geometry/tree/triangle_tree.h"
 
@@ -35,6 +37,7 @@ class FaceSources {
     const std::int32_t s = order_[static_cast<std::size_t>(at)];
     return face - source(s).first_face < source(s).faces ? s : BlockFeet::kNone;
   }
+  std::size_t count() const { return sources_.size(); }
   const ReliefSource& source(std::int32_t s) const { return sources_[static_cast<std::size_t>(s)]; }
 
  private:
@@ -63,6 +66,7 @@ class FeetMaker {
     }
     feet_.uv.resize(entries);
     feet_.source.resize(mixed, BlockFeet::kNone);
+    feet_.plates.resize(sources_.count());
     inBlocks([&](std::size_t slot) { place(slot); });
     coarse();
     return std::move(feet_);
@@ -99,12 +103,16 @@ class FeetMaker {
     }
   }
 
-  NodeUv uvOf(std::int32_t source, std::int32_t face, const Vec3& p) const {
+  // Where on a face the node at q, |phi| away from the surface, reads.
+  NodeUv uvOf(std::int32_t source, std::int32_t face, const Vec3& q, float phi) const {
     const auto f = static_cast<std::size_t>(face);
     const ReliefSource& own = sources_.source(source);
     const auto& uv = (*own.uvs)[static_cast<std::size_t>(face - own.first_face)];
-    const Vec3 w =
-        closestBarycentric(p, mesh_.corner(f, 0), mesh_.corner(f, 1), mesh_.corner(f, 2));
+    const Vec3 p = field_.grid.toWorld(q);
+    const Vec3 a = mesh_.corner(f, 0), b = mesh_.corner(f, 1), c = mesh_.corner(f, 2);
+    const Vec3 w = closestBarycentric(p, a, b, c);
+    const Vec3 away = w[0] * a + w[1] * b + w[2] * c - p;
+    if (nearsCap(phi, away.norm() / field_.grid.voxel)) return kNoFoot;
     const Vec2 at = w[0] * uv[0] + w[1] * uv[1] + w[2] * uv[2];
     return {static_cast<float>(at[0]), static_cast<float>(at[1])};
   }
@@ -125,9 +133,15 @@ class FeetMaker {
       NodeUv& uv = feet_.uv[feet.first + entry++];
       if (source == BlockFeet::kNone) continue;
       uv = uvOf(source, face,
-                field_.grid.toWorld(Vec3(kBlockSide * at[0] + i % kBlockSide,
-                                         kBlockSide * at[1] + i / kBlockSide % kBlockSide,
-                                         kBlockSide * at[2] + i / (kBlockSide * kBlockSide))));
+                Vec3(kBlockSide * at[0] + i % kBlockSide,
+                     kBlockSide * at[1] + i / kBlockSide % kBlockSide,
+                     kBlockSide * at[2] + i / (kBlockSide * kBlockSide)),
+                phi[n]);
+      if (uv == kNoFoot) {
+        std::atomic_ref(feet_.plates[static_cast<std::size_t>(source)])
+            .store(1, std::memory_order_relaxed);
+        continue;
+      }
       for (std::size_t a = 0; a < 2; ++a) {
         feet.low[a] = std::min(feet.low[a], uv[a]);
         feet.high[a] = std::max(feet.high[a], uv[a]);
@@ -160,7 +174,8 @@ class FeetMaker {
     constexpr double kOneDirection = 0.9; // shorter: several feet were as near
     Vec3 foot = kBlockSide * Vec3(at[0], at[1], at[2]);
     std::int32_t face = field_.faceAt(kBlockSide * at[0], kBlockSide * at[1], kBlockSide * at[2]);
-    if (face < 0) {
+    const bool own = face >= 0;
+    if (!own) {
       if (!(node.phi < 0)) return {CoarseFoot::kOutside, {}};
       const Vec3 g(node.gx, node.gy, node.gz);
       if (g.norm() < kOneDirection) return {CoarseFoot::kMean, {}};
@@ -170,7 +185,8 @@ class FeetMaker {
     }
     const std::int32_t source = sources_.of(face);
     if (source == BlockFeet::kNone) return {};
-    return {source, uvOf(source, face, field_.grid.toWorld(foot))};
+    const NodeUv uv = uvOf(source, face, foot, own ? node.phi : kBeyondBand);
+    return uv == kNoFoot ? CoarseFoot{} : CoarseFoot{source, uv};
   }
 
   void coarse() {

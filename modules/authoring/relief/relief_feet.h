@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,6 +13,9 @@
 namespace patina {
 
 using NodeUv = std::array<float, 2>;
+// Of a node that is nearest to the back or a side of a plate, which no relief moves.
+inline constexpr NodeUv kNoFoot{std::numeric_limits<float>::infinity(),
+                                std::numeric_limits<float>::infinity()};
 
 // Of one block; its nodes of the band, in order, have the entries from `first` on.
 struct BlockFeet {
@@ -24,7 +28,7 @@ struct BlockFeet {
 };
 
 struct CoarseFoot {
-  static constexpr std::int32_t kFlat = -1;    // its face has no relief
+  static constexpr std::int32_t kFlat = -1;    // where it is nearest to there is no relief
   static constexpr std::int32_t kMean = -2;    // inside, without a foot of its own
   static constexpr std::int32_t kOutside = -3; // of the band
 
@@ -37,6 +41,7 @@ struct ReliefFeet {
   std::vector<NodeUv> uv;
   std::vector<std::int32_t> source; // of entries in mixed blocks; BlockFeet::kNone = no relief
   std::vector<CoarseFoot> coarse;   // as the field's
+  std::vector<std::uint8_t> plates; // by source: 1 = some of its faces are fronts of plates
 
   std::size_t bytes() const;
 };

@@ -54,11 +54,10 @@ TriangleMesh closedPart(const TriangleMesh& mesh, const OpenParts& open) {
 }
 
 // The front's distances and which nodes lie in the plates; then the distances to all of the plates.
-// Faces of `builder` are then those of `mesh`. Returns how much is doubtful.
-std::size_t makePlates(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-                       const OpenParts& open, double band, Progress& progress) {
-  const PlateCaps caps = plateCaps(builder, mesh, tree, open, band);
-  progress.throwIfCancelled();
+// Faces of `builder` are then those of `mesh`. Returns what closes the plates.
+PlateCaps makePlates(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
+                     const OpenParts& open, double band, Progress& progress) {
+  PlateCaps caps = plateCaps(builder, mesh, tree, open, band, progress);
   const auto own = static_cast<std::int32_t>(mesh.triangles.size());
   const TriangleMesh plates = joined(mesh, caps.mesh);
   FieldBuilder whole =
@@ -69,10 +68,12 @@ std::size_t makePlates(FieldBuilder& builder, const TriangleMesh& mesh, const Tr
       if (face >= own) face = caps.face[static_cast<std::size_t>(face - own)];
   });
   builder = std::move(whole);
-  return caps.doubtful;
+  return caps;
 }
 
-void renumberFaces(FieldBuilder& builder, const std::vector<std::int32_t>& face_of) {
+void renumberFaces(FieldBuilder& builder, PlateCaps& caps,
+                   const std::vector<std::int32_t>& face_of) {
+  for (std::int32_t& face : caps.face) face = face_of[static_cast<std::size_t>(face)];
   tbb::parallel_for(std::size_t{0}, builder.face.size(), [&](std::size_t slot) {
     for (std::int32_t& face : builder.face[slot]->face)
       if (face >= 0) face = face_of[static_cast<std::size_t>(face)];
@@ -122,10 +123,12 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   progress.report(0.7, "signs");
   report.ambiguous_signs =
       assignSigns(builder, oriented, tree, winding, open, plates ? band : 0, progress);
-  if (plates) report.ambiguous_signs += makePlates(builder, oriented, tree, open, band, progress);
+  PlateCaps caps;
+  if (plates) caps = makePlates(builder, oriented, tree, open, band, progress);
+  report.ambiguous_signs += caps.doubtful;
   signCoarse(builder);
   progress.throwIfCancelled();
-  if (report.dropped_triangles > 0) renumberFaces(builder, usable);
+  if (report.dropped_triangles > 0) renumberFaces(builder, caps, usable);
 
   auto field = std::make_shared<const SurfaceField>(frozen(std::move(builder)));
   report.blocks = field->blockCount();
@@ -134,7 +137,8 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   report.cpu_seconds = cpuSeconds() - cpu_start;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   progress.report(1, "field");
-  return {std::move(field), report};
+  return {std::move(field), report,
+          plates ? std::make_shared<const PlateCaps>(std::move(caps)) : nullptr};
 }
 
 } // namespace

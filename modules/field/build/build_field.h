@@ -22,9 +22,12 @@ struct FieldReport {
   std::size_t redistanced_nodes = 0;              // of several objects in one: see redistance.h
 };
 
+struct PlateCaps;
+
 struct BuiltField {
   std::shared_ptr<const SurfaceField> field; // distance, face and coarse layers
   FieldReport report;
+  std::shared_ptr<const PlateCaps> caps{}; // of its plates; null without one-sided open parts
 };
 
 // Exact distance and nearest face for every node with |phi| <= band; sign by connected components

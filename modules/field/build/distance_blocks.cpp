@@ -97,11 +97,11 @@ Foot footOn(const TriangleMesh& mesh, std::int32_t face, const Vec3& p, double v
 // is short there, which says that none is to be trusted.
 std::vector<CoarseNode> coarseNodes(const TriangleMesh& mesh, const TriangleTree& tree,
                                     const FieldGrid& grid, const Index3& blocks,
-                                    std::vector<std::int32_t>& nearest, const Progress& progress) {
+                                    const Progress& progress) {
   constexpr double kAsNear = 0.1; // [voxel]
   constexpr double kAlike = 0.5;  // cosine
   const Index3 corners{blocks[0] + 1, blocks[1] + 1, blocks[2] + 1};
-  nearest.assign(cellCount(corners), -1);
+  std::vector<std::int32_t> nearest(cellCount(corners), -1);
   forLattice(tree, grid.origin, kBlockSide * grid.voxel, corners,
              std::numeric_limits<double>::infinity(), progress,
              [&](const Index3&, float, std::int32_t face, std::size_t i) { nearest[i] = face; });
@@ -206,7 +206,7 @@ FieldBuilder distanceBlocks(const TriangleMesh& mesh, const TriangleTree& tree,
     builder.distance.push_back(std::move(blocks[i].distance));
     builder.face.push_back(std::move(blocks[i].face));
   }
-  field.coarse = coarseNodes(mesh, tree, grid, field.blocks, builder.coarse_face, progress);
+  field.coarse = coarseNodes(mesh, tree, grid, field.blocks, progress);
   progress.throwIfCancelled();
   return builder;
 }

@@ -17,7 +17,6 @@ struct FieldBuilder {
   std::vector<std::unique_ptr<DistanceNodes>> distance;
   // By slot. Faces of the mesh that the distances were taken from; -1 beyond the band.
   std::vector<std::unique_ptr<FaceNodes>> face;
-  std::vector<std::int32_t> coarse_face; // nearest face of each coarse node
   // Coarse nodes, too, hold unsigned phi >= 0 and the gradient of the unsigned distance until
   // signed: a negative sign flips all four numbers. Nodes of padding blocks that reach past the
   // grid's last node are real points with real distances.

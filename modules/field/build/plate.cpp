@@ -29,16 +29,18 @@ struct CapEdge {
 class Caps {
  public:
   Caps(const FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-       const OpenParts& open, double thickness)
-      : builder_(builder), tree_(tree), open_(open), front_(mesh, open.open),
+       const OpenParts& open, double thickness, const Progress& progress)
+      : builder_(builder), tree_(tree), open_(open), front_(mesh, open.open), progress_(progress),
         reach_(thickness * builder.field.grid.voxel) {}
 
   PlateCaps run() {
     std::vector<std::vector<CapEdge>> found(builder_.distance.size());
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t slot) {
+      if (progress_.cancelled()) return;
       found[slot] = edgesOf(slot);
       for (CapEdge& edge : found[slot]) edge.cut = cutOf(edge);
     });
+    progress_.throwIfCancelled();
     for (const auto& edges : found)
       for (const CapEdge& edge : edges)
         for (int corner = 0; corner < 4; ++corner) {
@@ -150,6 +152,7 @@ class Caps {
   const TriangleTree& tree_;
   const OpenParts& open_;
   const FrontSide front_;
+  const Progress& progress_;
   const double reach_; // [m]
   PlateCaps caps_;
   std::vector<double> cuts_; // by position
@@ -159,8 +162,8 @@ class Caps {
 } // namespace
 
 PlateCaps plateCaps(const FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-                    const OpenParts& open, double thickness) {
-  return Caps(builder, mesh, tree, open, thickness).run();
+                    const OpenParts& open, double thickness, const Progress& progress) {
+  return Caps(builder, mesh, tree, open, thickness, progress).run();
 }
 
 void signLike(FieldBuilder& builder, const FieldBuilder& like) {

@@ -1,8 +1,10 @@
 // The back and the sides of the plates whose fronts the one-sided parts of a mesh are.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
+#include "core/progress.h"
 #include "field/build/field_builder.h"
 #include "geometry/mesh/open_parts.h"
 #include "geometry/mesh/triangle_mesh.h"
@@ -22,10 +24,18 @@ struct PlateCaps {
 // the means of where the plate ends along the edges of a cell. So a plate ends half-way to another
 // front, and nothing ever stands out of a front. Within a voxel of a rim there are no caps, the rim
 // itself is near. Which way the triangles turn says nothing. The same for any number of threads.
+// Polls `progress` and throws Cancelled.
 PlateCaps plateCaps(const FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
-                    const OpenParts& open, double thickness);
+                    const OpenParts& open, double thickness, const Progress& progress);
 
-// Signs `builder`, of the same grid, like `like`; coarse nodes too.
+// Whether a node of a plate is nearest to a cap and not to the face that it names: of that it is
+// farther than its phi says. Both in voxels.
+inline bool nearsCap(float phi, double to_face) {
+  constexpr double kRounding = 1e-3;
+  return to_face > std::abs(static_cast<double>(phi)) + kRounding;
+}
+
+// Signs `builder`, of the same grid, like `like`, but for coarse nodes.
 void signLike(FieldBuilder& builder, const FieldBuilder& like);
 
 } // namespace patina

@@ -12,12 +12,15 @@
 
 namespace patina {
 
+struct PlateCaps;
+
 // One object's field on the lattice; kept while the object is, whatever becomes of the others. Its
 // grid reaches at least the band past its surface.
 struct FieldPart {
   std::shared_ptr<const SurfaceField> field; // need not have samples
   std::array<int, 3> first_block{};          // where its block (0, 0, 0) lies on the lattice
   std::int32_t first_face = 0;               // of its mesh in the joint mesh; ascends
+  std::shared_ptr<const PlateCaps> caps{};   // of its plates (BuiltField); read by redistanced()
 
   BlockBox blocks() const;
 };

@@ -8,6 +8,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "field/build/plate.h"
 #include "field/merge/union_surface.h"
 #include "geometry/mesh/joint_mesh.h"
 #include "geometry/tree/triangle_tree.h"
@@ -15,12 +16,14 @@
 namespace patina {
 namespace {
 
+constexpr double kSame = 1e-3; // [voxel]
+
 class Redistancer {
  public:
   Redistancer(const SurfaceField& merged, std::span<const FieldPart> parts,
               const BlockLattice& lattice, const TriangleMesh& joint, const Progress& progress)
       : merged_(merged), parts_(parts), nodes_(nodesOf(parts)), lattice_(lattice), joint_(joint),
-        progress_(progress), surface_(unionSurface(parts, lattice, joint, progress)),
+        progress_(progress), surface_(closedUnionSurface(parts, lattice, joint, progress)),
         tree_(surface_.mesh) {
     BlockBox all;
     for (const FieldPart& part : parts) all.extend(part.blocks());
@@ -76,14 +79,20 @@ class Redistancer {
       if (face < 0 || !(distance.phi[n] < 0)) continue;
       const Index3 at = BlockNode{merged_.block_at[slot], n}.at();
       const Vec3 p = merged_.grid.toWorld(Vec3(at[0], at[1], at[2]));
-      const Vec3 foot = (footOn(face, p) - lattice_.anchor) / lattice_.voxel;
-      if (!isHidden(parts_, nodes_, partOfFace(parts_, face, &FieldPart::first_face), foot))
+      const Vec3 nearest = footOn(face, p);
+      const bool at_cap = nearsCap(distance.phi[n], (nearest - p).norm() / lattice_.voxel);
+      const Vec3 foot = (nearest - lattice_.anchor) / lattice_.voxel;
+      if (!at_cap &&
+          !isHidden(parts_, nodes_, partOfFace(parts_, face, &FieldPart::first_face), foot))
         continue;
       const auto found = tree_.closestPointWithin(p, merged_.band * lattice_.voxel, warm);
       const float phi =
           found ? -static_cast<float>(std::min(found->distance / lattice_.voxel, merged_.band))
                 : -kBeyondBand;
-      if (!(phi < distance.phi[n])) continue; // min is a lower bound of the depth
+      // Min is a lower bound of the depth. Of a cap only the cut one is known, and the same but for
+      // its rounding where nothing hides it.
+      const auto known = static_cast<double>(distance.phi[n]);
+      if (!(static_cast<double>(phi) < known - (at_cap ? kSame : 0))) continue;
       if (count++ == 0)
         for (std::size_t k = 0; k < kBlockNodes; ++k) faces.face[k] = old_faces.at(k);
       distance.phi[n] = phi;
@@ -111,7 +120,6 @@ class Redistancer {
       const Vec3 p = merged_.grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
       const ClosestPoint found = tree_.closestPoint(p);
       const double depth = found.distance / lattice_.voxel;
-      constexpr double kSame = 1e-3; // [voxel]
       if (!(depth > kSame - static_cast<double>(node.phi))) return;
       const Vec3 g = (found.point - p) / found.distance;
       node = {-static_cast<float>(depth), static_cast<float>(g[0]), static_cast<float>(g[1]),

@@ -18,8 +18,9 @@ struct Redistanced {
 // another part, phi becomes the exact depth to the union's surface; if that is beyond the band the
 // node is marked so. All other nodes are exact already and keep their bits; blocks without a change
 // are shared. `joint` holds the parts' meshes in the world, one after another, without which there
-// is nothing to measure to: no face layer throws invalid_argument. Surfaces of two parts that
-// coincide count as surface. Parallel; polls `progress` and throws Cancelled.
+// is nothing to measure to; the backs of plates are those of FieldPart::caps. No face layer throws
+// invalid_argument. Surfaces of two parts that coincide count as surface. Parallel; polls
+// `progress` and throws Cancelled.
 Redistanced redistanced(const SurfaceField& merged, std::span<const FieldPart> parts,
                         const BlockLattice& lattice, const TriangleMesh& joint,
                         const Progress& progress);

@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "field/build/plate.h"
 #include "geometry/mesh/joint_mesh.h"
 #include "geometry/mesh/mesh_report.h"
 
@@ -74,6 +75,65 @@ void outsideOf(const FieldPart& part, const NodeReader& nodes, const Corners& tr
   }
 }
 
+// Gathers of each mesh what no other part hides.
+class VisibleTriangles {
+ public:
+  VisibleTriangles(std::span<const FieldPart> parts, const BlockLattice& lattice,
+                   const Progress& progress)
+      : parts_(parts), nodes_(nodesOf(parts)), lattice_(lattice), progress_(progress) {
+    for (const FieldPart& part : parts) boxes_.push_back(boxOf(part));
+  }
+
+  // faceOf(triangle of the mesh): its face of the joint mesh.
+  template <class FaceOf> void add(const TriangleMesh& mesh, const FaceOf& faceOf) {
+    const std::vector<std::int32_t> usable = usableTriangles(mesh);
+    std::vector<Pieces> visible(usable.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, usable.size(), 256),
+                      [&](const auto& range) {
+                        if (progress_.cancelled()) return;
+                        for (std::size_t i = range.begin(); i < range.end(); ++i)
+                          visible[i] = visibleOf(mesh, usable[i], faceOf(usable[i]));
+                      });
+    progress_.throwIfCancelled();
+    for (std::size_t i = 0; i < usable.size(); ++i)
+      for (const Corners& piece : visible[i]) {
+        const auto first = static_cast<std::int32_t>(surface.mesh.positions.size());
+        for (const Vec3& q : piece)
+          surface.mesh.positions.push_back(lattice_.anchor + lattice_.voxel * q);
+        surface.mesh.triangles.push_back({first, first + 1, first + 2});
+        surface.face.push_back(faceOf(usable[i]));
+      }
+  }
+
+  UnionSurface surface;
+
+ private:
+  Pieces visibleOf(const TriangleMesh& mesh, std::int32_t triangle, std::int32_t face) const {
+    const auto owner = static_cast<std::size_t>(partOfFace(parts_, face, &FieldPart::first_face));
+    Corners t;
+    Box3 box;
+    for (int c = 0; c < 3; ++c) {
+      const Vec3 p = mesh.corner(static_cast<std::size_t>(triangle), c);
+      t[static_cast<std::size_t>(c)] = (p - lattice_.anchor) / lattice_.voxel;
+      box.extend(t[static_cast<std::size_t>(c)]);
+    }
+    Pieces visible{t};
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      if (p == owner || !boxes_[p].intersects(box)) continue;
+      Pieces left;
+      for (const Corners& piece : visible) outsideOf(parts_[p], nodes_[p], piece, left);
+      visible = std::move(left);
+    }
+    return visible;
+  }
+
+  std::span<const FieldPart> parts_;
+  const std::deque<NodeReader> nodes_;
+  const BlockLattice& lattice_;
+  const Progress& progress_;
+  std::vector<Box3> boxes_;
+};
+
 } // namespace
 
 std::deque<NodeReader> nodesOf(std::span<const FieldPart> parts) {
@@ -92,44 +152,21 @@ bool isHidden(std::span<const FieldPart> parts, const std::deque<NodeReader>& no
 
 UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
                           const TriangleMesh& joint, const Progress& progress) {
-  const std::vector<std::int32_t> usable = usableTriangles(joint);
-  std::vector<Box3> boxes;
-  for (const FieldPart& part : parts) boxes.push_back(boxOf(part));
-  const std::deque<NodeReader> nodes = nodesOf(parts);
-  std::vector<Pieces> visible(usable.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, usable.size(), 256), [&](const auto& range) {
-    if (progress.cancelled()) return;
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const auto owner =
-          static_cast<std::size_t>(partOfFace(parts, usable[i], &FieldPart::first_face));
-      Corners t;
-      Box3 box;
-      for (int c = 0; c < 3; ++c) {
-        const Vec3 p = joint.corner(static_cast<std::size_t>(usable[i]), c);
-        t[static_cast<std::size_t>(c)] = (p - lattice.anchor) / lattice.voxel;
-        box.extend(t[static_cast<std::size_t>(c)]);
-      }
-      visible[i] = {t};
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        if (p == owner || !boxes[p].intersects(box)) continue;
-        Pieces left;
-        for (const Corners& piece : visible[i]) outsideOf(parts[p], nodes[p], piece, left);
-        visible[i] = std::move(left);
-      }
-    }
-  });
-  progress.throwIfCancelled();
+  VisibleTriangles visible(parts, lattice, progress);
+  visible.add(joint, [](std::int32_t triangle) { return triangle; });
+  return std::move(visible.surface);
+}
 
-  UnionSurface surface;
-  for (std::size_t i = 0; i < usable.size(); ++i)
-    for (const Corners& piece : visible[i]) {
-      const auto first = static_cast<std::int32_t>(surface.mesh.positions.size());
-      for (const Vec3& q : piece)
-        surface.mesh.positions.push_back(lattice.anchor + lattice.voxel * q);
-      surface.mesh.triangles.push_back({first, first + 1, first + 2});
-      surface.face.push_back(usable[i]);
-    }
-  return surface;
+UnionSurface closedUnionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
+                                const TriangleMesh& joint, const Progress& progress) {
+  VisibleTriangles visible(parts, lattice, progress);
+  visible.add(joint, [](std::int32_t triangle) { return triangle; });
+  for (const FieldPart& part : parts)
+    if (part.caps)
+      visible.add(part.caps->mesh, [&](std::int32_t triangle) {
+        return part.first_face + part.caps->face[static_cast<std::size_t>(triangle)];
+      });
+  return std::move(visible.surface);
 }
 
 } // namespace patina

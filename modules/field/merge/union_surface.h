@@ -35,4 +35,8 @@ struct UnionSurface {
 UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
                           const TriangleMesh& joint, const Progress& progress);
 
+// The same with the backs and the sides of the parts' plates.
+UnionSurface closedUnionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
+                                const TriangleMesh& joint, const Progress& progress);
+
 } // namespace patina

@@ -190,7 +190,7 @@ std::vector<FieldPart> partsOf(const Objects& objects) {
   std::vector<FieldPart> parts;
   std::int32_t first_face = 0;
   for (const auto& object : objects) {
-    parts.push_back({object->built.field, object->first_block, first_face});
+    parts.push_back({object->built.field, object->first_block, first_face, object->built.caps});
     first_face += static_cast<std::int32_t>(object->mesh->triangles.size());
   }
   return parts;

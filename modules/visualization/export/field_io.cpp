@@ -91,6 +91,7 @@ FieldGrid readGrid(vtkImageData* image, const std::filesystem::path& path) {
 
 // What one block of the file says; nothing in it within the band means that it is not stored.
 struct BlockReader {
+  const std::filesystem::path& path;
   const FieldGrid& grid;
   const float* phi;
   const signed char* rounding;
@@ -112,12 +113,16 @@ struct BlockReader {
                static_cast<std::size_t>(j)) *
                   static_cast<std::size_t>(grid.nodes[0]) +
               static_cast<std::size_t>(i);
+          if (!std::isfinite(phi[node]))
+            throw FileError(path.string(), 0, "is damaged: a distance is not a number");
           if (rounding[node] == kBeyond) {
             inside = phi[node] < 0;
             distance.phi[at] = inside ? -kBeyondBand : kBeyondBand;
             continue;
           }
           distance.phi[at] = stepped(voxels(phi[node], grid.voxel), rounding[node]);
+          if (!(std::abs(distance.phi[at]) < kBeyondBand))
+            throw FileError(path.string(), 0, "is damaged: a distance is beyond any band");
           if (face != nullptr) faces.face[at] = face[node];
           stored = true;
         }
@@ -190,14 +195,12 @@ SurfaceField readField(const std::filesystem::path& path) {
 
   const bool has_face = points->HasArray(kFace) != 0;
   BlockReader reader{
+      path,
       field.grid,
       requireArray<vtkFloatArray>(points, kPhi, count, path)->GetPointer(0),
       requireArray<vtkSignedCharArray>(points, kRounding, count, path)->GetPointer(0),
       has_face ? requireArray<vtkIntArray>(points, kFace, count, path)->GetPointer(0) : nullptr,
       {}};
-  for (vtkIdType node = 0; node < count; ++node)
-    if (!std::isfinite(reader.phi[node]))
-      throw FileError(path.string(), 0, "is damaged: a distance is not a number");
   for (std::size_t axis = 0; axis < 3; ++axis)
     field.blocks[axis] = (field.grid.nodes[axis] + kBlockSide - 1) / kBlockSide;
   for (int bz = 0; bz < field.blocks[2]; ++bz)
@@ -225,6 +228,9 @@ SurfaceField readField(const std::filesystem::path& path) {
                                                static_cast<vtkIdType>(nodes * 4), path);
     field.coarse.resize(nodes);
     std::memcpy(field.coarse.data(), coarse->GetPointer(0), nodes * sizeof(CoarseNode));
+    const float* values = coarse->GetPointer(0);
+    if (!std::all_of(values, values + 4 * nodes, [](float value) { return std::isfinite(value); }))
+      throw FileError(path.string(), 0, "is damaged: a coarse distance is not a number");
   }
   return field;
 }
