@@ -11,8 +11,7 @@ std::string describeLayer(const BrushLayer& layer, const Brush& brush) {
   if (layer.tool == Tool::color) return text;
   if (brush.mode == StrokeMode::add) text += layer.value < 0 ? " less" : " more by";
   const std::optional<MaterialChannel> channel = channelOf(layer.tool);
-  const bool length = !channel || *channel == MaterialChannel::roughness;
-  if (length) return text + " " + formatLength(layer.value);
+  if (!channel || unit(*channel) == "m") return text + " " + formatLength(layer.value);
   const std::string_view measure = unit(*channel);
   return text + " " + formatNumber(layer.value) +
          (measure.empty() ? "" : " " + std::string(measure));

@@ -7,76 +7,82 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "scene/paint/grey_relief.h"
+#include "scene/scene_values.h"
 
 namespace patina {
 namespace {
 
-constexpr double kMostStiffness = 1e7; // [N/m]
-constexpr double kMostFriction = 10;
-constexpr double kMostDamping = 1e4;      // [N s/m]
-constexpr double kMostRoughness = 1e-3;   // [m]
 constexpr double kMostReliefHeight = 0.1; // [m]
 
 void require(bool holds, const std::string& key, double value, const std::string& range) {
   if (!holds) throw Error(key + " = " + formatNumber(value) + ": it must be " + range);
 }
 
-// NaN fails every comparison, so it is refused here without a test of its own.
-void requireBetween(const std::string& key, double value, double low, double high,
-                    const std::string& unit) {
-  require(value >= low && value <= high, key, value,
-          "between " + formatNumber(low) + " and " + formatNumber(high) +
-              (unit.empty() ? "" : " " + unit));
+// " N/m"; empty for a ratio.
+std::string unitAfter(const std::string& key) {
+  const std::string unit(sceneKey(key).unit);
+  return unit.empty() ? "" : " " + unit;
 }
 
-void requirePositive(const std::string& key, double value, double high, const std::string& unit) {
+// NaN fails every comparison, so it is refused here without a test of its own.
+void requireBetween(const std::string& key, double value, double low, double high) {
+  require(value >= low && value <= high, key, value,
+          "between " + formatNumber(low) + " and " + formatNumber(high) + unitAfter(key));
+}
+
+void requireAllowed(MaterialChannel channel, double value) {
+  const auto [least, most] = rangeOf(channel);
+  requireBetween(std::string(name(channel)), value, least, most);
+}
+
+void requirePositive(const std::string& key, double value, double high) {
   require(value > 0 && value <= high, key, value,
-          "above 0 and at most " + formatNumber(high) + " " + unit);
+          "above 0 and at most " + formatNumber(high) + unitAfter(key));
 }
 
 void validate(const Friction& friction) {
-  requireBetween("friction.static", friction.static_coefficient, 0, kMostFriction, "");
-  requireBetween("friction.dynamic", friction.dynamic_coefficient, 0, kMostFriction, "");
-  requireBetween("friction.depth", friction.depth_gain, 0, 100, "");
+  requireAllowed(MaterialChannel::static_friction, friction.static_coefficient);
+  requireAllowed(MaterialChannel::dynamic_friction, friction.dynamic_coefficient);
+  requireBetween("friction.depth", friction.depth_gain, 0, 100);
   require(friction.dynamic_coefficient <= friction.static_coefficient, "friction.dynamic",
           friction.dynamic_coefficient,
           "at most friction.static = " + formatNumber(friction.static_coefficient));
 }
 
 void validate(const Magnet& magnet) {
-  requireBetween("magnet.range", magnet.range, 0, 1, "m");
-  requireBetween("magnet.strength", magnet.strength, 0, 1e7, "N/m");
+  requireBetween("magnet.range", magnet.range, 0, 1);
+  requireBetween("magnet.strength", magnet.strength, 0, 1e7);
 }
 
 void validate(const DeviceModel& device) {
-  requirePositive("device.mass", device.mass, 100, "kg");
-  requireBetween("device.damping", device.damping, 0, 1e4, "N s/m");
-  requireBetween("device.coulomb", device.coulomb, 0, 100, "N");
-  requireBetween("device.encoder", device.encoder_step, 0, 0.01, "m");
-  requireBetween("device.rate", device.rate, 100, 10000, "Hz");
-  requireBetween("device.delay", device.delay, 0, kMaxDelay, "samples");
+  requirePositive("device.mass", device.mass, 100);
+  requireBetween("device.damping", device.damping, 0, 1e4);
+  requireBetween("device.coulomb", device.coulomb, 0, 100);
+  requireBetween("device.encoder", device.encoder_step, 0, 0.01);
+  requireBetween("device.rate", device.rate, 100, 10000);
+  requireBetween("device.delay", device.delay, 0, kMaxDelay);
 }
 
 void validate(const HapticProperties& haptics) {
-  requireBetween("stiffness", haptics.stiffness, 0, kMostStiffness, "N/m");
-  if (haptics.damping) requireBetween("damping", *haptics.damping, 0, kMostDamping, "N s/m");
-  if (haptics.damping_cutoff) requirePositive("damping.cutoff", *haptics.damping_cutoff, 1e5, "Hz");
+  requireAllowed(MaterialChannel::stiffness, haptics.stiffness);
+  if (haptics.damping) requireAllowed(MaterialChannel::damping, *haptics.damping);
+  if (haptics.damping_cutoff) requirePositive("damping.cutoff", *haptics.damping_cutoff, 1e5);
   if (haptics.friction) validate(*haptics.friction);
-  if (haptics.tip_radius) requireBetween("tip.radius", *haptics.tip_radius, 0, 1, "m");
-  if (haptics.offset) requireBetween("offset", *haptics.offset, 0, 1, "m");
+  if (haptics.tip_radius) requireBetween("tip.radius", *haptics.tip_radius, 0, 1);
+  if (haptics.offset) requireBetween("offset", *haptics.offset, 0, 1);
   if (haptics.magnet) validate(*haptics.magnet);
   if (haptics.offset.value_or(0) > 0 && haptics.magnet)
     throw Error("offset and magnet use the same band: set one of them to none");
-  requirePositive("force.limit", haptics.force_limit, 1000, "N");
+  requirePositive("force.limit", haptics.force_limit, 1000);
 }
 
 void validate(const FieldSpec& field) {
-  requireBetween("band", field.band, 2, 64, "voxels");
+  requireBetween("band", field.band, 2, 64);
   if (field.voxel) {
-    requirePositive("voxel", *field.voxel, 1000, "m");
+    requirePositive("voxel", *field.voxel, 1000);
     return;
   }
-  requireBetween("resolution", field.resolution, 8, 4095, "cells");
+  requireBetween("resolution", field.resolution, 8, 4095);
   require(field.resolution > 2 * field.band + 2, "resolution", field.resolution,
           "above 2 band + 2 = " + formatNumber(2 * field.band + 2) +
               ", because the band lies on both ends");
@@ -136,21 +142,6 @@ double highestRelief(const Scene& scene) {
   return std::abs(scene.relief.height) * static_cast<double>(highest);
 }
 
-MaterialRange rangeOf(MaterialChannel channel) {
-  switch (channel) {
-  case MaterialChannel::stiffness:
-    return {0, kMostStiffness};
-  case MaterialChannel::static_friction:
-  case MaterialChannel::dynamic_friction:
-    return {0, kMostFriction};
-  case MaterialChannel::damping:
-    return {0, kMostDamping};
-  case MaterialChannel::roughness:
-    break;
-  }
-  return {0, kMostRoughness};
-}
-
 void validate(const Scene& scene) {
   validate(scene.objects);
   validate(scene.field);
@@ -160,8 +151,8 @@ void validate(const Scene& scene) {
     throw Error("surface.sides = two: both sides of a sheet are felt only by what has a size; set "
                 "tip.radius or offset above 0, too");
   if (scene.device_model) validate(*scene.device_model);
-  requireBetween("relief.height", scene.relief.height, -kMostReliefHeight, kMostReliefHeight, "m");
-  requireBetween("relief.smoothing", scene.relief.smoothing, 0, kMostReliefHeight, "m");
+  requireBetween("relief.height", scene.relief.height, -kMostReliefHeight, kMostReliefHeight);
+  requireBetween("relief.smoothing", scene.relief.smoothing, 0, kMostReliefHeight);
   const int size = scene.paint_size;
   require(size >= 64 && size <= 4096 && (size & (size - 1)) == 0, "paint.size", size,
           "64, 128, 256, 512, 1024, 2048 or 4096 texels");

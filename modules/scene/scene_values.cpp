@@ -1,11 +1,13 @@
 // Scene values as text: one table serves setting, listing and the message for an unknown key.
-#include <array>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 #include "core/error.h"
+#include "core/named.h"
 #include "core/numbers.h"
 #include "scene/scene.h"
+#include "scene/scene_values.h"
 
 namespace patina {
 namespace {
@@ -32,35 +34,9 @@ bool isNone(const std::string& text) {
   return text == "none";
 }
 
-enum class Coefficient { static_one, dynamic_one };
-
-// One number given for friction that was absent is both coefficients, so that the order in which
-// the two are set does not matter and one alone is plain Coulomb friction.
-void setCoefficient(Scene& scene, Coefficient which, double value) {
-  Friction friction = scene.haptics.friction.value_or(Friction{});
-  const bool unset = friction.static_coefficient == 0 && friction.dynamic_coefficient == 0;
-  if (unset || which == Coefficient::static_one) friction.static_coefficient = value;
-  if (unset || which == Coefficient::dynamic_one) friction.dynamic_coefficient = value;
-  scene.haptics.friction = friction;
-}
-
 Friction& frictionOf(Scene& scene) {
   if (!scene.haptics.friction) scene.haptics.friction.emplace();
   return *scene.haptics.friction;
-}
-
-void setSlip(Scene& scene, const std::string& text) {
-  if (text == "paper") {
-    frictionOf(scene).slip = Friction::SlipDirection::paper;
-  } else if (text == "displacement") {
-    frictionOf(scene).slip = Friction::SlipDirection::displacement;
-  } else {
-    throw Error("friction.slip = '" + text + "': it must be paper or displacement");
-  }
-}
-
-std::string slipName(Friction::SlipDirection slip) {
-  return slip == Friction::SlipDirection::paper ? "paper" : "displacement";
 }
 
 std::optional<std::string> text(const std::optional<double>& value) {
@@ -97,52 +73,102 @@ DeviceModel& deviceOf(Scene& scene) {
   return *scene.device_model;
 }
 
-std::optional<Stabilisers> stabilisersFor(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  if (text == "none") return Stabilisers{};
-  if (text == "coupling") return Stabilisers{true, false};
-  if (text == "passivity") return Stabilisers{false, true};
-  if (text == "coupling,passivity") return Stabilisers{true, true};
-  throw Error("stabiliser = '" + text +
-              "': it must be auto, none, coupling, passivity or coupling,passivity");
+constexpr Named<Friction::SlipDirection> kSlips[] = {
+    {Friction::SlipDirection::paper, "paper"},
+    {Friction::SlipDirection::displacement, "displacement"}};
+constexpr Named<HapticProperties::Contact> kContacts[] = {
+    {HapticProperties::Contact::proxy, "proxy"}, {HapticProperties::Contact::ray, "ray"}};
+constexpr Named<OpenSides> kSides[] = {{OpenSides::one, "one"}, {OpenSides::two, "two"}};
+constexpr Named<ReliefMode> kModes[] = {{ReliefMode::pulled, "pulled"},
+                                        {ReliefMode::baked, "baked"}};
+constexpr Named<ReliefFrom> kSources[] = {{ReliefFrom::painted, "painted"},
+                                          {ReliefFrom::color, "color"}};
+constexpr Named<ForceForm> kForms[] = {{ForceForm::conservative, "conservative"},
+                                       {ForceForm::literal, "literal"}};
+constexpr Named<std::optional<Stabilisers>> kStabilisers[] = {
+    {std::nullopt, "auto"},
+    {Stabilisers{}, "none"},
+    {Stabilisers{true, false}, "coupling"},
+    {Stabilisers{false, true}, "passivity"},
+    {Stabilisers{true, true}, "coupling,passivity"}};
+
+template <typename Table>
+auto chosen(const std::string& key, const std::string& text, const Table& table) {
+  if (const auto found = valueIn(table, text)) return *found;
+  throw Error(key + " = '" + text + "': it must be " + textsOf(table, " or "));
 }
 
-std::string nameOf(const std::optional<Stabilisers>& chosen) {
-  if (!chosen) return "auto";
-  if (chosen->coupling) return chosen->passivity ? "coupling,passivity" : "coupling";
-  return chosen->passivity ? "passivity" : "none";
-}
-
-ForceForm formFor(const char* key, const std::string& text) {
-  if (text == "conservative") return ForceForm::conservative;
-  if (text == "literal") return ForceForm::literal;
-  throw Error(key + (" = '" + text + "': it must be conservative or literal"));
-}
-
-Text nameOf(ForceForm form) {
-  return form == ForceForm::conservative ? Text() : Text("literal");
-}
-
-struct Entry {
-  const char* key;
+struct Entry : SceneKey {
   std::function<void(Scene&, const std::string&)> set;
   std::function<Text(const Scene&)> get;
 };
 
+// One word of a table; left out where it is that of a new scene.
+template <typename Table, typename Member>
+Entry choiceEntry(const char* key, const Table& table, const Member& member) {
+  const auto usual = member(Scene{});
+  return {{key, "", std::string(textIn(table, usual))},
+          [=, &table](Scene& s, const std::string& t) { member(s) = chosen(key, t, table); },
+          [=, &table](const Scene& s) {
+            const auto& value = member(s);
+            return value == usual ? Text() : Text(textIn(table, value));
+          }};
+}
+
+// A number that a scene always has.
+template <typename Member>
+Entry numberEntry(const char* key, std::string_view unit, const Member& member) {
+  return {{key, unit, formatNumber(member(Scene{}))},
+          [=](Scene& s, const std::string& t) {
+            if (isNone(t)) refuseNone(key);
+            member(s) = numberFor(key, t);
+          },
+          [=](const Scene& s) { return Text(formatNumber(member(s))); }};
+}
+
 // A number of the haptic properties that may be absent.
-Entry optionalEntry(const char* key, std::optional<double> HapticProperties::*member,
+Entry optionalEntry(const char* key, std::string_view unit,
+                    std::optional<double> HapticProperties::*member,
                     double (*read)(const std::string&, const std::string&)) {
-  return {key,
+  return {{key, unit, "none"},
           [=](Scene& s, const std::string& t) {
             s.haptics.*member = isNone(t) ? std::nullopt : std::optional<double>(read(key, t));
           },
           [=](const Scene& s) { return text(s.haptics.*member); }};
 }
 
+// One coefficient given for friction that was absent is both, so that the order in which the two
+// are set does not matter and one alone is plain Coulomb friction.
+Entry frictionEntry(const char* key, MaterialChannel channel, double Friction::*member) {
+  return {{key, unit(channel), "none"},
+          [=](Scene& s, const std::string& t) {
+            if (isNone(t)) return s.haptics.friction.reset();
+            const double value = numberFor(key, t);
+            Friction& friction = frictionOf(s);
+            if (friction.static_coefficient == 0 && friction.dynamic_coefficient == 0)
+              friction.static_coefficient = friction.dynamic_coefficient = value;
+            friction.*member = value;
+          },
+          [=](const Scene& s) {
+            return s.haptics.friction ? text((*s.haptics.friction).*member) : Text();
+          }};
+}
+
+// A length of the relief, left out where it is that of a new scene.
+Entry reliefEntry(const char* key, const std::string& usual, double ReliefSettings::*member) {
+  return {{key, "m", usual},
+          [=](Scene& s, const std::string& t) {
+            s.relief.*member = isNone(t) ? ReliefSettings{}.*member : lengthFor(key, t);
+          },
+          [=](const Scene& s) {
+            return s.relief.*member == ReliefSettings{}.*member ? Text() : text(s.relief.*member);
+          }};
+}
+
 // A number of the magnet; "none" takes the magnet away.
-Entry magnetEntry(const char* key, double Magnet::*member,
+Entry magnetEntry(const char* key, std::string_view unit, double Magnet::*member,
                   double (*read)(const std::string&, const std::string&)) {
-  return {key,
+  return {{key, unit, "none"},
           [=](Scene& s, const std::string& t) {
             if (isNone(t)) return s.haptics.magnet.reset();
             const double value = read(key, t);
@@ -154,9 +180,9 @@ Entry magnetEntry(const char* key, double Magnet::*member,
 }
 
 // A number of the device's model; "none" takes the model away.
-Entry deviceEntry(const char* key, double DeviceModel::*member,
+Entry deviceEntry(const char* key, std::string_view unit, double DeviceModel::*member,
                   double (*read)(const std::string&, const std::string&)) {
-  return {key,
+  return {{key, unit, "none"},
           [=](Scene& s, const std::string& t) {
             if (isNone(t)) return s.device_model.reset();
             const double value = read(key, t);
@@ -169,31 +195,17 @@ Entry deviceEntry(const char* key, double DeviceModel::*member,
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> kEntries = {
-      {"stiffness",
-       [](Scene& s, const std::string& t) {
-         if (isNone(t)) refuseNone("stiffness");
-         s.haptics.stiffness = numberFor("stiffness", t);
-       },
-       [](const Scene& s) { return Text(formatNumber(s.haptics.stiffness)); }},
-      optionalEntry("damping", &HapticProperties::damping, numberFor),
-      optionalEntry("damping.cutoff", &HapticProperties::damping_cutoff, numberFor),
-      {"friction.static",
-       [](Scene& s, const std::string& t) {
-         if (isNone(t)) return s.haptics.friction.reset();
-         setCoefficient(s, Coefficient::static_one, numberFor("friction.static", t));
-       },
-       [](const Scene& s) {
-         return s.haptics.friction ? text(s.haptics.friction->static_coefficient) : Text();
-       }},
-      {"friction.dynamic",
-       [](Scene& s, const std::string& t) {
-         if (isNone(t)) return s.haptics.friction.reset();
-         setCoefficient(s, Coefficient::dynamic_one, numberFor("friction.dynamic", t));
-       },
-       [](const Scene& s) {
-         return s.haptics.friction ? text(s.haptics.friction->dynamic_coefficient) : Text();
-       }},
-      {"friction.depth",
+      numberEntry(
+          "stiffness", unit(MaterialChannel::stiffness),
+          [](auto&& s) -> auto& { return s.haptics.stiffness; }),
+      optionalEntry("damping", unit(MaterialChannel::damping), &HapticProperties::damping,
+                    numberFor),
+      optionalEntry("damping.cutoff", "Hz", &HapticProperties::damping_cutoff, numberFor),
+      frictionEntry("friction.static", MaterialChannel::static_friction,
+                    &Friction::static_coefficient),
+      frictionEntry("friction.dynamic", MaterialChannel::dynamic_friction,
+                    &Friction::dynamic_coefficient),
+      {{"friction.depth", "", "none"},
        [](Scene& s, const std::string& t) {
          if (!isNone(t)) {
            frictionOf(s).depth_gain = numberFor("friction.depth", t);
@@ -205,21 +217,21 @@ const std::vector<Entry>& entries() {
          const bool present = s.haptics.friction && s.haptics.friction->depth_gain != 0;
          return present ? text(s.haptics.friction->depth_gain) : Text();
        }},
-      {"friction.slip",
+      {{"friction.slip", "", "none"},
        [](Scene& s, const std::string& t) {
          if (!isNone(t)) {
-           setSlip(s, t);
+           frictionOf(s).slip = chosen("friction.slip", t, kSlips);
          } else if (s.haptics.friction) {
            s.haptics.friction->slip = Friction::SlipDirection::paper;
          }
        },
        [](const Scene& s) {
-         return s.haptics.friction ? Text(slipName(s.haptics.friction->slip)) : Text();
+         return s.haptics.friction ? Text(textIn(kSlips, s.haptics.friction->slip)) : Text();
        }},
-      optionalEntry("offset", &HapticProperties::offset, lengthFor),
-      magnetEntry("magnet.range", &Magnet::range, lengthFor),
-      magnetEntry("magnet.strength", &Magnet::strength, numberFor),
-      {"magnet.fades",
+      optionalEntry("offset", "m", &HapticProperties::offset, lengthFor),
+      magnetEntry("magnet.range", "m", &Magnet::range, lengthFor),
+      magnetEntry("magnet.strength", "N/m", &Magnet::strength, numberFor),
+      {{"magnet.fades", "", "none"},
        [](Scene& s, const std::string& t) {
          if (!isNone(t)) {
            magnetOf(s).fades = yesOrNo("magnet.fades", t);
@@ -230,24 +242,12 @@ const std::vector<Entry>& entries() {
        [](const Scene& s) {
          return s.haptics.magnet && s.haptics.magnet->fades ? onOff(true) : Text();
        }},
-      {"contact",
-       [](Scene& s, const std::string& t) {
-         if (t != "proxy" && t != "ray")
-           throw Error("contact = '" + t + "': it must be proxy or ray");
-         s.haptics.contact =
-             t == "ray" ? HapticProperties::Contact::ray : HapticProperties::Contact::proxy;
-       },
-       [](const Scene& s) {
-         return s.haptics.contact == HapticProperties::Contact::proxy ? Text() : Text("ray");
-       }},
-      optionalEntry("tip.radius", &HapticProperties::tip_radius, lengthFor),
-      {"force.limit",
-       [](Scene& s, const std::string& t) {
-         if (isNone(t)) refuseNone("force.limit");
-         s.haptics.force_limit = numberFor("force.limit", t);
-       },
-       [](const Scene& s) { return Text(formatNumber(s.haptics.force_limit)); }},
-      {"resolution",
+      choiceEntry(
+          "contact", kContacts, [](auto&& s) -> auto& { return s.haptics.contact; }),
+      optionalEntry("tip.radius", "m", &HapticProperties::tip_radius, lengthFor),
+      numberEntry(
+          "force.limit", "N", [](auto&& s) -> auto& { return s.haptics.force_limit; }),
+      {{"resolution", "cells", std::to_string(FieldSpec{}.resolution)},
        [](Scene& s, const std::string& t) {
          if (isNone(t)) refuseNone("resolution");
          s.field.resolution = wholeFor("resolution", t, "cells");
@@ -256,83 +256,56 @@ const std::vector<Entry>& entries() {
        [](const Scene& s) {
          return s.field.voxel ? Text() : Text(std::to_string(s.field.resolution));
        }},
-      {"voxel",
+      {{"voxel", "m", "none"},
        [](Scene& s, const std::string& t) {
          s.field.voxel.reset();
          if (!isNone(t)) s.field.voxel = lengthFor("voxel", t);
        },
        [](const Scene& s) { return text(s.field.voxel); }},
-      {"band",
-       [](Scene& s, const std::string& t) {
-         if (isNone(t)) refuseNone("band");
-         s.field.band = numberFor("band", t);
-       },
-       [](const Scene& s) { return Text(formatNumber(s.field.band)); }},
-      {"sampler",
+      numberEntry(
+          "band", "voxels", [](auto&& s) -> auto& { return s.field.band; }),
+      {{"sampler", "", std::string(name(Scene{}.sampler))},
        [](Scene& s, const std::string& t) {
          if (isNone(t)) refuseNone("sampler");
          s.sampler = parseSampler(t);
        },
        [](const Scene& s) { return Text(std::string(name(s.sampler))); }},
-      {"surface.sides",
-       [](Scene& s, const std::string& t) {
-         if (t != "one" && t != "two")
-           throw Error("surface.sides = '" + t + "': it must be one or two");
-         s.field.sides = t == "one" ? OpenSides::one : OpenSides::two;
-       },
-       [](const Scene& s) { return s.field.sides == OpenSides::one ? Text() : Text("two"); }},
-      {"merge.redistance",
+      choiceEntry(
+          "surface.sides", kSides, [](auto&& s) -> auto& { return s.field.sides; }),
+      {{"merge.redistance", "", "off"},
        [](Scene& s, const std::string& t) { s.redistance = yesOrNo("merge.redistance", t); },
        [](const Scene& s) { return s.redistance ? onOff(true) : Text(); }},
-      {"relief.mode",
+      choiceEntry(
+          "relief.mode", kModes, [](auto&& s) -> auto& { return s.relief.mode; }),
+      {{"relief.source", "", "none"},
        [](Scene& s, const std::string& t) {
-         if (t != "pulled" && t != "baked")
-           throw Error("relief.mode = '" + t + "': it must be pulled or baked");
-         s.relief.mode = t == "pulled" ? ReliefMode::pulled : ReliefMode::baked;
-       },
-       [](const Scene& s) { return s.relief.mode == ReliefMode::pulled ? Text() : Text("baked"); }},
-      {"relief.source",
-       [](Scene& s, const std::string& t) {
-         if (t != "painted" && t != "color" && !isNone(t))
-           throw Error("relief.source = '" + t + "': it must be painted or color");
-         s.relief.source = t == "color" ? ReliefFrom::color : ReliefFrom::painted;
+         s.relief.source = isNone(t) ? ReliefFrom::painted : chosen("relief.source", t, kSources);
        },
        [](const Scene& s) {
-         return s.relief.source == ReliefFrom::painted ? Text() : Text("color");
+         return s.relief.source == ReliefFrom::painted ? Text()
+                                                       : Text(textIn(kSources, s.relief.source));
        }},
-      {"relief.height",
-       [](Scene& s, const std::string& t) {
-         s.relief.height = isNone(t) ? ReliefSettings{}.height : lengthFor("relief.height", t);
-       },
-       [](const Scene& s) {
-         return s.relief.height == ReliefSettings{}.height ? Text() : text(s.relief.height);
-       }},
-      {"relief.force",
-       [](Scene& s, const std::string& t) { s.relief.form = formFor("relief.force", t); },
-       [](const Scene& s) { return nameOf(s.relief.form); }},
-      {"relief.smoothing",
-       [](Scene& s, const std::string& t) {
-         s.relief.smoothing = isNone(t) ? 0 : lengthFor("relief.smoothing", t);
-       },
-       [](const Scene& s) { return s.relief.smoothing == 0 ? Text() : text(s.relief.smoothing); }},
-      {"material.force",
-       [](Scene& s, const std::string& t) { s.material_form = formFor("material.force", t); },
-       [](const Scene& s) { return nameOf(s.material_form); }},
-      {"paint.size",
+      reliefEntry("relief.height", formatNumber(ReliefSettings{}.height), &ReliefSettings::height),
+      choiceEntry(
+          "relief.force", kForms, [](auto&& s) -> auto& { return s.relief.form; }),
+      reliefEntry("relief.smoothing", "none", &ReliefSettings::smoothing),
+      choiceEntry(
+          "material.force", kForms, [](auto&& s) -> auto& { return s.material_form; }),
+      {{"paint.size", "texels", std::to_string(Scene{}.paint_size)},
        [](Scene& s, const std::string& t) {
          s.paint_size = isNone(t) ? Scene{}.paint_size : wholeFor("paint.size", t, "texels");
        },
        [](const Scene& s) {
          return s.paint_size == Scene{}.paint_size ? Text() : Text(std::to_string(s.paint_size));
        }},
-      {"stabiliser", [](Scene& s, const std::string& t) { s.stabilisers = stabilisersFor(t); },
-       [](const Scene& s) { return s.stabilisers ? Text(nameOf(s.stabilisers)) : Text(); }},
-      deviceEntry("device.mass", &DeviceModel::mass, numberFor),
-      deviceEntry("device.damping", &DeviceModel::damping, numberFor),
-      deviceEntry("device.coulomb", &DeviceModel::coulomb, numberFor),
-      deviceEntry("device.encoder", &DeviceModel::encoder_step, lengthFor),
-      deviceEntry("device.rate", &DeviceModel::rate, numberFor),
-      {"device.delay",
+      choiceEntry(
+          "stabiliser", kStabilisers, [](auto&& s) -> auto& { return s.stabilisers; }),
+      deviceEntry("device.mass", "kg", &DeviceModel::mass, numberFor),
+      deviceEntry("device.damping", "N s/m", &DeviceModel::damping, numberFor),
+      deviceEntry("device.coulomb", "N", &DeviceModel::coulomb, numberFor),
+      deviceEntry("device.encoder", "m", &DeviceModel::encoder_step, lengthFor),
+      deviceEntry("device.rate", "Hz", &DeviceModel::rate, numberFor),
+      {{"device.delay", "samples", "none"},
        [](Scene& s, const std::string& t) {
          if (isNone(t)) return s.device_model.reset();
          const int delay = wholeFor("device.delay", t, "samples");
@@ -341,13 +314,20 @@ const std::vector<Entry>& entries() {
        [](const Scene& s) {
          return s.device_model ? Text(std::to_string(s.device_model->delay)) : Text();
        }},
-      {"device", [](Scene& s, const std::string& t) { s.device = t; },
+      {{"device", "", Scene{}.device},
+       [](Scene& s, const std::string& t) { s.device = t; },
        [](const Scene& s) { return Text(s.device); }},
   };
   return kEntries;
 }
 
 } // namespace
+
+const SceneKey& sceneKey(std::string_view key) {
+  for (const Entry& entry : entries())
+    if (entry.key == key) return entry;
+  throw std::out_of_range("sceneKey: no key " + std::string(key));
+}
 
 void setValues(Scene& scene, const std::vector<std::pair<std::string, std::string>>& list) {
   Scene changed = scene; // meshes are shared, so this is cheap
@@ -356,7 +336,7 @@ void setValues(Scene& scene, const std::vector<std::pair<std::string, std::strin
       if (key == entry.key) return entry.set(changed, value);
     }
     std::string known;
-    for (const Entry& entry : entries()) known += std::string(" ") + entry.key;
+    for (const Entry& entry : entries()) known += " " + std::string(entry.key);
     throw Error("unknown key '" + key + "'; known are:" + known);
   };
   // First, because a first coefficient is both: "dynamic 0, static 0.5" must not lose its zero.
@@ -375,7 +355,7 @@ void setValue(Scene& scene, const std::string& key, const std::string& value) {
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene) {
   std::vector<std::pair<std::string, std::string>> list;
   for (const Entry& entry : entries())
-    if (Text value = entry.get(scene)) list.emplace_back(entry.key, std::move(*value));
+    if (Text value = entry.get(scene)) list.emplace_back(std::string(entry.key), std::move(*value));
   return list;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/named.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -14,29 +15,28 @@ constexpr double kLongest = 1;       // [m]: no brush is larger than a scene may
 constexpr double kMostFalloff = 1e6; // as good as a hard brush
 constexpr double kMostHeight = 0.1;  // [m] of relief
 
-// Of an enumeration whose names stand in the order of its values.
-template <typename T, std::size_t N>
-T chosen(const char* key, const std::string& text, const std::array<std::string_view, N>& names) {
-  std::string known;
-  for (std::size_t i = 0; i < N; ++i) {
-    if (text == names[i]) return static_cast<T>(i);
-    known += (i ? ", " : "") + std::string(names[i]);
-  }
-  throw Error(std::string(key) + " '" + text + "': it must be one of " + known);
+template <typename Table>
+auto chosen(const char* key, const std::string& text, const Table& table) {
+  if (const auto found = valueIn(table, text)) return *found;
+  throw Error(std::string(key) + " '" + text + "': it must be one of " + textsOf(table));
 }
 
-constexpr std::array<std::string_view, 8> kToolNames{
-    "color",   "relief",    "stiffness", "friction.static", "friction.dynamic",
-    "damping", "roughness", "erase"};
-constexpr std::array<std::string_view, 3> kShapeNames{"power", "cone", "smooth"};
-constexpr std::array<std::string_view, 4> kModeNames{"max", "build-up", "add", "smooth"};
-constexpr std::array<std::string_view, 2> kSeedNames{"nearest", "segment"};
-constexpr std::array<std::string_view, 4> kSymmetryNames{"none", "x", "y", "z"};
-
-template <typename T, std::size_t N>
-std::string textOf(T value, const std::array<std::string_view, N>& names) {
-  return std::string(names[static_cast<std::size_t>(value)]);
-}
+constexpr auto kToolNames = [] {
+  std::array<Named<Tool>, kTools.size()> all{};
+  std::transform(kTools.begin(), kTools.end(), all.begin(), [](const Tool& tool) {
+    return Named<Tool>{tool, name(tool)};
+  });
+  return all;
+}();
+constexpr Named<BrushShape> kShapeNames[] = {
+    {BrushShape::power, "power"}, {BrushShape::cone, "cone"}, {BrushShape::smooth, "smooth"}};
+constexpr Named<StrokeMode> kModeNames[] = {{StrokeMode::max, "max"},
+                                            {StrokeMode::build_up, "build-up"},
+                                            {StrokeMode::add, "add"},
+                                            {StrokeMode::smooth, "smooth"}};
+constexpr Named<Seed> kSeedNames[] = {{Seed::nearest, "nearest"}, {Seed::segment, "segment"}};
+constexpr Named<Symmetry> kSymmetryNames[] = {
+    {Symmetry::none, "none"}, {Symmetry::x, "x"}, {Symmetry::y, "y"}, {Symmetry::z, "z"}};
 
 void require(bool holds, const char* key, double value, const std::string& what) {
   if (!holds) throw Error(std::string(key) + " = " + formatNumber(value) + ": it must be " + what);
@@ -135,7 +135,7 @@ void setValue(BrushLayer& layer, const Json& value) {
 // The keys of a layer; what stands beside them is not looked at.
 BrushLayer layerFrom(const Json& json, bool needs_value) {
   BrushLayer layer;
-  layer.tool = chosen<Tool>("tool", json.at("tool").asString(), kToolNames);
+  layer.tool = chosen("tool", json.at("tool").asString(), kToolNames);
   if (const Json* value = json.find("value")) {
     try {
       setValue(layer, *value);
@@ -194,15 +194,15 @@ void setKey(Stroke& stroke, const std::string& key, const Json& value) {
   else if (key == "falloff")
     brush.falloff = value.asNumber();
   else if (key == "shape")
-    brush.shape = chosen<BrushShape>("shape", value.asString(), kShapeNames);
+    brush.shape = chosen("shape", value.asString(), kShapeNames);
   else if (key == "mode")
-    brush.mode = chosen<StrokeMode>("mode", value.asString(), kModeNames);
+    brush.mode = chosen("mode", value.asString(), kModeNames);
   else if (key == "front_only")
     brush.front_only = value.asBool();
   else if (key == "seed")
     brush.seed = parseSeed(value.asString());
   else if (key == "symmetry")
-    brush.symmetry = chosen<Symmetry>("symmetry", value.asString(), kSymmetryNames);
+    brush.symmetry = chosen("symmetry", value.asString(), kSymmetryNames);
   else if (key == "erases")
     brush.erases = value.asString();
   else if (key == "samples")
@@ -230,31 +230,7 @@ Stroke strokeOfKeys(const Json& json) {
 } // namespace
 
 Seed parseSeed(const std::string& text) {
-  return chosen<Seed>("seed", text, kSeedNames);
-}
-
-std::string_view name(Tool tool) {
-  return kToolNames[static_cast<std::size_t>(tool)];
-}
-
-std::optional<MaterialChannel> channelOf(Tool tool) {
-  switch (tool) {
-  case Tool::stiffness:
-    return MaterialChannel::stiffness;
-  case Tool::static_friction:
-    return MaterialChannel::static_friction;
-  case Tool::dynamic_friction:
-    return MaterialChannel::dynamic_friction;
-  case Tool::damping:
-    return MaterialChannel::damping;
-  case Tool::roughness:
-    return MaterialChannel::roughness;
-  case Tool::color:
-  case Tool::relief:
-  case Tool::erase:
-    break;
-  }
-  return std::nullopt;
+  return chosen("seed", text, kSeedNames);
 }
 
 std::vector<BrushLayer> layersOf(const Brush& brush) {
@@ -280,7 +256,7 @@ void validate(const Brush& brush) {
   validateLayers(brush);
   if (!brush.erases.empty()) {
     if (brush.tool != Tool::erase) throw Error("'erases' belongs to tool erase");
-    if (chosen<Tool>("erases", brush.erases, kToolNames) == Tool::erase)
+    if (chosen("erases", brush.erases, kToolNames) == Tool::erase)
       throw Error("erases 'erase': it must name another tool");
   }
 }
@@ -313,14 +289,14 @@ Json toJson(const Stroke& stroke) {
     json.set("layers", std::move(layers));
   }
   json.set("radius", brush.radius).set("falloff", brush.falloff);
-  json.set("shape", textOf(brush.shape, kShapeNames)).set("mode", textOf(brush.mode, kModeNames));
+  json.set("shape", textIn(kShapeNames, brush.shape)).set("mode", textIn(kModeNames, brush.mode));
   json.set("front_only", brush.front_only);
   if (brush.radius_per_force != 0) json.set("radius_per_force", brush.radius_per_force);
   if (brush.least_radius != usual.least_radius) json.set("least_radius", brush.least_radius);
   if (brush.most_radius != usual.most_radius) json.set("most_radius", brush.most_radius);
-  if (brush.seed != Seed::nearest) json.set("seed", textOf(brush.seed, kSeedNames));
+  if (brush.seed != Seed::nearest) json.set("seed", textIn(kSeedNames, brush.seed));
   if (brush.symmetry != Symmetry::none)
-    json.set("symmetry", textOf(brush.symmetry, kSymmetryNames));
+    json.set("symmetry", textIn(kSymmetryNames, brush.symmetry));
   if (!brush.erases.empty()) json.set("erases", brush.erases);
   Json samples = Json::array();
   for (const StrokeSample& sample : stroke.samples) {

@@ -1,7 +1,9 @@
 // One stroke of the brush, as it is recorded, replayed and undone (K15 to K19).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,16 +16,26 @@
 
 namespace patina {
 
-enum class Tool : std::uint8_t {
-  color,
-  relief,
-  stiffness,
-  static_friction,
-  dynamic_friction,
-  damping,
-  roughness,
-  erase // of everything that was painted, or of `erases` alone
+struct Tool {
+  enum class Kind : std::uint8_t { color, relief, material, erase };
+  Kind kind = Kind::color;
+  MaterialChannel channel{}; // of material
+
+  static const Tool color, relief;
+  static const Tool erase; // of everything that was painted, or of `erases` alone
+  static constexpr Tool material(MaterialChannel channel) { return {Kind::material, channel}; }
+  auto operator<=>(const Tool&) const = default;
 };
+inline constexpr Tool Tool::color{Kind::color}, Tool::relief{Kind::relief},
+    Tool::erase{Kind::erase};
+// Colour, relief, each channel, erase.
+inline constexpr auto kTools = [] {
+  std::array<Tool, kMaterialChannels + 3> all{Tool::color, Tool::relief};
+  std::transform(kChannels.begin(), kChannels.end(), all.begin() + 2,
+                 [](const Channel& row) { return Tool::material(row.channel); });
+  all.back() = Tool::erase;
+  return all;
+}();
 enum class BrushShape : std::uint8_t {
   power, // 1 - (d/r)^f, our reading of the paper's lost equation (1) (K17)
   cone,  // (1 - d/r)^f
@@ -78,9 +90,15 @@ struct Stroke {
 };
 
 Seed parseSeed(const std::string& text); // throws Error
-std::string_view name(Tool tool);        // as in files: "color", "friction.static", ...
+// As in files: "color", "friction.static", ...
+constexpr std::string_view name(const Tool& tool) {
+  if (tool.kind == Tool::Kind::material) return name(tool.channel);
+  return tool == Tool::color ? "color" : tool == Tool::relief ? "relief" : "erase";
+}
 // The channel that a tool paints; nullopt for colour, relief and erase.
-std::optional<MaterialChannel> channelOf(Tool tool);
+constexpr std::optional<MaterialChannel> channelOf(const Tool& tool) {
+  return tool.kind == Tool::Kind::material ? std::optional(tool.channel) : std::nullopt;
+}
 
 std::vector<BrushLayer> layersOf(const Brush& brush);     // one or more, its own first
 const BrushLayer* layerOf(const Brush& brush, Tool tool); // null: it lays on none of that

@@ -36,7 +36,8 @@ TEST_F(FeltPaints, ColourAloneIsNotFelt) {
 
 TEST_F(FeltPaints, VersionsShareWhatDidNotChange) {
   Editor editor(ballScene(), progress);
-  editor.apply(dabAt(Tool::stiffness, 900, 0.01, Vec3(0, 0, kBall)), progress);
+  editor.apply(dabAt(Tool::material(MaterialChannel::stiffness), 900, 0.01, Vec3(0, 0, kBall)),
+               progress);
   editor.apply(dabAt(Tool::relief, 5e-4, 0.01, Vec3(kBall, 0, 0)), progress);
   const auto before = editor.compiled();
   ASSERT_EQ(before->paint.objects.size(), 1U);
@@ -113,7 +114,8 @@ TEST_F(FeltPaints, ChangesNameWhatDiffersAndNothingElse) {
   Editor editor(ballScene(), progress);
   const Scene start = editor.scene();
   EXPECT_TRUE(paintChanges(start, start).empty());
-  editor.apply(dabAt(Tool::stiffness, 900, 0.006, Vec3(0, 0, kBall)), progress);
+  editor.apply(dabAt(Tool::material(MaterialChannel::stiffness), 900, 0.006, Vec3(0, 0, kBall)),
+               progress);
   const Scene material = editor.scene();
   editor.apply(dabAt(Tool::relief, 5e-4, 0.006, Vec3(kBall, 0, 0)), progress);
   const std::vector<PaintChange> first = paintChanges(start, material);
@@ -198,8 +200,9 @@ TEST_F(FeltPaints, BlackIsNotFeltAsRelief) { // T-K21d
 // One entry of the history: undone and done again as one, and replayed to the same bits.
 TEST_F(FeltPaints, LayersOfAStrokeAreOneEdit) {
   Editor editor(ballScene(), progress);
-  Stroke stroke = dabAt(Tool::stiffness, 900, 0.008, Vec3(0, 0, kBall));
-  for (const Tool tool : {Tool::color, Tool::relief, Tool::static_friction})
+  Stroke stroke = dabAt(Tool::material(MaterialChannel::stiffness), 900, 0.008, Vec3(0, 0, kBall));
+  for (const Tool tool :
+       {Tool::color, Tool::relief, Tool::material(MaterialChannel::static_friction)})
     stroke.brush.also.push_back({tool, {0.2, 0.4, 0.6}, tool == Tool::relief ? 3e-4 : 0.5});
   editor.apply(stroke, progress);
   EXPECT_EQ(editor.history().undoable(), 1U);

@@ -31,7 +31,7 @@ inline Scene oneBall(int resolution = 50, int frequency = 8) {
 
 inline Brush stiffBrush(double value = 900) {
   Brush brush;
-  brush.tool = Tool::stiffness;
+  brush.tool = Tool::material(MaterialChannel::stiffness);
   brush.value = value;
   brush.radius = 0.005;
   brush.falloff = 8;

@@ -77,7 +77,8 @@ TEST_F(Editors, ADabIsFeltWhenItReturnsAndTellsWhatChanged) {
   Editor editor(ballScene(), progress,
                 [&](const EditorNotice& notice) { notices.push_back(notice); });
   const auto before = editor.compiled();
-  editor.beginStroke(dabAt(Tool::stiffness, 900, 0.01, Vec3::Zero()).brush, progress);
+  editor.beginStroke(
+      dabAt(Tool::material(MaterialChannel::stiffness), 900, 0.01, Vec3::Zero()).brush, progress);
   EXPECT_TRUE(editor.inStroke());
   EXPECT_TRUE(notices.empty());
   const PaintReport report = editor.dab({0, Vec3(0, 0, kBall), 0.5});
@@ -121,7 +122,8 @@ TEST_F(Editors, WhatIsRecordedOfAStrokeCanBeReplayed) {
   Editor editor(ballScene(), progress);
   const Scene before = editor.scene();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  editor.beginStroke(dabAt(Tool::stiffness, 900, 0.005, Vec3::Zero()).brush, progress);
+  editor.beginStroke(
+      dabAt(Tool::material(MaterialChannel::stiffness), 900, 0.005, Vec3::Zero()).brush, progress);
   editor.dab({5, Vec3(0, 0, kBall), 0.5});
   EXPECT_EQ(editor.dab({5.1, Vec3(nan, 0, 0), 0.5}).missed, 1U);
   editor.dab({nan, Vec3(0, 0, kBall), 0.5});
@@ -189,14 +191,16 @@ TEST_F(Editors, EditsThatMakeNoSenseChangeNothing) {
 
 TEST_F(Editors, ObjectsComeAndGoWithUndo) {
   Editor editor(ballScene(), progress);
-  editor.apply(dabAt(Tool::stiffness, 900, 0.01, Vec3(0, 0, kBall)), progress);
+  editor.apply(dabAt(Tool::material(MaterialChannel::stiffness), 900, 0.01, Vec3(0, 0, kBall)),
+               progress);
   const Scene one = editor.scene();
   Scene two = one;
   two.objects.push_back(ballScene().objects[0]);
   two.objects[1].name = "other";
   two.objects[1].world_from_object.translation() = Vec3(0.08, 0, 0);
   editor.apply(SceneEdit{"add other", std::make_shared<const Scene>(two)}, progress);
-  editor.apply(dabAt(Tool::stiffness, 200, 0.01, Vec3(0.08, 0, kBall)), progress);
+  editor.apply(dabAt(Tool::material(MaterialChannel::stiffness), 200, 0.01, Vec3(0.08, 0, kBall)),
+               progress);
   ASSERT_TRUE(editor.scene().objects[1].paint);
   EXPECT_TRUE(same(*editor.scene().objects[0].paint, *one.objects[0].paint));
   const Scene painted = editor.scene();

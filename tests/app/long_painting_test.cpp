@@ -21,10 +21,11 @@ std::size_t residentBytes() {
 
 // A stroke of three seconds round the ball.
 Stroke walk(int number) {
-  const std::pair<Tool, double> tools[] = {{Tool::relief, 3e-4},
-                                           {Tool::stiffness, 900},
-                                           {Tool::color, 0},
-                                           {Tool::dynamic_friction, 0.3}};
+  const std::pair<Tool, double> tools[] = {
+      {Tool::relief, 3e-4},
+      {Tool::material(MaterialChannel::stiffness), 900},
+      {Tool::color, 0},
+      {Tool::material(MaterialChannel::dynamic_friction), 0.3}};
   const auto& [tool, value] = tools[static_cast<std::size_t>(number) % 4];
   Stroke stroke = dabAt(tool, value, 0.003, Vec3::Zero());
   stroke.samples.clear();

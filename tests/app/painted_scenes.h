@@ -39,12 +39,12 @@ inline std::vector<Stroke> manyStrokes(int count, unsigned seed = 7) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   const std::pair<Tool, double> tools[] = {{Tool::relief, 4e-4},
-                                           {Tool::stiffness, 900},
+                                           {Tool::material(MaterialChannel::stiffness), 900},
                                            {Tool::color, 0},
-                                           {Tool::dynamic_friction, 0.3},
-                                           {Tool::static_friction, 0.5},
-                                           {Tool::damping, 1},
-                                           {Tool::roughness, 2e-5},
+                                           {Tool::material(MaterialChannel::dynamic_friction), 0.3},
+                                           {Tool::material(MaterialChannel::static_friction), 0.5},
+                                           {Tool::material(MaterialChannel::damping), 1},
+                                           {Tool::material(MaterialChannel::roughness), 2e-5},
                                            {Tool::erase, 0}};
   const StrokeMode modes[] = {StrokeMode::max, StrokeMode::build_up, StrokeMode::smooth};
   std::vector<Stroke> strokes;

@@ -95,7 +95,8 @@ TEST_F(Links, AWholeHistoryIsWrittenIntoAnotherFolder) {
   Scene moved = editor->scene();
   moved.objects[0].world_from_object.translation() = Vec3(0.01, 0, 0);
   editor->apply(SceneEdit{"move ball", std::make_shared<const Scene>(moved)}, progress);
-  editor->apply(dabAt(Tool::stiffness, 300, 0.008, Vec3(0.01, 0, kBall)), progress);
+  editor->apply(dabAt(Tool::material(MaterialChannel::stiffness), 300, 0.008, Vec3(0.01, 0, kBall)),
+                progress);
   const std::size_t edits = editor->history().undoable();
   const Scene last = editor->scene();
   editor->undo(1, progress);
@@ -187,7 +188,9 @@ TEST_F(Links, ScenesOfThePastAreThoseOfTheNewFolder) {
   {
     const auto editor = open();
     editor->apply(SceneEdit{"move ball", std::make_shared<const Scene>(moved)}, progress);
-    editor->apply(dabAt(Tool::stiffness, 300, 0.008, Vec3(0.01, 0, kBall)), progress);
+    editor->apply(
+        dabAt(Tool::material(MaterialChannel::stiffness), 300, 0.008, Vec3(0.01, 0, kBall)),
+        progress);
   }
   const auto editor = open();
   editor->saveAs(root / "other");
@@ -199,7 +202,8 @@ TEST_F(Links, ScenesOfThePastAreThoseOfTheNewFolder) {
 // The landmarks move with the present, and saving removes the files of the old ones.
 TEST_F(Links, AStateThatSavingDroppedIsReplayed) {
   const auto paint = [&](Editor& editor, double stiffness) {
-    Stroke stroke = dabAt(Tool::stiffness, stiffness, 0.006, Vec3(0, 0, kBall));
+    Stroke stroke =
+        dabAt(Tool::material(MaterialChannel::stiffness), stiffness, 0.006, Vec3(0, 0, kBall));
     stroke.samples.resize(300, stroke.samples[0]);
     editor.apply(stroke, progress);
   };

@@ -27,7 +27,7 @@ const Vec3 kTop(0, 0, kR);
 TEST(PaintExtremes, RadiusOfNothingPaintsNothing) {
   const Scene scene = sceneOf(icosphere(kR, 12));
   const auto surface = surfaceOf(scene);
-  for (const Tool tool : {Tool::color, Tool::relief, Tool::stiffness}) {
+  for (const Tool tool : {Tool::color, Tool::relief, Tool::material(MaterialChannel::stiffness)}) {
     PaintReport report;
     const Scene after = painted(
         surface, scene, strokeAlong(brushOf(tool, 0, 0.1), kTop, Vec3(kR, 0, 0), 5), &report);
@@ -58,7 +58,7 @@ TEST(PaintExtremes, BrushBeyondTheObjectPaintsAllOfIt) {
   const TiledImage& image = *after.objects[0].paint->color;
   forTexels(*surface, 0, image,
             [&](const Vec3&, int i, int j) { ASSERT_EQ(image.at(i, j, 3), 1.0f); });
-  brush.tool = Tool::stiffness;
+  brush.tool = Tool::material(MaterialChannel::stiffness);
   brush.value = 800;
   const Scene hard = painted(surface, scene, strokeAt(brush, Vec3(0.055, 0, 0)));
   EXPECT_NEAR(valuesAt(*surface, hard, Vec3(-0.055, 0, 0)).material.stiffness, 800, 1e-9);
@@ -109,7 +109,7 @@ TEST(PaintExtremes, StrokeGoesOverFromOneObjectToAnother) {
     if (std::abs(x - 0.025) < 0.0015) continue; // the gap
     EXPECT_NEAR(valuesAt(*surface, after, Vec3(x, 0, 0.005), object).color[3], 1, 0.12) << x;
   }
-  brush = brushOf(Tool::dynamic_friction, 0.01, 0.7);
+  brush = brushOf(Tool::material(MaterialChannel::dynamic_friction), 0.01, 0.7);
   after = painted(surface, scene, strokeAt(brush, Vec3(0.022, 0, 0.005)));
   ASSERT_TRUE(after.objects[0].paint && after.objects[1].paint);
   EXPECT_GT(valuesAt(*surface, after, Vec3(0.028, 0, 0.005), 1).material.dynamic_friction, 0.1);
@@ -179,7 +179,7 @@ TEST(PaintExtremes, MisuseIsRefused) {
   EXPECT_THROW(painter.dab({}), std::invalid_argument);
   EXPECT_THROW(painter.begin(brushOf(Tool::color, 0.01)), std::invalid_argument);
   EXPECT_NO_THROW(painter.begin(brushOf(Tool::erase, 0.01)));
-  EXPECT_THROW(painter.begin(brushOf(Tool::stiffness, -1, 500)), Error);
+  EXPECT_THROW(painter.begin(brushOf(Tool::material(MaterialChannel::stiffness), -1, 500)), Error);
   EXPECT_THROW(Painter(bare, sceneOf(icosphere(kR, 7))), std::invalid_argument);
   Scene flat = scene;
   flat.relief.height = 0;
@@ -194,7 +194,8 @@ TEST(PaintExtremes, TenMinutesOfPaintingAreBounded) {
   const auto surface = surfaceOf(scene);
   Painter painter(surface, scene);
   constexpr int kDabs = 600 * 60, kStroke = 120;
-  const std::array<Tool, 4> tools{Tool::color, Tool::relief, Tool::stiffness, Tool::erase};
+  const std::array<Tool, 4> tools{Tool::color, Tool::relief,
+                                  Tool::material(MaterialChannel::stiffness), Tool::erase};
   std::shared_ptr<const ObjectPaint> first;
   ObjectPaint copy;
   std::size_t most = 0;

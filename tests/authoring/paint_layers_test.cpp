@@ -21,14 +21,14 @@ TEST(Painter, LayersOfOneStrokeAreThoseOfAStrokeEach) {
   const Scene scene = sceneOf(icosphere(kR, 12), 60, 256);
   const auto surface = surfaceOf(scene);
   for (const StrokeMode mode : {StrokeMode::max, StrokeMode::build_up}) {
-    Brush brush = brushOf(Tool::stiffness, 0.012, 900);
+    Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.012, 900);
     brush.mode = mode;
     brush.color = {0.3, 0.1, 0.9};
     Scene apart = scene;
-    for (const auto& [tool, value] : {std::pair{Tool::stiffness, 900.0},
+    for (const auto& [tool, value] : {std::pair{Tool::material(MaterialChannel::stiffness), 900.0},
                                       {Tool::color, 0.0},
                                       {Tool::relief, 3e-4},
-                                      {Tool::static_friction, 0.7}}) {
+                                      {Tool::material(MaterialChannel::static_friction), 0.7}}) {
       BrushLayer layer = brush;
       layer.tool = tool;
       layer.value = value;

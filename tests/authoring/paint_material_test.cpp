@@ -28,7 +28,8 @@ Scene plate() {
 TEST(PaintMaterial, HardBrushOfTwoVoxelsGivesExactlyTheStiffnessItWasTold) {
   const Scene scene = plate();
   const auto surface = surfaceOf(scene, false);
-  Brush brush = brushOf(Tool::stiffness, 2 * surface->field->grid.voxel, 1000);
+  Brush brush =
+      brushOf(Tool::material(MaterialChannel::stiffness), 2 * surface->field->grid.voxel, 1000);
   brush.falloff = 1000;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(-0.04, 0.04);
@@ -43,7 +44,8 @@ TEST(PaintMaterial, HardBrushOfTwoVoxelsGivesExactlyTheStiffnessItWasTold) {
 TEST(PaintMaterial, SoftBrushOfTwoVoxelsGivesTwoThirds) {
   const Scene scene = sceneOf(icosphere(0.05, 12), 75);
   const auto surface = surfaceOf(scene, false);
-  const Brush brush = brushOf(Tool::damping, 2 * surface->field->grid.voxel, 10);
+  const Brush brush =
+      brushOf(Tool::material(MaterialChannel::damping), 2 * surface->field->grid.voxel, 10);
   VolumeFill fill(surface);
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
@@ -63,8 +65,10 @@ TEST(PaintMaterial, NodesLieWhereTheFieldsDo) {
     const Pose pose(Eigen::Translation3d{shift});
     const Scene scene = sceneOf({objectOf("plate", box(Vec3(0.1, 0.1, 0.02), 6), pose)});
     const auto surface = surfaceOf(scene, false);
-    const Scene after = painted(
-        surface, scene, strokeAt(brushOf(Tool::roughness, 0.01, 1e-5), shift + Vec3(0, 0, kTop)));
+    const Scene after =
+        painted(surface, scene,
+                strokeAt(brushOf(Tool::material(MaterialChannel::roughness), 0.01, 1e-5),
+                         shift + Vec3(0, 0, kTop)));
     const MaterialMap& map = *after.objects[0].paint->material;
     EXPECT_EQ(map.voxel(), surface->field->grid.voxel);
     EXPECT_EQ(map.origin() + shift, surface->field->grid.origin);
@@ -73,8 +77,9 @@ TEST(PaintMaterial, NodesLieWhereTheFieldsDo) {
 
 TEST(PaintMaterial, StaysWithAnObjectThatMoves) {
   Scene scene = plate();
-  const Scene after = painted(surfaceOf(scene, false), scene,
-                              strokeAt(brushOf(Tool::stiffness, 0.01, 900), Vec3(0, 0, kTop)));
+  const Scene after = painted(
+      surfaceOf(scene, false), scene,
+      strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.01, 900), Vec3(0, 0, kTop)));
   Scene moved = after;
   moved.objects[0].world_from_object =
       Pose(Eigen::Translation3d(0.1, 0, 0) * Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()));
@@ -83,8 +88,10 @@ TEST(PaintMaterial, StaysWithAnObjectThatMoves) {
   const double there = valuesAt(*surface, moved, pose * Vec3(0.002, 0, kTop)).material.stiffness;
   EXPECT_GT(there, 700);
   // More paint on top of it, on the grid of the first stroke.
-  const Scene more = painted(
-      surface, moved, strokeAt(brushOf(Tool::stiffness, 0.02, 900), pose * Vec3(0.03, 0, kTop)));
+  const Scene more =
+      painted(surface, moved,
+              strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 900),
+                       pose * Vec3(0.03, 0, kTop)));
   EXPECT_EQ(more.objects[0].paint->material->origin(), after.objects[0].paint->material->origin());
   EXPECT_GT(valuesAt(*surface, more, pose * Vec3(0.03, 0.001, kTop)).material.stiffness, 780);
   EXPECT_GE(valuesAt(*surface, more, pose * Vec3(0.002, 0, kTop)).material.stiffness, there);
@@ -101,7 +108,9 @@ TEST(PaintMaterial, BrushBetweenTheNodesIsTold) {
   PaintReport report;
   const Scene after =
       painted(surface, scene,
-              strokeAt(brushOf(Tool::stiffness, 0.4 * grid.voxel, 900), grid.toWorld(q)), &report);
+              strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.4 * grid.voxel, 900),
+                       grid.toWorld(q)),
+              &report);
   EXPECT_EQ(report.nodes, 0u);
   EXPECT_EQ(report.missed, 0u);
   EXPECT_GT(report.faces, 0u);
@@ -111,7 +120,7 @@ TEST(PaintMaterial, BrushBetweenTheNodesIsTold) {
 TEST(PaintMaterial, AddedStiffnessStaysWithinItsRange) {
   const Scene scene = plate();
   const auto surface = surfaceOf(scene, false);
-  Brush brush = brushOf(Tool::static_friction, 0.02, 0.3);
+  Brush brush = brushOf(Tool::material(MaterialChannel::static_friction), 0.02, 0.3);
   brush.mode = StrokeMode::add;
   brush.falloff = 1000;
   Scene now = scene;
@@ -129,7 +138,7 @@ TEST(PaintMaterial, AddedStiffnessStaysWithinItsRange) {
 TEST(PaintMaterial, AddsToWhatIsFeltWithoutPaint) {
   const Scene scene = plate(); // 500 N/m
   const auto surface = surfaceOf(scene, false);
-  Brush brush = brushOf(Tool::stiffness, 0.02, -300);
+  Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.02, -300);
   brush.mode = StrokeMode::add;
   brush.falloff = 1000;
   const Vec3 p(0.001, 0.002, kTop);
@@ -143,7 +152,7 @@ TEST(PaintMaterial, AddsToWhatIsFeltWithoutPaint) {
 TEST(PaintMaterial, SmoothingLowersTheSteepestSlope) {
   const Scene scene = plate();
   const auto surface = surfaceOf(scene, false);
-  Brush brush = brushOf(Tool::stiffness, 0.02, 2000);
+  Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 2000);
   brush.falloff = 1000;
   const Scene cliff = painted(surface, scene, strokeAt(brush, Vec3(0, 0, kTop)));
   brush.mode = StrokeMode::smooth;
@@ -168,7 +177,7 @@ TEST(PaintMaterial, FrontOnlyLeavesTheNodesOfTheFarSide) {
   const Scene scene = sceneOf(box(Vec3(0.1, 0.1, 0.008), 6), 100);
   const auto surface = surfaceOf(scene, false);
   ASSERT_GT(0.008, 5 * surface->field->grid.voxel);
-  Brush brush = brushOf(Tool::stiffness, 0.02, 1000);
+  Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 1000);
   brush.falloff = 1000;
   const Vec3 p(0, 0, 0.004);
   const Scene both = painted(surface, scene, strokeAt(brush, p));

@@ -70,7 +70,8 @@ TEST(SurfaceValues, AreThoseOfTheSceneWhereNothingIsPainted) {
   EXPECT_EQ(bare.height, 0);
   const auto surface = surfaceOf(scene);
   const Vec3 p = position(*surface->mesh, point);
-  const Scene after = painted(surface, scene, strokeAt(brushOf(Tool::stiffness, 0.02, 800), p));
+  const Scene after = painted(
+      surface, scene, strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 800), p));
   const SurfaceValues there = surfaceValues(after, 0, point);
   EXPECT_GT(there.material.stiffness, 700);
   EXPECT_EQ(there.material.dynamic_friction, 0.25);

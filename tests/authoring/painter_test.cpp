@@ -308,8 +308,10 @@ TEST(Painter, EraserLeavesNothingBehind) {
   const auto surface = surfaceOf(scene);
   Scene now = painted(surface, scene, strokeAt(brushOf(Tool::color, 0.02), kTop));
   now = painted(surface, now, strokeAt(brushOf(Tool::relief, 0.02, 1e-3), kTop));
-  now = painted(surface, now, strokeAt(brushOf(Tool::damping, 0.02, 3), kTop));
-  const Scene all = painted(surface, now, strokeAt(brushOf(Tool::stiffness, 0.02, 900), kTop));
+  now = painted(surface, now,
+                strokeAt(brushOf(Tool::material(MaterialChannel::damping), 0.02, 3), kTop));
+  const Scene all = painted(
+      surface, now, strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 900), kTop));
   Brush eraser = brushOf(Tool::erase, 0.03);
   eraser.falloff = 1000;
   eraser.erases = "damping";
@@ -347,7 +349,7 @@ TEST(Painter, SymmetryPaintsTheMirrorImageInTheObjectsOwnFrame) {
             Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
   const Scene scene = sceneOf({objectOf("tilted", torus(0.04, 0.015, 60, 30), pose)});
   const auto surface = surfaceOf(scene);
-  Brush brush = brushOf(Tool::stiffness, 0.012, 900);
+  Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.012, 900);
   brush.symmetry = Symmetry::y;
   PaintReport report;
   const Scene after =

@@ -60,9 +60,10 @@ PATINA_TIMED_TEST(EditorDab, ImageFieldAndMaterialTakeLittleOnAnyMesh) {
       Tool tool;
       double value, most;
     };
-    for (const Row& row : {Row{"  relief and field", Tool::relief, 3e-4, 0.9}, // 0.22, 0.33
-                           Row{"  material", Tool::stiffness, 900, 0.45},      // 0.10, 0.15
-                           Row{"  colour", Tool::color, 0, 0.25}})             // 0.01, 0.09
+    for (const Row& row :
+         {Row{"  relief and field", Tool::relief, 3e-4, 0.9},                       // 0.22, 0.33
+          Row{"  material", Tool::material(MaterialChannel::stiffness), 900, 0.45}, // 0.10, 0.15
+          Row{"  colour", Tool::color, 0, 0.25}})                                   // 0.01, 0.09
       EXPECT_TRUE(
           test::within(row.name, slowDab(editor, row.tool, row.value), reference, row.most));
   }

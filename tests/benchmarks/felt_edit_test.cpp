@@ -77,7 +77,7 @@ Pass paint(int dabs) {
     published = monotonicNs();
   });
   loop.publish(editor.compiled()->snapshot);
-  editor.prepare(Tool::stiffness, progress);
+  editor.prepare(Tool::material(MaterialChannel::stiffness), progress);
 
   std::vector<ToolSample> samples;
   const auto drain = [&] {

@@ -82,8 +82,9 @@ PATINA_TIMED_TEST(PaintTiming, ADabCostsWhatTheBrushReachesOnAnyMesh) {
          {Row{"color", Tool::color, StrokeMode::max, 0, 0.2},
           Row{"relief", Tool::relief, StrokeMode::build_up, 1e-3, 0.2},
           Row{"relief smooth", Tool::relief, StrokeMode::smooth, 1e-3, 0.35},
-          Row{"stiffness", Tool::stiffness, StrokeMode::max, 1000, 0.25},
-          Row{"stiffness smooth", Tool::stiffness, StrokeMode::smooth, 1000, 0.2}}) {
+          Row{"stiffness", Tool::material(MaterialChannel::stiffness), StrokeMode::max, 1000, 0.25},
+          Row{"stiffness smooth", Tool::material(MaterialChannel::stiffness), StrokeMode::smooth,
+              1000, 0.2}}) {
       Brush brush;
       brush.tool = row.tool;
       brush.mode = row.mode;

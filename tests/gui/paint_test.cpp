@@ -68,7 +68,7 @@ TEST_F(Painting, NothingToPaintWithIsThereBeforeItIsNeeded) {
   EXPECT_FALSE(window_->relief().isVisible());
   EXPECT_FALSE(window_->history().isVisible());
   EXPECT_FALSE(window_->paintDisplay().isVisible());
-  choose(Tool::stiffness);
+  choose(Tool::material(MaterialChannel::stiffness));
   EXPECT_TRUE(window_->brushPanel().isVisible());
   EXPECT_FALSE(window_->relief().isVisible());
   choose(Tool::relief);
@@ -105,7 +105,7 @@ TEST_F(Painting, AStrokeIsSeenIsOneEditAndIsUndoneAndDoneAgain) {
 }
 
 TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
-  choose(Tool::stiffness);
+  choose(Tool::material(MaterialChannel::stiffness));
   const double base = window_->scene()->scene.haptics.stiffness;
   Brush brush = window_->desk().brush();
   brush.value = 4 * base;
@@ -151,7 +151,7 @@ TEST_F(Painting, BesideTheObjectNothingIsPainted) {
 }
 
 TEST_F(Painting, LayersThatAreTickedArePaintedByTheSameStroke) {
-  choose(Tool::stiffness);
+  choose(Tool::material(MaterialChannel::stiffness));
   for (const char* name : {"also_color", "also_friction.static"}) {
     ASSERT_NE(action(name), nullptr) << name;
     action(name)->trigger();
@@ -176,7 +176,7 @@ TEST_F(Painting, AClickInTheHistoryGoesThere) {
   choose(Tool::color);
   stroke(middle() - QPoint(50, 30), middle() + QPoint(50, -30), 200);
   ASSERT_TRUE(strokeDone(1));
-  choose(Tool::static_friction);
+  choose(Tool::material(MaterialChannel::static_friction));
   stroke(middle() - QPoint(50, -30), middle() + QPoint(50, 30), 200);
   ASSERT_TRUE(strokeDone(2));
   ASSERT_EQ(window_->history().count(), 3);
@@ -212,7 +212,7 @@ TEST_F(Painting, KeysChooseToolsAndTheBrushesSize) {
 }
 
 TEST_F(Painting, TheEyedropperTakesWhatIsThereAndGivesTheBrushBack) {
-  choose(Tool::stiffness);
+  choose(Tool::material(MaterialChannel::stiffness));
   Brush brush = window_->desk().brush();
   brush.value = 2345;
   brush.radius = 0.008;
@@ -231,7 +231,8 @@ TEST_F(Painting, TheEyedropperTakesWhatIsThereAndGivesTheBrushBack) {
   window_->desk().setBrush(brush);
   send(QEvent::MouseButtonPress, middle() + QPoint(2, 0), Qt::LeftButton, Qt::LeftButton);
   EXPECT_NEAR(window_->desk().brush().value, 2345, 25);
-  EXPECT_TRUE(window_->tools().choice() == (ToolChoice{Handling::paint, Tool::stiffness}));
+  EXPECT_TRUE(window_->tools().choice() ==
+              (ToolChoice{Handling::paint, Tool::material(MaterialChannel::stiffness)}));
   send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
   ASSERT_TRUE(waitUntil(
       [&] { return window_->status().pickedText().contains(QStringLiteral("N/m")); }, 3000));
@@ -240,7 +241,7 @@ TEST_F(Painting, TheEyedropperTakesWhatIsThereAndGivesTheBrushBack) {
 }
 
 TEST_F(Painting, APensPressureIsForceAndMakesTheBrushLarger) { // K19
-  choose(Tool::stiffness);
+  choose(Tool::material(MaterialChannel::stiffness));
   Brush brush = window_->desk().brush();
   brush.radius = 0.002;
   brush.radius_per_force = 0.006;
@@ -281,25 +282,25 @@ TEST_F(Painting, WhatIsShownFollowsTheToolUntilSomethingElseIsChosen) {
   choose(Tool::color);
   stroke(middle() - QPoint(40, 20), middle() + QPoint(40, -20), 200);
   ASSERT_TRUE(strokeDone(1));
-  choose(Tool::stiffness);
+  choose(Tool::material(MaterialChannel::stiffness));
   stroke(middle() - QPoint(40, -20), middle() + QPoint(40, 20), 200);
   ASSERT_TRUE(strokeDone(2));
   wait(100);
   auto* combo = window_->findChild<QComboBox*>(QStringLiteral("paint_shown"));
   EXPECT_EQ(combo->count(), 4) << "as the tool, nothing, colour, stiffness";
-  EXPECT_EQ(window_->paintDisplay().shown(), PaintQuantity::stiffness);
+  EXPECT_EQ(window_->paintDisplay().shown(), quantityOf(MaterialChannel::stiffness));
   choose(Tool::color);
   EXPECT_EQ(window_->paintDisplay().shown(), PaintQuantity::color);
-  window_->paintDisplay().choose(PaintQuantity::stiffness);
+  window_->paintDisplay().choose(quantityOf(MaterialChannel::stiffness));
   choose(Tool::relief);
-  EXPECT_EQ(window_->paintDisplay().shown(), PaintQuantity::stiffness);
+  EXPECT_EQ(window_->paintDisplay().shown(), quantityOf(MaterialChannel::stiffness));
   // The range can be held.
   auto* lock = window_->findChild<QCheckBox*>(QStringLiteral("lock_range"));
   lock->setChecked(true);
   window_->findChild<QDoubleSpinBox*>(QStringLiteral("range_low"))->setValue(100);
   window_->findChild<QDoubleSpinBox*>(QStringLiteral("range_high"))->setValue(4000);
   wait(100);
-  const ValueRange range = view().view().paintRange(PaintQuantity::stiffness);
+  const ValueRange range = view().view().paintRange(quantityOf(MaterialChannel::stiffness));
   EXPECT_EQ(range.low, 100);
   EXPECT_EQ(range.high, 4000);
   window_->paintDisplay().choose(std::nullopt);
@@ -323,7 +324,7 @@ TEST_F(Painting, ReliefSaysHowHighItMayBe) { // F7
 }
 
 TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
-  choose(Tool::stiffness);
+  choose(Tool::material(MaterialChannel::stiffness));
   QElapsedTimer clock;
   const RunQueueWait queue; // what other programs take of the processor is not the window's
   // Its work by its own processor time, its waiting by what the edit takes beside it: both of them

@@ -8,10 +8,11 @@ class History : public Painted {};
 
 TEST_F(History, UndoBringsBackEverySceneBitwiseAndRedoToo) {
   std::vector<Scene> scenes{loadWorkspace(workspace)};
-  const Stroke strokes[] = {stroke(Tool::stiffness, 900, 0.006, {{0, 0, kTop}}),
-                            stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),
-                            stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
-                            stroke(Tool::dynamic_friction, 0.3, 0.006, {{0, 0.01, kTop}})};
+  const Stroke strokes[] = {
+      stroke(Tool::material(MaterialChannel::stiffness), 900, 0.006, {{0, 0, kTop}}),
+      stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),
+      stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
+      stroke(Tool::material(MaterialChannel::dynamic_friction), 0.3, 0.006, {{0, 0.01, kTop}})};
   for (const Stroke& one : strokes) {
     ASSERT_EQ(run({"paint", workspace, "--strokes", script("s.json", {one}), "-o", workspace}).exit,
               0);
@@ -97,7 +98,8 @@ TEST_F(History, AnEditAfterUndoDropsWhatWasUndone) {
 TEST_F(History, GoesWithTheOutputOfPaint) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", folder / "a"}).exit, 0);
   const Scene painted = loadWorkspace(folder / "a");
-  const std::string more = script("more.json", {stroke(Tool::damping, 2, 0.006, {{0, 0, kTop}})});
+  const std::string more = script(
+      "more.json", {stroke(Tool::material(MaterialChannel::damping), 2, 0.006, {{0, 0, kTop}})});
   ASSERT_EQ(run({"paint", folder / "a", "--strokes", more, "-o", folder / "b"}).exit, 0);
   EXPECT_EQ(runJson({"undo", folder / "b"}).at("history").asInteger(), 3);
   EXPECT_TRUE(same(loadWorkspace(folder / "b"), painted));

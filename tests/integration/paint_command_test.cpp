@@ -36,8 +36,8 @@ TEST_F(Paint, OfAnOutputOfItsOwnLeavesTheInputByteForByte) {
 
 // Rendered stiffness within 1 % of what was painted, with a hard brush that covers the cell.
 TEST_F(Paint, StiffnessIsFeltAsPainted) {
-  const std::string strokes =
-      script("k.json", {stroke(Tool::stiffness, 900, 0.008, {{0.0003, 0.0004, kTop}})});
+  const std::string strokes = script("k.json", {stroke(Tool::material(MaterialChannel::stiffness),
+                                                       900, 0.008, {{0.0003, 0.0004, kTop}})});
   ASSERT_EQ(run({"paint", workspace, "--strokes", strokes, "-o", workspace}).exit, 0);
   const std::string press = pressAt(0.0003, 0.0004, 1e-3);
   const std::vector<double> felt = feltLast(workspace, press);
@@ -56,8 +56,9 @@ TEST_F(Paint, StiffnessIsFeltAsPainted) {
 // Coulomb: while it slides, the tangential force is mu_d times the normal one.
 TEST_F(Paint, FrictionIsFeltAsPainted) {
   const std::vector<Vec3> way{{-0.015, 0, kTop}, {0.015, 0, kTop}};
-  const std::string strokes = script("mu.json", {stroke(Tool::static_friction, 0.6, 0.008, way),
-                                                 stroke(Tool::dynamic_friction, 0.4, 0.008, way)});
+  const std::string strokes = script(
+      "mu.json", {stroke(Tool::material(MaterialChannel::static_friction), 0.6, 0.008, way),
+                  stroke(Tool::material(MaterialChannel::dynamic_friction), 0.4, 0.008, way)});
   ASSERT_EQ(run({"paint", workspace, "--strokes", strokes, "-o", workspace}).exit, 0);
   std::string text = "t [s],x [m],y [m],z [m]\n";
   for (int i = 0; i < 1000; ++i)
@@ -89,8 +90,10 @@ TEST_F(Paint, ReliefIsFeltAsHighAsPainted) {
 
 // Colour, stiffness and friction by one stroke: one edit, on disk as one record.
 TEST_F(Paint, LayersOfAStrokeAreOneEditAndReplayToTheSameBits) {
-  Stroke several = stroke(Tool::stiffness, 900, 0.008, {{0.0003, 0.0004, kTop}});
-  several.brush.also = {{Tool::color, {0.2, 0.9, 0.4}, 0}, {Tool::static_friction, {}, 0.6}};
+  Stroke several =
+      stroke(Tool::material(MaterialChannel::stiffness), 900, 0.008, {{0.0003, 0.0004, kTop}});
+  several.brush.also = {{Tool::color, {0.2, 0.9, 0.4}, 0},
+                        {Tool::material(MaterialChannel::static_friction), {}, 0.6}};
   several.brush.seed = Seed::segment;
   several.samples[0].tip = Vec3(0.0003, 0.0004, kTop - 1e-3);
   const std::string strokes = script("several.json", {several});
@@ -141,8 +144,9 @@ TEST_F(Paint, ReplayedFromAJournalGivesTheSameBits) {
   EXPECT_EQ(fingerprint(folder / "a"), fingerprint(folder / "b")); // no clock is in it
   // An undone stroke is no part of it.
   ASSERT_EQ(run({"paint", folder / "b", "--strokes",
-                 script("more.json", {stroke(Tool::damping, 2, 0.006, {{0, 0, kTop}})}), "-o",
-                 folder / "b"})
+                 script("more.json", {stroke(Tool::material(MaterialChannel::damping), 2, 0.006,
+                                             {{0, 0, kTop}})}),
+                 "-o", folder / "b"})
                 .exit,
             0);
   ASSERT_EQ(run({"undo", folder / "b"}).exit, 0);
@@ -169,10 +173,11 @@ TEST_F(Paint, OfAMeshMakesAWorkspace) {
 }
 
 TEST_F(Paint, SaysWhichStrokeTouchedNothing) {
-  std::vector<Stroke> strokes{stroke(Tool::relief, 1e-4, 0.004, {{0, 0, 0.5}}),
-                              stroke(Tool::stiffness, 900, 1e-4, {{0.0005, 0.0005, kTop}}),
-                              stroke(Tool::stiffness, 900, 0.0012, {{0, 0, kTop}}),
-                              stroke(Tool::stiffness, 900, 0.006, {{0, 0, kTop}})};
+  std::vector<Stroke> strokes{
+      stroke(Tool::relief, 1e-4, 0.004, {{0, 0, 0.5}}),
+      stroke(Tool::material(MaterialChannel::stiffness), 900, 1e-4, {{0.0005, 0.0005, kTop}}),
+      stroke(Tool::material(MaterialChannel::stiffness), 900, 0.0012, {{0, 0, kTop}}),
+      stroke(Tool::material(MaterialChannel::stiffness), 900, 0.006, {{0, 0, kTop}})};
   const std::string before = fingerprint(workspace);
   const Outcome outcome = run(
       {"paint", workspace, "--strokes", script("s.json", strokes), "-o", folder / "p", "--json"});
@@ -252,7 +257,9 @@ TEST_F(Paint, StrokesThatWereNeverSavedAreThereInTheNextCommand) {
   {
     Progress progress;
     const auto editor = Editor::open(workspace, {}, progress);
-    editor->apply(stroke(Tool::stiffness, 1200, 0.006, {{-0.01, 0.01, kTop}}), progress);
+    editor->apply(
+        stroke(Tool::material(MaterialChannel::stiffness), 1200, 0.006, {{-0.01, 0.01, kTop}}),
+        progress);
     editor->apply(stroke(Tool::relief, 3e-4, 0.006, {{0.01, -0.01, kTop}}), progress);
     expected = editor->scene();
     std::filesystem::copy(workspace, torn, std::filesystem::copy_options::recursive);
@@ -271,7 +278,8 @@ TEST_F(Paint, StrokesThatWereNeverSavedAreThereInTheNextCommand) {
 TEST_F(Paint, InterruptedLeavesTheOutputAloneAndInPlaceWhatWasDone) {
   std::vector<Stroke> strokes;
   for (int i = 0; i < 400; ++i)
-    strokes.push_back(stroke(Tool::stiffness, 600 + i, 0.008, {{-0.02, 0, kTop}, {0.02, 0, kTop}}));
+    strokes.push_back(stroke(Tool::material(MaterialChannel::stiffness), 600 + i, 0.008,
+                             {{-0.02, 0, kTop}, {0.02, 0, kTop}}));
   const std::string many = script("many.json", strokes);
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
   const std::string before = fingerprint(workspace);
@@ -303,7 +311,8 @@ TEST_F(Paint, InterruptedLeavesTheOutputAloneAndInPlaceWhatWasDone) {
 TEST_F(Paint, KilledAtAnyMomentLosesNoFinishedStroke) {
   std::vector<Stroke> strokes;
   for (int i = 0; i < 60; ++i)
-    strokes.push_back(stroke(i % 2 ? Tool::stiffness : Tool::relief, i % 2 ? 800 : 1e-4, 0.004,
+    strokes.push_back(stroke(i % 2 ? Tool::material(MaterialChannel::stiffness) : Tool::relief,
+                             i % 2 ? 800 : 1e-4, 0.004,
                              {{-0.02 + 6e-4 * i, 0, kTop}, {-0.02 + 6e-4 * i, 0.01, kTop}}));
   const std::string many = script("many.json", strokes);
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);

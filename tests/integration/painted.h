@@ -60,7 +60,7 @@ class Painted : public testing::Test {
   }
   std::string three() const {
     return script("three.json",
-                  {stroke(Tool::stiffness, 900, 0.006, {{0, 0, kTop}}),
+                  {stroke(Tool::material(MaterialChannel::stiffness), 900, 0.006, {{0, 0, kTop}}),
                    stroke(Tool::relief, 5e-4, 0.008, {{-0.01, 0, kTop}, {0.01, 0.005, kTop}}),
                    stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}})});
   }

@@ -105,7 +105,9 @@ TEST_F(PaintPicture, WithoutTheLayerOrWithoutPaintItIsThePlainObject) {
   SceneObject bare = painted;
   bare.paint = nullptr;
   show({bare});
-  const Pixels plain = drawn("plain", {Layer::mesh, Layer::color, Layer::stiffness, Layer::relief});
+  const Pixels plain =
+      drawn("plain", {Layer::mesh, Layer::color, layerOf(quantityOf(MaterialChannel::stiffness)),
+                      Layer::relief});
   for (int y = 0; y < plain.height(); y += 3)
     for (int x = 0; x < plain.width(); x += 3) ASSERT_EQ(plain.at(x, y), off.at(x, y));
 }
@@ -184,8 +186,9 @@ TEST_F(PaintPicture, StiffnessColoursAPlateOfTwoTrianglesByItsMap) { // K22, K23
       [](const Vec3& p) { return p.x() > 0.01; });
   setPaint(object, paint);
   show({object});
-  const Pixels pixels = drawn("stiffness", {Layer::mesh, Layer::stiffness});
-  EXPECT_EQ(view_.paintRange(PaintQuantity::stiffness), (ValueRange{500, 1000}));
+  const Pixels pixels =
+      drawn("stiffness", {Layer::mesh, layerOf(quantityOf(MaterialChannel::stiffness))});
+  EXPECT_EQ(view_.paintRange(quantityOf(MaterialChannel::stiffness)), (ValueRange{500, 1000}));
   const auto dark = [](const Vec3& c) { return c.maxCoeff() < 110 && c[2] > c[1]; };
   const auto pale = [](const Vec3& c) { return c[0] > 200 && c[2] < c[0] - 15; };
   const Spot stiff = spotOf(pixels, [&](const Vec3& c) { return dark(c); });
@@ -196,9 +199,10 @@ TEST_F(PaintPicture, StiffnessColoursAPlateOfTwoTrianglesByItsMap) { // K22, K23
   EXPECT_GT(pixels.share(dark, 0.88, 1, 0.2, 0.8), 0.01);
   EXPECT_GT(pixels.share(pale, 0.88, 1, 0.2, 0.8), 0.01);
 
-  view_.lockPaintRange(PaintQuantity::stiffness, ValueRange{0, 4000});
-  const Pixels locked = drawn("stiffness_locked", {Layer::mesh, Layer::stiffness});
-  EXPECT_EQ(view_.paintRange(PaintQuantity::stiffness), (ValueRange{0, 4000}));
+  view_.lockPaintRange(quantityOf(MaterialChannel::stiffness), ValueRange{0, 4000});
+  const Pixels locked =
+      drawn("stiffness_locked", {Layer::mesh, layerOf(quantityOf(MaterialChannel::stiffness))});
+  EXPECT_EQ(view_.paintRange(quantityOf(MaterialChannel::stiffness)), (ValueRange{0, 4000}));
   EXPECT_EQ(locked.share(dark, 0.2, 0.8, 0.3, 0.7), 0);
 }
 
@@ -278,7 +282,8 @@ TEST_F(PaintPicture, TheSliceShowsMaterialWhereItIsPainted) {
       gridAround(Box3(Vec3::Constant(-kRadius), Vec3::Constant(kRadius)), spec), spec.band)));
   view_.setSlice({1, 0.5});
   const Pixels pixels =
-      drawn("slice", {Layer::mesh, Layer::slice, Layer::stiffness}, ViewPreset::minus_y);
+      drawn("slice", {Layer::mesh, Layer::slice, layerOf(quantityOf(MaterialChannel::stiffness))},
+            ViewPreset::minus_y);
   const auto dark = [](const Vec3& c) { return c.maxCoeff() < 130 && c[2] > c[0] + 10; };
   EXPECT_GT(pixels.share(dark, 0.55, 0.8, 0.35, 0.65), 0.05);
   EXPECT_EQ(pixels.share(dark, 0.14, 0.4, 0.35, 0.65), 0);

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "scene/scene.h"
+#include "scene/scene_values.h"
 
 namespace patina {
 namespace {
@@ -199,6 +200,38 @@ TEST(SceneValues, ARefusedValueLeavesTheSceneAsItWas) {
   }
   EXPECT_THROW(setValues(scene, {{"stiffness", "100"}, {"band", "0"}}), Error);
   EXPECT_EQ(values(scene), withEverything());
+}
+
+TEST(SceneValues, TheUsualWordOfEveryKeyIsThatOfANewScene) {
+  const List fresh = values(Scene{});
+  for (const auto& [key, value] : fresh) EXPECT_EQ(sceneKey(key).usual, value) << key;
+  for (const char* key : {"contact", "surface.sides", "merge.redistance", "relief.mode",
+                          "relief.height", "relief.force", "material.force", "paint.size",
+                          "stabiliser", "damping", "voxel", "device.mass"}) {
+    Scene scene;
+    setValue(scene, key, sceneKey(key).usual);
+    EXPECT_EQ(values(scene), fresh) << key;
+  }
+}
+
+// The words that stand in journals.
+TEST(SceneValues, TheWordForWhatIsLeftOutStaysAsItWas) {
+  const List words{{"contact", "proxy"},
+                   {"surface.sides", "one"},
+                   {"merge.redistance", "off"},
+                   {"relief.mode", "pulled"},
+                   {"relief.source", "none"},
+                   {"relief.height", "0.001"},
+                   {"relief.smoothing", "none"},
+                   {"relief.force", "conservative"},
+                   {"material.force", "conservative"},
+                   {"paint.size", "512"},
+                   {"stabiliser", "auto"},
+                   {"friction.slip", "none"},
+                   {"magnet.fades", "none"},
+                   {"device.delay", "none"}};
+  for (const auto& [key, word] : words) EXPECT_EQ(sceneKey(key).usual, word) << key;
+  EXPECT_THROW(sceneKey("stifness"), std::out_of_range);
 }
 
 TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {

@@ -53,7 +53,7 @@ TEST(Strokes, EveryKeyIsRead) {
   EXPECT_EQ(strokes[0].samples[1].force, 0);
   // What is left out is as in Brush.
   Brush usual;
-  usual.tool = Tool::static_friction;
+  usual.tool = Tool::material(MaterialChannel::static_friction);
   usual.value = 0.7;
   EXPECT_EQ(strokes[1].brush, usual);
   EXPECT_EQ(strokes[2].brush.erases, "relief");
@@ -63,7 +63,9 @@ TEST(Strokes, WrittenOnesReadBackBitForBit) {
   std::vector<Stroke> strokes = parseStrokes(kWhole, "hand.json");
   strokes[0].samples[0].position = Vec3(1.0 / 3, -0.1, 1e-17);
   strokes[0].brush.radius = 0.1 / 3;
-  for (const Tool tool : {Tool::relief, Tool::stiffness, Tool::damping, Tool::roughness}) {
+  for (const Tool tool :
+       {Tool::relief, Tool::material(MaterialChannel::stiffness),
+        Tool::material(MaterialChannel::damping), Tool::material(MaterialChannel::roughness)}) {
     Stroke stroke;
     stroke.brush.tool = tool;
     stroke.brush.value = 1e-4 / 3;
@@ -86,9 +88,9 @@ TEST(Strokes, SeveralLayersAreOneStrokeAndOneLayerIsTheOldForm) {
   EXPECT_EQ(brush.seed, Seed::segment);
   ASSERT_EQ(layersOf(brush).size(), 3U);
   EXPECT_EQ(layersOf(brush)[0].color, (std::array<double, 3>{0.1, 0.2, 1}));
-  ASSERT_NE(layerOf(brush, Tool::stiffness), nullptr);
-  EXPECT_EQ(layerOf(brush, Tool::stiffness)->value, 900);
-  EXPECT_EQ(layerOf(brush, Tool::static_friction)->value, 0.7);
+  ASSERT_NE(layerOf(brush, Tool::material(MaterialChannel::stiffness)), nullptr);
+  EXPECT_EQ(layerOf(brush, Tool::material(MaterialChannel::stiffness))->value, 900);
+  EXPECT_EQ(layerOf(brush, Tool::material(MaterialChannel::static_friction))->value, 0.7);
   EXPECT_EQ(layerOf(brush, Tool::relief), nullptr);
   EXPECT_EQ(strokes[0].samples[0].tip, std::optional(Vec3(0.1, 0.2, 0.9)));
   EXPECT_FALSE(strokes[0].samples[1].tip);
@@ -209,7 +211,7 @@ TEST(Edits, AreDescribedInAFewWords) {
   stroke.brush.tool = Tool::relief;
   stroke.brush.value = 3e-4;
   EXPECT_EQ(describe(stroke), "relief 0.3 mm");
-  stroke.brush.tool = Tool::stiffness;
+  stroke.brush.tool = Tool::material(MaterialChannel::stiffness);
   stroke.brush.value = 900;
   EXPECT_EQ(describe(stroke), "stiffness 900 N/m");
   stroke.brush.mode = StrokeMode::smooth;

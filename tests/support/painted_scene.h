@@ -82,7 +82,7 @@ inline Scene paintedScene(double radius, unsigned seed, With with) {
 
 inline Stroke someStroke(int samples, double value) {
   Stroke stroke;
-  stroke.brush.tool = Tool::stiffness;
+  stroke.brush.tool = Tool::material(MaterialChannel::stiffness);
   stroke.brush.value = value;
   for (int i = 0; i < samples; ++i)
     stroke.samples.push_back({i / 60.0, Vec3(0.01 * i, 1.0 / 3, -i), 0.1 * i});

@@ -8,10 +8,10 @@
 #include <vtkNew.h>
 #include <vtkRenderer.h>
 
-#include "scene/surface_pick.h"
 #include "geometry/atlas/texture_layout.h"
 #include "scene/painted_value.h"
 #include "scene/relief_slope.h"
+#include "scene/surface_pick.h"
 #include "support/least_time.h"
 #include "support/one_thread.h"
 #include "support/painted_objects.h"
@@ -22,7 +22,7 @@ namespace patina {
 namespace {
 
 TEST(PaintColors, MaterialGetsDarkerInEqualSteps) {
-  const auto table = paintColors(PaintQuantity::stiffness, {0, 254});
+  const auto table = paintColors(quantityOf(MaterialChannel::stiffness), {0, 254});
   Vec3 before = Vec3::Zero();
   std::vector<double> steps;
   for (int i = 0; i <= 12; ++i) {
@@ -63,10 +63,10 @@ TEST(PaintQuantity, RangesHaveRoundEndsAndHoldWhatTheyAreOf) {
     EXPECT_GE(round.high, range.high - 1e-5 * (round.high - round.low));
     EXPECT_GT(round.high, round.low);
   }
-  EXPECT_EQ(arrayName(PaintQuantity::damping), "damping [N s/m]");
-  EXPECT_EQ(arrayName(PaintQuantity::static_friction), "friction.static");
+  EXPECT_EQ(arrayName(quantityOf(MaterialChannel::damping)), "damping [N s/m]");
+  EXPECT_EQ(arrayName(quantityOf(MaterialChannel::static_friction)), "friction.static");
   EXPECT_EQ(readingUnit(PaintQuantity::relief, {0, 5e-4}).per_si, 1e3);
-  EXPECT_EQ(readingUnit(PaintQuantity::roughness, {0, 2e-5}).per_si, 1e6);
+  EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::roughness), {0, 2e-5}).per_si, 1e6);
 }
 
 // g linear in space: its gradient along the surface is the tangent part, up to every edge.
@@ -201,7 +201,7 @@ PATINA_TIMED_TEST(PaintLayer, ADabCostsAFractionOfDrawingEverything) {
   test::Reference kernel;
   const double reference = test::leastSeconds({[&] { kernel.bake(); }})[0];
   for (const PaintQuantity quantity :
-       {PaintQuantity::color, PaintQuantity::relief, PaintQuantity::stiffness}) {
+       {PaintQuantity::color, PaintQuantity::relief, quantityOf(MaterialChannel::stiffness)}) {
     const vtkNew<vtkRenderer> renderer, overlay;
     PaintLayer layer(*renderer, *overlay);
     Scene scene = paintedScene(512);
@@ -230,12 +230,12 @@ TEST(PaintLayer, DrawsWhatIsPaintedOfWhatIsShown) {
   scene.objects.push_back(objectOf(sheet(0.1, 0.1, 1)));
   layer.set(scene);
   EXPECT_FALSE(layer.draws(0));
-  layer.show(PaintQuantity::stiffness);
+  layer.show(quantityOf(MaterialChannel::stiffness));
   EXPECT_TRUE(layer.draws(0));
   EXPECT_FALSE(layer.draws(1));
   EXPECT_FALSE(layer.draws(2));
-  EXPECT_FALSE(layer.has(PaintQuantity::damping));
-  layer.show(PaintQuantity::damping);
+  EXPECT_FALSE(layer.has(quantityOf(MaterialChannel::damping)));
+  layer.show(quantityOf(MaterialChannel::damping));
   EXPECT_FALSE(layer.draws(0));
   scene.objects[0].paint = nullptr;
   layer.set(scene);
@@ -249,19 +249,19 @@ TEST(PaintLayer, ItsRangeFollowsThePaintUntilItIsLocked) {
   PaintLayer layer(*renderer, *overlay);
   const Scene scene = paintedScene(128);
   layer.set(scene);
-  layer.show(PaintQuantity::stiffness);
+  layer.show(quantityOf(MaterialChannel::stiffness));
   layer.setVisible(true);
   layer.prepare();
-  const ValueRange found = layer.range(PaintQuantity::stiffness);
+  const ValueRange found = layer.range(quantityOf(MaterialChannel::stiffness));
   EXPECT_LE(found.low, 330);
   EXPECT_GE(found.high, 870);
   EXPECT_GT(found.low, 150);
-  layer.lockRange(PaintQuantity::stiffness, ValueRange{0, 100});
+  layer.lockRange(quantityOf(MaterialChannel::stiffness), ValueRange{0, 100});
   layer.prepare();
-  EXPECT_EQ(layer.range(PaintQuantity::stiffness), (ValueRange{0, 100}));
+  EXPECT_EQ(layer.range(quantityOf(MaterialChannel::stiffness)), (ValueRange{0, 100}));
   EXPECT_EQ(layer.colors()->GetRange()[1], 100);
-  layer.lockRange(PaintQuantity::stiffness, std::nullopt);
-  EXPECT_EQ(layer.range(PaintQuantity::stiffness), found);
+  layer.lockRange(quantityOf(MaterialChannel::stiffness), std::nullopt);
+  EXPECT_EQ(layer.range(quantityOf(MaterialChannel::stiffness)), found);
 }
 
 TEST(PaintedValue, IsWhatIsFeltAndHowMuchOfItIsPaint) { // K23

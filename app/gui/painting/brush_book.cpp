@@ -33,11 +33,8 @@ void BrushBook::suit(double extent, const HapticProperties& haptics) {
   own(Tool::color, 0);
   own_[Tool::color].color = {0.80, 0.22, 0.16};
   own(Tool::relief, rounded(std::clamp(0.006 * extent, 1e-4, 2e-3)));
-  own(Tool::stiffness, rounded(2.5 * haptics.stiffness));
-  own(Tool::static_friction, 0.8);
-  own(Tool::dynamic_friction, 0.5);
-  own(Tool::damping, 3);
-  own(Tool::roughness, 5e-5);
+  for (const Channel& row : kChannels) own(Tool::material(row.channel), row.usual);
+  own(Tool::material(MaterialChannel::stiffness), rounded(2.5 * haptics.stiffness));
   own(Tool::erase, 0);
 }
 

@@ -13,6 +13,7 @@
 #include <QToolButton>
 
 #include "app/gui/painting/brush_curve.h"
+#include "app/gui/painting/tool_choice.h"
 
 namespace patina {
 namespace {
@@ -30,25 +31,14 @@ QColor qColor(const std::array<double, 3>& color) {
   return QColor::fromRgbF(color[0], color[1], color[2]);
 }
 
-QString titleOf(Tool tool) {
-  switch (tool) {
-  case Tool::color:
-    return BrushPanel::tr("Brush: colour");
-  case Tool::relief:
-    return BrushPanel::tr("Brush: relief");
-  case Tool::stiffness:
-    return BrushPanel::tr("Brush: stiffness");
-  case Tool::static_friction:
-  case Tool::dynamic_friction:
-    return BrushPanel::tr("Brush: friction");
-  case Tool::damping:
-    return BrushPanel::tr("Brush: damping");
-  case Tool::roughness:
-    return BrushPanel::tr("Brush: roughness");
-  case Tool::erase:
-    break;
-  }
-  return BrushPanel::tr("Eraser");
+QString wordsOf(std::string_view utf8) {
+  return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
+}
+
+QString titleOf(const Tool& tool) {
+  if (tool == Tool::erase) return BrushPanel::tr("Eraser");
+  const auto channel = channelOf(tool);
+  return BrushPanel::tr("Brush: %1").arg(channel ? wordsOf(rowOf(*channel).tool) : captionOf(tool));
 }
 
 } // namespace
@@ -143,73 +133,64 @@ void BrushPanel::addColor() {
 }
 
 void BrushPanel::addValue(double extent) {
-  struct Kind {
-    QString caption, unit;
-    RowRange range;
-    double per_si;
-  };
+  if (brush_.tool == Tool::erase) return addErased();
   const double highest = 1000 * std::max(1e-3, std::min(0.05 * extent, 0.05));
-  Kind kind;
-  switch (brush_.tool) {
-  case Tool::relief:
-    kind = {tr("Height; below 0 it engraves"),
-            QStringLiteral("mm"),
-            {-highest, highest, highest / 50, 2},
-            1000};
-    break;
-  case Tool::stiffness:
-    kind = {tr("Stiffness"), QStringLiteral("N/m"), {10, 10000, 10, 0, true}, 1};
-    break;
-  case Tool::static_friction:
-  case Tool::dynamic_friction: {
-    const int now = brush_.tool == Tool::static_friction ? 0 : 1;
-    auto* which = addCombo("which_friction", tr("Paints"),
-                           {tr("static friction"), tr("dynamic friction")}, now);
-    connect(which, qOverload<int>(&QComboBox::activated), this, [this](int index) {
-      emit toolAsked(index == 0 ? Tool::static_friction : Tool::dynamic_friction);
-    });
-    kind = {tr("Coefficient"), {}, {0, 2, 0.05, 2}, 1};
-    break;
+  QString caption = tr("Height; below 0 it engraves"), unit = QStringLiteral("mm");
+  RowRange range{-highest, highest, highest / 50, 2};
+  double per_si = 1000;
+  if (const auto channel = channelOf(brush_.tool)) {
+    addChannels(*channel);
+    const Channel& row = rowOf(*channel);
+    const ChannelDial& dial = row.dial;
+    caption = wordsOf(row.dial_caption);
+    unit = wordsOf(row.reading.unit);
+    range = {dial.least, dial.most, dial.step, dial.decimals, dial.logarithmic};
+    per_si = row.reading.per_si;
   }
-  case Tool::damping:
-    kind = {tr("Damping"), QStringLiteral("N s/m"), {0, 20, 0.1, 2}, 1};
-    break;
-  case Tool::roughness:
-    kind = {tr("Roughness, rms"), QStringLiteral("µm"), {0, 500, 5, 0}, 1e6};
-    break;
-  default: {
-    const QStringList words = {tr("everything"), tr("colour"),          tr("relief"),
-                               tr("stiffness"),  tr("static friction"), tr("dynamic friction"),
-                               tr("damping"),    tr("roughness")};
-    int now = 0;
-    for (int i = 0; i < 7; ++i)
-      if (brush_.erases == name(static_cast<Tool>(i))) now = i + 1;
-    auto* what = addCombo("erases", tr("Erases"), words, now);
-    connect(what, qOverload<int>(&QComboBox::activated), this, [this](int index) {
-      brush_.erases = index == 0 ? std::string() : std::string(name(static_cast<Tool>(index - 1)));
-      change();
-    });
-    return;
-  }
-  }
-  const double per_si = kind.per_si;
-  ValueRow* row = addRow("brush_value", kind.caption, kind.unit, kind.range, per_si * brush_.value);
+  ValueRow* row = addRow("brush_value", caption, unit, range, per_si * brush_.value);
   connect(row, &ValueRow::edited, this, [this, per_si](double value) {
     brush_.value = value / per_si;
     change();
   });
 }
 
+// Which of the channels that share a tool.
+void BrushPanel::addChannels(MaterialChannel channel) {
+  std::vector<MaterialChannel> shared;
+  QStringList words;
+  int now = 0;
+  for (const Channel& row : kChannels) {
+    if (row.tool != rowOf(channel).tool) continue;
+    if (row.channel == channel) now = words.size();
+    shared.push_back(row.channel);
+    words << captionOf(Tool::material(row.channel));
+  }
+  if (shared.size() == 1) return;
+  const std::string name = "which_" + std::string(rowOf(channel).tool);
+  auto* which = addCombo(name.c_str(), tr("Paints"), words, now);
+  connect(which, qOverload<int>(&QComboBox::activated), this, [this, shared](int index) {
+    emit toolAsked(Tool::material(shared[static_cast<std::size_t>(index)]));
+  });
+}
+
+void BrushPanel::addErased() {
+  QStringList words{captionOf(Tool::erase)};
+  std::vector<std::string> names{""};
+  for (const Tool& tool : kTools) {
+    if (tool == Tool::erase) continue;
+    words << captionOf(tool);
+    names.emplace_back(name(tool));
+  }
+  const auto now = std::find(names.begin(), names.end(), brush_.erases) - names.begin();
+  auto* what = addCombo("erases", tr("Erases"), words, static_cast<int>(now));
+  connect(what, qOverload<int>(&QComboBox::activated), this, [this, names](int index) {
+    brush_.erases = names[static_cast<std::size_t>(index)];
+    change();
+  });
+}
+
 void BrushPanel::addLayers(const BrushBook& book) {
   if (brush_.tool == Tool::erase) return;
-  const std::array<std::pair<Tool, QString>, 7> tools{
-      {{Tool::color, tr("colour")},
-       {Tool::relief, tr("relief")},
-       {Tool::stiffness, tr("stiffness")},
-       {Tool::static_friction, tr("static friction")},
-       {Tool::dynamic_friction, tr("dynamic friction")},
-       {Tool::damping, tr("damping")},
-       {Tool::roughness, tr("roughness")}}};
   auto* box = new QToolButton(rows_);
   box->setObjectName(QStringLiteral("brush_also"));
   box->setText(tr("Paints also…"));
@@ -224,9 +205,9 @@ void BrushPanel::addLayers(const BrushBook& book) {
     box->setText(words.isEmpty() ? tr("Paints also…")
                                  : tr("Also: %1").arg(words.join(QStringLiteral(", "))));
   };
-  for (const auto& [tool, caption] : tools) {
+  for (const Tool& tool : kTools) {
     if (!canJoin(brush_, tool)) continue;
-    QAction* action = menu->addAction(caption);
+    QAction* action = menu->addAction(captionOf(tool));
     action->setObjectName(QStringLiteral("also_") +
                           QString::fromUtf8(std::string(name(tool)).c_str()));
     action->setCheckable(true);

@@ -27,6 +27,8 @@ class BrushPanel : public QGroupBox {
   void rebuild(const BrushBook& book);
   void addValue(double extent);
   void addColor();
+  void addChannels(MaterialChannel channel);
+  void addErased();
   void addSize(const BrushBook& book);
   void addShape();
   void addChoices();

@@ -22,6 +22,13 @@ QString number(double value) {
   return QString::fromStdString(formatNumber(std::round(value * 1e4) / 1e4));
 }
 
+// "3 N s/m", "50 um"
+QString measured(const Channel& row, double value) {
+  if (row.unit == "m") return QString::fromStdString(formatLength(value));
+  const QString unit = QString::fromStdString(std::string(row.unit));
+  return (number(value) + QStringLiteral(" ") + unit).trimmed();
+}
+
 } // namespace
 
 PaintDesk::PaintDesk(const Parts& parts, QObject* parent) : QObject(parent), at_(parts) {
@@ -207,9 +214,13 @@ QString PaintDesk::wordsFor(const Vec3& surface) const {
   QStringList words{object, tr("%1 N/m").arg(m.stiffness, 0, 'f', 0)};
   if (m.static_friction > 0 || m.dynamic_friction > 0)
     words << tr("friction %1 / %2").arg(number(m.static_friction), number(m.dynamic_friction));
-  if (m.damping > 0) words << tr("damping %1 N s/m").arg(number(m.damping));
-  if (m.roughness > 0)
-    words << tr("rough %1").arg(QString::fromStdString(formatLength(m.roughness)));
+  for (const Channel& row : kChannels) {
+    const double value = valueOf(m, row.channel);
+    if (row.channel <= MaterialChannel::dynamic_friction || !(value > 0)) continue; // above
+    const bool rough = row.channel == MaterialChannel::roughness;
+    const QString what = rough ? tr("rough") : captionOf(Tool::material(row.channel));
+    words << what + QStringLiteral(" ") + measured(row, value);
+  }
   if (values->height != 0) words << tr("relief %1 mm").arg(1000 * values->height, 0, 'f', 3);
   if (values->color[3] > 0) {
     const double cover = values->color[3];

@@ -12,44 +12,15 @@ namespace patina {
 namespace {
 
 QString caption(PaintQuantity quantity) {
-  switch (quantity) {
-  case PaintQuantity::color:
-    return PaintDisplay::tr("colour");
-  case PaintQuantity::relief:
-    return PaintDisplay::tr("relief");
-  case PaintQuantity::stiffness:
-    return PaintDisplay::tr("stiffness");
-  case PaintQuantity::static_friction:
-    return PaintDisplay::tr("static friction");
-  case PaintQuantity::dynamic_friction:
-    return PaintDisplay::tr("dynamic friction");
-  case PaintQuantity::damping:
-    return PaintDisplay::tr("damping");
-  case PaintQuantity::roughness:
-    return PaintDisplay::tr("roughness");
-  }
-  return {};
+  if (const auto channel = channelOf(quantity)) return captionOf(Tool::material(*channel));
+  return captionOf(quantity == PaintQuantity::color ? Tool::color : Tool::relief);
 }
 
 // The unit that a person reads, fixed for a quantity: a field must not change it under the hand.
-struct Reading {
-  QString unit;
-  double per_si;
-  int decimals;
-};
-Reading reading(PaintQuantity quantity) {
-  switch (quantity) {
-  case PaintQuantity::relief:
-    return {QStringLiteral(" mm"), 1e3, 3};
-  case PaintQuantity::roughness:
-    return {QStringLiteral(" µm"), 1e6, 1};
-  case PaintQuantity::stiffness:
-    return {QStringLiteral(" N/m"), 1, 0};
-  case PaintQuantity::damping:
-    return {QStringLiteral(" N s/m"), 1, 2};
-  default:
-    return {{}, 1, 3};
-  }
+ChannelReading reading(PaintQuantity quantity) {
+  if (const auto channel = channelOf(quantity)) return rowOf(*channel).reading;
+  return quantity == PaintQuantity::relief ? ChannelReading{"mm", 1e3, 3}
+                                           : ChannelReading{"", 1, 3};
 }
 
 constexpr int kFollows = 0, kNothing = 1, kFirst = 2;
@@ -148,11 +119,12 @@ void PaintDisplay::decide() {
   if (now == shown_) return;
   shown_ = now;
   if (scalar) {
-    const Reading read = reading(*now);
+    const ChannelReading read = reading(*now);
+    const std::string suffix = read.unit.empty() ? "" : " " + std::string(read.unit);
     const QSignalBlocker quiet(lock_), quiet_low(low_), quiet_high(high_);
     per_si_ = read.per_si;
     for (QDoubleSpinBox* number : {low_, high_}) {
-      number->setSuffix(read.unit);
+      number->setSuffix(QString::fromStdString(suffix));
       number->setDecimals(read.decimals);
       number->setEnabled(locked_[static_cast<std::size_t>(*now)]);
     }

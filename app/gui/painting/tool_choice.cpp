@@ -122,6 +122,25 @@ void drawPick(QPainter& p) { // a pipette
 
 using Draw = void (*)(QPainter&);
 
+// How a channel's button looks and is reached, where it has a picture or a key of its own.
+struct Button {
+  std::string_view tool; // of the channel
+  Draw draw;
+  int key;
+  bool seldom; // in the small menu
+};
+constexpr Button kButtons[] = {{"stiffness", drawStiffness, Qt::Key_D, false},
+                               {"friction", drawFriction, Qt::Key_G, false},
+                               {"damping", drawDamping, Qt::Key_J, true},
+                               {"roughness", drawRoughness, Qt::Key_U, true}};
+
+Button buttonOf(MaterialChannel channel) {
+  const std::string_view tool = rowOf(channel).tool;
+  for (const Button& button : kButtons)
+    if (button.tool == tool) return button;
+  return {tool, drawBrush, 0, true};
+}
+
 Draw drawerOf(const ToolChoice& choice) {
   switch (choice.handling) {
   case Handling::navigate:
@@ -133,59 +152,57 @@ Draw drawerOf(const ToolChoice& choice) {
   case Handling::paint:
     break;
   }
-  switch (choice.tool) {
-  case Tool::color:
-    return drawBrush;
-  case Tool::relief:
-    return drawRelief;
-  case Tool::stiffness:
-    return drawStiffness;
-  case Tool::static_friction:
-  case Tool::dynamic_friction:
-    return drawFriction;
-  case Tool::damping:
-    return drawDamping;
-  case Tool::roughness:
-    return drawRoughness;
-  case Tool::erase:
-    break;
+  if (const auto channel = channelOf(choice.tool)) return buttonOf(*channel).draw;
+  if (choice.tool == Tool::color) return drawBrush;
+  return choice.tool == Tool::relief ? drawRelief : drawErase;
+}
+
+QString capitalized(std::string_view word) {
+  QString text = QString::fromUtf8(word.data(), static_cast<int>(word.size()));
+  return text.isEmpty() ? text : text.left(1).toUpper() + text.mid(1);
+}
+
+QString tr(std::string_view words) {
+  return tr(std::string(words).c_str());
+}
+
+std::vector<ToolCard> makeCards() {
+  const auto paint = [](Tool tool) { return ToolChoice{Handling::paint, tool}; };
+  std::vector<ToolCard> cards = {{{Handling::navigate, {}},
+                                  "tool_navigate",
+                                  tr("Navigate"),
+                                  tr("Left drag turns the camera, the wheel zooms"),
+                                  Qt::Key_A},
+                                 {{Handling::feel, {}},
+                                  "tool_feel",
+                                  tr("Feel"),
+                                  tr("Left drag moves the tip, the wheel moves it in depth"),
+                                  Qt::Key_V},
+                                 {paint(Tool::color), "tool_color", tr("Paint"),
+                                  tr("Paint colour onto the surface"), Qt::Key_P},
+                                 {paint(Tool::relief), "tool_relief", tr("Relief"),
+                                  tr("Raise or engrave the surface, felt as it is painted"),
+                                  Qt::Key_H}};
+  for (const Channel& row : kChannels) {
+    if (firstOfTool(row.channel) != row.channel) continue;
+    const Button button = buttonOf(row.channel);
+    cards.push_back({paint(Tool::material(row.channel)), "tool_" + std::string(row.tool),
+                     capitalized(row.tool), tr(row.tip), button.key, button.seldom});
   }
-  return drawErase;
+  cards.push_back({paint(Tool::erase), "tool_erase", tr("Erase"),
+                   tr("Take away what was painted, all of it or one kind"), Qt::Key_X});
+  cards.push_back({{Handling::pick, {}},
+                   "tool_pick",
+                   tr("Eyedropper"),
+                   tr("Take what is painted at a place into the brush; with Alt, any tool does"),
+                   Qt::Key_C});
+  return cards;
 }
 
 } // namespace
 
 const std::vector<ToolCard>& toolCards() {
-  const auto paint = [](Tool tool) { return ToolChoice{Handling::paint, tool}; };
-  static const std::vector<ToolCard> kCards = {
-      {{Handling::navigate, {}},
-       "tool_navigate",
-       tr("Navigate"),
-       tr("Left drag turns the camera, the wheel zooms"),
-       Qt::Key_A},
-      {{Handling::feel, {}},
-       "tool_feel",
-       tr("Feel"),
-       tr("Left drag moves the tip, the wheel moves it in depth"),
-       Qt::Key_V},
-      {paint(Tool::color), "tool_color", tr("Paint"), tr("Paint colour onto the surface"),
-       Qt::Key_P},
-      {paint(Tool::relief), "tool_relief", tr("Relief"),
-       tr("Raise or engrave the surface, felt as it is painted"), Qt::Key_H},
-      {paint(Tool::stiffness), "tool_stiffness", tr("Stiffness"),
-       tr("Make places softer or harder"), Qt::Key_D},
-      {paint(Tool::static_friction), "tool_friction", tr("Friction"),
-       tr("Make places slippery or grippy, static and dynamic"), Qt::Key_G},
-      {paint(Tool::damping), "tool_damping", tr("Damping"), tr("Make places viscous"), Qt::Key_J},
-      {paint(Tool::roughness), "tool_roughness", tr("Roughness"),
-       tr("Give places a fine rough pattern"), Qt::Key_U},
-      {paint(Tool::erase), "tool_erase", tr("Erase"),
-       tr("Take away what was painted, all of it or one kind"), Qt::Key_X},
-      {{Handling::pick, {}},
-       "tool_pick",
-       tr("Eyedropper"),
-       tr("Take what is painted at a place into the brush; with Alt, any tool does"),
-       Qt::Key_C}};
+  static const std::vector<ToolCard> kCards = makeCards();
   return kCards;
 }
 
@@ -203,6 +220,13 @@ QIcon iconOf(const ToolChoice& choice) {
     icon.addPixmap(pixmap);
   }
   return icon;
+}
+
+QString captionOf(const Tool& tool) {
+  if (const auto channel = channelOf(tool)) return tr(rowOf(*channel).caption);
+  return tool == Tool::color    ? tr("colour")
+         : tool == Tool::relief ? tr("relief")
+                                : tr("everything");
 }
 
 std::optional<PaintQuantity> quantityOf(const ToolChoice& choice) {

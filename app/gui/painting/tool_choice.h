@@ -25,12 +25,15 @@ struct ToolChoice {
 // How a tool is called, drawn and reached.
 struct ToolCard {
   ToolChoice choice;
-  const char* name; // object name of its action
+  std::string name; // object name of its action
   QString words, tip;
-  int key;
+  int key;             // 0: none
+  bool seldom = false; // in the small menu
 };
 const std::vector<ToolCard>& toolCards(); // in the order of the tool bar
 QIcon iconOf(const ToolChoice& choice);   // drawn for 20 pixels
+
+QString captionOf(const Tool& tool); // "static friction", "colour"
 
 // What shows what a tool does; nullopt for what does not paint, and for the eraser.
 std::optional<PaintQuantity> quantityOf(const ToolChoice& choice);

@@ -1,19 +1,22 @@
 #include "app/gui/window/tool_bar.h"
 
+#include <algorithm>
+
 namespace patina {
 namespace {
 
-// Seldom needed: in a small menu.
-bool isMore(const ToolChoice& choice) {
-  return choice.handling == Handling::paint &&
-         (choice.tool == Tool::damping || choice.tool == Tool::roughness);
+// Channels of one tool share its button; the brush says which of them it paints.
+ToolChoice shownAs(ToolChoice choice) {
+  if (const auto channel = channelOf(choice.tool))
+    choice.tool = Tool::material(firstOfTool(*channel));
+  return choice;
 }
 
-// Both frictions are one tool whose brush says which.
-ToolChoice shownAs(ToolChoice choice) {
-  if (choice.handling == Handling::paint && choice.tool == Tool::dynamic_friction)
-    choice.tool = Tool::static_friction;
-  return choice;
+const ToolCard& cardOf(const ToolChoice& choice) {
+  const std::vector<ToolCard>& cards = toolCards();
+  const ToolChoice shown = shownAs(choice);
+  return *std::find_if(cards.begin(), cards.end(),
+                       [&](const ToolCard& card) { return card.choice == shown; });
 }
 
 bool paints(const ToolChoice& choice) {
@@ -39,15 +42,15 @@ ToolBar::ToolBar(QWidget* parent)
   bool has_more = false;
   for (const ToolCard& card : toolCards()) {
     QAction* action = group_->addAction(iconOf(card.choice), card.words);
-    action->setObjectName(QString::fromUtf8(card.name));
+    action->setObjectName(QString::fromStdString(card.name));
     action->setCheckable(true);
-    action->setShortcut(card.key);
+    if (card.key != 0) action->setShortcut(card.key);
     action->setToolTip(
         QStringLiteral("<b>%1</b> (%2)<br>%3")
             .arg(card.words, QKeySequence(card.key).toString(QKeySequence::NativeText), card.tip));
     const ToolChoice choice = card.choice;
     connect(action, &QAction::triggered, this, [this, choice] { choose(choice); });
-    if (!isMore(choice)) {
+    if (!card.seldom) {
       if (choice.handling == Handling::pick ||
           (choice.handling == Handling::paint && choice.tool == Tool::color))
         addSeparator();
@@ -69,17 +72,14 @@ ToolBar::ToolBar(QWidget* parent)
 }
 
 QAction* ToolBar::actionOf(const ToolChoice& choice) const {
-  const ToolChoice shown = shownAs(choice);
-  for (int i = 0; i < group_->actions().size(); ++i)
-    if (toolCards()[static_cast<std::size_t>(i)].choice == shown) return group_->actions()[i];
-  return group_->actions().front();
+  return group_->actions()[static_cast<int>(&cardOf(choice) - toolCards().data())];
 }
 
 void ToolBar::choose(const ToolChoice& choice) {
   QAction* action = actionOf(choice);
   if (!action->isEnabled()) return;
   action->setChecked(true);
-  if (isMore(choice)) more_->setDefaultAction(action);
+  if (cardOf(choice).seldom) more_->setDefaultAction(action);
   if (choice == choice_) return;
   choice_ = choice;
   emit chosen(choice_);

@@ -169,7 +169,7 @@ void showPainting(MainWindow& window, const std::filesystem::path& folder) {
   };
   paintAlong(window, ring, 1500);
   grab(window, folder / "relief.png");
-  choose(Tool::stiffness, 1100, 4, 0.03);
+  choose(Tool::material(MaterialChannel::stiffness), 1100, 4, 0.03);
   const Vec2 from = middle + Vec2(-0.05, 0.0), to = middle + Vec2(0.06, 0.01);
   paintAlong(
       window, [&](double t) { return Vec2(from + t * (to - from)); }, 900,

@@ -10,11 +10,9 @@ std::vector<MaterialInk> inksOf(const Brush& brush, const MaterialMap* map) {
   for (const BrushLayer& layer : layersOf(brush))
     if (const std::optional<MaterialChannel> channel = channelOf(layer.tool))
       inks.push_back({*channel, layer.value});
-  for (int t = 0; map && t < static_cast<int>(Tool::erase); ++t) {
-    const auto tool = static_cast<Tool>(t);
-    const std::optional<MaterialChannel> channel = channelOf(tool);
-    if (channel && erases(brush, tool) && map->has(*channel)) inks.push_back({*channel, 0});
-  }
+  for (const MaterialChannel channel : kAllMaterialChannels)
+    if (map && erases(brush, Tool::material(channel)) && map->has(channel))
+      inks.push_back({channel, 0});
   return inks;
 }
 

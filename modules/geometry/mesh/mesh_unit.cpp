@@ -3,21 +3,20 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/named.h"
 #include "core/numbers.h"
 
 namespace patina {
 namespace {
 
-struct UnitName {
-  MeshUnit unit;
-  std::string_view name;
+struct UnitName : Named<MeshUnit> {
   double metres; // 0: depends on the mesh
 };
-constexpr std::array<UnitName, 5> kUnits = {{{MeshUnit::mm, "mm", 1e-3},
-                                             {MeshUnit::cm, "cm", 1e-2},
-                                             {MeshUnit::m, "m", 1.0},
-                                             {MeshUnit::in, "in", 0.0254},
-                                             {MeshUnit::fit, "fit", 0.0}}};
+constexpr std::array<UnitName, 5> kUnits = {{{{MeshUnit::mm, "mm"}, 1e-3},
+                                             {{MeshUnit::cm, "cm"}, 1e-2},
+                                             {{MeshUnit::m, "m"}, 1.0},
+                                             {{MeshUnit::in, "in"}, 0.0254},
+                                             {{MeshUnit::fit, "fit"}, 0.0}}};
 
 const UnitName& entry(MeshUnit unit) {
   return kUnits[static_cast<std::size_t>(unit)];
@@ -39,13 +38,12 @@ constexpr double kLarge = 2.0;
 } // namespace
 
 MeshUnit parseMeshUnit(std::string_view text) {
-  for (const UnitName& known : kUnits)
-    if (known.name == text) return known.unit;
+  if (const auto unit = valueIn(kUnits, text)) return *unit;
   throw Error("unit '" + std::string(text) + "' is unknown; mm, cm, m, in and fit are");
 }
 
 std::string_view name(MeshUnit unit) {
-  return entry(unit).name;
+  return textIn(kUnits, unit);
 }
 
 ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit) {

@@ -32,38 +32,6 @@ bool covers(const MaterialMap& a, const MaterialMap& b) {
 
 } // namespace
 
-std::string_view name(MaterialChannel channel) {
-  static constexpr std::array<std::string_view, kMaterialChannels> kNames{
-      "stiffness", "friction.static", "friction.dynamic", "damping", "roughness"};
-  return kNames[static_cast<std::size_t>(channel)];
-}
-
-std::string_view unit(MaterialChannel channel) {
-  static constexpr std::array<std::string_view, kMaterialChannels> kUnits{"N/m", "", "", "N s/m",
-                                                                          "m"};
-  return kUnits[static_cast<std::size_t>(channel)];
-}
-
-double& valueOf(Material& material, MaterialChannel channel) {
-  switch (channel) {
-  case MaterialChannel::stiffness:
-    return material.stiffness;
-  case MaterialChannel::static_friction:
-    return material.static_friction;
-  case MaterialChannel::dynamic_friction:
-    return material.dynamic_friction;
-  case MaterialChannel::damping:
-    return material.damping;
-  case MaterialChannel::roughness:
-    break;
-  }
-  return material.roughness;
-}
-
-double valueOf(const Material& material, MaterialChannel channel) {
-  return valueOf(const_cast<Material&>(material), channel);
-}
-
 MaterialMap::MaterialMap(const Vec3& origin, double voxel) : origin_(origin), voxel_(voxel) {
   if (!origin.allFinite() || !(voxel > 0) || !std::isfinite(voxel))
     throw std::invalid_argument("MaterialMap: bad grid");

@@ -3,50 +3,16 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
-#include <string_view>
 
 #include "core/types.h"
 #include "field/store/block_node.h"
+#include "scene/paint/channels.h"
 #include "scene/paint/own_parts.h"
 
 namespace patina {
-
-// What a contact is made of at one point. SI.
-struct Material {
-  double stiffness = 500;      // K [N/m]
-  double static_friction = 0;  // mu_s
-  double dynamic_friction = 0; // mu_d
-  double damping = 0;          // B [N s/m]
-  double roughness = 0;        // [m], rms height of a fine pattern
-  bool operator==(const Material&) const = default;
-};
-
-enum class MaterialChannel : std::uint8_t {
-  stiffness,
-  static_friction,
-  dynamic_friction,
-  damping,
-  roughness
-};
-inline constexpr std::size_t kMaterialChannels = 5;
-inline constexpr std::array<MaterialChannel, kMaterialChannels> kAllMaterialChannels{
-    MaterialChannel::stiffness, MaterialChannel::static_friction, MaterialChannel::dynamic_friction,
-    MaterialChannel::damping, MaterialChannel::roughness};
-
-std::string_view name(MaterialChannel channel); // "stiffness", "friction.static", ...
-std::string_view unit(MaterialChannel channel); // "N/m", "" ...
-double& valueOf(Material& material, MaterialChannel channel);
-double valueOf(const Material& material, MaterialChannel channel);
-// What a scene allows for it, as validate() of scene.h: 0 or more.
-struct MaterialRange {
-  double least, most;
-};
-MaterialRange rangeOf(MaterialChannel channel);
 
 inline constexpr int kMaterialSide = kBlockSide; // nodes
 inline constexpr std::size_t kMaterialNodes = kBlockNodes;

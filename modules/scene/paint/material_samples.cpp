@@ -9,8 +9,6 @@ namespace {
 
 constexpr int kSide = kMaterialSide + 1;
 constexpr std::size_t kNodes = static_cast<std::size_t>(kSide) * kSide * kSide;
-// Every channel in the order of Material's members: a node's values copy straight into one.
-static_assert(sizeof(Material) == kMaterialChannels * sizeof(double));
 
 } // namespace
 

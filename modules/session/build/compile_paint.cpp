@@ -269,7 +269,7 @@ FeltReach reachAfter(const CompiledScene& compiled, const Brush& brush) {
   } else if (const BrushLayer* layer = layerOf(brush, Tool::relief)) {
     value += overshoot(scene) * std::abs(layer->value);
   }
-  if (const BrushLayer* layer = layerOf(brush, Tool::roughness))
+  if (const BrushLayer* layer = layerOf(brush, Tool::material(MaterialChannel::roughness)))
     value += kRoughnessPeak * std::abs(layer->value);
   reach.raised =
       brush.mode == StrokeMode::add ? reach.raised + value : std::max(reach.raised, value);

@@ -14,7 +14,7 @@ namespace patina {
 namespace {
 
 bool needsImages(Tool tool) {
-  return tool == Tool::color || tool == Tool::relief || tool == Tool::erase;
+  return tool.kind != Tool::Kind::material;
 }
 
 bool isFinite(const StrokeSample& sample) {

@@ -1,8 +1,8 @@
 #include "session/edit/value_edit.h"
 
 #include <algorithm>
-#include <map>
 
+#include "scene/scene_values.h"
 namespace patina {
 namespace {
 
@@ -14,21 +14,6 @@ const std::string* find(const List& list, const std::string& key) {
   return at == list.end() ? nullptr : &at->second;
 }
 
-// Keys that values() leaves out where they have their usual value, and its word.
-std::string wordForAbsent(const std::string& key) {
-  static const std::map<std::string, std::string> kUsual = {{"contact", "proxy"},
-                                                            {"surface.sides", "one"},
-                                                            {"merge.redistance", "off"},
-                                                            {"relief.mode", "pulled"},
-                                                            {"relief.height", "0.001"},
-                                                            {"relief.force", "conservative"},
-                                                            {"material.force", "conservative"},
-                                                            {"paint.size", "512"},
-                                                            {"stabiliser", "auto"}};
-  const auto usual = kUsual.find(key);
-  return usual == kUsual.end() ? "none" : usual->second;
-}
-
 } // namespace
 
 std::optional<ValueEdit> valueEdit(const Scene& before, const Scene& after) {
@@ -37,7 +22,7 @@ std::optional<ValueEdit> valueEdit(const Scene& before, const Scene& after) {
   // What goes comes first: the new value of a pair that excludes one another takes its place.
   for (const auto& [key, value] : old)
     if (!find(now, key) && !(key == "resolution" && find(now, "voxel")))
-      edit.values.emplace_back(key, wordForAbsent(key));
+      edit.values.emplace_back(key, sceneKey(key).usual);
   for (const auto& [key, value] : now) {
     const std::string* earlier = find(old, key);
     if (!earlier || *earlier != value) edit.values.emplace_back(key, value);

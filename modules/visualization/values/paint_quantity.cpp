@@ -47,17 +47,6 @@ std::vector<Vec3> sequentialColors() {
 
 } // namespace
 
-std::optional<MaterialChannel> channelOf(PaintQuantity quantity) {
-  if (quantity < PaintQuantity::stiffness) return std::nullopt;
-  return static_cast<MaterialChannel>(static_cast<int>(quantity) -
-                                      static_cast<int>(PaintQuantity::stiffness));
-}
-
-PaintQuantity quantityOf(MaterialChannel channel) {
-  return static_cast<PaintQuantity>(static_cast<int>(channel) +
-                                    static_cast<int>(PaintQuantity::stiffness));
-}
-
 bool hasPaint(const SceneObject& object, PaintQuantity quantity) {
   const ObjectPaint* paint = object.paint.get();
   if (paint == nullptr) return false;
@@ -123,10 +112,10 @@ vtkSmartPointer<vtkLookupTable> paintColors(PaintQuantity quantity, const ValueR
 
 ReadingUnit readingUnit(PaintQuantity quantity, const ValueRange& range) {
   if (quantity == PaintQuantity::color) return {"color", 1};
-  const bool length = quantity == PaintQuantity::relief || quantity == PaintQuantity::roughness;
-  if (!length) return {arrayName(quantity), 1};
+  const auto channel = channelOf(quantity);
+  if (channel && unit(*channel) != "m") return {arrayName(quantity), 1};
   const bool fine = std::max(std::abs(range.low), std::abs(range.high)) < 0.95e-4;
-  const std::string what = quantity == PaintQuantity::relief ? "relief" : "roughness";
+  const std::string what(channel ? name(*channel) : "relief");
   return {what + (fine ? " [\xC2\xB5m]" : " [mm]"), fine ? 1e6 : 1e3};
 }
 

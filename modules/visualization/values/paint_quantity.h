@@ -17,16 +17,18 @@ namespace patina {
 enum class PaintQuantity : std::uint8_t {
   color,  // as painted, over the object's own colour, with relief seen as relief
   relief, // height as colour, and seen as relief
-  stiffness,
-  static_friction,
-  dynamic_friction,
-  damping,
-  roughness
+  first_channel
 };
-inline constexpr std::size_t kPaintQuantities = 7;
+inline constexpr std::size_t kFirstChannel = static_cast<std::size_t>(PaintQuantity::first_channel);
+inline constexpr std::size_t kPaintQuantities = kFirstChannel + kMaterialChannels;
 
-std::optional<MaterialChannel> channelOf(PaintQuantity quantity);
-PaintQuantity quantityOf(MaterialChannel channel);
+constexpr std::optional<MaterialChannel> channelOf(PaintQuantity quantity) {
+  if (quantity < PaintQuantity::first_channel) return std::nullopt;
+  return static_cast<MaterialChannel>(static_cast<std::size_t>(quantity) - kFirstChannel);
+}
+constexpr PaintQuantity quantityOf(MaterialChannel channel) {
+  return static_cast<PaintQuantity>(static_cast<std::size_t>(channel) + kFirstChannel);
+}
 
 // Whether an object, or any object of a scene, has some of it painted. Relief is seen in colour,
 // too.

@@ -24,13 +24,9 @@ enum class Layer : std::uint8_t {
   wireframe, // edges of the mesh and of the iso-surface
   // What was painted, on the surface and (material) on the slice. One is shown at a time: the last
   // of these that is on, under stability.
-  color,            // in the objects' colours; with relief seen as relief
-  relief,           // its height as colour
-  stiffness,        // and the other values of material as they are felt, paint over the scene's own
-  static_friction,  // "friction.static"
-  dynamic_friction, // "friction.dynamic"
-  damping,
-  roughness
+  color,        // in the objects' colours; with relief seen as relief
+  relief,       // its height as colour
+  first_channel // and the others of kChannels after it: as felt, paint over the scene's own
 };
 
 // "mesh,slice,band". Throws Error naming the choices.
