@@ -75,8 +75,9 @@ std::vector<std::string> meshWarnings(const MeshReport& report) {
 std::optional<std::string> thinSheetWarning(const MeshReport& report) {
   if (report.boundary_edges == 0) return std::nullopt;
   return formatCount(report.boundary_edges) + (report.boundary_edges == 1 ? " edge" : " edges") +
-         " of one triangle: what is open has no inside and is felt from its front; set "
-         "surface.sides=two and tip.radius or offset to feel both sides";
+         " of one triangle: holes are closed over, what stays open is felt from its front "
+         "(patina info, sides); from both sides with patina scene --set surface.sides=two "
+         "--set tip.radius=1mm";
 }
 
 namespace {
