@@ -33,6 +33,10 @@ ContactTestErrors errorsOf(int frequency, const ContactTestSpec& spec, double cr
   const ContactTestErrors errors = contactTestErrors(*snapshot, makeContactTest(spec));
   EXPECT_EQ(errors.lost, 0); // F.n < K d / 2 counts
   EXPECT_EQ(errors.faults, 0);
+  std::printf(
+      "direction %.2g (max %.2g) degrees, magnitude %.2g (max %.2g) %%, jump %.2g, Coulomb %.5f\n",
+      errors.direction_mean, errors.direction_max, errors.magnitude_mean, errors.magnitude_max,
+      errors.jump_rms, errors.coulomb_ratio);
   return errors;
 }
 
