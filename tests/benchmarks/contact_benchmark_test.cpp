@@ -135,8 +135,8 @@ TEST(ContactScale, ForceIsTheSameAtEverySizeOfMesh) {
     for (std::size_t i = 0; i < force.size(); ++i)
       worst = std::max(worst, (force[i] - reference[i]).norm() / reference[i].norm());
     std::printf("R = %g m: %.2g\n", radius, worst);
-    // Over facets the last bit decides where a proxy's step ends: 2e-3 measured.
-    EXPECT_LE(worst, 5e-3) << radius;
+    // Over facets the last bit decides where a proxy's step ends: 1.2e-5 measured.
+    EXPECT_LE(worst, 3.6e-5) << radius;
   }
 }
 
