@@ -190,7 +190,8 @@ def main():
             if not by:
                 survivors.append(m)
             print(f"{m.number:4} {seconds:5.1f} s  {m.path}:{m.line}: {m.change}  "
-                  f"{'caught by ' + by if by else 'SURVIVED'}", flush=True)
+                  f"{'caught by ' + by if by else 'SURVIVED'}"
+                  f"{'' if any(m.number in t[3] for t in tests) else ', no test comes by'}", flush=True)
     for m in survivors:
         print(f"survived: {m.path}:{m.line} | {m.was} | {m.change}")
     share = 100 * caught / max(1, len(mutants))

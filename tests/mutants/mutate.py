@@ -19,7 +19,7 @@ class Mutant:
     end: int
     line: int
     last_line: int
-    was: str  # the site, on one line
+    was: str  # the lines of the site, as one
     change: str  # "a < b -> a >= b", as short as it can be told
     text: str  # what replaces the site; @ stands for the number
     number: int = 0
@@ -103,8 +103,9 @@ class Source:
         return bisect.bisect_right(self.starts, at) + 1
 
     def add(self, begin, end, change, replacement):
+        first, last = self.text.rfind("\n", 0, begin) + 1, self.text.find("\n", end)
         self.mutants.append(Mutant(self.path, begin, end, self.line_of(begin), self.line_of(end),
-                                   one_line(self.text[begin:end]), change, replacement))
+                                   one_line(self.text[first:last]), change, replacement))
 
     def expression(self, begin, end, site_begin, site_end, form):
         """Each change of [begin, end); form(changed, original) replaces the site."""
