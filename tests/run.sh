@@ -5,13 +5,15 @@
 #   tests/run.sh --sanitize thread      hand-over and servo tests under TSan
 #   tests/run.sh --fuzz [SECONDS]       each reader's fuzzer, 20 s each unless told
 #   tests/run.sh --quick                the tests alone, without sanitizers and fuzzers
+#   tests/run.sh --benchmarks           the long form of the benchmarks and of the contact course
+#   tests/run.sh --mutants [N]          whether the unit tests notice mistakes: N of 200 mutants
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 . "$here/app/packages.sh"
 cd "$here"
 
 usage() {
-  sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
+  sed -n '2,9s/^# \{0,1\}//p' "$0" >&2
   exit 2
 }
 
@@ -91,6 +93,21 @@ run_thread() {
     --gtest_filter='*Servo*:*Mouse*' </dev/null
 }
 
+run_benchmarks() {
+  say "Benchmarks, long form"
+  configure build
+  build build benchmarks_tests contact_tests
+  PATINA_LONG=1 build/bin/benchmarks_tests </dev/null
+  PATINA_LONG=1 build/bin/contact_tests --gtest_filter='ContactCourse.*' </dev/null
+  if [ -z "$(missing_packages $PATINA_PEER_PACKAGES)" ]; then
+    configure build -DPATINA_PEERS=ON
+    build build peers_tests
+    build/bin/peers_tests </dev/null
+  else
+    say "Without $PATINA_PEER_PACKAGES: no comparison with it"
+  fi
+}
+
 run_fuzz() { # seconds each
   say "Fuzzing each reader for $1 s"
   configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
@@ -130,6 +147,16 @@ while [ $# -gt 0 ]; do
     esac
     ;;
   --quick) mode=quick ;;
+  --benchmarks) mode=benchmarks ;;
+  --mutants)
+    mode=mutants
+    mutants=200
+    case "${2:-}" in
+    '' | -*) ;;
+    *[!0-9]*) usage ;;
+    *) mutants=$2; shift ;;
+    esac
+    ;;
   *) usage ;;
   esac
   shift
@@ -166,5 +193,10 @@ quick) run_tests ;;
 address) run_address full ;;
 thread) run_thread ;;
 fuzz) run_fuzz "$seconds" ;;
+benchmarks) run_benchmarks ;;
+mutants)
+  say "Mutants of modules/haptics and modules/field"
+  tests/mutants/judge.py "$mutants"
+  ;;
 esac
 say "Passed"

@@ -33,6 +33,10 @@ ContactTestErrors errorsOf(int frequency, const ContactTestSpec& spec, double cr
   const ContactTestErrors errors = contactTestErrors(*snapshot, makeContactTest(spec));
   EXPECT_EQ(errors.lost, 0); // F.n < K d / 2 counts
   EXPECT_EQ(errors.faults, 0);
+  std::printf(
+      "direction %.2g (max %.2g) degrees, magnitude %.2g (max %.2g) %%, jump %.2g, Coulomb %.5f\n",
+      errors.direction_mean, errors.direction_max, errors.magnitude_mean, errors.magnitude_max,
+      errors.jump_rms, errors.coulomb_ratio);
   return errors;
 }
 
@@ -43,8 +47,8 @@ TEST_P(ContactBenchmark, AnalyticSphere) {
   const ContactTestErrors high = errorsOf(kAnalytic, {.tip_radius = GetParam()});
   EXPECT_LE(high.direction_mean, 0.005);
   EXPECT_LE(high.direction_max, 0.02);
-  EXPECT_LE(high.magnitude_mean, 0.001);
-  EXPECT_LE(high.magnitude_max, 0.01);
+  EXPECT_LE(high.magnitude_mean, 3e-4);
+  EXPECT_LE(high.magnitude_max, 2.5e-3);
   const ContactTestErrors kim =
       errorsOf(kAnalytic, {.tip_radius = GetParam(), .sampler = Sampler::kim});
   EXPECT_LE(kim.direction_mean, 0.005);
@@ -63,7 +67,7 @@ TEST_P(ContactBenchmark, SphereOf1MTriangles) {
   const ContactTestErrors high = errorsOf(k1M, {.tip_radius = GetParam()});
   EXPECT_LE(high.magnitude_mean, 0.02);
   EXPECT_LE(high.magnitude_max, 0.07);
-  EXPECT_LE(high.jump_rms, 0.0002);
+  EXPECT_LE(high.jump_rms, 1.25e-4);
   const ContactTestErrors kim = errorsOf(k1M, {.tip_radius = GetParam(), .sampler = Sampler::kim});
   EXPECT_LE(kim.magnitude_mean, 0.20);
   EXPECT_LE(kim.magnitude_max, 0.65);
@@ -72,14 +76,14 @@ TEST_P(ContactBenchmark, SphereOf1MTriangles) {
 TEST_P(ContactBenchmark, FrictionFollowsCoulomb) {
   for (const int surface : {kAnalytic, k100k}) {
     const ContactTestErrors paper = errorsOf(surface, {.tip_radius = GetParam(), .friction = true});
-    EXPECT_NEAR(paper.coulomb_ratio, 0.3, 0.002);
+    EXPECT_NEAR(paper.coulomb_ratio, 0.3, 1.3e-3);
     EXPECT_LE(paper.direction_mean, 0.60);
     EXPECT_LE(paper.direction_max, 2.2);
     const ContactTestErrors displacement =
         errorsOf(surface, {.tip_radius = GetParam(),
                            .friction = true,
                            .slip = Friction::SlipDirection::displacement});
-    EXPECT_NEAR(displacement.coulomb_ratio, 0.3, 0.002);
+    EXPECT_NEAR(displacement.coulomb_ratio, 0.3, 1.3e-3);
     EXPECT_LE(displacement.direction_mean, 0.10);
     EXPECT_LE(displacement.direction_max, 0.30);
   }
@@ -131,8 +135,8 @@ TEST(ContactScale, ForceIsTheSameAtEverySizeOfMesh) {
     for (std::size_t i = 0; i < force.size(); ++i)
       worst = std::max(worst, (force[i] - reference[i]).norm() / reference[i].norm());
     std::printf("R = %g m: %.2g\n", radius, worst);
-    // Over facets the last bit decides where a proxy's step ends: 2e-3 measured.
-    EXPECT_LE(worst, 5e-3) << radius;
+    // Over facets the last bit decides where a proxy's step ends: 1.2e-5 measured.
+    EXPECT_LE(worst, 3.6e-5) << radius;
   }
 }
 

@@ -26,7 +26,7 @@ double slowDab(Editor& editor, Tool tool, double value) {
   brush.radius = kBrush;
   std::vector<double> least(kDabs, std::numeric_limits<double>::infinity());
   Progress progress;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < test::longer(kRounds); ++round) {
     editor.beginStroke(brush, progress);
     for (std::size_t i = 0; i < kDabs; ++i) {
       const auto k = static_cast<double>(i);
@@ -54,18 +54,19 @@ PATINA_TIMED_TEST(EditorDab, ImageFieldAndMaterialTakeLittleOnAnyMesh) {
     test::Reference kernel;
     const double reference = test::leastSeconds({[&] { kernel.bake(); }})[0];
     std::printf("%d triangles, p99 over the dabs\n", 20 * frequency * frequency);
-    // Beside each limit what was measured on the small mesh and on the large one.
+    // Limits on the small mesh and on the large one, and what was measured alone. Compilers beside
+    // it drive the field out of the caches: 0.55 and 0.67 in the first row.
     struct Row {
       const char* name;
       Tool tool;
-      double value, most;
+      double value, small, large;
     };
-    for (const Row& row :
-         {Row{"  relief and field", Tool::relief, 3e-4, 0.9},                       // 0.22, 0.33
-          Row{"  material", Tool::material(MaterialChannel::stiffness), 900, 0.45}, // 0.10, 0.15
-          Row{"  colour", Tool::color, 0, 0.25}})                                   // 0.01, 0.09
-      EXPECT_TRUE(
-          test::within(row.name, slowDab(editor, row.tool, row.value), reference, row.most));
+    for (const Row& row : {Row{"  relief and field", Tool::relief, 3e-4, 0.9, 0.99}, // 0.22, 0.33
+                           Row{"  material", Tool::material(MaterialChannel::stiffness), 900, 0.3,
+                               0.45},                                    // 0.10, 0.15
+                           Row{"  colour", Tool::color, 0, 0.05, 0.27}}) // 0.01, 0.09
+      EXPECT_TRUE(test::within(row.name, slowDab(editor, row.tool, row.value), reference,
+                               frequency == 7 ? row.small : row.large));
   }
 }
 

@@ -69,7 +69,9 @@ struct Row {
   const char* name;
   Tool tool;
   StrokeMode mode;
-  double value, most; // limit on p99 in reference bakes: 2 to 3 times what a million faces take
+  // Limits on p99 in reference bakes, on the small mesh and on the large one: 2 to 3 times what
+  // they take.
+  double value, small, large;
 };
 
 PATINA_TIMED_TEST(PaintTiming, ADabCostsWhatTheBrushReachesOnAnyMesh) {
@@ -78,13 +80,13 @@ PATINA_TIMED_TEST(PaintTiming, ADabCostsWhatTheBrushReachesOnAnyMesh) {
   for (const int frequency : {7, 224}) { // 980 and 1,003,520 triangles
     const Prepared on = prepared(frequency);
     const double reference = test::leastSeconds({[&] { kernel.bake(); }})[0];
-    for (const Row& row :
-         {Row{"color", Tool::color, StrokeMode::max, 0, 0.2},
-          Row{"relief", Tool::relief, StrokeMode::build_up, 1e-3, 0.2},
-          Row{"relief smooth", Tool::relief, StrokeMode::smooth, 1e-3, 0.35},
-          Row{"stiffness", Tool::material(MaterialChannel::stiffness), StrokeMode::max, 1000, 0.25},
-          Row{"stiffness smooth", Tool::material(MaterialChannel::stiffness), StrokeMode::smooth,
-              1000, 0.2}}) {
+    for (const Row& row : {Row{"color", Tool::color, StrokeMode::max, 0, 0.055, 0.2},
+                           Row{"relief", Tool::relief, StrokeMode::build_up, 1e-3, 0.045, 0.2},
+                           Row{"relief smooth", Tool::relief, StrokeMode::smooth, 1e-3, 0.35, 0.35},
+                           Row{"stiffness", Tool::material(MaterialChannel::stiffness),
+                               StrokeMode::max, 1000, 0.25, 0.25},
+                           Row{"stiffness smooth", Tool::material(MaterialChannel::stiffness),
+                               StrokeMode::smooth, 1000, 0.2, 0.2}}) {
       Brush brush;
       brush.tool = row.tool;
       brush.mode = row.mode;
@@ -92,7 +94,7 @@ PATINA_TIMED_TEST(PaintTiming, ADabCostsWhatTheBrushReachesOnAnyMesh) {
       brush.radius = kBrush;
       std::vector<double> least(kDabs, 1); // a stroke is the same each time
       PaintReport sum;
-      for (int round = 0; round < kRounds; ++round) {
+      for (int round = 0; round < test::longer(kRounds); ++round) {
         sum = {};
         const std::vector<double> seconds = secondsOfDabs(on, brush, sum);
         for (std::size_t k = 0; k < least.size(); ++k) least[k] = std::min(least[k], seconds[k]);
@@ -102,7 +104,8 @@ PATINA_TIMED_TEST(PaintTiming, ADabCostsWhatTheBrushReachesOnAnyMesh) {
                   each(sum.faces), each(sum.texels), each(sum.nodes), sum.dabs);
       EXPECT_EQ(sum.missed, 0u);
       EXPECT_GT(sum.texels + sum.nodes, 100u * kDabs);
-      EXPECT_TRUE(test::within("  p99", percentiles(least).p99, reference, row.most));
+      EXPECT_TRUE(test::within("  p99", percentiles(least).p99, reference,
+                               frequency == 7 ? row.small : row.large));
     }
   }
 }

@@ -4,17 +4,16 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 #include <vector>
 
-#include <ctime>
-
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "geometry/mesh/shapes.h"
 #include "session/build/session.h"
 #include "session/edit/editor.h"
 #include "support/least_time.h"
+#include "support/one_thread.h"
 
 namespace patina {
 namespace {
@@ -23,7 +22,7 @@ constexpr double kRadius = 0.03;                                    // of the sp
 constexpr double kBrush = 0.05 * 2 * kRadius;                       // 5 % of the object
 constexpr double kDeviations[] = {0, 0.1e-3, 0.2e-3, 0.5e-3, 1e-3}; // [m]
 constexpr double kMost = 3;                                         // times a dab without smoothing
-constexpr int kDabs = 40, kRounds = 5;
+constexpr int kDabs = 40, kRounds = 15;
 
 std::unique_ptr<Editor> paintedBall(ReliefMode mode, int size, double deviation) {
   Progress progress;
@@ -41,13 +40,6 @@ std::unique_ptr<Editor> paintedBall(ReliefMode mode, int size, double deviation)
   return editor;
 }
 
-// Of this thread, so that other work on the machine does not count.
-double ownSeconds() {
-  std::timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 // Of each dab of a stroke, which is the same every round, the least: what else the machine does
 // can only add.
 void time(Editor& editor, int round, std::vector<double>& least) {
@@ -61,9 +53,9 @@ void time(Editor& editor, int round, std::vector<double>& least) {
     const double angle = 0.2 * kBrush / kRadius * i, tilt = 0.7;
     const Vec3 n(std::cos(angle) * std::sin(tilt), std::sin(angle) * std::sin(tilt),
                  std::cos(tilt));
-    const double start = ownSeconds();
+    const double start = test::threadSeconds();
     (void)editor.dab({i / 60.0, kRadius * n, 1});
-    const double seconds = ownSeconds() - start;
+    const double seconds = test::threadSeconds() - start;
     auto& best = least[static_cast<std::size_t>(i)];
     best = round == 0 ? seconds : std::min(best, seconds);
   }
@@ -76,16 +68,21 @@ double median(std::vector<double> values) {
 }
 
 PATINA_TIMED_TEST(SmoothedDab, CostsThreeTimesOneWithoutSmoothingOnAnyImage) {
-  // All of the work on one thread, whose time it is.
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const test::OneThread alone;
   for (const int size : {512, 2048})
     for (const ReliefMode mode : {ReliefMode::pulled, ReliefMode::baked}) {
       std::vector<std::unique_ptr<Editor>> editors;
       for (const double deviation : kDeviations)
         editors.push_back(paintedBall(mode, size, deviation));
       std::vector<std::vector<double>> least(editors.size(), std::vector<double>(kDabs));
-      for (int round = 0; round < kRounds; ++round) // in turn, so that all meet the same machine
+      // In turn, so that all meet the same machine, until nothing gets shorter by a hundredth.
+      double sum = std::numeric_limits<double>::infinity();
+      for (int round = 0, quiet = 0; round < test::longer(kRounds) && quiet < 3; ++round) {
         for (std::size_t e = 0; e < editors.size(); ++e) time(*editors[e], round, least[e]);
+        const double before = std::exchange(sum, 0);
+        for (const auto& each : least) sum += median(each);
+        quiet = sum < 0.99 * before ? 0 : quiet + 1;
+      }
       const double without = median(least[0]);
       for (std::size_t e = 1; e < editors.size(); ++e) {
         const double with = median(least[e]);

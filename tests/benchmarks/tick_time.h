@@ -19,7 +19,7 @@ struct TickTime {
 inline TickTime tickTime(const HapticSnapshot& snapshot, const ContactTest& test) {
   LeastSteps ticks(test.tips.size()), references(test.tips.size());
   Reference reference;
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < longer(3); ++round) {
     ticks.walk(ledIn(snapshot, test), [&](ContactMemory& memory, std::size_t i) {
       tick(snapshot, memory, test.tips[i], kContactTestPeriod);
     });

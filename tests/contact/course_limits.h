@@ -1,13 +1,13 @@
 // What contact must hold to on any shape.
 #pragma once
 
-#include <cstdlib>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "app/studies/contact/course.h"
 #include "core/percentiles.h"
+#include "support/longer.h"
 
 namespace patina::test {
 
@@ -15,11 +15,6 @@ inline constexpr double kWorstStep = 0.05; // [N] beyond 2 K |dx| + K v_s dt
 inline constexpr double kMostOf = 1e-6;    // of the ticks in contact
 inline constexpr double kMostSamples = 12; // of the field, a tick that began in contact
 inline constexpr double kMostEntrySamples = 40;
-
-// PATINA_LONG=1 in the environment: ten times as many ticks and loops (docs/contributing.md).
-inline long longer(long count) {
-  return std::getenv("PATINA_LONG") ? 10 * count : count;
-}
 
 inline void expectFaultless(const CourseReport& report, const std::string& what) {
   const double most = kMostOf * static_cast<double>(report.contacts);

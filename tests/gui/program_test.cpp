@@ -24,7 +24,7 @@ struct Outcome {
 class Program : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(program_)) GTEST_SKIP() << program_ << " is not built";
+    ASSERT_TRUE(fs::exists(program_)) << program_ << " is not built";
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }

@@ -306,6 +306,16 @@ TEST(StabilityMap, StopsWhenCancelled) {
   EXPECT_THROW(stabilityMap(bare(500), sphereField(), icosphere(0.03, 2), progress), Cancelled);
 }
 
+TEST(StabilityMap, SaysHowFarItIs) {
+  std::vector<double> fractions;
+  Progress progress([&](double fraction, std::string_view) { fractions.push_back(fraction); });
+  stabilityMap(bare(500), sphereField(), icosphere(0.03, 30), progress);
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_EQ(fractions.front(), 0);
+  EXPECT_LE(fractions.back(), 1);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+}
+
 TEST(StabilityMap, AVertexThatIsNoNumberIsUnknownAndNotTheWorst) {
   TriangleMesh mesh = icosphere(0.03, 2);
   mesh.positions[0] = Vec3(NAN, 0, 0);

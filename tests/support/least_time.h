@@ -27,6 +27,7 @@
 #include <gtest/gtest.h>
 
 #include "core/percentiles.h"
+#include "support/longer.h"
 #include "support/sanitized.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -52,12 +53,14 @@ inline double threadSeconds() {
 using Work = std::function<void()>;
 
 // The least thread time [s] of one call of each work. Rounds go on until `settled` of them in a row
-// have found nothing shorter by a hundredth, but not beyond `most_seconds`, save for three rounds.
+// have found nothing shorter by a hundredth, but not beyond `most_seconds`, save for three rounds;
+// ten times either in the long form.
 // What a work gives to other threads is not counted: see OneThread.
 inline std::vector<double> leastSeconds(const std::vector<Work>& works, int settled = 10,
                                         double most_seconds = 20) {
   std::vector<double> least(works.size(), std::numeric_limits<double>::infinity());
-  const double end = secondsOn(CLOCK_MONOTONIC) + most_seconds;
+  settled = static_cast<int>(longer(settled));
+  const double end = secondsOn(CLOCK_MONOTONIC) + static_cast<double>(longer(1)) * most_seconds;
   int quiet = 0;
   for (int round = 0; round < 3 || (quiet < settled && secondsOn(CLOCK_MONOTONIC) < end); ++round) {
     ++quiet;
