@@ -24,7 +24,7 @@ Percentiles percentiles(std::vector<double> values) {
   return ranked(values.size(), [&](std::size_t rank) { return values[rank - 1]; });
 }
 
-Percentiles percentiles(const std::map<std::uint32_t, std::size_t>& counts) {
+Percentiles percentilesOfCounts(const std::map<std::uint32_t, std::size_t>& counts) {
   if (counts.empty()) return {};
   std::size_t all = 0;
   for (const auto& [value, count] : counts) all += count;

@@ -14,6 +14,6 @@ struct Percentiles {
 // empty list.
 Percentiles percentiles(std::vector<double> values);
 // The same of whole numbers that are counted, which takes room for each different one only.
-Percentiles percentiles(const std::map<std::uint32_t, std::size_t>& counts);
+Percentiles percentilesOfCounts(const std::map<std::uint32_t, std::size_t>& counts);
 
 } // namespace patina

@@ -33,13 +33,13 @@ TEST(Percentiles, OfCountsAreThoseOfTheList) {
     const std::uint32_t value = random() % 400;
     values.push_back(value);
     ++counts[value];
-    const Percentiles a = percentiles(values), b = percentiles(counts);
+    const Percentiles a = percentiles(values), b = percentilesOfCounts(counts);
     ASSERT_EQ(a.p50, b.p50);
     ASSERT_EQ(a.p99, b.p99);
     ASSERT_EQ(a.p999, b.p999);
     ASSERT_EQ(a.max, b.max);
   }
-  EXPECT_EQ(percentiles(std::map<std::uint32_t, std::size_t>{}).max, 0);
+  EXPECT_EQ(percentilesOfCounts({}).max, 0);
 }
 
 } // namespace

@@ -53,7 +53,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   console.progress().throwIfCancelled();
   rows_out.commit();
 
-  const Percentiles step = percentiles(step_ns);
+  const Percentiles step = percentilesOfCounts(step_ns);
   const double timer = timerNs();
 
   Json stages = Json::array();
