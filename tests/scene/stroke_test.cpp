@@ -69,6 +69,7 @@ TEST(Strokes, WrittenOnesReadBackBitForBit) {
     stroke.brush.value = 1e-4 / 3;
     stroke.brush.mode = StrokeMode::add;
     stroke.brush.shape = BrushShape::cone;
+    stroke.samples.emplace_back();
     strokes.push_back(stroke);
   }
   EXPECT_EQ(parseStrokes(toJson(strokes).dump(-1), "again"), strokes);
