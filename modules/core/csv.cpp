@@ -1,9 +1,14 @@
 #include "core/csv.h"
 
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
+#include <memory>
 #include <string_view>
+#include <sys/stat.h>
 
+#include "core/descriptor.h"
 #include "core/error.h"
-#include "core/file.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -49,8 +54,8 @@ bool looksLikeDecimalComma(std::string_view line, std::size_t found, std::size_t
 constexpr const char* kDecimalComma =
     "decimal commas: write numbers with a point and separate them with commas";
 
-std::vector<double> parseRow(std::string_view line, std::size_t due, const std::string& name,
-                             std::size_t number) {
+void parseRow(std::string_view line, std::size_t due, const std::string& name, std::size_t number,
+              std::vector<double>& row) {
   const std::vector<std::string_view> cells = split(line, ',');
   if (cells.size() != due) {
     if (looksLikeDecimalComma(line, cells.size(), due))
@@ -59,8 +64,7 @@ std::vector<double> parseRow(std::string_view line, std::size_t due, const std::
                     std::to_string(cells.size()) + " values where the header names " +
                         std::to_string(due));
   }
-  std::vector<double> row;
-  row.reserve(due);
+  row.clear();
   for (const std::string_view cell : cells) {
     const std::optional<double> value = parseNumber(cell);
     if (!value) {
@@ -69,53 +73,126 @@ std::vector<double> parseRow(std::string_view line, std::size_t due, const std::
     }
     row.push_back(*value);
   }
-  return row;
+}
+
+constexpr std::size_t kChunk = 1 << 16;
+constexpr std::size_t kLongestLine = 1 << 20;
+
+CsvReader::Source sourceOf(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const auto file = std::make_shared<Descriptor>(openRetrying(name.c_str(), O_RDONLY));
+  if (file->get() < 0) throw FileError(name, 0, "cannot be opened: " + reason(errno));
+  struct stat info {};
+  if (::fstat(file->get(), &info) == 0 && S_ISDIR(info.st_mode))
+    throw FileError(name, 0, "is a folder, not a file");
+  return [file, name](char* buffer, std::size_t room) {
+    return readSome(file->get(), name, buffer, room);
+  };
+}
+
+CsvTable wholeOf(CsvReader reader) {
+  CsvTable table;
+  table.columns = reader.columns();
+  for (std::vector<double> row; reader.next(row);) table.rows.push_back(row);
+  return table;
 }
 
 } // namespace
 
+CsvReader::CsvReader(const std::filesystem::path& path, const std::vector<std::string>& expected)
+    : CsvReader(sourceOf(path), path.string(), expected) {
+  std::error_code unknown;
+  const auto size = std::filesystem::file_size(path, unknown);
+  if (!unknown) size_ = static_cast<double>(size);
+}
+
+CsvReader::CsvReader(Source source, std::string name, const std::vector<std::string>& expected)
+    : source_(std::move(source)), name_(std::move(name)) {
+  std::string_view line;
+  if (!nextLine(line))
+    throw FileError(name_, 0, "is empty: its first line must be '" + joined(expected) + "'");
+  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3); // a spreadsheet's byte order mark
+  for (const std::string_view cell : split(line, ',')) columns_.emplace_back(cell);
+  const bool right = columns_.size() >= expected.size() &&
+                     std::equal(expected.begin(), expected.end(), columns_.begin());
+  if (!right)
+    throw FileError(
+        name_, 1, "header is " + quoted(line) + ", it must begin with '" + joined(expected) + "'");
+}
+
+bool CsvReader::nextLine(std::string_view& line) {
+  std::size_t searched = used_;
+  std::size_t end;
+  while ((end = buffer_.find('\n', searched)) == std::string::npos && !ended_) {
+    buffer_.erase(0, used_);
+    used_ = 0;
+    searched = buffer_.size();
+    if (searched > kLongestLine) throw FileError(name_, line_ + 1, "is a line of more than 1 MB");
+    buffer_.resize(searched + kChunk);
+    const std::size_t got = source_(buffer_.data() + searched, kChunk);
+    buffer_.resize(searched + got);
+    bytes_ += static_cast<double>(got);
+    ended_ = got == 0;
+  }
+  if (used_ == buffer_.size()) return false;
+  end = std::min(end, buffer_.size());
+  line = trimmed(std::string_view(buffer_).substr(used_, end - used_));
+  used_ = std::min(end + 1, buffer_.size());
+  ++line_;
+  return true;
+}
+
+bool CsvReader::next(std::vector<double>& row) {
+  std::string_view line;
+  do {
+    if (!nextLine(line)) return false;
+  } while (line.empty());
+  parseRow(line, columns_.size(), name_, line_, row);
+  return true;
+}
+
+double CsvReader::fraction() const {
+  return size_ > 0 ? std::min(bytes_ / size_, 1.0) : 0;
+}
+
 CsvTable parseCsv(const std::string& text, const std::string& name,
                   const std::vector<std::string>& expected) {
-  CsvTable table;
   std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3); // a spreadsheet's byte order mark
-  for (std::size_t number = 1; !rest.empty(); ++number) {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = trimmed(rest.substr(0, end));
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    if (number > 1) {
-      if (!line.empty()) table.rows.push_back(parseRow(line, table.columns.size(), name, number));
-      continue;
-    }
-    for (const std::string_view cell : split(line, ',')) table.columns.emplace_back(cell);
-    bool right = table.columns.size() >= expected.size();
-    for (std::size_t i = 0; right && i < expected.size(); ++i)
-      right = table.columns[i] == expected[i];
-    if (!right) {
-      throw FileError(
-          name, 1, "header is " + quoted(line) + ", it must begin with '" + joined(expected) + "'");
-    }
-  }
-  if (table.columns.empty()) {
-    throw FileError(name, 0, "is empty: its first line must be '" + joined(expected) + "'");
-  }
-  return table;
+  const auto source = [&rest](char* buffer, std::size_t room) {
+    const std::size_t count = rest.copy(buffer, room);
+    rest.remove_prefix(count);
+    return count;
+  };
+  return wholeOf(CsvReader(source, name, expected));
 }
 
 CsvTable readCsv(const std::filesystem::path& path, const std::vector<std::string>& expected) {
-  return parseCsv(readFile(path), path.string(), expected);
+  return wholeOf(CsvReader(path, expected));
+}
+
+CsvWriter::CsvWriter(const std::filesystem::path& path, const std::vector<std::string>& columns)
+    : file_(path), text_(joined(columns) + "\n") {}
+
+void CsvWriter::add(const std::vector<double>& row) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) text_ += ',';
+    text_ += formatNumber(row[i]);
+  }
+  text_ += '\n';
+  if (text_.size() < kChunk) return;
+  file_.append(text_);
+  text_.clear();
+}
+
+void CsvWriter::commit() {
+  file_.append(text_);
+  file_.commit();
 }
 
 void writeCsv(const std::filesystem::path& path, const CsvTable& table) {
-  std::string text = joined(table.columns) + "\n";
-  for (const std::vector<double>& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i > 0) text += ',';
-      text += formatNumber(row[i]);
-    }
-    text += '\n';
-  }
-  writeFileAtomically(path, text);
+  CsvWriter writer(path, table.columns);
+  for (const std::vector<double>& row : table.rows) writer.add(row);
+  writer.commit();
 }
 
 } // namespace patina

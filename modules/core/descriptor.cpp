@@ -49,6 +49,14 @@ bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset) {
   return true;
 }
 
+std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t room) {
+  for (;;) {
+    const ssize_t got = ::read(fd, buffer, room);
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR) throw FileError(name, 0, "cannot be read: " + reason(errno));
+  }
+}
+
 std::string readAll(int fd, const std::string& name) {
   struct stat info {};
   if (::fstat(fd, &info) != 0) throw FileError(name, 0, "cannot be read: " + reason(errno));
@@ -59,12 +67,8 @@ std::string readAll(int fd, const std::string& name) {
   std::size_t used = 0;
   for (;;) {
     bytes.resize(used + room);
-    const ssize_t got = ::read(fd, bytes.data() + used, room);
-    if (got < 0) {
-      if (errno == EINTR) continue;
-      throw FileError(name, 0, "cannot be read: " + reason(errno));
-    }
-    used += static_cast<std::size_t>(got);
+    const std::size_t got = readSome(fd, name, bytes.data() + used, room);
+    used += got;
     if (got == 0) break;
     room = std::max<std::size_t>(bytes.size() - used, 65536);
   }

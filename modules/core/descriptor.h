@@ -15,6 +15,9 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
+  void reset(int fd) { // of one that is closed
+    fd_ = fd;
+  }
   // A full disk may show only here: 0, or -1 and errno.
   int close();
 
@@ -26,6 +29,8 @@ int openRetrying(const char* path, int flags, mode_t mode = 0);
 bool syncRetrying(int fd);
 // false and errno; part of the bytes may then be there.
 bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset);
+// Up to `room` bytes, 0 at the end. Throws FileError(name).
+std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t room);
 // The whole file from its beginning. Throws FileError(name).
 std::string readAll(int fd, const std::string& name);
 std::string reason(int code); // of errno, for people

@@ -55,30 +55,51 @@ std::string readFile(const fs::path& path) {
   return readAll(file.get(), name);
 }
 
-void writeFileAtomically(const fs::path& path, std::string_view bytes) {
-  const std::string name = path.string();
+AtomicFile::AtomicFile(const fs::path& path) : path_(path.string()), file_(-1) {
   const fs::path parent = path.parent_path();
-  const std::string folder = parent.empty() ? "." : parent.string();
+  folder_ = parent.empty() ? "." : parent.string();
   struct stat old {};
-  const bool exists = ::stat(name.c_str(), &old) == 0;
-  // The rename below would put a file where a device or a pipe was.
-  if (exists && !S_ISREG(old.st_mode)) throw FileError(name, 0, "cannot be written: not a file");
-  const Temporary temporary = createBeside(folder, path.filename().string());
-  Descriptor file(temporary.fd);
-  if (file.get() < 0) throw FileError(name, 0, "cannot be written: " + reason(errno));
-  const auto fail = [&](const std::string& what) {
-    const int code = errno;
-    ::unlink(temporary.name.c_str());
-    throw FileError(name, 0, what + ": " + reason(code));
-  };
-  if (!writeAllAt(file.get(), bytes, 0)) fail("cannot be written");
-  if (exists && ::fchmod(file.get(), old.st_mode & 07777) != 0) fail("cannot be written");
-  if (!syncRetrying(file.get())) fail("cannot be flushed to disk");
-  if (file.close() != 0) fail("cannot be written");
-  if (renameRetrying(temporary.name.c_str(), name.c_str()) != 0) fail("cannot be replaced");
+  const bool exists = ::stat(path_.c_str(), &old) == 0;
+  // The rename would put a file where a device or a pipe was.
+  if (exists && !S_ISREG(old.st_mode)) throw FileError(path_, 0, "cannot be written: not a file");
+  const Temporary temporary = createBeside(folder_, path.filename().string());
+  if (temporary.fd < 0) fail("cannot be written");
+  file_.reset(temporary.fd);
+  temporary_ = temporary.name;
+  if (!exists || ::fchmod(file_.get(), old.st_mode & 07777) == 0) return;
+  const int code = errno;
+  ::unlink(temporary_.c_str());
+  errno = code;
+  fail("cannot be written");
+}
+
+AtomicFile::~AtomicFile() {
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::fail(const std::string& what) const {
+  throw FileError(path_, 0, what + ": " + reason(errno));
+}
+
+void AtomicFile::append(std::string_view bytes) {
+  if (!writeAllAt(file_.get(), bytes, size_)) fail("cannot be written");
+  size_ += static_cast<std::int64_t>(bytes.size());
+}
+
+void AtomicFile::commit() {
+  if (!syncRetrying(file_.get())) fail("cannot be flushed to disk");
+  if (file_.close() != 0) fail("cannot be written");
+  if (renameRetrying(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be replaced");
+  temporary_.clear();
   // Without this the new name may be lost with the power, though the bytes are safe.
-  if (!syncFolder(folder.c_str()))
-    throw FileError(name, 0, "was written, but its folder cannot be flushed: " + reason(errno));
+  if (!syncFolder(folder_.c_str()))
+    throw FileError(path_, 0, "was written, but its folder cannot be flushed: " + reason(errno));
+}
+
+void writeFileAtomically(const fs::path& path, std::string_view bytes) {
+  AtomicFile file(path);
+  file.append(bytes);
+  file.commit();
 }
 
 bool isTemporaryFor(std::string_view filename, std::string_view candidate) {

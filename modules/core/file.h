@@ -1,20 +1,42 @@
 // Whole-file input and crash-safe output.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include "core/descriptor.h"
 
 namespace patina {
 
 // The whole file as bytes. Throws FileError (missing, a folder, unreadable).
 std::string readFile(const std::filesystem::path& path);
 
-// Temp file in the same folder, write, fsync, rename, fsync folder. On any failure throws FileError
-// and leaves what stood at `path` untouched.
+// A file that is written piece by piece and stands at `path` only once it is whole: temp file in
+// the same folder, writes, fsync, rename, fsync folder. Until commit() returns, and on any failure,
+// what stood at `path` is untouched; without commit() the temp file is gone. All throw FileError.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  void append(std::string_view bytes);
+  void commit(); // once
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::string path_, folder_, temporary_; // temporary_ is empty once it has been renamed
+  Descriptor file_;
+  std::int64_t size_ = 0;
+};
+
+// The whole of an AtomicFile.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
-// The name of a temporary file of writeFileAtomically() for `filename`, in whatever process: what
+// The name of a temporary file of an AtomicFile for `filename`, in whatever process: what
 // a killed one leaves behind.
 bool isTemporaryFor(std::string_view filename, std::string_view candidate);
 

@@ -1,6 +1,8 @@
 // How a list of measured values spreads.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <vector>
 
 namespace patina {
@@ -11,5 +13,7 @@ struct Percentiles {
 // Nearest rank: the smallest value that at least the fraction of all does not exceed. Zeros for an
 // empty list.
 Percentiles percentiles(std::vector<double> values);
+// The same of whole numbers that are counted, which takes room for each different one only.
+Percentiles percentilesOfCounts(const std::map<std::uint32_t, std::size_t>& counts);
 
 } // namespace patina

@@ -277,6 +277,10 @@ void validate(const Stroke& stroke) {
   }
 }
 
+void requireSamples(const Stroke& stroke) {
+  if (stroke.samples.empty()) throw Error("'samples' is empty: a stroke has one or more");
+}
+
 Json toJson(const Stroke& stroke) {
   const Brush& brush = stroke.brush;
   const Brush usual;
@@ -315,35 +319,6 @@ Stroke strokeFrom(const Json& json) {
   Stroke stroke = strokeOfKeys(json);
   validate(stroke);
   return stroke;
-}
-
-std::vector<Stroke> parseStrokes(std::string_view text, const std::string& file) {
-  const Json json = parseJson(text, file);
-  std::vector<Stroke> strokes;
-  try {
-    const std::int64_t version = json.at("version").asInteger();
-    if (version != 1)
-      throw Error("strokes of version " + std::to_string(version) +
-                  " are unknown; this program reads version 1");
-    for (const Json& item : json.at("strokes").asArray()) {
-      try {
-        strokes.push_back(strokeFrom(item));
-      } catch (const Error& error) {
-        throw Error("stroke " + std::to_string(strokes.size() + 1) + ": " + error.what());
-      }
-    }
-  } catch (const Error& error) {
-    throw FileError(file, 0, error.what());
-  }
-  return strokes;
-}
-
-Json toJson(const std::vector<Stroke>& strokes) {
-  Json list = Json::array();
-  for (const Stroke& stroke : strokes) list.push(toJson(stroke));
-  Json json = Json::object();
-  json.set("version", 1).set("strokes", std::move(list));
-  return json;
 }
 
 } // namespace patina

@@ -108,11 +108,15 @@ const BrushLayer* layerOf(const Brush& brush, Tool tool); // null: it lays on no
 // once.
 void validate(const Brush& brush);
 void validate(const Stroke& stroke);
+// Throws Error for a stroke that has none. It paints nothing, and journals of before may hold it;
+// what is to be painted may not.
+void requireSamples(const Stroke& stroke);
 
 Json toJson(const Stroke& stroke);
 // Throws Error naming the key. Unknown keys are an error; what may be left out has Brush's value.
 Stroke strokeFrom(const Json& json);
-// {"version": 1, "strokes": [...]}; throws FileError(name, line or 0, "stroke 3: ...").
+// {"version": 1, "strokes": [...]}; throws FileError(name, line, "stroke 3: ...") with the
+// line where the stroke begins, also for a stroke without samples.
 std::vector<Stroke> parseStrokes(std::string_view text, const std::string& name);
 Json toJson(const std::vector<Stroke>& strokes);
 

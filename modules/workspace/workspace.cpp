@@ -156,6 +156,13 @@ OpenedWorkspace openWorkspace(const fs::path& folder, bool recover) {
   return opened;
 }
 
+OpenedWorkspace openHistory(const fs::path& folder) {
+  const Manifest manifest = readManifest(folder);
+  OpenedWorkspace opened;
+  if (manifest.journal) readHistory(folder, manifest, opened);
+  return opened;
+}
+
 Scene loadState(const fs::path& folder, const std::string& file) {
   const std::string name = (folder / file).string();
   return loadScene(parseManifest(loadNamed(folder, file), name), folder, name);

@@ -38,6 +38,8 @@ struct OpenedWorkspace {
 // or else the objects whose files are whole; without a readable workspace.json the journal and its
 // states, or else the newest readable state. Nothing on disk is changed.
 OpenedWorkspace openWorkspace(const std::filesystem::path& folder, bool recover = false);
+// The same without the scene, whose meshes and pictures are then not read: journal, states, notes.
+OpenedWorkspace openHistory(const std::filesystem::path& folder);
 // Scene of a stored state.
 Scene loadState(const std::filesystem::path& folder, const std::string& file);
 // Only the scene as saved.

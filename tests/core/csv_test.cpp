@@ -68,5 +68,55 @@ TEST(Csv, WrittenNumbersComeBackBitForBit) {
   EXPECT_EQ(back.columns, table.columns);
 }
 
+// Rows and their numbers must not depend on where the chunks of the file end.
+TEST(Csv, ReadsInPiecesOfAnySizeTheSameRowsAndLines) {
+  const std::string text = "\xEF\xBB\xBFt [s],x [m],y [m],z [m]\r\n0,1,2,3\r\n\n4,5,6,7\n8,9,1,2";
+  for (std::size_t piece = 1; piece < text.size() + 2; ++piece) {
+    std::string_view rest = text;
+    CsvReader reader(
+        [&](char* buffer, std::size_t room) {
+          const std::size_t count = rest.copy(buffer, std::min(piece, room));
+          rest.remove_prefix(count);
+          return count;
+        },
+        "tip.csv", kTip);
+    std::vector<double> row;
+    const std::pair<std::vector<double>, std::size_t> due[] = {
+        {{0, 1, 2, 3}, 2}, {{4, 5, 6, 7}, 4}, {{8, 9, 1, 2}, 5}};
+    for (const auto& [values, line] : due) {
+      ASSERT_TRUE(reader.next(row));
+      EXPECT_EQ(row, values);
+      EXPECT_EQ(reader.line(), line);
+    }
+    EXPECT_FALSE(reader.next(row));
+  }
+}
+
+TEST(Csv, ALineWithoutEndIsRefusedBeforeItFillsTheMemory) {
+  std::size_t given = 0;
+  const auto endless = [&](char* buffer, std::size_t room) {
+    std::fill_n(buffer, room, '1');
+    given += room;
+    return room;
+  };
+  EXPECT_THROW(CsvReader(endless, "tip.csv", kTip), FileError);
+  EXPECT_LT(given, std::size_t{1} << 22);
+}
+
+TEST(Csv, WhatIsNotCommittedLeavesNothing) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("patina_csv_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  writeFileAtomically(folder / "t.csv", "before");
+  {
+    CsvWriter writer(folder / "t.csv", kTip);
+    for (int i = 0; i < 100000; ++i) writer.add({1, 2, 3, 4});
+    EXPECT_EQ(readFile(folder / "t.csv"), "before");
+  }
+  EXPECT_EQ(readFile(folder / "t.csv"), "before");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+  std::filesystem::remove_all(folder);
+}
+
 } // namespace
 } // namespace patina

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
+#include <random>
 
 namespace patina {
 namespace {
@@ -21,6 +23,23 @@ TEST(Percentiles, OfOneValueAreThatValueAndOfNoneZeros) {
   EXPECT_EQ(percentiles({7}).p50, 7);
   EXPECT_EQ(percentiles({7}).p999, 7);
   EXPECT_EQ(percentiles({}).max, 0);
+}
+
+TEST(Percentiles, OfCountsAreThoseOfTheList) {
+  std::mt19937 random(5);
+  std::map<std::uint32_t, std::size_t> counts;
+  std::vector<double> values;
+  for (int i = 0; i < 3000; ++i) {
+    const std::uint32_t value = random() % 400;
+    values.push_back(value);
+    ++counts[value];
+    const Percentiles a = percentiles(values), b = percentilesOfCounts(counts);
+    ASSERT_EQ(a.p50, b.p50);
+    ASSERT_EQ(a.p99, b.p99);
+    ASSERT_EQ(a.p999, b.p999);
+    ASSERT_EQ(a.max, b.max);
+  }
+  EXPECT_EQ(percentilesOfCounts({}).max, 0);
 }
 
 } // namespace

@@ -60,5 +60,17 @@ TEST(MeshUnit, FitIgnoresNonFiniteVerticesAndSurvivesAPoint) {
   EXPECT_EQ(inMetres(point, MeshUnit::fit).mesh.positions[0], Vec3(7, 7, 7));
 }
 
+TEST(MeshUnit, WhatReachesTooFarIsRefusedAndWhatDoesNotIsNot) {
+  const double far = kFarthestCorner * (1 + 1e-9), near = kFarthestCorner * (1 - 1e-9);
+  EXPECT_THROW(inMetres(box(Vec3::Constant(1e305)), MeshUnit::m), Error);
+  EXPECT_THROW(inMetres(box(Vec3(1, far, 1)), MeshUnit::m), Error);
+  EXPECT_THROW(inMetres(box(Vec3(1, -far, 1)), MeshUnit::m), Error);
+  EXPECT_THROW(inMetres(box(Vec3(1, 1e3 * far, 1)), MeshUnit::mm), Error);
+  EXPECT_NO_THROW(inMetres(box(Vec3(1, near, 1)), MeshUnit::m));
+  EXPECT_NO_THROW(inMetres(box(Vec3(1, 1e3 * near, 1)), MeshUnit::mm));
+  EXPECT_NEAR(inMetres(box(Vec3::Constant(1e305)), MeshUnit::fit).mesh.positions.back().norm(),
+              0.1 * std::sqrt(3.0), 1e-12);
+}
+
 } // namespace
 } // namespace patina

@@ -10,22 +10,6 @@ namespace patina::test {
 namespace {
 
 // For the programs that are started while it lives.
-class Environment {
- public:
-  explicit Environment(std::vector<std::pair<std::string, std::string>> settings)
-      : settings_(std::move(settings)) {
-    for (const auto& [name, value] : settings_) setenv(name.c_str(), value.c_str(), 1);
-  }
-  ~Environment() {
-    for (const auto& [name, value] : settings_) unsetenv(name.c_str());
-  }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  std::vector<std::pair<std::string, std::string>> settings_;
-};
-
 TEST(DiskFault, ARefusedSaveIsOneLineAndExit2AndTheWorkspaceStays) {
   const ScratchFolder scratch;
   const std::string folder = scratch / "pot", mark = scratch / "mark";

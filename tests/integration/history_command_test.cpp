@@ -211,5 +211,34 @@ TEST_F(History, WrongHashesAndPathsThatLeaveTheFolderAreRefusedWithoutAChange) {
   EXPECT_EQ(recovered.exit, 0) << recovered.err;
 }
 
+// A list says what was done; pictures and meshes do not matter to it, nor whether they can be read.
+TEST_F(History, AListReadsNoPicture) {
+  const std::string strokes = script("s.json", {stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}})});
+  ASSERT_EQ(run({"paint", workspace, "--strokes", strokes, "-o", workspace}).exit, 0);
+  const std::string before = run({"undo", workspace, "--list"}).out;
+  EXPECT_NE(before.find("1  "), std::string::npos);
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::filesystem::path(workspace) / "paint"))
+    std::filesystem::resize_file(file.path(), 1);
+  const Outcome list = run({"undo", workspace, "--list"});
+  EXPECT_EQ(list.exit, 0) << list.err;
+  EXPECT_EQ(list.out, before);
+  EXPECT_EQ(run({"undo", workspace}).exit, 2);
+}
+
+// The same strokes on the same mesh: every file, byte for byte.
+TEST_F(History, TwoReplaysOfAJournalGiveTheSameFiles) {
+  const std::string strokes =
+      script("s.json", {stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
+                        stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),
+                        stroke(Tool::stiffness, 900, 0.006, {{0, 0, kTop}})});
+  ASSERT_EQ(run({"paint", box, "--strokes", strokes, "-o", folder / "first"}).exit, 0);
+  const std::string journal = folder / "first/journal-1.jsonl";
+  for (const char* replay : {"a", "b"})
+    ASSERT_EQ(run({"paint", box, "--strokes", journal, "-o", folder / replay}).exit, 0);
+  EXPECT_EQ(fingerprint(folder / "a"), fingerprint(folder / "b"));
+  EXPECT_EQ(fingerprint(folder / "a"), fingerprint(folder / "first"));
+}
+
 } // namespace
 } // namespace patina::test

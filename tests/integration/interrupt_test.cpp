@@ -38,6 +38,24 @@ TEST(Interrupt, CancelsAndLeavesTheOutputAsItWas) {
   EXPECT_EQ(files, 2u) << "a temporary file was left behind";
 }
 
+// As a shell starts what is in the background: SIGINT ignored. It comes while libraries are set up.
+TEST(Interrupt, IsNotLostBeforeMain) {
+  const ScratchFolder folder;
+  const std::string mesh = folder / "sphere.ply";
+  ASSERT_EQ(run({"model", "sphere", "-o", mesh}).exit, 0);
+  const auto usual = std::signal(SIGINT, SIG_IGN);
+  Outcome outcome;
+  {
+    const Environment early(
+        {{"LD_PRELOAD", PATINA_BINARY_DIR "/fault_shim.so"}, {"PATINA_FAULT_EARLY", "1"}});
+    outcome = run({"field", mesh, "-o", folder / "field.vti"});
+  }
+  std::signal(SIGINT, usual);
+  EXPECT_EQ(outcome.exit, 130);
+  EXPECT_EQ(outcome.err, "patina: cancelled\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "field.vti"));
+}
+
 TEST(Interrupt, EndsTheLatencyTest) {
   Running latency({"latency-test", "--seconds", "100"}, programPath());
   std::this_thread::sleep_for(std::chrono::milliseconds(300));

@@ -206,6 +206,9 @@ TEST_F(Paint, BadStrokesChangeNothingOnDisk) {
       {R"({"version": 1, "strokes": [{"tool": "relief", "value": 1e-3, "radius": -1, "samples": []}]})",
        {"bad.json", "radius", "-1"}},
       {"{\"version\": 1,\n \"strokes\": [\n", {"bad.json:"}},
+      {"{\"version\": 1, \"strokes\": [\n{\"tool\": \"relief\", \"value\": 1e-3, \"samples\": "
+       "[]}]}",
+       {"bad.json:2: stroke 1: 'samples' is empty"}},
       {"", {"bad.json"}}};
   for (const auto& [text, parts] : bad) {
     const std::string file = folder.write("bad.json", text);

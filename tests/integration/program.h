@@ -1,9 +1,11 @@
 // The real program, run as a stranger runs it: words in, exit code and two streams out. No shell.
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <sys/types.h>
+#include <utility>
 #include <vector>
 
 #include "core/json.h"
@@ -55,6 +57,23 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
+};
+
+// Variables that programs started in its lifetime see.
+class Environment {
+ public:
+  explicit Environment(std::vector<std::pair<std::string, std::string>> settings)
+      : settings_(std::move(settings)) {
+    for (const auto& [name, value] : settings_) setenv(name.c_str(), value.c_str(), 1);
+  }
+  ~Environment() {
+    for (const auto& [name, value] : settings_) unsetenv(name.c_str());
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> settings_;
 };
 
 std::string firstLine(const std::filesystem::path& path);

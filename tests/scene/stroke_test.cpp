@@ -15,7 +15,7 @@ const char* const kWhole = R"({"version": 1, "strokes": [
    "mode": "build-up", "front_only": true, "symmetry": "y",
    "radius_per_force": 0.001, "least_radius": 0.002, "most_radius": 0.01,
    "samples": [{"t": 0, "position": [0.01, 0, -0.02], "force": 0.5}, {"t": 0.5, "position": [1, 2, 3]}]},
-  {"tool": "friction.static", "value": 0.7, "samples": []},
+  {"tool": "friction.static", "value": 0.7, "samples": [{"position": [0, 0, 0]}]},
   {"tool": "erase", "erases": "relief", "samples": [{"position": [0, 0, 0]}]}]})";
 
 std::string textOf(const std::string& stroke) {
@@ -71,6 +71,7 @@ TEST(Strokes, WrittenOnesReadBackBitForBit) {
     stroke.brush.value = 1e-4 / 3;
     stroke.brush.mode = StrokeMode::add;
     stroke.brush.shape = BrushShape::cone;
+    stroke.samples.emplace_back();
     strokes.push_back(stroke);
   }
   EXPECT_EQ(parseStrokes(toJson(strokes).dump(-1), "again"), strokes);
@@ -98,12 +99,34 @@ TEST(Strokes, SeveralLayersAreOneStrokeAndOneLayerIsTheOldForm) {
   EXPECT_EQ(describe(strokes[0]), "color, stiffness 900 N/m, friction.static 0.7");
 
   const auto one = parseStrokes(
-      textOf(R"({"layers": [{"tool": "stiffness", "value": 900}], "samples": []})"), "hand.json");
-  EXPECT_EQ(one, parseStrokes(textOf(R"({"tool": "stiffness", "value": 900, "samples": []})"),
-                              "hand.json"));
+      textOf(
+          R"({"layers": [{"tool": "stiffness", "value": 900}], "samples": [{"position": [0, 0, 0]}]})"),
+      "hand.json");
+  EXPECT_EQ(
+      one,
+      parseStrokes(
+          textOf(R"({"tool": "stiffness", "value": 900, "samples": [{"position": [0, 0, 0]}]})"),
+          "hand.json"));
   const std::string text = toJson(one).dump(-1);
   for (const char* key : {"layers", "seed", "tip"}) // files that did without stay as they were
     EXPECT_EQ(text.find(key), std::string::npos) << key;
+}
+
+TEST(Strokes, OneWithoutSamplesIsRefusedWhereItStands) {
+  const std::string whole =
+      R"({"tool": "relief", "value": 1e-3, "samples": [{"position": [0, 0, 0]}]})";
+  const std::string bare = R"({"tool": "relief", "value": 1e-3, "samples": []})";
+  const std::string note = R"({"note \"}[": ["strokes", {}],)";
+  const auto list = [&](const std::string& strokes) {
+    return "{\"version\": 1,\n \"strokes\": [\n" + strokes + "]}";
+  };
+  EXPECT_EQ(errorOf(list(whole + ",\n\n" + bare + ",\n" + whole)),
+            "hand.json:5: stroke 2: 'samples' is empty: a stroke has one or more");
+  EXPECT_EQ(errorOf(list(bare)),
+            "hand.json:3: stroke 1: 'samples' is empty: a stroke has one or more");
+  EXPECT_EQ(errorOf(note + list(whole + ",\n" + bare).substr(1)),
+            "hand.json:4: stroke 2: 'samples' is empty: a stroke has one or more");
+  EXPECT_EQ(parseStrokes(list(whole), "hand.json").size(), 1U);
 }
 
 TEST(Strokes, BadOnesAreNamedByFileStrokeSampleAndKey) {

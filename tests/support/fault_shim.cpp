@@ -5,6 +5,7 @@
 //   folder; calls on files elsewhere do not count PATINA_FAULT_MARK   file that is made when the
 //   fault happens PATINA_NO_FLUSH     flushing does nothing: a program may die here, but not the
 //   machine
+//   PATINA_FAULT_EARLY  an interrupt (Ctrl-C) before main()
 #include <cerrno>
 #include <cstdarg>
 #include <cstdlib>
@@ -44,6 +45,10 @@ void mark() {
   const long fd = syscall(SYS_openat, AT_FDCWD, setting("PATINA_FAULT_MARK"),
                           O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (fd >= 0) syscall(SYS_close, fd);
+}
+
+[[gnu::constructor]] void interruptEarly() {
+  if (*setting("PATINA_FAULT_EARLY")) syscall(SYS_kill, getpid(), 2);
 }
 
 enum class Verdict { pass, fail, half };

@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/scene_options.h"
 #include "app/cli/input/tip_path.h"
 #include "app/cli/output/reports.h"
+#include "core/csv.h"
 #include "core/numbers.h"
+#include "core/percentiles.h"
 #include "session/build/stage_cost.h"
 #include "visualization/export/export_files.h"
 
@@ -19,27 +24,36 @@ struct FeelOptions {
 
 int runFeel(const FeelOptions& options, Console& console) {
   requireWritable(options.output, {options.input, options.path});
-  const std::vector<TimedTip> path = readTipPath(options.path);
-  const auto bad_tips = static_cast<std::size_t>(std::count_if(
-      path.begin(), path.end(), [](const TimedTip& tip) { return !tip.tip.allFinite(); }));
+  TipPathReader path(options.path);
+  // A path that is wrong from the start is refused before the field is built.
+  std::optional<TimedTip> first = path.next();
   const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
-  const std::vector<ToolSample> samples = feel(*compiled->snapshot, path, console.progress());
-  console.progress().throwIfCancelled();
-  writeToolSamplesCsv(options.output, samples);
 
-  std::size_t contact_ticks = 0, deep_ticks = 0, faults = 0;
+  std::size_t ticks = 0, bad_tips = 0, contact_ticks = 0, deep_ticks = 0, faults = 0;
   double max_force = 0, max_depth = 0;
-  std::vector<double> step_ns;
-  step_ns.reserve(samples.size());
-  for (const ToolSample& sample : samples) {
+  std::map<std::uint32_t, std::size_t> step_ns;
+  CsvWriter rows_out(options.output, toolSampleColumns());
+  const auto next = [&]() -> std::optional<TimedTip> {
+    if (ticks % 4096 == 0) console.progress().report(path.fraction(), "feeling");
+    auto tip = first ? std::exchange(first, std::nullopt) : path.next();
+    bad_tips += tip && !tip->tip.allFinite();
+    return tip;
+  };
+  const auto take = [&](const ToolSample& sample) {
+    ++ticks;
     contact_ticks += sample.contact;
     deep_ticks += sample.deep;
     faults += sample.fault;
     max_force = std::max(max_force, sample.force.norm());
     max_depth = std::max(max_depth, sample.depth);
-    step_ns.push_back(sample.step_ns);
-  }
-  const Percentiles step = percentiles(step_ns);
+    ++step_ns[sample.step_ns];
+    rows_out.add(toolSampleRow(sample));
+  };
+  feel(*compiled->snapshot, next, take, console.progress());
+  console.progress().throwIfCancelled();
+  rows_out.commit();
+
+  const Percentiles step = percentilesOfCounts(step_ns);
   const double timer = timerNs();
 
   Json stages = Json::array();
@@ -49,7 +63,7 @@ int runFeel(const FeelOptions& options, Console& console) {
     stage_text += (stage_text.empty() ? "" : ", ") + stage.name;
   }
   Json json = Json::object();
-  json.set("ticks", samples.size());
+  json.set("ticks", ticks);
   json.set("stages", stages);
   Json step_json = toJson(step);
   step_json.set("timer", timer);
@@ -62,14 +76,13 @@ int runFeel(const FeelOptions& options, Console& console) {
   json.set("max_depth", max_depth);
   json.set("field", fieldJson(*compiled->built.field, compiled->built.report));
 
-  TextRows rows = {
-      {"ticks", formatCount(samples.size()) + ", in contact " + formatCount(contact_ticks)},
-      {"stages", stage_text},
-      {"step", rounded(step.p50) + " ns (p50), " + rounded(step.p99) + " (p99), " +
-                   rounded(step.p999) + " (p99.9), " + rounded(step.max) +
-                   " (max); of these the clock takes " + rounded(timer)},
-      {"largest force", rounded(max_force) + " N"},
-      {"largest depth", formatLength(max_depth)}};
+  TextRows rows = {{"ticks", formatCount(ticks) + ", in contact " + formatCount(contact_ticks)},
+                   {"stages", stage_text},
+                   {"step", rounded(step.p50) + " ns (p50), " + rounded(step.p99) + " (p99), " +
+                                rounded(step.p999) + " (p99.9), " + rounded(step.max) +
+                                " (max); of these the clock takes " + rounded(timer)},
+                   {"largest force", rounded(max_force) + " N"},
+                   {"largest depth", formatLength(max_depth)}};
   if (deep_ticks)
     rows.emplace_back("deep", formatCount(deep_ticks) + " ticks found contact from inside");
   if (faults) rows.emplace_back("faults", formatCount(faults) + " ticks faded by a force jump");
@@ -78,7 +91,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   if (bad_tips)
     console.warn(options.path.string() + ": " + formatCount(bad_tips) +
                  (bad_tips == 1 ? " tip is" : " tips are") + " NaN or infinite: no force there");
-  if (contact_ticks == 0 && bad_tips < samples.size())
+  if (contact_ticks == 0 && bad_tips < ticks)
     console.warn(options.path.string() +
                  ": the path never touches the object; compare their positions and check --unit");
   console.report(json, aligned(rows));

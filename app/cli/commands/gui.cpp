@@ -80,7 +80,10 @@ Command guiCommand() {
   command.arguments.push_back({"--first-picture-time", "",
                                "Print the seconds from start to the first picture.", "", false,
                                false, pass("--first-picture-time", anything)});
-  command.run = [options](Console&) { return runGui(*options); };
+  command.run = [options](Console& console) {
+    console.endOnInterrupt();
+    return runGui(*options);
+  };
   return command;
 }
 

@@ -130,24 +130,25 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
 
 int runSample(const SampleOptions& options, Console& console) {
   requireWritable(options.output, {options.input, options.points});
-  const CsvTable points = readCsv(options.points, kPointColumns);
+  CsvReader points(options.points, kPointColumns);
+  std::vector<double> row;
+  bool more = points.next(row); // one that is wrong from the start is refused before the build
   const SampledSurface surface = open(options, console);
   const FieldSampler sampler(*surface.field, surface.sampler);
-  CsvTable table;
-  table.columns = kColumns;
-  table.rows.reserve(points.rows.size());
-  std::size_t in_band = 0, bad_points = 0;
-  for (const std::vector<double>& row : points.rows) {
-    if (table.rows.size() % 1024 == 0) console.progress().throwIfCancelled();
-    table.rows.push_back(sampleRow(surface, sampler, {row[0], row[1], row[2]}));
-    in_band += table.rows.back()[11] != 0;
-    bad_points += std::isnan(table.rows.back()[3]);
+  CsvWriter samples(options.output, kColumns);
+  std::size_t count = 0, in_band = 0, bad_points = 0;
+  for (; more; more = points.next(row)) {
+    if (count++ % 1024 == 0) console.progress().throwIfCancelled();
+    const std::vector<double> sample = sampleRow(surface, sampler, {row[0], row[1], row[2]});
+    samples.add(sample);
+    in_band += sample[11] != 0;
+    bad_points += std::isnan(sample[3]);
   }
   console.progress().throwIfCancelled();
-  writeCsv(options.output, table);
+  samples.commit();
 
   Json json = Json::object();
-  json.set("points", points.rows.size());
+  json.set("points", count);
   json.set("in_band", in_band);
   json.set("bad_points", bad_points);
   json.set("sampler", std::string(name(surface.sampler)));
@@ -155,10 +156,10 @@ int runSample(const SampleOptions& options, Console& console) {
   if (bad_points)
     console.warn(options.points.string() + ": " + formatCount(bad_points) +
                  (bad_points == 1 ? " point is" : " points are") + " NaN or infinite");
-  console.report(json, aligned({{"points", formatCount(points.rows.size()) + ", in the band " +
-                                               formatCount(in_band)},
-                                {"sampler", std::string(name(surface.sampler))},
-                                {"voxel", formatLength(surface.field->grid.voxel)}}));
+  console.report(json,
+                 aligned({{"points", formatCount(count) + ", in the band " + formatCount(in_band)},
+                          {"sampler", std::string(name(surface.sampler))},
+                          {"voxel", formatLength(surface.field->grid.voxel)}}));
   return kDone;
 }
 

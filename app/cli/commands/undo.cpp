@@ -69,7 +69,7 @@ int runHistory(const HistoryOptions& options, Way way, Console& console) {
   Json json = Json::object();
   std::string text;
   {
-    const OpenedWorkspace found = openWorkspace(folder);
+    const OpenedWorkspace found = openHistory(folder);
     for (const std::string& note : found.notes) console.warn(note);
     const FoldedJournal fold = folded(found.journal, found.journal_file.string());
     counts = {fold.position, fold.steps.size() - fold.position, 0};

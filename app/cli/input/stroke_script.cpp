@@ -16,8 +16,17 @@ std::vector<Stroke> strokesOfJournal(const std::string& text, const std::string&
   if (journal.torn) console.warn(name + ": its last record was not finished and is left out");
   const FoldedJournal fold = folded(journal.events, name);
   std::vector<Stroke> strokes;
-  for (std::size_t i = 0; i < fold.position; ++i)
-    if (const auto* stroke = std::get_if<Stroke>(fold.steps[i].event)) strokes.push_back(*stroke);
+  const std::size_t heading = journal.from.empty() ? 0 : 1;
+  for (std::size_t i = 0; i < fold.position; ++i) {
+    const auto* stroke = std::get_if<Stroke>(fold.steps[i].event);
+    if (!stroke) continue;
+    try {
+      requireSamples(*stroke);
+    } catch (const Error& error) {
+      throw FileError(name, fold.steps[i].number + heading, error.what());
+    }
+    strokes.push_back(*stroke);
+  }
   if (const std::size_t others = fold.position - strokes.size())
     console.warn(name + ": " + formatCount(others) + (others == 1 ? " edit is" : " edits are") +
                  " no stroke and left out");

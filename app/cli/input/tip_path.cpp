@@ -2,23 +2,29 @@
 
 #include <cmath>
 
-#include "core/csv.h"
 #include "core/error.h"
 
 namespace patina::cli {
 
-std::vector<TimedTip> readTipPath(const std::filesystem::path& path) {
-  const CsvTable table = readCsv(path, {"t [s]", "x [m]", "y [m]", "z [m]"});
-  if (table.rows.empty()) throw FileError(path.string(), 0, "there is no tip in it");
-  std::vector<TimedTip> tips;
-  tips.reserve(table.rows.size());
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const std::vector<double>& row = table.rows[i];
-    if (!std::isfinite(row[0])) throw FileError(path.string(), i + 2, "time is not a number");
-    if (i && !(row[0] > tips.back().t))
-      throw FileError(path.string(), i + 2, "time does not increase");
-    tips.push_back({row[0], {row[1], row[2], row[3]}});
+TipPathReader::TipPathReader(const std::filesystem::path& path)
+    : rows_(path, {"t [s]", "x [m]", "y [m]", "z [m]"}), name_(path.string()) {}
+
+std::optional<TimedTip> TipPathReader::next() {
+  if (!rows_.next(row_)) {
+    if (!last_) throw FileError(name_, 0, "there is no tip in it");
+    return std::nullopt;
   }
+  const double t = row_[0];
+  if (!std::isfinite(t)) throw FileError(name_, rows_.line(), "time is not a number");
+  if (last_ && !(t > *last_)) throw FileError(name_, rows_.line(), "time does not increase");
+  last_ = t;
+  return TimedTip{t, {row_[1], row_[2], row_[3]}};
+}
+
+std::vector<TimedTip> readTipPath(const std::filesystem::path& path) {
+  TipPathReader reader(path);
+  std::vector<TimedTip> tips;
+  while (const auto tip = reader.next()) tips.push_back(*tip);
   return tips;
 }
 

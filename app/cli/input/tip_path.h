@@ -2,13 +2,27 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "core/csv.h"
 #include "haptics/servo/feel.h"
 
 namespace patina::cli {
 
 // Throws FileError with the line: wrong header, a bad number, time that does not increase, no row.
+class TipPathReader {
+ public:
+  explicit TipPathReader(const std::filesystem::path& path);
+  std::optional<TimedTip> next(); // nullopt at the end
+  double fraction() const { return rows_.fraction(); }
+
+ private:
+  CsvReader rows_;
+  std::string name_;
+  std::vector<double> row_;
+  std::optional<double> last_;
+};
 std::vector<TimedTip> readTipPath(const std::filesystem::path& path);
 
 } // namespace patina::cli

@@ -10,12 +10,25 @@ namespace patina::cli {
 
 namespace {
 
-// A signal handler can reach nothing but a global; Console keeps it to itself.
+// A signal handler can reach nothing but a global; Console keeps these to itself.
 std::atomic<Progress*> interrupted_progress{nullptr};
+std::atomic<bool> interrupted{false};
 
 extern "C" void onInterrupt(int) {
+  interrupted = true;
   if (Progress* progress = interrupted_progress.load()) progress->cancel();
 }
+
+extern "C" void catchInterrupt() {
+  struct sigaction action = {};
+  action.sa_handler = onInterrupt;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigaction(SIGINT, &action, nullptr);
+}
+
+// Before the constructors of all libraries, which take longer than some commands: a shell starts
+// what is in the background with SIGINT ignored, and until it is caught it would be lost.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_all)() = catchInterrupt;
 
 } // namespace
 
@@ -23,10 +36,7 @@ Console::Console()
     : stderr_is_terminal_(isatty(STDERR_FILENO) == 1),
       progress_([this](double fraction, std::string_view what) { drawBar(fraction, what); }) {
   interrupted_progress = &progress_;
-  struct sigaction action = {};
-  action.sa_handler = onInterrupt;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  sigaction(SIGINT, &action, nullptr);
+  if (interrupted) progress_.cancel();
 }
 
 Console::~Console() {

@@ -13,7 +13,7 @@ namespace patina::cli {
 
 class Console {
  public:
-  // Takes over SIGINT until destroyed. At most one at a time.
+  // SIGINT, which is caught from the start of the process, is its until destroyed. One a process.
   Console();
   ~Console();
   Console(const Console&) = delete;

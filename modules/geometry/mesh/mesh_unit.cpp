@@ -23,12 +23,12 @@ const UnitName& entry(MeshUnit unit) {
 }
 
 // Of the finite corners: a NaN in one of them must not decide the scale of all.
-double longestSide(const TriangleMesh& mesh) {
+Box3 finiteBox(const TriangleMesh& mesh) {
   Box3 box;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
       if (const Vec3 p = mesh.corner(t, k); p.allFinite()) box.extend(p);
-  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+  return box;
 }
 
 constexpr double kFitted = 0.1;
@@ -48,10 +48,17 @@ std::string_view name(MeshUnit unit) {
 
 ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit) {
   ScaledMesh result;
-  const double side = longestSide(mesh);
+  const Box3 box = finiteBox(mesh);
+  const double side = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
   result.scale = entry(unit).metres;
   if (unit == MeshUnit::fit)
     result.scale = side > 0 && std::isfinite(kFitted / side) ? kFitted / side : 1.0;
+  const double farthest =
+      box.isEmpty() ? 0.0
+                    : result.scale * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  if (!(farthest <= kFarthestCorner))
+    throw Error("a corner lies " + formatNumber(farthest) + " m from the origin when the unit is " +
+                std::string(name(unit)) + "; the most is " + formatNumber(kFarthestCorner) + " m");
   if (result.scale != 1.0)
     for (Vec3& p : mesh.positions) p *= result.scale;
   const double metres = side * result.scale;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/numbers.h"
@@ -12,44 +13,52 @@ namespace patina {
 namespace {
 
 constexpr double kFirstPeriod = 1e-3; // [s], of a path of one row
-constexpr std::size_t kReportEvery = 4096;
+constexpr std::size_t kPollEvery = 4096;
 
-void checkTimes(const std::vector<TimedTip>& path) {
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    if (path[i].t > path[i - 1].t) continue;
-    throw Error("tip path: time does not increase at row " + std::to_string(i + 1) + " (" +
-                formatNumber(path[i - 1].t) + " s, then " + formatNumber(path[i].t) + " s)");
-  }
+double period(const TimedTip& from, const TimedTip& to, std::size_t row) {
+  if (to.t > from.t) return to.t - from.t;
+  throw Error("tip path: time does not increase at row " + std::to_string(row) + " (" +
+              formatNumber(from.t) + " s, then " + formatNumber(to.t) + " s)");
 }
 
 } // namespace
 
-std::vector<ToolSample> feel(const HapticSnapshot& snapshot, const std::vector<TimedTip>& path,
-                             Progress& progress) {
+void feel(const HapticSnapshot& snapshot, const std::function<std::optional<TimedTip>()>& next,
+          const std::function<void(const ToolSample&)>& take, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
-  checkTimes(path);
-  std::vector<ToolSample> samples;
-  samples.reserve(path.size());
   ContactMemory memory;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    if (i % kReportEvery == 0) {
-      progress.throwIfCancelled();
-      progress.report(static_cast<double>(i) / static_cast<double>(path.size()), "feeling");
-    }
-    const double dt = i > 0             ? path[i].t - path[i - 1].t
-                      : path.size() > 1 ? path[1].t - path[0].t
-                                        : kFirstPeriod;
+  std::optional<TimedTip> tip = next(), following = tip ? next() : std::nullopt;
+  double dt = following ? period(*tip, *following, 2) : kFirstPeriod;
+  for (std::size_t row = 1; tip; ++row) {
+    if (row % kPollEvery == 1) progress.throwIfCancelled();
     const auto before = Clock::now();
-    const Contact contact = tick(snapshot, memory, path[i].tip, dt);
+    const Contact contact = tick(snapshot, memory, tip->tip, dt);
     const auto ns =
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - before).count();
 
     ToolSample sample;
-    sample.t = path[i].t;
+    sample.t = tip->t;
     record(contact, snapshot.field.get(), sample);
     sample.step_ns = static_cast<std::uint32_t>(std::min<long long>(ns, UINT32_MAX));
-    samples.push_back(sample);
+    take(sample);
+    if (following) dt = period(*tip, *following, row + 1);
+    tip = std::exchange(following, following ? next() : std::nullopt);
   }
+}
+
+std::vector<ToolSample> feel(const HapticSnapshot& snapshot, const std::vector<TimedTip>& path,
+                             Progress& progress) {
+  std::vector<ToolSample> samples;
+  samples.reserve(path.size());
+  std::size_t given = 0;
+  const auto next = [&]() -> std::optional<TimedTip> {
+    if (given == path.size()) return std::nullopt;
+    if (given % kPollEvery == 0)
+      progress.report(static_cast<double>(given) / static_cast<double>(path.size()), "feeling");
+    return path[given++];
+  };
+  feel(
+      snapshot, next, [&](const ToolSample& sample) { samples.push_back(sample); }, progress);
   progress.report(1, "feeling");
   return samples;
 }

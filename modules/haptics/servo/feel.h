@@ -1,6 +1,8 @@
 // A tip path felt through the servo's own code, in simulated time.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/progress.h"
@@ -14,7 +16,12 @@ struct TimedTip {
   Vec3 tip = Vec3::Zero();
 };
 
-// One sample a row; dt is the difference of successive t. Throws Error if t does not increase.
+// One sample a tip, in memory that does not grow with the path: `next` gives a tip until it has
+// none, `take` gets its sample. dt is the difference of successive t, of the first tip that to the
+// second. Throws Error if t does not increase, Cancelled, and whatever the two throw.
+void feel(const HapticSnapshot& snapshot, const std::function<std::optional<TimedTip>()>& next,
+          const std::function<void(const ToolSample&)>& take, const Progress& progress);
+// The same of a path that is whole.
 std::vector<ToolSample> feel(const HapticSnapshot& snapshot, const std::vector<TimedTip>& path,
                              Progress& progress);
 

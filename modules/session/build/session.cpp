@@ -151,7 +151,12 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   if (options.iso && !is_volume) warnOf("--iso", "mesh");
   if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");
   addWarnings(opened, path.string(), mesh, options.tip_radius_chosen);
-  ScaledMesh scaled = inMetres(std::move(mesh), in_metres ? MeshUnit::m : options.unit);
+  ScaledMesh scaled;
+  try {
+    scaled = inMetres(std::move(mesh), in_metres ? MeshUnit::m : options.unit);
+  } catch (const Error& error) {
+    throw FileError(path.string(), 0, error.what());
+  }
   if (!scaled.warning.empty()) opened.warnings.push_back(path.string() + ": " + scaled.warning);
   opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
   return opened;

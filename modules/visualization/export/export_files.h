@@ -31,7 +31,9 @@ void writeToolPathVtp(const std::filesystem::path& path, const std::vector<ToolS
 void writeCollectionVtm(const std::filesystem::path& path,
                         const std::vector<std::pair<std::string, std::string>>& files);
 
-// Columns of the `feel` output.
+// Columns of the `feel` output, and a row of them.
+const std::vector<std::string>& toolSampleColumns();
+std::vector<double> toolSampleRow(const ToolSample& sample);
 void writeToolSamplesCsv(const std::filesystem::path& path, const std::vector<ToolSample>& samples);
 
 } // namespace patina
