@@ -228,10 +228,10 @@ TEST_F(History, AListReadsNoPicture) {
 
 // The same strokes on the same mesh: every file, byte for byte.
 TEST_F(History, TwoReplaysOfAJournalGiveTheSameFiles) {
-  const std::string strokes =
-      script("s.json", {stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
-                        stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),
-                        stroke(Tool::stiffness, 900, 0.006, {{0, 0, kTop}})});
+  const std::string strokes = script(
+      "s.json", {stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
+                 stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),
+                 stroke(Tool::material(MaterialChannel::stiffness), 900, 0.006, {{0, 0, kTop}})});
   ASSERT_EQ(run({"paint", box, "--strokes", strokes, "-o", folder / "first"}).exit, 0);
   const std::string journal = folder / "first/journal-1.jsonl";
   for (const char* replay : {"a", "b"})
