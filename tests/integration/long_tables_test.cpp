@@ -82,7 +82,9 @@ TEST_F(LongTables, TwiceTheRowsTakeTheSameMemory) {
     EXPECT_EQ(lines("out.csv"), 2 * kRows + 1);
     std::printf("%s: %.1f MB for %zu rows, %.1f MB for twice as many\n", words[0].c_str(),
                 once / 1024, kRows, twice / 1024);
-    EXPECT_LT(twice, 1.1 * once) << words[0];
+    // [kB]. Rows that are held are some 500 bytes each, so that it would be 150 MB; threads that an
+    // allocator serves from other arenas are a few.
+    EXPECT_LT(twice, once + 20e3) << words[0];
   }
 }
 
