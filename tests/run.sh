@@ -90,7 +90,7 @@ run_thread() {
   local processor
   processor=$(taskset -cp $$ | sed 's/.*: *//; s/[^0-9].*//')
   taskset -c "$processor" "${run[@]}" build-tsan/bin/haptics_tests --gtest_brief=1 \
-    --gtest_filter='*Servo*:*Mouse*' </dev/null
+    --gtest_filter='*Servo*:*TipTarget*:*Mouse*' </dev/null
 }
 
 run_benchmarks() {

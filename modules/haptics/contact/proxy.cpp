@@ -74,7 +74,8 @@ double ownShare(const Proxy& proxy) noexcept {
 
 // A bounded move is the projection of a point nearer to the middle: cutting the way short instead
 // would leave the walls. A few secants find the point; where they do not, halving does, between it
-// and the point that no projection takes out of the ball, since none makes a distance longer.
+// and a point on the ball: a projection makes no distance longer, so that where the middle is
+// itself free of the walls it stays within.
 void shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
              WallProjection& to) noexcept {
   const double most = kRoom * radius * radius;
