@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "support/places.h"
+
 namespace patina::architecture {
 
-inline const std::filesystem::path kRoot = PATINA_SOURCE_DIR;
+inline const std::filesystem::path kRoot = test::sourceFolder();
 
 struct SourceFile {
   std::string path; // relative to the project's root, "modules/field/surface/models.cpp"

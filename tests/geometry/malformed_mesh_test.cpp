@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "geometry/io/mesh_io.h"
+#include "support/places.h"
 
 namespace patina {
 namespace {
@@ -16,7 +17,7 @@ struct Malformed {
 };
 
 std::filesystem::path folder() {
-  return std::filesystem::path(PATINA_SOURCE_DIR) / "tests/geometry/malformed";
+  return test::sourceFolder() / "tests/geometry/malformed";
 }
 
 void expectRefused(const std::string& format, const std::vector<Malformed>& files) {

@@ -9,12 +9,13 @@
 
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
+#include "support/places.h"
 
 namespace patina {
 namespace {
 
 std::filesystem::path docs() {
-  return std::filesystem::path(PATINA_SOURCE_DIR) / "docs";
+  return test::sourceFolder() / "docs";
 }
 
 std::string guide(const std::string& name) {

@@ -10,6 +10,7 @@
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 #include "support/least_time.h"
+#include "support/places.h"
 
 namespace patina {
 namespace {
@@ -47,7 +48,7 @@ class Program : public ::testing::Test {
     return text.str();
   }
 
-  const fs::path program_ = fs::path(PATINA_BINARY_DIR) / "patina-gui";
+  const fs::path program_ = test::programFolder() / "patina-gui";
   const fs::path folder_ =
       fs::temp_directory_path() / ("patina-program-" + std::to_string(getpid()));
 };

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "integration/program.h"
+#include "support/places.h"
 
 namespace patina::test {
 namespace {
@@ -27,8 +28,7 @@ class BadInput : public testing::Test {
 };
 
 TEST_F(BadInput, MalformedMeshesOfEveryReaderGiveOneLine) {
-  const std::filesystem::path root =
-      std::filesystem::path(PATINA_SOURCE_DIR) / "tests/geometry/malformed";
+  const std::filesystem::path root = sourceFolder() / "tests/geometry/malformed";
   int seen = 0;
   std::set<std::string> readers;
   for (const auto& file : std::filesystem::recursive_directory_iterator(root)) {

@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "integration/program.h"
+#include "support/places.h"
 
 namespace patina::test {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 TEST(DiskFault, ARefusedSaveIsOneLineAndExit2AndTheWorkspaceStays) {
   const ScratchFolder scratch;
   const std::string folder = scratch / "pot", mark = scratch / "mark";
-  const std::filesystem::path source = PATINA_SOURCE_DIR;
+  const std::filesystem::path source = sourceFolder();
   const std::string mesh = source / "tests" / "fuzz" / "corpus" / "ply" / "ascii.ply";
   ASSERT_EQ(run({"scene", "-o", folder, "--add", mesh}).exit, 0);
   int refused = 0;
@@ -22,7 +23,7 @@ TEST(DiskFault, ARefusedSaveIsOneLineAndExit2AndTheWorkspaceStays) {
     std::filesystem::remove(mark);
     Outcome outcome;
     {
-      const Environment fault({{"LD_PRELOAD", PATINA_BINARY_DIR "/fault_shim.so"},
+      const Environment fault({{"LD_PRELOAD", programFolder() / "fault_shim.so"},
                                {"PATINA_FAULT", "full"},
                                {"PATINA_FAULT_AT", std::to_string(at)},
                                {"PATINA_FAULT_UNDER", folder},

@@ -6,13 +6,14 @@
 
 #include "core/file.h"
 #include "integration/program.h"
+#include "support/places.h"
 
 namespace patina::test {
 namespace {
 
 // The documents that a person reads.
 std::string document(const std::string& name) {
-  const std::filesystem::path path = std::filesystem::path(PATINA_SOURCE_DIR) / name;
+  const std::filesystem::path path = sourceFolder() / name;
   return std::filesystem::exists(path) ? readFile(path) : "";
 }
 

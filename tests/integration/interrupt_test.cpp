@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "integration/program.h"
+#include "support/places.h"
 
 namespace patina::test {
 namespace {
@@ -47,7 +48,7 @@ TEST(Interrupt, IsNotLostBeforeMain) {
   Outcome outcome;
   {
     const Environment early(
-        {{"LD_PRELOAD", PATINA_BINARY_DIR "/fault_shim.so"}, {"PATINA_FAULT_EARLY", "1"}});
+        {{"LD_PRELOAD", programFolder() / "fault_shim.so"}, {"PATINA_FAULT_EARLY", "1"}});
     outcome = run({"field", mesh, "-o", folder / "field.vti"});
   }
   std::signal(SIGINT, usual);

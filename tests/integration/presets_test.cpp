@@ -7,12 +7,13 @@
 #include "core/numbers.h"
 #include "geometry/tree/triangle_tree.h"
 #include "integration/program.h"
+#include "support/places.h"
 #include "workspace/workspace.h"
 
 namespace patina::test {
 namespace {
 
-const std::filesystem::path kScenes = std::filesystem::path(PATINA_SOURCE_DIR) / "data/scenes";
+const std::filesystem::path kScenes = sourceFolder() / "data/scenes";
 
 std::vector<std::string> presets() {
   std::vector<std::string> names;

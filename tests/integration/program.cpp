@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "support/places.h"
 
 extern char** environ;
 
@@ -29,7 +30,7 @@ std::filesystem::path freshName(const std::string& what) {
 } // namespace
 
 std::filesystem::path programPath() {
-  return std::filesystem::path(PATINA_BINARY_DIR) / "patina";
+  return programFolder() / "patina";
 }
 
 Running::Running(const std::vector<std::string>& words, const std::filesystem::path& program,

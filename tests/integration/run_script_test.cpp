@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "integration/program.h"
+#include "support/places.h"
 
 namespace patina::test {
 namespace {
@@ -15,7 +16,7 @@ class RunScript : public testing::Test {
     for (const char* name : {"app", "build/bin", "tools"})
       fs::create_directories(folder.path() / name);
     for (const std::string name : {"app/run.sh", "app/packages.sh"})
-      fs::copy_file(fs::path(PATINA_SOURCE_DIR) / name, folder.path() / name);
+      fs::copy_file(sourceFolder() / name, folder.path() / name);
     const std::string log = "echo \"${0##*/} $*\" >>'" + (folder / "log.txt") + "'\n";
     for (const char* name : {"build/bin/patina", "build/bin/patina-gui", "tools/ninja"})
       program(name, log);

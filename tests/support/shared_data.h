@@ -5,13 +5,14 @@
 #include <filesystem>
 #include <string>
 
+#include "support/places.h"
+
 namespace patina::test {
 
 // Where the folder is named by PATINA_SHARED_DATA, or lies beside the source tree.
 inline std::filesystem::path sharedData(const std::string& relative) {
   const char* folder = std::getenv("PATINA_SHARED_DATA");
-  const std::filesystem::path root =
-      folder ? folder : std::filesystem::path(PATINA_SOURCE_DIR) / ".." / "shared" / "data";
+  const std::filesystem::path root = folder ? folder : sourceFolder() / ".." / "shared" / "data";
   return root / relative;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "support/places.h"
 
 namespace patina {
 namespace {
@@ -18,7 +19,7 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 // In the child process.
 [[noreturn]] void become(const std::vector<std::string>& words, const Settings& settings) {
   for (const auto& [name, value] : settings) ::setenv(name.c_str(), value.c_str(), 1);
-  ::setenv("LD_PRELOAD", PATINA_BINARY_DIR "/fault_shim.so", 1);
+  ::setenv("LD_PRELOAD", (test::programFolder() / "fault_shim.so").c_str(), 1);
   // The sanitizers' runtime wants to be the first library.
   const char* options = std::getenv("ASAN_OPTIONS");
   const std::string with = std::string(options ? options : "") + ":verify_asan_link_order=0";
@@ -36,7 +37,7 @@ void redirect(int stream, const fs::path& to) {
   ::close(fd);
 }
 
-const std::string kProgram = PATINA_BINARY_DIR "/workspace_child";
+const std::string kProgram = test::programFolder() / "workspace_child";
 
 } // namespace
 

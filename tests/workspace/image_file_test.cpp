@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sys/wait.h>
 
+#include "support/places.h"
 #include "support/sanitized.h"
 #include "workspace/workspace_support.h"
 
@@ -157,7 +158,7 @@ TEST_F(ImageFileTest, AMissingLibraryIsNamed) {
   writePicture(root / "p.png", somePicture(3, 2, 1));
   std::filesystem::create_directories(root / "bin");
   const std::string alone = root / "bin" / "program", err = root / "err";
-  std::filesystem::copy_file(PATINA_BINARY_DIR "/workspace_child", alone);
+  std::filesystem::copy_file(test::programFolder() / "workspace_child", alone);
   const std::string words = alone + " picture " + (root / "p.png").string() + " 2>" + err;
   EXPECT_EQ(WEXITSTATUS(std::system(words.c_str())), 2);
   const std::string line = readFile(err);

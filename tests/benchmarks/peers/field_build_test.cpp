@@ -16,6 +16,7 @@
 #include "field/build/build_field.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/shapes.h"
+#include "support/shared_data.h"
 
 namespace patina {
 namespace {
@@ -62,14 +63,6 @@ void expectRatio(const std::string& name, const TriangleMesh& mesh, int resoluti
   EXPECT_LE(ours / theirs, most);
 }
 
-std::filesystem::path sharedMesh(const std::string& name) {
-  const char* folder = std::getenv("PATINA_SHARED_DATA");
-  const std::filesystem::path data =
-      folder ? std::filesystem::path(folder)
-             : std::filesystem::path(PATINA_SOURCE_DIR) / "../shared/data";
-  return data / "meshes" / name;
-}
-
 TEST(FieldBuildAgainstOpenVdb, CoarseMesh) {
   const TriangleMesh mesh = icosphere(1, 17);
   expectRatio("sphere", mesh, 150, 0.8);
@@ -90,7 +83,7 @@ TEST(FieldBuildAgainstOpenVdb, HalfAMillionTriangles) {
 
 TEST(FieldBuildAgainstOpenVdb, SharedModels) {
   for (const std::string name : {"goathead.obj", "boat.obj"}) {
-    const std::filesystem::path path = sharedMesh(name);
+    const std::filesystem::path path = test::sharedData("meshes/" + name);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared model at " << path;
     const TriangleMesh mesh = readMesh(path);
     expectRatio(name, mesh, 150, 0.8);
