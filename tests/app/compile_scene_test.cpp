@@ -11,7 +11,9 @@
 #include "geometry/mesh/joint_mesh.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
+#include "support/least_time.h"
 #include "support/node_values.h"
+#include "support/one_thread.h"
 
 namespace patina {
 namespace {
@@ -228,6 +230,38 @@ TEST(CompileScene, FacesAreAbsentWhereNothingReadsThem) {
     EXPECT_TRUE(canRetune(*kept, painted));
     EXPECT_EQ(canRetune(*read, painted), scene.redistance);
   }
+}
+
+// What is only felt is built together where it lies apart: the same field, in a fraction of the
+// time.
+PATINA_TIMED_TEST(CompileScene, SmallObjectsApartAreFeltAsBuiltOneByOne) {
+  Scene scene;
+  scene.field.resolution = 100;
+  for (int i = 0; i < 64; ++i)
+    scene.objects.push_back(ball(std::to_string(i), 0.012 * Vec3(i % 4, i / 4 % 4, i / 16), 0.004));
+  scene.objects.push_back(ball("over-the-last", Vec3(0.038, 0.036, 0.036), 0.004));
+  scene.objects.push_back({"open", std::make_shared<const TriangleMesh>(sheet(0.01, 0.01, 2))});
+  scene.objects.back().world_from_object.translation() = Vec3(0, 0, -0.01);
+  Progress progress;
+  std::shared_ptr<const CompiledScene> alone, together;
+  const test::OneThread one;
+  const auto seconds =
+      test::leastSeconds({[&] { together = compile(scene, progress, FaceLayer::if_read); },
+                          [&] { alone = compile(scene, progress); }},
+                         2, 5);
+  EXPECT_TRUE(test::within("66 objects together, against one by one", seconds[0], seconds[1], 0.5));
+  EXPECT_EQ(together->parts.size(), 3U);
+  const SurfaceField &a = *alone->built.field, &b = *together->built.field;
+  ASSERT_EQ(a.grid.nodes, b.grid.nodes);
+  ASSERT_EQ(a.grid.origin, b.grid.origin);
+  double worst = 0;
+  for (int k = 0; k < a.grid.nodes[2]; ++k)
+    for (int j = 0; j < a.grid.nodes[1]; ++j)
+      for (int i = 0; i < a.grid.nodes[0]; ++i)
+        worst = std::max(worst, std::abs(static_cast<double>(test::phiAt(a, i, j, k)) -
+                                         static_cast<double>(test::phiAt(b, i, j, k))));
+  EXPECT_LE(worst, 5e-5); // the search takes faces as alike that are as near to 1e-5 voxels
+  EXPECT_LT(mergeBytes(*together), mergeBytes(*alone) / 2);
 }
 
 TEST(CompileScene, SidesAreBuiltAnew) {

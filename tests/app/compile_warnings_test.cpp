@@ -29,6 +29,18 @@ TEST(CompileWarnings, PartsThatVanishBetweenTheNodesAreTold) {
   EXPECT_TRUE(warningsOf(plate(0.3e-3, 0.1e-3)).empty());
 }
 
+TEST(CompileWarnings, PartsThatAreFeltTooThickAreTold) {
+  const auto lines = warningsOf(plate(1e-3, 0.75e-3));
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NE(lines[0].find("thinner than two voxels (1.5 mm)"), std::string::npos) << lines[0];
+  EXPECT_TRUE(warningsOf(plate(2e-3, 0.75e-3)).empty());
+  Scene round;
+  round.field.resolution = 60;
+  round.objects.push_back(
+      {"torus", std::make_shared<const TriangleMesh>(torus(0.03, 0.01, 64, 32)), Pose::Identity()});
+  EXPECT_TRUE(warningsOf(round).empty());
+}
+
 TEST(CompileWarnings, AnOffsetMakesThinPartsFelt) {
   Scene scene = plate(0.3e-3, 1e-3);
   scene.haptics.offset = 2e-3;

@@ -53,25 +53,29 @@ inline double threadSeconds() {
 using Work = std::function<void()>;
 
 // The least thread time [s] of one call of each work. Rounds go on until `settled` of them in a row
-// have found nothing shorter by a hundredth, but not beyond `most_seconds`, save for three rounds;
-// ten times either in the long form.
+// had the core to themselves and found nothing shorter by a hundredth, but not beyond
+// `most_seconds`, save for three rounds; ten times either in the long form.
 // What a work gives to other threads is not counted: see OneThread.
 inline std::vector<double> leastSeconds(const std::vector<Work>& works, int settled = 10,
-                                        double most_seconds = 20) {
+                                        double most_seconds = 10) {
+  constexpr double kAlone = 1.05; // of the thread's own time, by the clock
   std::vector<double> least(works.size(), std::numeric_limits<double>::infinity());
   settled = static_cast<int>(longer(settled));
   const double end = secondsOn(CLOCK_MONOTONIC) + static_cast<double>(longer(1)) * most_seconds;
   int quiet = 0;
   for (int round = 0; round < 3 || (quiet < settled && secondsOn(CLOCK_MONOTONIC) < end); ++round) {
-    ++quiet;
+    const double clock = secondsOn(CLOCK_MONOTONIC), own = threadSeconds();
+    bool shorter = false;
     for (std::size_t i = 0; i < works.size(); ++i)
       for (int in_a_row = least[i] < 1e-3 ? 3 : 1; in_a_row > 0; --in_a_row) {
         const double begin = threadSeconds();
         works[i]();
         const double seconds = threadSeconds() - begin;
-        if (seconds < 0.99 * least[i]) quiet = 0;
+        shorter = shorter || seconds < 0.99 * least[i];
         least[i] = std::min(least[i], seconds);
       }
+    const bool alone = secondsOn(CLOCK_MONOTONIC) - clock <= kAlone * (threadSeconds() - own);
+    quiet = shorter ? 0 : quiet + (alone ? 1 : 0);
   }
   return least;
 }

@@ -65,19 +65,25 @@ TriangleMesh transformed(const TriangleMesh& mesh, const Eigen::Affine3d& target
   return result;
 }
 
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
-  if (a.triangles.empty()) return b;
-  if (b.triangles.empty()) return a;
-  TriangleMesh result = a;
-  const auto offset = static_cast<std::int32_t>(a.positions.size());
-  result.positions.insert(result.positions.end(), b.positions.begin(), b.positions.end());
-  result.triangles.reserve(a.triangles.size() + b.triangles.size());
-  for (const Triangle& t : b.triangles)
-    result.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  if (a.corner_uvs.empty() || b.corner_uvs.empty())
-    result.corner_uvs.clear();
+void append(TriangleMesh& mesh, const TriangleMesh& other) {
+  if (other.triangles.empty()) return;
+  if (mesh.triangles.empty()) {
+    mesh = other;
+    return;
+  }
+  const auto offset = static_cast<std::int32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  for (const Triangle& t : other.triangles)
+    mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  if (mesh.corner_uvs.empty() || other.corner_uvs.empty())
+    mesh.corner_uvs.clear();
   else
-    result.corner_uvs.insert(result.corner_uvs.end(), b.corner_uvs.begin(), b.corner_uvs.end());
+    mesh.corner_uvs.insert(mesh.corner_uvs.end(), other.corner_uvs.begin(), other.corner_uvs.end());
+}
+
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh result = a;
+  append(result, b);
   return result;
 }
 

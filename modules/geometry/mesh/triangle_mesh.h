@@ -38,7 +38,8 @@ double area(const TriangleMesh& mesh);
 double volume(const TriangleMesh& mesh);
 // A reflection turns the triangles round too, so that outside stays outside.
 TriangleMesh transformed(const TriangleMesh& mesh, const Eigen::Affine3d& target_from_mesh);
-// One mesh with the triangles of both; texture coordinates only if both have them.
+// The triangles of `other` behind the mesh's own; texture coordinates only if both have them.
+void append(TriangleMesh& mesh, const TriangleMesh& other);
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
 } // namespace patina

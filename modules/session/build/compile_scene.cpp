@@ -21,6 +21,7 @@ namespace {
 constexpr double kMostBand = 64; // voxels, as a scene may set
 
 using Objects = std::vector<std::shared_ptr<const CompiledObject>>;
+using Unbuilt = std::vector<std::shared_ptr<CompiledObject>>;
 
 class Stopwatch {
  public:
@@ -54,8 +55,8 @@ bool readsFaces(const Scene& scene) {
                      [](const SceneObject& o) { return o.paint != nullptr; });
 }
 
-bool hasFaces(const SurfaceField& field) {
-  return field.face.size() == field.blockCount();
+bool hasFaces(const std::shared_ptr<const SurfaceField>& field) {
+  return field && field->face.size() == field->blockCount();
 }
 
 std::shared_ptr<const CompiledObject> withoutFaces(const CompiledObject& object) {
@@ -101,6 +102,35 @@ std::shared_ptr<CompiledObject> prepared(const SceneObject& object) {
   return result;
 }
 
+// What is not edited one by one is built together while it keeps clear of the rest: alone, each
+// small object would measure a band that it shares with its neighbours. Consecutive objects, so
+// that their faces stay in order, and closed ones, so that none has a say about another's inside.
+Unbuilt groupsOf(const Unbuilt& objects) {
+  Unbuilt groups;
+  std::shared_ptr<CompiledObject> group;
+  TriangleMesh mesh;
+  std::vector<Box3> boxes;
+  const auto close = [&] {
+    if (group && boxes.size() > 1) group->mesh = std::make_shared<const TriangleMesh>(mesh);
+    mesh = {};
+    boxes.clear();
+  };
+  for (const auto& object : objects) {
+    const Box3 box = fieldBounds(*object->mesh);
+    const bool joins = group && group->mesh_report.watertight && object->mesh_report.watertight &&
+                       std::none_of(boxes.begin(), boxes.end(),
+                                    [&](const Box3& other) { return other.intersects(box); });
+    if (!joins) {
+      close();
+      groups.push_back(group = std::make_shared<CompiledObject>(*object));
+    }
+    append(mesh, *object->mesh);
+    boxes.push_back(box);
+  }
+  close();
+  return groups;
+}
+
 void build(CompiledObject& object, const BlockLattice& lattice, double band, OpenSides sides,
            Progress& progress) {
   try {
@@ -128,19 +158,21 @@ FieldSpec bandFor(const Scene& scene, const Box3& box, const FeltReach& reach) {
   return spec;
 }
 
-// The objects of compiled.scene, on compiled.lattice: kept from `old` where they can be. Sets
+// What is united to the scene's field: the built objects of compiled.scene on compiled.lattice,
+// kept from `old` where they can be, or groups of them if they need not stay apart. Sets objects,
 // lattice and band.
-Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, const FeltReach& room,
-                        Progress& progress) {
+Objects builtPieces(const CompiledScene* old, CompiledScene& compiled, const FeltReach& room,
+                    bool apart, Progress& progress) {
   const Scene& scene = compiled.scene;
   BlockLattice& lattice = compiled.lattice;
-  Objects objects(scene.objects.size());
-  std::vector<std::shared_ptr<CompiledObject>> fresh(objects.size());
+  Objects& objects = compiled.objects;
+  objects.resize(scene.objects.size());
+  Unbuilt fresh(objects.size());
   Box3 box;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (old)
       for (const auto& kept : old->objects)
-        if (same(kept->object, scene.objects[i]) && hasFaces(*kept->built.field)) objects[i] = kept;
+        if (same(kept->object, scene.objects[i]) && hasFaces(kept->built.field)) objects[i] = kept;
     if (!objects[i]) objects[i] = fresh[i] = prepared(scene.objects[i]);
     box.extend(fieldBounds(*objects[i]->mesh));
     progress.throwIfCancelled();
@@ -161,20 +193,20 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, const
     for (std::size_t i = 0; i < objects.size(); ++i)
       if (!fresh[i]) objects[i] = fresh[i] = std::make_shared<CompiledObject>(*objects[i]);
   }
-  std::vector<std::size_t> todo;
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    if (fresh[i]) todo.push_back(i);
+  Unbuilt todo = fresh;
+  std::erase(todo, nullptr);
   if (scene.objects.size() == 1 && !todo.empty() && !keep) {
     fresh[0]->built = buildField(*fresh[0]->mesh, spec, progress);
     fresh[0]->first_block = firstBlock(lattice, fresh[0]->built.field->grid);
     return objects;
   }
+  if (!apart) todo = groupsOf(todo);
   SharedProgress shared(progress, todo.size());
   tbb::parallel_for(std::size_t{0}, todo.size(), [&](std::size_t i) {
     Progress part(progress, shared.listener(i));
     // Isolated: a thread that waits for one object's loops must not begin another object.
     tbb::this_task_arena::isolate(
-        [&] { build(*fresh[todo[i]], lattice, compiled.band, spec.sides, part); });
+        [&] { build(*todo[i], lattice, compiled.band, spec.sides, part); });
   });
   // Names may change while the field is kept.
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -183,29 +215,30 @@ Objects compiledObjects(const CompiledScene* old, CompiledScene& compiled, const
     renamed->object.name = scene.objects[i].name;
     objects[i] = std::move(renamed);
   }
-  return objects;
+  return apart ? objects : Objects(todo.begin(), todo.end());
 }
 
-std::vector<FieldPart> partsOf(const Objects& objects) {
+std::vector<FieldPart> partsOf(const Objects& pieces) {
   std::vector<FieldPart> parts;
   std::int32_t first_face = 0;
-  for (const auto& object : objects) {
-    parts.push_back({object->built.field, object->first_block, first_face, object->built.caps});
-    first_face += static_cast<std::int32_t>(object->mesh->triangles.size());
+  for (const auto& piece : pieces) {
+    parts.push_back({piece->built.field, piece->first_block, first_face, piece->built.caps});
+    first_face += static_cast<std::int32_t>(piece->mesh->triangles.size());
   }
   return parts;
 }
 
-BuiltField united(const CompiledScene& compiled, Progress& progress) {
+BuiltField united(const Objects& pieces, const CompiledScene& compiled, Progress& progress) {
   const std::vector<FieldPart>& parts = compiled.parts;
   BuiltField built;
   progress.report(0.9, "merging");
   SurfaceField field = mergeFields(parts, compiled.lattice);
-  for (const auto& object : compiled.objects) {
-    built.report.dropped_triangles += object->built.report.dropped_triangles;
-    built.report.ambiguous_signs += object->built.report.ambiguous_signs;
-    built.report.open_parts += object->built.report.open_parts;
-    built.report.open_triangles += object->built.report.open_triangles;
+  for (const auto& piece : pieces) {
+    const FieldReport& own = piece->built.report;
+    built.report.dropped_triangles += own.dropped_triangles;
+    built.report.ambiguous_signs += own.ambiguous_signs;
+    built.report.open_parts += own.open_parts;
+    built.report.open_triangles += own.open_triangles;
   }
   progress.throwIfCancelled();
   if (compiled.scene.redistance) {
@@ -232,22 +265,22 @@ std::shared_ptr<const CompiledScene> compileFrom(const CompiledScene* old, Scene
   const Stopwatch watch;
   auto compiled = std::make_shared<CompiledScene>();
   compiled->scene = std::move(scene);
-  compiled->objects = compiledObjects(old, *compiled, room, progress);
-  if (faces == FaceLayer::if_read && !readsFaces(compiled->scene))
-    for (auto& object : compiled->objects) object = withoutFaces(*object);
-  compiled->parts = partsOf(compiled->objects);
+  const bool only_felt = faces == FaceLayer::if_read && !readsFaces(compiled->scene);
+  Objects pieces = builtPieces(old, *compiled, room, !only_felt, progress);
+  if (only_felt)
+    for (auto& piece : pieces) piece = withoutFaces(*piece);
+  if (compiled->objects.size() == 1) compiled->objects = pieces;
+  compiled->parts = partsOf(pieces);
   progress.throwIfCancelled();
-  if (compiled->objects.size() == 1) {
-    const CompiledObject& only = *compiled->objects[0];
-    compiled->mesh = only.mesh;
-    compiled->mesh_report = only.mesh_report;
-    compiled->built = only.built;
+  std::vector<MeshReport> reports;
+  for (const auto& object : compiled->objects) reports.push_back(object->mesh_report);
+  compiled->mesh_report = sumOf(reports);
+  if (pieces.size() == 1) {
+    compiled->mesh = pieces[0]->mesh;
+    compiled->built = pieces[0]->built;
   } else {
-    std::vector<MeshReport> reports;
-    for (const auto& object : compiled->objects) reports.push_back(object->mesh_report);
-    compiled->mesh_report = sumOf(reports);
     compiled->mesh = std::make_shared<const TriangleMesh>(worldMesh(compiled->scene));
-    compiled->built = united(*compiled, progress);
+    compiled->built = united(pieces, *compiled, progress);
     compiled->built.report.seconds = watch.seconds();
     compiled->built.report.cpu_seconds = watch.cpuSeconds();
   }
@@ -268,21 +301,8 @@ TriangleMesh worldMesh(const SceneObject& object) {
 }
 
 TriangleMesh worldMesh(const Scene& scene) {
-  if (scene.objects.size() == 1) return worldMesh(scene.objects[0]);
   TriangleMesh world;
-  bool with_uvs = true;
-  for (const SceneObject& object : scene.objects) {
-    const TriangleMesh mesh = worldMesh(object);
-    const auto first = static_cast<std::int32_t>(world.positions.size());
-    world.positions.insert(world.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const Triangle& t : mesh.triangles)
-      world.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    with_uvs = with_uvs && mesh.corner_uvs.size() == mesh.triangles.size();
-    if (with_uvs)
-      world.corner_uvs.insert(world.corner_uvs.end(), mesh.corner_uvs.begin(),
-                              mesh.corner_uvs.end());
-  }
-  if (!with_uvs) world.corner_uvs.clear();
+  for (const SceneObject& object : scene.objects) append(world, worldMesh(object));
   return world;
 }
 
@@ -322,7 +342,7 @@ bool canRetune(const CompiledScene& old, const Scene& scene) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (!same(old.objects[i]->object, scene.objects[i])) return false;
   return same(old.scene.field, scene.field) && old.scene.redistance == scene.redistance &&
-         fits(old, feltReach(scene, &old)) && (!readsFaces(scene) || hasFaces(*old.built.field));
+         fits(old, feltReach(scene, &old)) && (!readsFaces(scene) || hasFaces(old.built.field));
 }
 
 std::shared_ptr<const CompiledScene> retuned(const CompiledScene& old, Scene scene) {
@@ -348,13 +368,15 @@ std::size_t mergeBytes(const CompiledScene& compiled) {
   for (const auto& block : field.distance) shared.insert(block.get());
   for (const auto& block : field.face) shared.insert(block.get());
   std::size_t bytes = 0;
-  for (const auto& object : compiled.objects) {
-    const SurfaceField& own = *object->built.field;
-    bytes += own.bytes() + object->mesh->positions.size() * sizeof(Vec3) +
+  for (const auto& object : compiled.objects)
+    bytes += object->mesh->positions.size() * sizeof(Vec3) +
              object->mesh->triangles.size() * sizeof(Triangle);
-    for (const auto& block : own.distance)
+  for (const FieldPart& part : compiled.parts) {
+    if (part.field == compiled.built.field) continue;
+    bytes += part.field->bytes();
+    for (const auto& block : part.field->distance)
       if (shared.contains(block.get())) bytes -= block->bytes();
-    for (const auto& block : own.face)
+    for (const auto& block : part.field->face)
       if (shared.contains(block.get())) bytes -= block->bytes();
   }
   return bytes;

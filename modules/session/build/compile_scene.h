@@ -29,7 +29,7 @@ struct CompiledObject {
   SceneObject object;
   std::shared_ptr<const TriangleMesh> mesh; // world frame
   MeshReport mesh_report;
-  BuiltField built; // no samples
+  BuiltField built; // no samples; no field where it was built together with others
   std::array<int, 3> first_block{};
 };
 
@@ -44,12 +44,13 @@ struct CompiledScene {
   BlockLattice lattice;
   double band = 0; // voxels: scene.field.band, or more where an offset or a magnet reaches farther
   std::vector<std::shared_ptr<const CompiledObject>> objects; // in the scene's order
-  std::vector<FieldPart> parts;                               // theirs; first_face is in `mesh`
+  std::vector<FieldPart> parts; // theirs, one each or of some together; first_face is in `mesh`
 };
 
 // Nearest faces by node, a layer of the field: read by what is painted and by merge.redistance, and
-// by a brush. kept: whatever is painted next finds them; if_read: absent where nothing in the scene
-// reads them.
+// by a brush. kept: whatever is painted next finds them, and each object stays by itself; if_read:
+// absent where nothing in the scene reads them, and closed objects that keep clear of each other
+// are built as one, the more quickly the smaller they are.
 enum class FaceLayer : std::uint8_t { kept, if_read };
 
 // Slow; polls progress, throws Cancelled. Safe on a background thread. One object keeps the grid

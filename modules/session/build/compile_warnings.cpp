@@ -10,48 +10,67 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kMostProbes = 50'000;
-constexpr double kProbeDepth = 0.5; // voxels
-constexpr double kToldShare = 0.01; // of the area; slivers beside sharp edges are less
-constexpr double kLargestScene = 2; // [m]
+constexpr double kProbeDepth = 0.5;    // voxels
+constexpr double kToldVanished = 0.01; // of the area; slivers beside sharp edges are less
+constexpr double kToldMoved = 0.1;     // of the area; a fine mesh has much of it beside edges
+constexpr double kMoved = 0.05;        // voxels; a smooth surface is felt far closer
+constexpr double kLargestScene = 2;    // [m]
 
-} // namespace
+struct ThinParts {
+  double vanished = 0, moved = 0; // of the area
+  double by = 0;                  // [m], mean over what is moved
+};
 
-double vanishedShare(const CompiledScene& compiled) {
+// Nothing where the tip's radius or an offset makes such parts thick.
+ThinParts thinParts(const CompiledScene& compiled) {
   const HapticProperties& haptics = compiled.scene.haptics;
   const SurfaceField& field = *compiled.built.field;
   const double iso = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
-  if (iso >= field.grid.voxel || compiled.mesh_report.boundary_edges > 0) return 0;
+  if (iso >= field.grid.voxel || compiled.mesh_report.boundary_edges > 0) return {};
   const FieldSampler sampler(field, compiled.scene.sampler);
   const TriangleMesh& mesh = *compiled.mesh;
   const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / kMostProbes);
-  double all = 0, vanished = 0;
+  double all = 0, vanished = 0, moved = 0, by = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
-    const auto corner = [&](int k) -> const Vec3& {
-      return mesh
-          .positions[static_cast<std::size_t>(mesh.triangles[i][static_cast<std::size_t>(k)])];
-    };
-    const Vec3 across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    const Vec3 a = mesh.corner(i, 0), b = mesh.corner(i, 1), c = mesh.corner(i, 2);
+    const Vec3 across = (b - a).cross(c - a);
     const double twice_area = across.norm();
     if (!(twice_area > 0) || !std::isfinite(twice_area)) continue;
     all += twice_area;
-    const Vec3 centre = field.grid.toGrid((corner(0) + corner(1) + corner(2)) / 3);
+    const Vec3 centre = field.grid.toGrid((a + b + c) / 3);
     const Vec3 aside = kProbeDepth / twice_area * across;
     // Whichever way the triangle is turned, one side of it is the inside.
-    if (std::min(sampler.phiAtGrid(centre + aside), sampler.phiAtGrid(centre - aside)) >= 0)
+    if (std::min(sampler.phiAtGrid(centre + aside), sampler.phiAtGrid(centre - aside)) >= 0) {
       vanished += twice_area;
+    } else if (const double off = std::abs(sampler.phiAtGrid(centre)); off > kMoved) {
+      moved += twice_area;
+      by += twice_area * off;
+    }
   }
-  return all > 0 ? vanished / all : 0;
+  if (!(all > 0)) return {};
+  return {vanished / all, moved / all, moved > 0 ? by / moved * field.grid.voxel : 0};
 }
+
+std::string percent(double share) {
+  return formatNumber(std::round(100 * share)) + " %";
+}
+
+} // namespace
 
 std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
   std::vector<std::string> lines;
-  const double share = vanishedShare(compiled);
-  if (share > kToldShare) {
-    lines.push_back(formatNumber(std::round(100 * share)) + " %" +
+  const double voxel = compiled.built.field->grid.voxel;
+  const ThinParts thin = thinParts(compiled);
+  if (thin.vanished > kToldVanished)
+    lines.push_back(percent(thin.vanished) +
                     " of the surface belongs to parts thinner than a voxel (" +
-                    formatLength(compiled.built.field->grid.voxel) +
+                    formatLength(voxel) +
                     "), which are not felt: set a smaller voxel, an offset or a tip radius");
-  }
+  if (thin.moved > kToldMoved)
+    lines.push_back(percent(thin.moved) +
+                    " of the surface belongs to parts thinner than two voxels (" +
+                    formatLength(2 * voxel) + ") and is felt " + formatLength(thin.by) +
+                    " from where it is: set a smaller voxel, an offset or a tip radius");
   const std::optional<Magnet>& magnet = compiled.scene.haptics.magnet;
   if (magnet && magnet->range * magnet->strength == 0)
     lines.push_back(magnet->range > 0 ? "magnet.range has no effect without magnet.strength"
@@ -59,8 +78,8 @@ std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
   bool posed = false;
   for (const SceneObject& object : compiled.scene.objects)
     posed |= !object.world_from_object.matrix().isIdentity(0.0);
-  const FieldGrid& grid = compiled.built.field->grid;
-  const double size = (*std::max_element(grid.nodes.begin(), grid.nodes.end()) - 1) * grid.voxel;
+  const auto& nodes = compiled.built.field->grid.nodes;
+  const double size = (*std::max_element(nodes.begin(), nodes.end()) - 1) * voxel;
   if (posed && size > kLargestScene)
     lines.push_back("the scene is " + formatLength(size) +
                     " wide: the numbers of a pose are in metres");

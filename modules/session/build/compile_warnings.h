@@ -8,12 +8,8 @@
 
 namespace patina {
 
-// Share of the surface [area] that belongs to parts so thin that the field has no inside there.
-// Zero where the tip's radius or an offset makes such parts felt.
-double vanishedShare(const CompiledScene& compiled);
-
-// One line each: parts that vanish between the nodes, a magnet without range or strength, objects
-// whose poses make the scene larger than any hand reaches.
+// One line each: parts that vanish between the nodes or are felt from where they are not, a magnet
+// without range or strength, objects whose poses make the scene larger than any hand reaches.
 std::vector<std::string> compileWarnings(const CompiledScene& compiled);
 
 } // namespace patina
