@@ -56,9 +56,12 @@ Setter inRange(double lowest, double highest, std::function<void(double)> set, N
   };
 }
 
+Argument input(const std::string& name, const std::string& caption, Setter set, Times times) {
+  return {name, name, "", "", caption, std::move(set), times};
+}
+
 Argument sceneInput(std::filesystem::path& target, const std::string& name) {
-  return {name,         name,       "", "", "Mesh (.obj .ply .stl), workspace or volume (.vti).",
-          into(target), Times::once};
+  return input(name, "Mesh (.obj .ply .stl), workspace or volume (.vti).", into(target));
 }
 
 Argument outputTo(std::filesystem::path& target, const std::string& value,

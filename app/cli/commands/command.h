@@ -62,7 +62,9 @@ template <typename Value, typename Parse> Setter parsedInto(Value& target, Parse
   return [&target, parse](const std::string& text) { target = parse(text); };
 }
 
-// What most commands read and write.
+// What a command reads and writes.
+Argument input(const std::string& name, const std::string& caption, Setter set,
+               Times times = Times::once);
 Argument sceneInput(std::filesystem::path& target, const std::string& name = "INPUT");
 Argument outputTo(std::filesystem::path& target, const std::string& value,
                   const std::string& caption);

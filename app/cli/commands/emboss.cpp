@@ -68,12 +68,11 @@ Command embossCommand() {
           "The field is built as fine as asked for, the painted relief baked into it, and its "
           "surface written as a mesh: several objects become one. relief.height below 0 engraves. "
           "The grid loses height: of a pattern as long as 8 voxels 8 %, as 4 voxels 29 %; "
-          "deviation is measured, from the painted texels, displaced along the normals, to the "
-          "new mesh.",
+          "deviation is measured, from the painted texels, displaced along the normals, to the new "
+          "mesh.",
       .examples = {"patina emboss cup -o cup.ply", "patina emboss cup -o cup.stl --voxel 0.2mm"},
       .keys = kKeys,
-      .arguments = {{"WORKSPACE", "WORKSPACE", "", "", "Painted workspace.", into(options->input),
-                     Times::once},
+      .arguments = {input("WORKSPACE", "Painted workspace.", into(options->input)),
                     outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
       .run = [options](Console& console) { return runEmboss(*options, console); }};
   addFieldOptions(command, options->scene);

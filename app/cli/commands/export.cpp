@@ -124,11 +124,10 @@ Command exportCommand() {
       .description =
           "Into the folder: mesh.vtp (of several objects with the index of each triangle's), "
           "surface.vtp (the surface that the tip's centre feels, without relief that is pulled), "
-          "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens "
-          "them together, and with --path also path.vtp and forces.csv (as patina feel). Painted "
-          "images go beside them, as .png (16 bits) and .exr (floats); paint-NAME.vtp has an "
-          "object's mesh with all that was painted on it, material-NAME.vti its painted "
-          "material.\n"
+          "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens them "
+          "together, and with --path also path.vtp and forces.csv (as patina feel). Painted images "
+          "go beside them, as .png (16 bits) and .exr (floats); paint-NAME.vtp has an object's "
+          "mesh with all that was painted on it, material-NAME.vti its painted material.\n"
           "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop "
           "would buzz, and the least stiffness of any direction, below 0 where the tip slips off.",
       .examples = {"patina export workspace -o paraview",

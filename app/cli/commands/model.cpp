@@ -150,20 +150,20 @@ Command modelCommand() {
       users[key] += (users[key].empty() ? "" : ", ") + model.name + " " +
                     (isCount(key) ? formatNumber(value) : formatLength(value));
   }
-  Command command{
-      .name = "model",
-      .summary = "write one of the program's own test objects as a mesh",
-      .description = "NAME is one of: " + joined(list, "; ") +
-                     ".\nSizes that the model does not have are an error. The same "
-                     "words give the same mesh.",
-      .examples = {"patina model vase -o vase.ply --height 120mm --wall 2mm",
-                   "patina model sphere -o sphere.obj --radius 30mm --frequency 71"},
-      .keys = kKeys,
-      .arguments = {{"NAME", "NAME", "", "", "Which model.",
-                     [options](const std::string& text) { options->name = modelNamed(text).name; },
-                     Times::once},
-                    outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
-      .run = [options](Console& console) { return runModel(*options, console); }};
+  Command command{.name = "model",
+                  .summary = "write one of the program's own test objects as a mesh",
+                  .description = "NAME is one of: " + joined(list, "; ") +
+                                 ".\nSizes that the model does not have are an error. The same "
+                                 "words give the same mesh.",
+                  .examples = {"patina model vase -o vase.ply --height 120mm --wall 2mm",
+                               "patina model sphere -o sphere.obj --radius 30mm --frequency 71"},
+                  .keys = kKeys,
+                  .arguments = {input("NAME", "Which model.",
+                                      [options](const std::string& text) {
+                                        options->name = modelNamed(text).name;
+                                      }),
+                                outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
+                  .run = [options](Console& console) { return runModel(*options, console); }};
   for (const auto& [key, text] : users)
     command.arguments.push_back(sizeArgument(key, text, options->sizes));
   command.arguments.push_back(unitOfOutput(options->unit));

@@ -119,7 +119,8 @@ Command studyCommand() {
   for (const Study& study : studies())
     description += "\n" + std::string(study.name) + ": " + std::string(study.about) + ".";
   description +=
-      "\nEach table becomes NAME-I.csv, NAME-I.json (with machine, compiler, scheduling policy and "
+      "\n"
+      "Each table becomes NAME-I.csv, NAME-I.json (with machine, compiler, scheduling policy and "
       "load) and, where there is a display, NAME-I.png; a study of one table leaves the number "
       "out. A wide table is printed in pieces. Measure on a quiet machine.";
   return {.name = "study",
@@ -127,12 +128,11 @@ Command studyCommand() {
           .description = description,
           .examples = {"patina study field -o studies", "patina study all -o studies --quick"},
           .keys = kKeys,
-          .arguments = {{"NAME", "NAME", "", "", "Which study.",
-                         [options](const std::string& text) {
-                           (void)chosen(text);
-                           options->name = text;
-                         },
-                         Times::once},
+          .arguments = {input("NAME", "Which study.",
+                              [options](const std::string& text) {
+                                (void)chosen(text);
+                                options->name = text;
+                              }),
                         outputTo(options->output, "FOLDER", "Where to; made if it is missing."),
                         {"--quick", "", "", "", "Coarser and fewer: seconds instead of minutes.",
                          into(options->study.quick)},

@@ -114,8 +114,7 @@ Command historyCommand(Way way) {
       .examples = {"patina " + name + " cup", "patina " + name + " cup --steps 3",
                    "patina " + name + " cup --list"},
       .keys = kKeys,
-      .arguments = {{"WORKSPACE", "WORKSPACE", "", "", "The folder.", into(options->workspace),
-                     Times::once},
+      .arguments = {input("WORKSPACE", "The folder.", into(options->workspace)),
                     {"--steps", "N", "", "1", "How many edits.",
                      inRange(
                          1, 1e9, [options](double n) { options->steps = static_cast<int>(n); },
