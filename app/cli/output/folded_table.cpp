@@ -72,8 +72,7 @@ std::string foldedText(const WorkPrecisionTable& table, std::size_t width) {
   std::vector<const Column*> settings, results;
   std::size_t settings_width = 0;
   for (const Column& column : columns) {
-    const bool constant = column.setting && table.rows.size() > 1 && column.neverChanges();
-    if (constant) {
+    if (table.rows.size() > 1 && column.neverChanges() && !column.name.starts_with("error")) {
       title += "; " + column.name + " " + column.cells.front();
     } else if (column.setting) {
       settings.push_back(&column);

@@ -10,7 +10,7 @@ namespace patina::cli {
 constexpr std::size_t kTableWidth = 120;
 
 // Columns aligned, at most `width` of them wide: what does not fit stands in a further block under
-// the same settings, of which the columns that never change are told once, beside the title.
+// the same settings. A column that never changes is told once, beside the title.
 std::string foldedText(const WorkPrecisionTable& table, std::size_t width = kTableWidth);
 
 } // namespace patina::cli

@@ -15,7 +15,7 @@ Json vectorJson(const Vec3& v) {
 const Keys& fieldKeys() {
   static const Keys keys = {
       {"seconds", "s", "built in", "on the wall", Shown::if_any},
-      {"cpu_seconds", "s", "of all processors", "", Shown::if_any},
+      {"cpu_seconds", "s", "of all processors", "", Shown::never},
       {"voxel", "m", "voxel", "", Shown::never},
       {"resolution", "", "grid", "cells along x, y, z"},
       {"origin", "m", "first node", "x, y, z", Shown::never},
@@ -45,7 +45,9 @@ Report fieldReport(const SurfaceField& field, const FieldReport& built) {
   report.set("band_voxels", field.band,
              formatNumber(field.band) + " voxels = " + formatLength(field.band * grid.voxel) +
                  " each side");
-  report.set("seconds", built.seconds).set("cpu_seconds", built.cpu_seconds);
+  report.set("seconds", built.seconds,
+             shown(built.seconds, "s") + ", " + shown(built.cpu_seconds, "s") + " of CPU");
+  report.set("cpu_seconds", built.cpu_seconds);
   report.set("blocks", built.blocks);
   report.set("bytes", built.bytes,
              formatBytes(static_cast<double>(built.bytes)) + " in " + formatCount(built.blocks) +
