@@ -144,7 +144,8 @@ const Keys kKeys = {
     {"predicted_limit", "N/m", "predicted limit", "K* of the loop without stabilisers"},
     {"rule_of_thumb", "N/m", "rule of thumb", "", Shown::never},
     {"stiffness", "N/m", "stiffness"},
-    {"stiffness_displayed", "N/m", "displayed stiffness", "or null, as all below", Shown::never},
+    {"stiffness_displayed", "N/m", "displayed stiffness",
+     "null where there is none, as of the couplings and restitution", Shown::never},
     {"stages", "", "stages"},
     {"coupling_stiffness", "N/m", "coupling", "", Shown::if_any},
     {"coupling_damping", "N s/m", "coupling damping", "", Shown::never},
@@ -223,7 +224,7 @@ void warnOfLeaving(const SimulateOptions& options, const SimulationSpec& spec,
   if (run.verdict != Verdict::kLeftSurface) return;
   std::string advice;
   if (spec.hand.stiffness == 0) advice = "; --hand-stiffness 200 holds it about its start";
-  if (spec.press == 0) advice += "; --press 1 holds it against the surface";
+  if (spec.press == 0) advice += "; --press 1 keeps it on the surface";
   console.warn(std::string("simulate: the tip ") +
                (options.plane ? "bounced off the plane" : "slid or was thrown off the model") +
                advice);

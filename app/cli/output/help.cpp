@@ -57,8 +57,12 @@ std::string textOf(const Key& key) {
   std::vector<std::string> parts;
   for (const Key& part : key.parts)
     parts.push_back(nameOf(part) + (part.about.empty() ? "" : ": " + part.about));
-  return key.caption + (key.about.empty() ? "" : ": " + key.about) +
-         (parts.empty() ? "" : " (" + joined(parts) + ")");
+  std::string plain = key.name; // what only says the name again is left out
+  std::ranges::replace(plain, '_', ' ');
+  const std::string text = key.about.empty()      ? key.caption
+                           : key.caption == plain ? key.about
+                                                  : key.caption + ": " + key.about;
+  return text + (parts.empty() ? "" : " (" + joined(parts) + ")");
 }
 
 Lines linesOf(const Command& command, bool inputs) {
