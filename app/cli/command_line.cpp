@@ -48,6 +48,7 @@ void give(const Argument& argument, const std::string& value) {
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
+    if (argument.isInput()) throw;
     throw Error(argument.name() + ": " + error.what());
   }
 }
