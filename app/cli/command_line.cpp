@@ -1,11 +1,12 @@
 #include "app/cli/command_line.h"
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
-#include <map>
+#include <set>
 #include <sstream>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/suggestion.h"
 #include "app/cli/output/help.h"
 #include "core/error.h"
 
@@ -13,138 +14,123 @@ namespace patina::cli {
 
 namespace {
 
-void addArgument(CLI::App& parser, const Argument& argument) {
-  const auto set = [&argument](const std::string& text) {
-    try {
-      argument.set(text);
-    } catch (const FileError&) {
-      throw;
-    } catch (const Error& error) {
-      throw Error(argument.names.substr(argument.names.rfind(',') + 1) + ": " + error.what());
-    }
-  };
-  if (!argument.positional() && argument.value.empty()) {
-    parser.add_flag_callback(argument.names, [set] { set(""); });
-    return;
-  }
-  // A positional is shown by its name, which need not be a word that the parser accepts.
-  const std::string names = argument.positional() ? "input" : argument.names;
-  CLI::Option* option = parser.add_option_function<std::vector<std::string>>(
-      names, [set](const std::vector<std::string>& texts) {
-        for (const std::string& text : texts) set(text);
-      });
-  // Else an option's list of values goes on over the input that follows it.
-  if (!argument.positional()) option->allow_extra_args(false);
-  if (argument.positional() && argument.repeated)
-    option->expected(-1);
-  else if (argument.positional())
-    option->expected(1);
-  else if (argument.repeated)
-    option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  else
-    option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+using Words = std::vector<std::string>;
+
+const Argument* inputOf(const Command& command) {
+  const auto input = std::ranges::find_if(command.arguments, &Argument::isInput);
+  return input == command.arguments.end() ? nullptr : &*input;
 }
 
-// What the parser cannot say in our words: an option that does not exist, a word too many. `words`
-// follow the command's name.
-void requireKnown(const Command& command, const std::vector<std::string>& words) {
-  const std::string see = "; see patina " + command.name + " --help";
-  const Argument* input = nullptr;
-  std::map<std::string, bool> takes_value = {
-      {"-h", false}, {"--help", false}, {"--version", false}};
-  if (command.reports) takes_value["--json"] = false;
+Words namesOf(const Argument& argument) {
+  std::istringstream names(argument.names);
+  Words words;
+  for (std::string name; std::getline(names, name, ',');) words.push_back(name);
+  return words;
+}
+
+// The option of that name; Error if the command has none.
+const Argument& optionNamed(const Command& command, const std::string& name) {
+  Words known;
   for (const Argument& argument : command.arguments) {
-    if (argument.positional()) input = &argument;
-    std::istringstream names(argument.positional() ? "" : argument.names);
-    for (std::string name; std::getline(names, name, ',');)
-      takes_value[name] = !argument.value.empty();
+    if (argument.isInput()) continue;
+    for (const std::string& each : namesOf(argument)) {
+      if (each == name) return argument;
+      known.push_back(each);
+    }
   }
-  std::size_t inputs = 0;
+  throw Error("unknown option " + name +
+              suggestion(name, known, "; see patina " + command.name + " --help"));
+}
+
+void give(const Argument& argument, const std::string& value) {
+  try {
+    argument.set(value);
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    if (argument.isInput()) throw;
+    throw Error(argument.name() + ": " + error.what());
+  }
+}
+
+// Fills in the command's options from the words after its name; which were given, by name.
+std::set<std::string> parse(const Command& command, const Words& words) {
+  const std::string see = "patina " + command.name + " --help";
+  const Argument* input = inputOf(command);
+  std::set<std::string> given;
   bool only_inputs = false; // after "--"
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (!only_inputs && word == "--") {
       only_inputs = true;
-    } else if (only_inputs || word.size() < 2 || word[0] != '-') {
-      if (++inputs > 1 && input && !input->repeated)
-        throw Error(command.name + ": one " + input->value + " at a time: '" + word +
-                    "' is one too many" + see);
-      if (!input) throw Error(command.name + ": '" + word + "' is one word too many" + see);
-    } else {
-      // "--name=value" and "-ovalue" carry their value with them.
-      const bool is_long = word[1] == '-';
-      const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
-      const auto known = takes_value.find(name);
-      if (known == takes_value.end()) throw Error("unknown option " + name + see);
-      if (known->second && name == word) ++i;
+      continue;
     }
+    if (only_inputs || word.size() < 2 || word[0] != '-') {
+      if (!input) throw Error(command.name + ": '" + word + "' is one word too many; see " + see);
+      if (!given.insert(input->name()).second && !input->isRepeated())
+        throw Error(command.name + ": one " + input->value + " at a time: '" + word +
+                    "' is one too many; see " + see);
+      give(*input, word);
+      continue;
+    }
+    // "--name=value" and "-ovalue" carry their value with them.
+    const bool is_long = word[1] == '-';
+    const std::size_t end = is_long ? word.find('=') : 2;
+    const std::string name = word.substr(0, end);
+    const bool carries = end < word.size();
+    const Argument& option = optionNamed(command, name);
+    given.insert(option.name());
+    if (option.isFlag() && carries) throw Error(name + " takes no value; see " + see);
+    if (!option.isFlag() && !carries && i + 1 == words.size())
+      throw Error(name + ": " + option.value + " is missing after it; see " + see);
+    if (option.isFlag())
+      give(option, "");
+    else
+      give(option, carries ? word.substr(end + (is_long ? 1 : 0)) : words[++i]);
   }
+  for (const Argument& argument : command.arguments)
+    if (argument.isRequired() && !given.contains(argument.name()))
+      throw Error(command.name + ": " + argument.name() + " is missing (see " + see + ")");
+  return given;
 }
 
-// What the parser cannot say in our words: a required argument that is missing.
-void requireAll(const Command& command, const CLI::App& parser) {
-  for (const Argument& argument : command.arguments) {
-    const std::string& names = argument.names;
-    const std::string name = argument.positional() ? "input" : names.substr(names.rfind(',') + 1);
-    if (argument.required && parser.count(name) == 0)
-      throw Error(command.name + ": " + (argument.positional() ? argument.value : name) +
-                  " is missing (see patina " + command.name + " --help)");
+const Command& commandNamed(const std::vector<Command>& commands, const std::string& name) {
+  Words known;
+  for (const Command& command : commands) {
+    if (command.name == name) return command;
+    known.push_back(command.name);
   }
+  const bool option = name.starts_with("-");
+  throw Error("unknown " + (option ? "option " + name : "command '" + name + "'") +
+              suggestion(name, known, "; see patina --help"));
 }
 
 } // namespace
 
 int runCommandLine(int argc, char** argv) {
   const std::vector<Command> commands = allCommands();
-  CLI::App program;
-  program.set_help_flag();
-  program.require_subcommand(0, 1); // so that "patina study field" is a study, not two commands
-  bool help = false;
-  bool version = false;
-  Console console;
-  program.add_flag("-h,--help", help);
-  program.add_flag("--version", version);
-  std::vector<CLI::App*> parsers;
-  for (const Command& command : commands) {
-    CLI::App* parser = program.add_subcommand(command.name);
-    parser->set_help_flag();
-    parser->add_flag("-h,--help", help);
-    parser->add_flag("--version", version);
-    if (command.reports) parser->add_flag("--json", console.json);
-    for (const Argument& argument : command.arguments) addArgument(*parser, argument);
-    parsers.push_back(parser);
-  }
-
+  const Words words(argv + 1, argv + argc);
+  const auto only_inputs = std::ranges::find(words, "--");
+  const auto asked = [&](const char* name) {
+    return std::find(words.begin(), only_inputs, name) != only_inputs;
+  };
   // Asking for help must work however incomplete or wrong the rest of the line is.
-  for (int i = 1; i < argc; ++i) help = help || std::string(argv[i]) == "--help";
-  if (!help) {
-    for (const Command& command : commands)
-      if (argc > 1 && command.name == argv[1]) requireKnown(command, {argv + 2, argv + argc});
-    try {
-      program.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      throw Error(std::string(error.what()) + " (see patina --help)");
-    }
+  if (asked("--help") || asked("-h")) {
+    const auto about = std::ranges::find(commands, words.front(), &Command::name);
+    std::fputs((about == commands.end() ? programHelp(commands) : commandHelp(*about)).c_str(),
+               stdout);
+    return kDone;
   }
-  if (version) {
+  if (asked("--version")) {
     std::puts("patina " PATINA_VERSION);
     return kDone;
   }
-  if (help) {
-    for (const Command& command : commands)
-      if (argc > 1 && command.name == argv[1]) {
-        std::fputs(commandHelp(command).c_str(), stdout);
-        return kDone;
-      }
-    std::fputs(programHelp(commands).c_str(), stdout);
-    return kDone;
-  }
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (!parsers[i]->parsed()) continue;
-    requireAll(commands[i], *parsers[i]);
-    return commands[i].run(console);
-  }
-  throw Error("which command? See patina --help");
+  if (words.empty()) throw Error("which command? See patina --help");
+  Console console;
+  Command command = commandNamed(commands, words.front());
+  for (const Argument& argument : commonArguments(command)) command.arguments.push_back(argument);
+  console.json = parse(command, {words.begin() + 1, words.end()}).contains("--json");
+  return command.run(console);
 }
 
 } // namespace patina::cli

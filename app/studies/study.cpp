@@ -26,4 +26,23 @@ const std::vector<Study>& studies() {
   return all;
 }
 
+std::vector<WorkPrecisionTable> tablesOf(const std::vector<StudyPart>& parts, Progress& progress) {
+  std::vector<WorkPrecisionTable> tables;
+  for (const StudyPart& part : parts) {
+    progress.throwIfCancelled();
+    progress.report(part.from, part.about);
+    tables.push_back(part.table());
+  }
+  return tables;
+}
+
+std::vector<WorkPrecisionTable> tablesOf(const Study& study, const StudyOptions& options,
+                                         Progress& progress) {
+  std::vector<WorkPrecisionTable> tables = study.run(options, progress);
+  progress.throwIfCancelled();
+  progress.report(1, std::string(study.name) + " study");
+  for (WorkPrecisionTable& table : tables) table.study = study.name;
+  return tables;
+}
+
 } // namespace patina

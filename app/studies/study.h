@@ -1,6 +1,8 @@
 // Studies: error against run time, one row a setting (`patina study`).
 #pragma once
 
+#include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +23,19 @@ struct Study {
   std::vector<WorkPrecisionTable> (*run)(const StudyOptions&, Progress&);
 };
 
+// A table without rows yet; tablesOf() names its study.
+inline WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
+  return {"", title, unit, {}, std::nullopt, std::nullopt};
+}
+
+// One table of a study, and what of the whole is done when it begins.
+struct StudyPart {
+  double from = 0;
+  std::string about;
+  std::function<WorkPrecisionTable()> table;
+};
+std::vector<WorkPrecisionTable> tablesOf(const std::vector<StudyPart>& parts, Progress& progress);
+
 // Rows over refinements of one kind: what they measured against their voxels.
 struct OrderFit {
   std::vector<double> voxels, errors;
@@ -36,5 +51,8 @@ struct OrderFit {
 
 // All of them, in the order in which `patina study all` runs them.
 const std::vector<Study>& studies();
+// What the study measures, each table under its name.
+std::vector<WorkPrecisionTable> tablesOf(const Study& study, const StudyOptions& options,
+                                         Progress& progress);
 
 } // namespace patina

@@ -140,6 +140,31 @@ TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
   expectOneLineError(run({"render", box, "-o", folder / "p.png", "--view", "-w"}), {"--view"});
 }
 
+TEST_F(BadInput, MistypedWordsAreToldWhatTheyMayHaveMeant) {
+  const auto line = [](const std::vector<std::string>& words) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit, 2);
+    return outcome.err;
+  };
+  EXPECT_EQ(line({"inf", "x"}), "patina: unknown command 'inf'; did you mean 'info'?\n");
+  EXPECT_EQ(line({"smaple"}), "patina: unknown command 'smaple'; did you mean 'sample'?\n");
+  EXPECT_EQ(line({"xyzzy"}), "patina: unknown command 'xyzzy'; see patina --help\n");
+  EXPECT_EQ(line({"info", box, "--resoluton", "40"}),
+            "patina: unknown option --resoluton; did you mean '--resolution'?\n");
+  EXPECT_EQ(line({"info", box, "--jsn"}), "patina: unknown option --jsn; did you mean '--json'?\n");
+  expectOneLineError(run({"study", "fied", "-o", folder / "s"}),
+                     {"unknown study 'fied'; did you mean 'field'?", "friction", "all"});
+  expectOneLineError(run({"model", "spere", "-o", folder / "s.ply"}),
+                     {"unknown model 'spere'; did you mean 'sphere'?", "galleon"});
+}
+
+TEST_F(BadInput, OptionsWithoutTheirValueAndFlagsWithOneAreNamed) {
+  expectOneLineError(run({"info", box, "--voxel"}), {"--voxel", "LENGTH is missing"});
+  expectOneLineError(run({"info", box, "--json=yes"}), {"--json takes no value"});
+  // After "--" everything is an input.
+  expectOneLineError(run({"info", "--", "--voxel"}), {"--voxel: no such"});
+}
+
 TEST_F(BadInput, TipsAndPointsThatAreNotNumbersAreCountedAndWarnedOf) {
   const std::string tips = folder.write(
       "bad.csv", "t [s],x [m],y [m],z [m]\n0,0,0,0.1\n1,nan,0,0\n2,0,inf,0\n3,-nan,0,0\n");

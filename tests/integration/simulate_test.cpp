@@ -128,6 +128,20 @@ TEST(Simulate, SaysThatATipLeftAndAdvisesOnlyWhatIsNew) {
   EXPECT_EQ(held.err.find("--hand-stiffness"), std::string::npos) << held.err;
 }
 
+TEST(Simulate, SaysWhatWouldHoldATipThatIsNotPressed) {
+  const ScratchFolder folder;
+  const std::string mesh = folder / "sphere.ply";
+  runJson({"model", "sphere", "-o", mesh});
+  const std::vector<std::string> on_model = {"simulate", mesh, "--resolution", "40"};
+  for (std::vector<std::string> words : {on_model, {"simulate", "--plane"}}) {
+    words.insert(words.end(), {"--start-depth", "1mm"});
+    const Outcome left = run(words);
+    EXPECT_NE(left.out.find("left the surface"), std::string::npos) << left.out;
+    EXPECT_NE(left.err.find("--hand-stiffness"), std::string::npos) << left.err;
+    EXPECT_NE(left.err.find("--press"), std::string::npos) << left.err;
+  }
+}
+
 TEST(Simulate, WritesOneRowATick) {
   const ScratchFolder folder;
   const std::string path = folder / "run.csv";

@@ -1,6 +1,8 @@
 // patina study --quick: tables as CSV and JSON, with the machine they were measured on.
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "core/file.h"
 #include "integration/program.h"
 
@@ -45,6 +47,27 @@ TEST(Studies, PrintTheTableAndSayWhenPlotsAreMissing) {
   EXPECT_EQ(outcome.exit, 0);
   EXPECT_NE(outcome.out.find("sampler"), std::string::npos);
   EXPECT_NE(outcome.err.find("xvfb-run"), std::string::npos);
+}
+
+// The tables with most columns are those of contact and stability.
+TEST(Studies, PrintNoLineThatATerminalWouldBreak) {
+  const ScratchFolder folder;
+  for (const std::string study : {"contact", "stability"}) {
+    const Outcome outcome = run({"study", study, "-o", folder / "out", "--quick"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);)
+      if (line.find(folder.path().string()) == std::string::npos) {
+        EXPECT_LE(line.size(), 120u) << line;
+      }
+    // Nothing of a table is left out for it; a title may break between words.
+    std::string words;
+    std::istringstream text(outcome.out);
+    for (std::string word; text >> word;) words += word + " ";
+    std::istringstream names(firstLine(folder / ("out/" + study + "-1.csv")));
+    for (std::string name; std::getline(names, name, ',');)
+      EXPECT_NE(words.find(name), std::string::npos) << study << ": " << name;
+  }
 }
 
 TEST(Studies, UnknownNamesListTheKnownOnes) {

@@ -1,6 +1,5 @@
 #include "app/cli/commands/command.h"
 
-#include <climits>
 #include <cmath>
 
 #include "core/error.h"
@@ -18,65 +17,56 @@ double numberIn(const std::string& text) {
 
 } // namespace
 
-Argument& Command::input(const std::string& argument, const std::string& help,
-                         std::filesystem::path& target) {
-  arguments.push_back(
-      {argument, argument, help, "", true, false, [&target](const auto& text) { target = text; }});
-  return arguments.back();
+std::vector<Argument> commonArguments(const Command& command) {
+  const Setter seen = [](const std::string&) {}; // the parser looks for them itself
+  std::vector<Argument> all = {{"-h,--help", "", "", "", "Print this help.", seen}};
+  if (!command.keys.empty())
+    all.insert(all.begin(),
+               {"--json", "", "", "", "Print the report as one JSON object on stdout.", seen});
+  return all;
 }
 
-Argument& Command::output(const std::string& value, const std::string& help,
-                          std::filesystem::path& target) {
-  Argument& argument = file("-o,--output", value, help, target);
-  argument.required = true;
-  return argument;
+Setter into(std::filesystem::path& target) {
+  return [&target](const std::string& text) { target = text; };
 }
 
-Argument& Command::file(const std::string& names, const std::string& value, const std::string& help,
-                        std::filesystem::path& target) {
-  arguments.push_back(
-      {names, value, help, "", false, false, [&target](const auto& text) { target = text; }});
-  return arguments.back();
+Setter into(bool& flag) {
+  return [&flag](const std::string&) { flag = true; };
 }
 
-Argument& Command::text(const std::string& names, const std::string& value, const std::string& help,
-                        std::string& target) {
-  arguments.push_back(
-      {names, value, help, target, false, false, [&target](const auto& text) { target = text; }});
-  return arguments.back();
+Setter into(std::vector<std::string>& list) {
+  return [&list](const std::string& text) { list.push_back(text); };
 }
 
-Argument& Command::number(const std::string& names, const std::string& value,
-                          const std::string& help, std::optional<double>& target) {
-  arguments.push_back({names, value, help, target ? formatNumber(*target) : "", false, false,
-                       [&target](const auto& text) { target = numberIn(text); }});
-  return arguments.back();
+Setter into(std::optional<double>& number) {
+  return parsedInto(number, numberIn);
 }
 
-Argument& Command::length(const std::string& names, const std::string& help,
-                          std::optional<double>& target) {
-  arguments.push_back({names, "LENGTH", help, target ? formatLength(*target) : "", false, false,
-                       [&target](const auto& text) { target = parseLength(text); }});
-  return arguments.back();
+Setter inRange(double lowest, double highest, std::function<void(double)> set, NumberKind kind) {
+  return [=](const std::string& text) {
+    const double value = kind == NumberKind::length ? parseLength(text) : numberIn(text);
+    const bool fits = value >= lowest && value <= highest;
+    if (kind == NumberKind::whole && (!fits || value != std::floor(value)))
+      throw Error("'" + text + "' is not a whole number from " + formatNumber(lowest) + " to " +
+                  formatNumber(highest));
+    if (!fits)
+      throw Error("'" + text + "': it must be between " + formatNumber(lowest) + " and " +
+                  formatNumber(highest));
+    set(value);
+  };
 }
 
-Argument& Command::integer(const std::string& names, const std::string& help, int& target,
-                           int lowest) {
-  arguments.push_back({names, "N", help, std::to_string(target), false, false,
-                       [&target, lowest](const std::string& text) {
-                         const double value = numberIn(text);
-                         if (value != std::floor(value) || value < lowest || value > INT_MAX)
-                           throw Error("'" + text + "' is not a whole number of " +
-                                       std::to_string(lowest) + " or more");
-                         target = static_cast<int>(value);
-                       }});
-  return arguments.back();
+Argument input(const std::string& name, const std::string& caption, Setter set, Times times) {
+  return {name, name, "", "", caption, std::move(set), times};
 }
 
-Argument& Command::flag(const std::string& names, const std::string& help, bool& target) {
-  arguments.push_back(
-      {names, "", help, "", false, false, [&target](const auto&) { target = true; }});
-  return arguments.back();
+Argument sceneInput(std::filesystem::path& target, const std::string& name) {
+  return input(name, "Mesh (.obj .ply .stl), workspace or volume (.vti).", into(target));
+}
+
+Argument outputTo(std::filesystem::path& target, const std::string& value,
+                  const std::string& caption) {
+  return {"-o,--output", value, "", "", caption, into(target), Times::once};
 }
 
 } // namespace patina::cli

@@ -13,16 +13,26 @@ namespace patina::cli {
 
 enum ExitCode { kDone = 0, kNotSolved = 1, kBadInput = 2, kCancelledByUser = 130 };
 
-struct Argument {
-  std::string names;    // "-o,--output", or "MESH" for a positional
-  std::string value;    // what stands after it: "FILE", "LENGTH"; empty for a flag
-  std::string help;     // with the unit
-  std::string fallback; // the default as text; empty if there is none
-  bool required = false;
-  bool repeated = false;                       // may be given more than once
-  std::function<void(const std::string&)> set; // throws Error on a bad value
+using Setter = std::function<void(const std::string&)>; // throws Error on a bad value
 
-  bool positional() const { return names.front() != '-'; }
+// How often an argument is given.
+enum class Times { at_most_once, once, any, at_least_once };
+
+struct Argument {
+  std::string names;    // "-o,--output", or "MESH" for an input
+  std::string value;    // what stands after it: "FILE", "LENGTH"; empty for a flag
+  std::string unit;     // of the value: "N/m"
+  std::string fallback; // the default as text; empty if there is none
+  std::string caption;
+  Setter set;
+  Times times = Times::at_most_once;
+
+  bool isInput() const { return names.front() != '-'; }
+  bool isFlag() const { return value.empty(); }
+  bool isRequired() const { return times == Times::once || times == Times::at_least_once; }
+  bool isRepeated() const { return times == Times::any || times == Times::at_least_once; }
+  // How messages call it.
+  std::string name() const { return names.substr(names.rfind(',') + 1); }
 };
 
 struct Command {
@@ -30,24 +40,33 @@ struct Command {
   std::string summary;     // one line
   std::string description; // paragraphs separated by '\n'
   std::vector<std::string> examples;
-  bool reports = true; // has --json
+  Keys keys; // of its report; empty: it has no --json
   std::vector<Argument> arguments;
   std::function<int(Console&)> run; // returns an exit code
-
-  // Each adds an argument that writes to `target`, which must outlive the parse.
-  Argument& input(const std::string& name, const std::string& help, std::filesystem::path& target);
-  Argument& output(const std::string& value, const std::string& help,
-                   std::filesystem::path& target);
-  Argument& file(const std::string& names, const std::string& value, const std::string& help,
-                 std::filesystem::path& target);
-  Argument& text(const std::string& names, const std::string& value, const std::string& help,
-                 std::string& target);
-  Argument& number(const std::string& names, const std::string& value, const std::string& help,
-                   std::optional<double>& target);
-  Argument& length(const std::string& names, const std::string& help,
-                   std::optional<double>& target);
-  Argument& integer(const std::string& names, const std::string& help, int& target, int lowest);
-  Argument& flag(const std::string& names, const std::string& help, bool& target);
 };
+
+// What every command has: --json where there are keys, and --help.
+std::vector<Argument> commonArguments(const Command& command);
+
+// Targets must outlive the parse.
+Setter into(std::filesystem::path& target);
+Setter into(bool& flag); // true
+Setter into(std::vector<std::string>& list);
+Setter into(std::optional<double>& number);
+// In a range, its ends included; a length may carry its unit.
+enum class NumberKind { plain, whole, length };
+Setter inRange(double lowest, double highest, std::function<void(double)> set,
+               NumberKind kind = NumberKind::plain);
+// What `parse` makes of the text.
+template <typename Value, typename Parse> Setter parsedInto(Value& target, Parse parse) {
+  return [&target, parse](const std::string& text) { target = parse(text); };
+}
+
+// What a command reads and writes.
+Argument input(const std::string& name, const std::string& caption, Setter set,
+               Times times = Times::once);
+Argument sceneInput(std::filesystem::path& target, const std::string& name = "INPUT");
+Argument outputTo(std::filesystem::path& target, const std::string& value,
+                  const std::string& caption);
 
 } // namespace patina::cli

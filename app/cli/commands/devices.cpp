@@ -19,6 +19,20 @@ struct DevicesOptions {
   bool diagnose = false;
 };
 
+const Keys kDeviceKeys = {{"name", "", ""},
+                          {"kind", "", "", "built-in or usb"},
+                          {"device", "", "", "of the scene"},
+                          {"max_force", "N", ""},
+                          {"max_stiffness", "N/m", ""},
+                          {"note", "", ""},
+                          {"id", "", "", "of USB, as those that follow"},
+                          {"haptic", "", ""},
+                          {"openable", "", ""},
+                          {"advice", "", ""}};
+const Keys kKeys = {{"devices", "", "devices", "", Shown::never, kDeviceKeys},
+                    {"policy", "", "servo", "its scheduling, with --diagnose"},
+                    {"realtime", "", "real time", "with --diagnose", Shown::never}};
+
 Json known(const std::optional<double>& limit) {
   return limit ? Json(*limit) : Json();
 }
@@ -30,15 +44,14 @@ void setLimits(const DeviceEntry& device, Json& entry) {
   entry.set("note", device.note);
 }
 
-void addBuiltIn(Json& list, TextRows& rows) {
+void addBuiltIn(Json& list, Report& report) {
   for (const DeviceEntry& device : deviceCatalog()) {
     if (!device.usb.empty()) continue;
     Json entry = Json::object();
-    entry.set("name", device.name);
-    entry.set("kind", "built-in");
+    entry.set("name", device.name).set("kind", "built-in");
     setLimits(device, entry);
     list.push(entry);
-    rows.emplace_back(device.name, std::string("built in; ") + device.note);
+    report.tell(device.name, std::string("built in; ") + device.note);
   }
 }
 
@@ -51,13 +64,13 @@ std::string usbId(const UsbDevice& device) {
 #endif
 
 // Haptic devices always, everything else on the bus only when asked.
-void addUsb(bool diagnose, Json& list, TextRows& rows) {
+void addUsb(bool diagnose, Json& list, Report& report) {
 #ifdef PATINA_HAS_USB
   std::vector<UsbDevice> devices;
   try {
     devices = listUsbDevices();
   } catch (const DeviceError& error) {
-    rows.emplace_back("USB", error.what());
+    report.tell("USB", error.what());
     return;
   }
   bool any = false;
@@ -65,11 +78,8 @@ void addUsb(bool diagnose, Json& list, TextRows& rows) {
     any = any || !device.haptic.empty();
     if (device.haptic.empty() && !diagnose) continue;
     Json entry = Json::object();
-    entry.set("name", device.name);
-    entry.set("kind", "usb");
-    entry.set("id", usbId(device));
-    entry.set("haptic", device.haptic);
-    entry.set("openable", device.openable);
+    entry.set("name", device.name).set("kind", "usb").set("id", usbId(device));
+    entry.set("haptic", device.haptic).set("openable", device.openable);
     entry.set("advice", device.advice);
     const auto driver = std::ranges::find(deviceCatalog(), device.haptic, &DeviceEntry::usb);
     const bool driven = !device.haptic.empty() && driver != deviceCatalog().end();
@@ -82,34 +92,31 @@ void addUsb(bool diagnose, Json& list, TextRows& rows) {
                       : "recognised; this version renders no force on it") +
               ")";
     if (!device.advice.empty()) text += "; " + device.advice;
-    rows.emplace_back(usbId(device), text);
+    report.tell(usbId(device), text);
   }
-  if (!any) rows.emplace_back("USB", "no haptic device is attached");
+  if (!any) report.tell("USB", "no haptic device is attached");
 #else
   (void)diagnose;
   (void)list;
-  rows.emplace_back("USB", "this build cannot look: it was configured with PATINA_USB=OFF");
+  report.tell("USB", "this build cannot look: it was configured with PATINA_USB=OFF");
 #endif
 }
 
 int runDevices(const DevicesOptions& options, Console& console) {
   Json list = Json::array();
-  TextRows rows;
-  addBuiltIn(list, rows);
-  addUsb(options.diagnose, list, rows);
-  Json json = Json::object();
-  json.set("devices", list);
+  Report report(kKeys);
+  addBuiltIn(list, report);
+  addUsb(options.diagnose, list, report);
+  report.set("devices", list);
   if (options.diagnose) {
     const Latency latency = measureLatency(0.2);
-    json.set("policy", latency.policy);
-    json.set("realtime", latency.realtime);
-    rows.emplace_back("servo", latency.policy);
+    report.set("policy", latency.policy).set("realtime", latency.realtime);
     if (!latency.realtime)
-      rows.emplace_back("advice", "for a steady 1 kHz allow real-time priority: add the line "
-                                  "'@audio - rtprio 60' to /etc/security/limits.conf, join that "
-                                  "group, log in again");
+      report.tell("advice", "for a steady 1 kHz allow real-time priority: add the line "
+                            "'@audio - rtprio 60' to /etc/security/limits.conf, join that "
+                            "group, log in again");
   }
-  console.report(json, aligned(rows));
+  console.report(report);
   return kDone;
 }
 
@@ -117,18 +124,16 @@ int runDevices(const DevicesOptions& options, Console& console) {
 
 Command devicesCommand() {
   auto options = std::make_shared<DevicesOptions>();
-  Command command;
-  command.name = "devices";
-  command.summary = "what is attached, what is wrong, what to do";
-  command.description =
-      "Lists the built-in devices and the haptic devices on the USB bus. --diagnose lists "
-      "everything on the bus, with what keeps it from being opened, and tries the servo's "
-      "scheduling policy.\nJSON: devices (name, kind, and for USB: id, haptic, openable, advice); "
-      "with --diagnose also policy, realtime.";
-  command.examples = {"patina devices --diagnose"};
-  command.flag("--diagnose", "Say what is wrong and what to do.", options->diagnose);
-  command.run = [options](Console& console) { return runDevices(*options, console); };
-  return command;
+  return {.name = "devices",
+          .summary = "what is attached, what is wrong, what to do",
+          .description = "Lists the built-in devices and the haptic devices on the USB bus. "
+                         "--diagnose lists everything on the bus, with what keeps it from being "
+                         "opened, and tries the servo's scheduling policy.",
+          .examples = {"patina devices --diagnose"},
+          .keys = kKeys,
+          .arguments = {{"--diagnose", "", "", "", "Say what is wrong and what to do.",
+                         into(options->diagnose)}},
+          .run = [options](Console& console) { return runDevices(*options, console); }};
 }
 
 } // namespace patina::cli

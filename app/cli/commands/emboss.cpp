@@ -19,6 +19,15 @@ struct EmbossOptions {
   MeshUnit unit = MeshUnit::mm;
 };
 
+const Keys kKeys = {{"triangles", "", "triangles"},
+                    {"vertices", "", "vertices", "", Shown::never},
+                    {"watertight", "", "watertight"},
+                    {"unit", "", "written in"},
+                    {"voxel", "m", "voxel"},
+                    {"highest", "m", "relief", "at most", Shown::if_any},
+                    {"deviation_rms", "m", "deviation, rms", "", Shown::if_any},
+                    {"deviation_max", "m", "deviation, at most", "", Shown::if_any}};
+
 int runEmboss(const EmbossOptions& options, Console& console) {
   requireMeshOutput(options.output, options.unit, {options.input});
   Scene scene = openWith(options.input, options.scene, console);
@@ -29,7 +38,7 @@ int runEmboss(const EmbossOptions& options, Console& console) {
   const std::vector<ReliefSource> sources = reliefSources(*compiled);
   const TriangleMesh mesh =
       embossed(compiled->built.field, *compiled->mesh, sources, console.progress());
-  const MeshReport report = inspect(mesh);
+  const MeshReport counts = inspect(mesh);
   const ReliefDeviation deviation = reliefDeviation(*compiled, mesh);
   console.progress().throwIfCancelled();
   writeMeshIn(options.output, mesh, options.unit);
@@ -38,25 +47,13 @@ int runEmboss(const EmbossOptions& options, Console& console) {
   if (deviation.rms > kToldShare * deviation.highest)
     console.warn("the mesh misses the painted relief by " + formatLength(deviation.rms) +
                  " rms: a smaller --voxel keeps more of it");
-  Json json = Json::object();
-  json.set("triangles", report.triangles);
-  json.set("vertices", report.vertices);
-  json.set("watertight", report.watertight);
-  json.set("unit", std::string(name(options.unit)));
-  json.set("voxel", voxel);
-  json.set("highest", deviation.highest);
-  json.set("deviation_rms", deviation.rms);
-  json.set("deviation_max", deviation.most);
-  TextRows rows = {{"triangles", formatCount(report.triangles)},
-                   {"watertight", report.watertight ? "yes" : "no"},
-                   {"written in", std::string(name(options.unit))},
-                   {"voxel", formatLength(voxel)}};
-  if (deviation.highest > 0) {
-    rows.emplace_back("relief", formatLength(deviation.highest) + " at most");
-    rows.emplace_back("deviation", formatLength(deviation.rms) + " rms, " +
-                                       formatLength(deviation.most) + " at most");
-  }
-  console.report(json, aligned(rows));
+  Report report(kKeys);
+  report.set("triangles", counts.triangles).set("vertices", counts.vertices);
+  report.set("watertight", counts.watertight);
+  report.set("unit", std::string(name(options.unit))).set("voxel", voxel);
+  report.set("highest", deviation.highest);
+  report.set("deviation_rms", deviation.rms).set("deviation_max", deviation.most);
+  console.report(report);
   return kDone;
 }
 
@@ -64,22 +61,22 @@ int runEmboss(const EmbossOptions& options, Console& console) {
 
 Command embossCommand() {
   auto options = std::make_shared<EmbossOptions>();
-  Command command;
-  command.name = "emboss";
-  command.summary = "relief made into a new mesh";
-  command.description =
-      "The field is built as fine as asked for, the painted relief baked into it, and its surface "
-      "written as a mesh: several objects become one. relief.height below 0 engraves. "
-      "The grid loses height: of a pattern as long as 8 voxels 8 %, as 4 voxels 29 %; deviation is "
-      "measured, from the painted texels, displaced along the normals, to the new mesh.\n"
-      "JSON: triangles, vertices, watertight, unit, voxel [m], highest [m, of the relief], "
-      "deviation_rms, deviation_max [m].";
-  command.examples = {"patina emboss cup -o cup.ply", "patina emboss cup -o cup.stl --voxel 0.2mm"};
-  command.input("WORKSPACE", "Painted workspace.", options->input);
-  command.output("MESH", "Mesh file (.obj .ply .stl).", options->output);
+  Command command{
+      .name = "emboss",
+      .summary = "relief made into a new mesh",
+      .description =
+          "The field is built as fine as asked for, the painted relief baked into it, and its "
+          "surface written as a mesh: several objects become one. relief.height below 0 engraves. "
+          "The grid loses height: of a pattern as long as 8 voxels 8 %, as 4 voxels 29 %; "
+          "deviation is measured, from the painted texels, displaced along the normals, to the new "
+          "mesh.",
+      .examples = {"patina emboss cup -o cup.ply", "patina emboss cup -o cup.stl --voxel 0.2mm"},
+      .keys = kKeys,
+      .arguments = {input("WORKSPACE", "Painted workspace.", into(options->input)),
+                    outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
+      .run = [options](Console& console) { return runEmboss(*options, console); }};
   addFieldOptions(command, options->scene);
-  addUnitOfOutput(command, options->unit);
-  command.run = [options](Console& console) { return runEmboss(*options, console); };
+  command.arguments.push_back(unitOfOutput(options->unit));
   return command;
 }
 

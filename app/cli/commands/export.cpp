@@ -22,6 +22,10 @@ struct ExportOptions {
   SceneOptions scene;
 };
 
+const Keys kKeys = {{"folder", "", "folder", "", Shown::never},
+                    {"files", "", "files", "in the folder", Shown::never},
+                    {"stability", "", "as patina render"}};
+
 // The field at the mesh's own vertices: how far the sampled surface is from the given one.
 CsvTable vertexTable(const CompiledScene& compiled) {
   CsvTable table;
@@ -58,10 +62,7 @@ int runExport(const ExportOptions& options, Console& console) {
   if (options.stability) stability = requiredStability(*compiled, console.progress());
   console.progress().throwIfCancelled();
 
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder))
-    throw FileError(folder.string(), 0, "this folder cannot be made");
+  requireFolder(folder);
   std::vector<std::pair<std::string, std::string>> blocks = {
       {"mesh", "mesh.vtp"}, {"surface", "surface.vtp"}, {"field", "field.vti"}};
   writeMeshVtp(folder / "mesh.vtp", *compiled->mesh, {}, objectsOf(*compiled));
@@ -96,33 +97,20 @@ int runExport(const ExportOptions& options, Console& console) {
 
   const std::vector<std::string> images = writePaintImages(compiled->scene, folder, console);
 
+  Report report(kKeys);
   Json files = Json::array();
-  TextRows rows;
-  for (const auto& [name, file] : blocks) {
+  const auto wrote = [&](const std::string& what, const std::string& file) {
     files.push(file);
-    rows.emplace_back(name, (folder / file).string());
-  }
-  rows.emplace_back("vertices", (folder / "vertices.csv").string());
-  files.push("vertices.csv");
-  if (!samples.empty()) {
-    rows.emplace_back("forces", (folder / "forces.csv").string());
-    files.push("forces.csv");
-  }
-  for (const std::string& image : images) {
-    rows.emplace_back("image", (folder / image).string());
-    files.push(image);
-  }
-  rows.emplace_back("all", (folder / "scene.vtm").string());
-  files.push("scene.vtm");
-  Json json = Json::object();
-  json.set("folder", folder.string());
-  json.set("files", files);
-  if (stability) {
-    json.set("stability", stabilityJson(*stability, compiled->scene));
-    const TextRows more = stabilityRows(*stability, compiled->scene);
-    rows.insert(rows.end(), more.begin(), more.end());
-  }
-  console.report(json, aligned(rows));
+    report.tell(what, (folder / file).string());
+  };
+  for (const auto& [name, file] : blocks) wrote(name, file);
+  wrote("vertices", "vertices.csv");
+  if (!samples.empty()) wrote("forces", "forces.csv");
+  for (const std::string& image : images) wrote("image", image);
+  wrote("all", "scene.vtm");
+  report.set("folder", folder.string()).set("files", files);
+  if (stability) report.set("stability", stabilityReport(*stability, compiled->scene));
+  console.report(report);
   return kDone;
 }
 
@@ -130,31 +118,30 @@ int runExport(const ExportOptions& options, Console& console) {
 
 Command exportCommand() {
   auto options = std::make_shared<ExportOptions>();
-  Command command;
-  command.name = "export";
-  command.summary = "write everything for ParaView";
-  command.description =
-      "Into the folder: mesh.vtp (of several objects with the index of each triangle's), "
-      "surface.vtp (the surface that the tip's centre feels, without relief that is pulled), "
-      "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens them "
-      "together, and with --path also path.vtp and forces.csv (as patina feel). Painted images go "
-      "beside them, as .png (16 bits) and .exr (floats); paint-NAME.vtp has an object's mesh with "
-      "all that "
-      "was painted on it, material-NAME.vti its painted material.\n"
-      "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop would "
-      "buzz, and the least stiffness of any direction, below 0 where the tip slips off.\n"
-      "JSON: folder, files; stability (as patina render).";
-  command.examples = {"patina export workspace -o paraview",
-                      "patina export bunny.ply -o paraview --path tip.csv"};
-  command.input("INPUT", "Workspace, mesh (.obj .ply .stl) or volume (.vti).", options->input);
-  command.output("FOLDER", "Where to; made if it is missing.", options->output);
-  command.file("--path", "TIP.csv", "A tip path to feel and write too.", options->path);
-  command.flag("--stability", "Where would it buzz: arrays on surface.vtp.", options->stability);
+  Command command{
+      .name = "export",
+      .summary = "write everything for ParaView",
+      .description =
+          "Into the folder: mesh.vtp (of several objects with the index of each triangle's), "
+          "surface.vtp (the surface that the tip's centre feels, without relief that is pulled), "
+          "field.vti, vertices.csv (the field at the mesh's vertices), scene.vtm, which opens them "
+          "together, and with --path also path.vtp and forces.csv (as patina feel). Painted images "
+          "go beside them, as .png (16 bits) and .exr (floats); paint-NAME.vtp has an object's "
+          "mesh with all that was painted on it, material-NAME.vti its painted material.\n"
+          "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop "
+          "would buzz, and the least stiffness of any direction, below 0 where the tip slips off.",
+      .examples = {"patina export workspace -o paraview",
+                   "patina export bunny.ply -o paraview --path tip.csv"},
+      .keys = kKeys,
+      .arguments = {sceneInput(options->input),
+                    outputTo(options->output, "FOLDER", "Where to; made if it is missing."),
+                    {"--path", "TIP.csv", "", "", "A tip path to feel and write too.",
+                     into(options->path)},
+                    {"--stability", "", "", "", "Where would it buzz: arrays on surface.vtp.",
+                     into(options->stability)}},
+      .run = [options](Console& console) { return runExport(*options, console); }};
   addHapticOptions(command, options->scene);
-  addFieldOptions(command, options->scene);
-  addSamplerOption(command, options->scene);
-  addOpenOptions(command, options->scene.open);
-  command.run = [options](Console& console) { return runExport(*options, console); };
+  addSampledFieldOptions(command, options->scene);
   return command;
 }
 

@@ -22,6 +22,24 @@ struct FeelOptions {
   SceneOptions scene;
 };
 
+Keys stepParts() {
+  Keys parts = percentileParts();
+  parts.push_back({"timer", "", "", "what reading the clock adds"});
+  return parts;
+}
+
+const Keys kKeys = {{"ticks", "", "ticks"},
+                    {"stages", "", "stages"},
+                    {"step_ns", "ns", "step", "time of a tick", Shown::always, stepParts()},
+                    {"contact_ticks", "", "in contact", "ticks", Shown::never},
+                    {"deep_ticks", "", "deep",
+                     "ticks that found contact from inside, not by the way in", Shown::if_any},
+                    {"fault_ticks", "", "faults", "ticks faded by a force jump", Shown::if_any},
+                    {"bad_tips", "", "bad tips", "NaN or infinite: no force there", Shown::if_any},
+                    {"max_force", "N", "largest force"},
+                    {"max_depth", "m", "largest depth"},
+                    {"field", "", "as patina field"}};
+
 int runFeel(const FeelOptions& options, Console& console) {
   requireWritable(options.output, {options.input, options.path});
   TipPathReader path(options.path);
@@ -56,45 +74,25 @@ int runFeel(const FeelOptions& options, Console& console) {
   const Percentiles step = percentilesOfCounts(step_ns);
   const double timer = timerNs();
 
-  Json stages = Json::array();
-  std::string stage_text;
-  for (const StageInfo& stage : compiled->snapshot->why) {
-    stages.push(stage.name);
-    stage_text += (stage_text.empty() ? "" : ", ") + stage.name;
-  }
-  Json json = Json::object();
-  json.set("ticks", ticks);
-  json.set("stages", stages);
-  Json step_json = toJson(step);
-  step_json.set("timer", timer);
-  json.set("step_ns", step_json);
-  json.set("contact_ticks", contact_ticks);
-  json.set("deep_ticks", deep_ticks);
-  json.set("fault_ticks", faults);
-  json.set("bad_tips", bad_tips);
-  json.set("max_force", max_force);
-  json.set("max_depth", max_depth);
-  json.set("field", fieldJson(*compiled->built.field, compiled->built.report));
-
-  TextRows rows = {{"ticks", formatCount(ticks) + ", in contact " + formatCount(contact_ticks)},
-                   {"stages", stage_text},
-                   {"step", rounded(step.p50) + " ns (p50), " + rounded(step.p99) + " (p99), " +
-                                rounded(step.p999) + " (p99.9), " + rounded(step.max) +
-                                " (max); of these the clock takes " + rounded(timer)},
-                   {"largest force", rounded(max_force) + " N"},
-                   {"largest depth", formatLength(max_depth)}};
-  if (deep_ticks)
-    rows.emplace_back("deep", formatCount(deep_ticks) + " ticks found contact from inside");
-  if (faults) rows.emplace_back("faults", formatCount(faults) + " ticks faded by a force jump");
-  const TextRows field = fieldRows(*compiled->built.field, compiled->built.report);
-  rows.insert(rows.end(), field.begin(), field.end());
+  const std::vector<std::string> stages = namesIn(compiled->snapshot->why, &StageInfo::name);
+  Report report(kKeys);
+  report.set("ticks", ticks, formatCount(ticks) + ", in contact " + formatCount(contact_ticks));
+  report.set("contact_ticks", contact_ticks).set("stages", jsonOf(stages));
+  report.set("step_ns", toJson(step).set("timer", timer),
+             spreadText(step, "ns") + "; of these the clock takes " + rounded(timer));
+  report.set("max_force", max_force).set("max_depth", max_depth);
+  report.set("deep_ticks", deep_ticks,
+             formatCount(deep_ticks) + " ticks found contact from inside");
+  report.set("fault_ticks", faults, formatCount(faults) + " ticks faded by a force jump");
+  report.set("bad_tips", bad_tips);
+  report.set("field", fieldReport(*compiled->built.field, compiled->built.report));
   if (bad_tips)
     console.warn(options.path.string() + ": " + formatCount(bad_tips) +
                  (bad_tips == 1 ? " tip is" : " tips are") + " NaN or infinite: no force there");
   if (contact_ticks == 0 && bad_tips < ticks)
     console.warn(options.path.string() +
                  ": the path never touches the object; compare their positions and check --unit");
-  console.report(json, aligned(rows));
+  console.report(report);
   return kDone;
 }
 
@@ -102,26 +100,23 @@ int runFeel(const FeelOptions& options, Console& console) {
 
 Command feelCommand() {
   auto options = std::make_shared<FeelOptions>();
-  Command command;
-  command.name = "feel";
-  command.summary = "replay a tip path through the servo's own code";
-  command.description =
-      "One row a tick goes out: force on the hand, contact, depth, virtual contact point, normal "
-      "and the time of the step. The path has the columns t [s],x [m],y [m],z [m], its times "
-      "increasing; the time between two rows is the tick.\n"
-      "JSON: ticks, stages, step_ns (p50, p99, p999, max, and timer: what reading the clock adds), "
-      "contact_ticks, deep_ticks (found contact from inside, not by the way in), fault_ticks, "
-      "bad_tips (NaN or infinite), max_force [N], max_depth [m], field (as patina field).";
-  command.examples = {"patina feel bunny.ply --path tip.csv -o forces.csv --stiffness 800",
-                      "patina feel workspace --path tip.csv -o forces.csv --tip-radius 1mm --json"};
-  command.input("MESH", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
-  command.file("--path", "TIP.csv", "The tip's path.", options->path).required = true;
-  command.output("FORCES.csv", "One row a tick.", options->output);
+  Command command{
+      .name = "feel",
+      .summary = "replay a tip path through the servo's own code",
+      .description =
+          "One row a tick goes out: force on the hand, contact, depth, virtual contact point, "
+          "normal and the time of the step. The path has the columns t [s],x [m],y [m],z [m], its "
+          "times increasing; the time between two rows is the tick.",
+      .examples = {"patina feel bunny.ply --path tip.csv -o forces.csv --stiffness 800",
+                   "patina feel workspace --path tip.csv -o forces.csv --tip-radius 1mm --json"},
+      .keys = kKeys,
+      .arguments = {sceneInput(options->input, "MESH"),
+                    {"--path", "TIP.csv", "", "", "The tip's path.", into(options->path),
+                     Times::once},
+                    outputTo(options->output, "FORCES.csv", "One row a tick.")},
+      .run = [options](Console& console) { return runFeel(*options, console); }};
   addHapticOptions(command, options->scene);
-  addFieldOptions(command, options->scene);
-  addSamplerOption(command, options->scene);
-  addOpenOptions(command, options->scene.open);
-  command.run = [options](Console& console) { return runFeel(*options, console); };
+  addSampledFieldOptions(command, options->scene);
   return command;
 }
 

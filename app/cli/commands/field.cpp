@@ -32,8 +32,7 @@ int runField(const FieldOptions& options, Console& console) {
   }
   console.progress().throwIfCancelled();
   writeField(options.output, *built.field);
-  console.report(fieldJson(*built.field, built.report),
-                 aligned(fieldRows(*built.field, built.report)));
+  console.report(fieldReport(*built.field, built.report));
   return kDone;
 }
 
@@ -41,22 +40,21 @@ int runField(const FieldOptions& options, Console& console) {
 
 Command fieldCommand() {
   auto options = std::make_shared<FieldOptions>();
-  Command command;
-  command.name = "field";
-  command.summary = "build the sampled implicit surface of a mesh or scene";
-  command.description =
-      "Writes signed distance [m], negative inside, and the nearest face of every node in a band "
-      "about the surface, as a volume that ParaView opens. JSON: seconds, cpu_seconds, voxel [m], "
-      "resolution (cells), origin [m], band_voxels, blocks, bytes, dense_bytes, "
-      "dropped_triangles, ambiguous_signs, redistanced_nodes (depths re-measured where objects "
-      "overlap). Baked relief is in it, pulled relief is not.";
-  command.examples = {"patina field bunny.ply -o bunny.vti --resolution 200",
-                      "patina field bunny.ply -o bunny.vti --voxel 0.5mm --band 6 --json"};
-  command.input("MESH", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
-  command.output("FIELD.vti", "The field, compressed.", options->output);
+  Command command{
+      .name = "field",
+      .summary = "build the sampled implicit surface of a mesh or scene",
+      .description =
+          "Writes signed distance [m], negative inside, and the nearest face of every node in a "
+          "band about the surface, as a volume that ParaView opens. Baked relief is in it, pulled "
+          "relief is not.",
+      .examples = {"patina field bunny.ply -o bunny.vti --resolution 200",
+                   "patina field bunny.ply -o bunny.vti --voxel 0.5mm --band 6 --json"},
+      .keys = fieldKeys(),
+      .arguments = {sceneInput(options->input, "MESH"),
+                    outputTo(options->output, "FIELD.vti", "The field, compressed.")},
+      .run = [options](Console& console) { return runField(*options, console); }};
   addFieldOptions(command, options->scene);
   addOpenOptions(command, options->scene.open);
-  command.run = [options](Console& console) { return runField(*options, console); };
   return command;
 }
 

@@ -40,20 +40,6 @@ int runGui(const GuiOptions& options) {
 
 Command guiCommand() {
   auto options = std::make_shared<GuiOptions>();
-  Command command;
-  command.name = "gui";
-  command.summary = "the window";
-  command.description =
-      "Starts patina-gui, which stands beside this program. It needs a display; on a machine "
-      "without one: xvfb-run -a patina gui --tour FOLDER.";
-  command.examples = {"patina gui bunny.ply --unit cm", "patina gui workspace --log session.csv"};
-  command.reports = false;
-  command
-      .input("INPUT",
-             "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, the toy "
-             "dinosaur.",
-             options->input)
-      .required = false;
   const auto pass = [options](const std::string& name, auto check) {
     return [options, name, check](const std::string& text) {
       check(text);
@@ -62,29 +48,38 @@ Command guiCommand() {
     };
   };
   const auto anything = [](const std::string&) {};
-  command.arguments.push_back(
-      {"--unit", "mm|cm|m|in|fit", "Unit of a mesh file.", "mm", false, false,
-       pass("--unit", [](const std::string& text) { (void)parseMeshUnit(text); })});
-  command.arguments.push_back({"--iso", "VALUE",
-                               "Value at which a volume (.vti) from elsewhere is a surface.", "",
-                               false, false, pass("--iso", [](const std::string& text) {
-                                 if (!parseNumber(text))
-                                   throw Error("'" + text + "' is not a number");
-                               })});
-  command.arguments.push_back({"--log", "FORCES.csv",
-                               "Record every tick; written when the window closes.", "", false,
-                               false, pass("--log", anything)});
-  command.arguments.push_back(
-      {"--tour", "FOLDER", "A scripted session: pictures and forces into the folder, then quit.",
-       "", false, false, pass("--tour", anything)});
-  command.arguments.push_back({"--first-picture-time", "",
-                               "Print the seconds from start to the first picture.", "", false,
-                               false, pass("--first-picture-time", anything)});
-  command.run = [options](Console& console) {
-    console.endOnInterrupt();
-    return runGui(*options);
+  const auto number = [](const std::string& text) {
+    if (!parseNumber(text)) throw Error("'" + text + "' is not a number");
   };
-  return command;
+  return {
+      .name = "gui",
+      .summary = "the window",
+      .description =
+          "Starts patina-gui, which stands beside this program. It needs a display; on a machine "
+          "without one: xvfb-run -a patina gui --tour FOLDER.",
+      .examples = {"patina gui bunny.ply --unit cm", "patina gui workspace --log session.csv"},
+      .keys = {},
+      .arguments = {input("INPUT",
+                          "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, the toy "
+                          "dinosaur.",
+                          into(options->input), Times::at_most_once),
+                    {"--unit", "mm|cm|m|in|fit", "", "mm", "Unit of a mesh file.",
+                     pass("--unit", parseMeshUnit)},
+                    {"--iso", "VALUE", "", "",
+                     "Value at which a volume (.vti) from elsewhere is a surface.",
+                     pass("--iso", number)},
+                    {"--log", "FORCES.csv", "", "",
+                     "Record every tick; written when the window closes.", pass("--log", anything)},
+                    {"--tour", "FOLDER", "", "",
+                     "A scripted session: pictures and forces into the folder, then quit.",
+                     pass("--tour", anything)},
+                    {"--first-picture-time", "", "", "",
+                     "Print the seconds from start to the first picture.",
+                     pass("--first-picture-time", anything)}},
+      .run = [options](Console& console) {
+        console.endOnInterrupt();
+        return runGui(*options);
+      }};
 }
 
 } // namespace patina::cli

@@ -1,4 +1,5 @@
 #include <optional>
+#include <set>
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/scene_options.h"
@@ -21,142 +22,92 @@ struct InfoOptions {
   SceneOptions scene;
 };
 
-Json defectsJson(const MeshReport& report) {
+const Keys kDefectKeys = {{"non_finite", "", "non-finite triangles"},
+                          {"degenerate", "", "triangles without area"},
+                          {"duplicate", "", "duplicate triangles"},
+                          {"boundary_edges", "", "boundary edges"},
+                          {"non_manifold_edges", "", "non-manifold edges"},
+                          {"misoriented_edges", "", "misoriented edges"}};
+const Keys kSideKeys = {{"sides", "", "", "closed, one-sided or two-sided"}, {"triangles", "", ""}};
+const Keys kObjectKeys = {{"name", "", ""}, {"triangles", "", ""}};
+const Keys kLayerKeys = {{"name", "", ""},
+                         {"why", "", "", "of the one that keeps several objects apart"},
+                         {"bytes", "B", ""}};
+const Keys kStageKeys = {{"name", "", ""}, {"why", "", ""}, {"bytes", "B", ""}, {"ns", "ns", ""}};
+const Keys kHistoryKeys = {{"undo", "", ""}, {"redo", "", ""}};
+const Keys kKeys = {
+    {"file", "", "file"},
+    {"kind", "", "kind", "workspace, field or mesh"},
+    {"values", "", "the values of a workspace", "by their keys", Shown::never},
+    {"history", "", "history", "edits of a workspace", Shown::always, kHistoryKeys},
+    {"objects", "", "objects", "", Shown::never, kObjectKeys},
+    {"triangles", "", "triangles"},
+    {"vertices", "", "vertices"},
+    {"bounds", "m", "size", "lowest and highest corner"},
+    {"watertight", "", "watertight"},
+    {"components", "", "components"},
+    {"defects", "", "defects", "", Shown::always, kDefectKeys},
+    {"components_sides", "", "sides", "", Shown::if_any, kSideKeys},
+    {"field", "", "as patina field"},
+    {"layers", "", "layer", "", Shown::always, kLayerKeys},
+    {"bytes", "B", "in all", "of the layers together: what is held of the scene", Shown::if_any},
+    {"stages", "", "stage", "", Shown::always, kStageKeys},
+    {"relief", "", "of a scene with relief", "", Shown::always, reliefKeys()},
+    {"stability", "", "as patina render", "only with a device"}};
+
+void describeDefects(const MeshReport& mesh, Report& report) {
+  const std::pair<const char*, std::size_t> counts[] = {
+      {"non_finite", mesh.non_finite},
+      {"degenerate", mesh.degenerate},
+      {"duplicate", mesh.duplicate},
+      {"boundary_edges", mesh.boundary_edges},
+      {"non_manifold_edges", mesh.non_manifold_edges},
+      {"misoriented_edges", mesh.misoriented_edges}};
   Json json = Json::object();
-  json.set("non_finite", report.non_finite);
-  json.set("degenerate", report.degenerate);
-  json.set("duplicate", report.duplicate);
-  json.set("boundary_edges", report.boundary_edges);
-  json.set("non_manifold_edges", report.non_manifold_edges);
-  json.set("misoriented_edges", report.misoriented_edges);
-  return json;
-}
-
-std::string defectsText(const MeshReport& report) {
-  const std::pair<std::size_t, const char*> kinds[] = {
-      {report.non_finite, "non-finite triangles"},
-      {report.degenerate, "triangles without area"},
-      {report.duplicate, "duplicate triangles"},
-      {report.boundary_edges, "boundary edges"},
-      {report.non_manifold_edges, "non-manifold edges"},
-      {report.misoriented_edges, "misoriented edges"}};
-  std::string text;
-  for (const auto& [count, what] : kinds)
-    if (count) text += (text.empty() ? "" : ", ") + formatCount(count) + " " + what;
-  return text.empty() ? "none" : text;
-}
-
-void describeMesh(const TriangleMesh& mesh, const MeshReport& report, Json& json, TextRows& rows) {
-  const Box3 box = bounds(mesh);
-  json.set("triangles", report.triangles);
-  json.set("vertices", report.vertices);
-  json.set("bounds", box.isEmpty()
-                         ? Json()
-                         : Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
-  json.set("watertight", report.watertight);
-  json.set("components", report.components);
-  json.set("defects", defectsJson(report));
-  rows.emplace_back("triangles", formatCount(report.triangles));
-  rows.emplace_back("vertices", formatCount(report.vertices));
-  const Vec3 size = box.isEmpty() ? Vec3::Zero() : Vec3(box.sizes());
-  rows.emplace_back("size", formatLength(size.x()) + " x " + formatLength(size.y()) + " x " +
-                                formatLength(size.z()));
-  rows.emplace_back("watertight", report.watertight ? "yes" : "no");
-  rows.emplace_back("components", formatCount(report.components));
-  rows.emplace_back("defects", defectsText(report));
-}
-
-void describeSides(std::size_t open_triangles, const Scene& scene, const MeshReport& report,
-                   Json& json, TextRows& rows) {
-  const auto counts = sideCounts(report.triangles - report.non_finite - report.degenerate,
-                                 open_triangles, scene.field.sides);
-  Json list = Json::array();
-  for (const SideCount& count : counts) {
-    Json entry = Json::object();
-    entry.set("sides", count.sides);
-    entry.set("triangles", count.triangles);
-    list.push(entry);
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < std::size(counts); ++i) {
+    const auto& [name, count] = counts[i];
+    json.set(name, count);
+    if (count) found.push_back(formatCount(count) + " " + kDefectKeys[i].caption);
   }
-  json.set("components_sides", list);
-  if (counts.empty()) return;
-  const bool plates = open_triangles > 0 && scene.field.sides == OpenSides::one;
-  rows.emplace_back("sides",
-                    text(counts) + (plates ? ": the front of a plate as thick as the band" : ""));
+  report.set("defects", json, found.empty() ? "none" : joined(found));
 }
 
-void describeObjects(const Scene& scene, Json& json, TextRows& rows) {
+void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, std::size_t open_triangles,
+                  const Scene& scene, Report& report) {
+  const Box3 box = bounds(mesh);
+  const Vec3 size = box.isEmpty() ? Vec3::Zero() : Vec3(box.sizes());
+  report.set("triangles", counts.triangles).set("vertices", counts.vertices);
+  report.set(
+      "bounds",
+      box.isEmpty() ? Json() : Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}),
+      formatLength(size.x()) + " x " + formatLength(size.y()) + " x " + formatLength(size.z()));
+  report.set("watertight", counts.watertight).set("components", counts.components);
+  describeDefects(counts, report);
+  const auto sides = sideCounts(counts.triangles - counts.non_finite - counts.degenerate,
+                                open_triangles, scene.field.sides);
+  Json list = Json::array();
+  for (const SideCount& side : sides)
+    list.push(Json::object().set("sides", side.sides).set("triangles", side.triangles));
+  const bool plates = open_triangles > 0 && scene.field.sides == OpenSides::one;
+  report.set("components_sides", list,
+             text(sides) + (plates ? ": the front of a plate as thick as the band" : ""));
+}
+
+void describeMesh(const Scene& scene, Report& report) {
+  const TriangleMesh mesh = worldMesh(scene);
+  describeMesh(mesh, inspect(mesh), openParts(mesh).triangles, scene, report);
+}
+
+void describeObjects(const Scene& scene, Report& report) {
   Json objects = Json::array();
   for (const SceneObject& object : scene.objects) {
     const std::size_t triangles = object.mesh->triangles.size();
-    Json entry = Json::object();
-    entry.set("name", object.name);
-    entry.set("triangles", triangles);
-    objects.push(entry);
+    objects.push(Json::object().set("name", object.name).set("triangles", triangles));
     if (scene.objects.size() > 1)
-      rows.emplace_back("object " + object.name, formatCount(triangles) + " triangles");
+      report.tell("object " + object.name, formatCount(triangles) + " triangles");
   }
-  json.set("objects", objects);
-}
-
-// What several objects hold so that one may be moved without the others being built again.
-std::optional<Json> mergeLayer(const CompiledScene& compiled, TextRows& rows) {
-  const std::size_t bytes = mergeBytes(compiled);
-  if (bytes == 0) return std::nullopt;
-  const std::string why = std::to_string(compiled.objects.size()) + " objects" +
-                          (compiled.scene.redistance ? ", merge.redistance = on" : "");
-  Json entry = Json::object();
-  entry.set("name", "merge");
-  entry.set("why", why);
-  entry.set("bytes", bytes);
-  rows.emplace_back("layer merge", why + "; " + formatBytes(static_cast<double>(bytes)));
-  return entry;
-}
-
-void describeLayers(const SurfaceField& field, std::size_t mesh_bytes,
-                    const CompiledScene* compiled, Json& json, TextRows& rows) {
-  Json layers = Json::array();
-  std::vector<LayerBytes> all = field.layerBytes();
-  if (mesh_bytes) all.insert(all.begin(), {"mesh", mesh_bytes});
-  if (compiled)
-    for (LayerBytes& layer : paintLayers(*compiled)) all.push_back(std::move(layer));
-  for (const LayerBytes& layer : all) {
-    Json entry = Json::object();
-    entry.set("name", layer.name);
-    entry.set("bytes", layer.bytes);
-    layers.push(entry);
-    rows.emplace_back("layer " + layer.name, formatBytes(static_cast<double>(layer.bytes)));
-  }
-  if (compiled)
-    if (auto merge = mergeLayer(*compiled, rows)) layers.push(*merge);
-  json.set("layers", layers);
-}
-
-void describeStages(const CompiledScene& compiled, Json& json, TextRows& rows) {
-  const std::vector<double> ns = stageNs(compiled);
-  Json stages = Json::array();
-  for (std::size_t i = 0; i < compiled.snapshot->why.size(); ++i) {
-    const StageInfo& stage = compiled.snapshot->why[i];
-    Json entry = Json::object();
-    entry.set("name", stage.name);
-    entry.set("why", stage.why);
-    entry.set("bytes", stage.bytes);
-    entry.set("ns", ns[i]);
-    stages.push(entry);
-    rows.emplace_back("stage " + stage.name,
-                      stage.why + "; " + formatBytes(static_cast<double>(stage.bytes)) + ", " +
-                          (ns[i] < 1 ? "below 1" : rounded(ns[i])) + " ns");
-  }
-  json.set("stages", stages);
-}
-
-// Without a device nothing is known that could be unstable.
-void describeStability(const CompiledScene& compiled, Json& json, TextRows& rows,
-                       Progress& progress) {
-  if (!compiled.scene.device_model) return;
-  const auto stability = surfaceStability(compiled, progress);
-  if (!stability) return;
-  json.set("stability", stabilityJson(*stability, compiled.scene));
-  rows.push_back(stabilityRows(*stability, compiled.scene).front());
+  report.set("objects", objects);
 }
 
 std::size_t bytesOf(const TriangleMesh& mesh) {
@@ -164,21 +115,79 @@ std::size_t bytesOf(const TriangleMesh& mesh) {
          mesh.corner_uvs.size() * sizeof(mesh.corner_uvs[0]);
 }
 
-void describeField(const SurfaceField& field, const FieldReport& report, Json& json,
-                   TextRows& rows) {
-  json.set("field", fieldJson(field, report));
-  const TextRows more = fieldRows(field, report);
-  rows.insert(rows.end(), more.begin(), more.end());
+// Of the meshes as they were read, where they are not the one in the world's frame.
+std::size_t givenMeshBytes(const CompiledScene& compiled) {
+  std::set<const TriangleMesh*> counted = {compiled.mesh.get()};
+  std::size_t bytes = 0;
+  for (const SceneObject& object : compiled.scene.objects)
+    if (counted.insert(object.mesh.get()).second) bytes += bytesOf(*object.mesh);
+  return bytes;
 }
 
-void describeHistory(const StoredHistory& history, Json& json, TextRows& rows) {
-  if (history.undoable + history.redoable == 0) return;
-  Json entry = Json::object();
-  entry.set("undo", history.undoable);
-  entry.set("redo", history.redoable);
-  json.set("history", std::move(entry));
-  rows.emplace_back("history", formatCount(history.undoable) + " to undo, " +
-                                   formatCount(history.redoable) + " to redo");
+std::vector<LayerBytes> layersOf(const CompiledScene& compiled) {
+  std::vector<LayerBytes> layers = {{"mesh", bytesOf(*compiled.mesh)}};
+  if (const std::size_t bytes = givenMeshBytes(compiled)) layers.push_back({"mesh as read", bytes});
+  for (LayerBytes& layer : compiled.built.field->layerBytes()) layers.push_back(std::move(layer));
+  for (LayerBytes& layer : paintLayers(compiled)) layers.push_back(std::move(layer));
+  // What several objects hold so that one may be moved without the others being built again.
+  if (const std::size_t bytes = mergeBytes(compiled)) layers.push_back({"merge", bytes});
+  return layers;
+}
+
+void describeLayers(const std::vector<LayerBytes>& layers, const Scene& scene, Report& report) {
+  std::vector<Report> list;
+  std::size_t sum = 0;
+  for (const LayerBytes& layer : layers) {
+    Report& entry = list.emplace_back(kLayerKeys);
+    entry.set("name", layer.name);
+    if (layer.name == "merge")
+      entry.set("why", std::to_string(scene.objects.size()) + " objects" +
+                           (scene.redistance ? ", merge.redistance = on" : ""));
+    entry.set("bytes", layer.bytes);
+    sum += layer.bytes;
+  }
+  report.set("layers", list).set("bytes", sum);
+}
+
+void describeStages(const CompiledScene& compiled, Report& report) {
+  const std::vector<double> ns = stageNs(compiled);
+  std::vector<Report> stages;
+  for (std::size_t i = 0; i < compiled.snapshot->why.size(); ++i) {
+    const StageInfo& stage = compiled.snapshot->why[i];
+    stages.push_back(Report(kStageKeys)
+                         .set("name", stage.name)
+                         .set("why", stage.why)
+                         .set("bytes", stage.bytes)
+                         .set("ns", ns[i], ns[i] < 1 ? "below 1 ns" : shown(ns[i], "ns")));
+  }
+  report.set("stages", stages);
+}
+
+void describeCompiled(const CompiledScene& compiled, Report& report, Progress& progress) {
+  const FieldReport& built = compiled.built.report;
+  describeMesh(*compiled.mesh, compiled.mesh_report, built.open_triangles, compiled.scene, report);
+  report.set("field", fieldReport(*compiled.built.field, built));
+  describeLayers(layersOf(compiled), compiled.scene, report);
+  describeStages(compiled, report);
+  if (const auto relief = reliefReport(compiled)) report.set("relief", *relief);
+  // Without a device nothing is known that could be unstable.
+  if (!compiled.scene.device_model) return;
+  if (const auto stability = surfaceStability(compiled, progress))
+    report.set("stability", stabilityReport(*stability, compiled.scene));
+}
+
+// What the file holds, and no stages: they would be those of another field, built anew from its
+// surface.
+void describeFieldFile(const std::filesystem::path& path, const Scene& scene, Report& report) {
+  describeMesh(scene, report);
+  const SurfaceField field = readField(path);
+  FieldReport built;
+  built.blocks = field.blockCount();
+  built.bytes = field.bytes();
+  built.dense_bytes = field.grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
+  report.set("field", fieldReport(field, built));
+  describeLayers(field.layerBytes(), scene, report);
+  report.set("stages", std::vector<Report>());
 }
 
 int runInfo(const InfoOptions& options, Console& console) {
@@ -186,53 +195,30 @@ int runInfo(const InfoOptions& options, Console& console) {
   Scene& scene = opened.scene;
   const bool is_folder = std::filesystem::is_directory(inputPath(options.input));
   const bool is_field = !is_folder && isFieldFile(options.input);
-  const char* kind = is_folder ? "workspace" : is_field ? "field" : "mesh";
-  Json json = Json::object();
-  TextRows rows = {{"file", options.input.string()}, {"kind", kind}};
-  json.set("file", options.input.string());
-  json.set("kind", kind);
+  Report report(kKeys);
+  report.set("file", options.input.string());
+  report.set("kind", is_folder ? "workspace" : is_field ? "field" : "mesh");
   if (is_folder) {
-    for (const auto& [key, value] : values(scene)) rows.emplace_back(key, withUnit(key, value));
-    json.set("values", valuesJson(scene));
-    describeHistory(*opened.history, json, rows);
+    tellValues(scene, report);
+    const StoredHistory& history = *opened.history;
+    if (history.undoable + history.redoable > 0) {
+      report.set("history",
+                 Json::object().set("undo", history.undoable).set("redo", history.redoable),
+                 historyText(history.undoable, history.redoable));
+    }
   }
-  describeObjects(scene, json, rows);
+  describeObjects(scene, report);
   if (options.no_field || scene.objects.empty()) {
-    const TriangleMesh mesh = worldMesh(scene);
-    const MeshReport report = inspect(mesh);
-    describeMesh(mesh, report, json, rows);
-    describeSides(openParts(mesh).triangles, scene, report, json, rows);
-    json.set("layers", Json::array());
-    json.set("stages", Json::array());
+    describeMesh(scene, report);
+    report.set("layers", std::vector<Report>()).set("stages", std::vector<Report>());
   } else if (is_field) {
-    // What the file holds, and no stages: they would be those of another field, built anew from
-    // its surface.
     for (const auto& [key, value] : options.scene.settings)
       console.warn(options.input.string() + ": --" + key + " has no effect on a field");
-    const TriangleMesh mesh = worldMesh(scene);
-    const MeshReport mesh_report = inspect(mesh);
-    describeMesh(mesh, mesh_report, json, rows);
-    describeSides(openParts(mesh).triangles, scene, mesh_report, json, rows);
-    const SurfaceField field = readField(options.input);
-    FieldReport report;
-    report.blocks = field.blockCount();
-    report.bytes = field.bytes();
-    report.dense_bytes = field.grid.nodeCount() * (sizeof(float) + sizeof(std::int32_t));
-    describeField(field, report, json, rows);
-    describeLayers(field, 0, nullptr, json, rows);
-    json.set("stages", Json::array());
+    describeFieldFile(options.input, scene, report);
   } else {
-    const auto compiled = compileFor(std::move(scene), console);
-    describeMesh(*compiled->mesh, compiled->mesh_report, json, rows);
-    describeSides(compiled->built.report.open_triangles, compiled->scene, compiled->mesh_report,
-                  json, rows);
-    describeField(*compiled->built.field, compiled->built.report, json, rows);
-    describeLayers(*compiled->built.field, bytesOf(*compiled->mesh), compiled.get(), json, rows);
-    describeStages(*compiled, json, rows);
-    describeRelief(*compiled, json, rows);
-    describeStability(*compiled, json, rows, console.progress());
+    describeCompiled(*compileFor(std::move(scene), console), report, console.progress());
   }
-  console.report(json, aligned(rows));
+  console.report(report);
   return kDone;
 }
 
@@ -240,35 +226,27 @@ int runInfo(const InfoOptions& options, Console& console) {
 
 Command infoCommand() {
   auto options = std::make_shared<InfoOptions>();
-  Command command;
-  command.name = "info";
-  command.summary = "what a mesh, field or workspace is and what it costs to feel";
-  command.description =
-      "Size, defects, whether the mesh is watertight and what of it is open and felt from one side "
-      "or two; the bytes of each layer of its field; the "
-      "stages of the servo that are on, why, and what each costs in bytes and ns (measured here, "
-      "on "
-      "short strokes over the mesh). Of a field (.vti) written by patina: the file's own grid and "
-      "layers, and its surface as the mesh; stages stay empty. Where the scene has a device "
-      "(device.* values), the smallest K*(x)/K of the surface and where. Of a painted scene also "
-      "the "
-      "bytes of its paint, how high its relief is and what height the device bears, and the edits "
-      "that can be undone.\n"
-      "JSON: kind, triangles, vertices, bounds [m], watertight, components, components_sides "
-      "(sides: "
-      "closed, one-sided or two-sided; triangles), defects (non_finite, degenerate, duplicate, "
-      "boundary_edges, non_manifold_edges, misoriented_edges), objects (name, triangles), layers "
-      "(name, bytes; why, of the one that keeps several objects apart), stages "
-      "(name, why, bytes, ns), field (as patina field), stability (as patina "
-      "render; only with a device); of a painted scene more layers, relief (object, highest, "
-      "wavelength [m]; admissible [m], exceeded: with a device), history (undo, redo).";
-  command.examples = {"patina info bunny.ply", "patina info workspace --json",
-                      "patina info huge.stl --unit m --no-field"};
-  command.input("FILE", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
-  command.flag("--no-field", "Only the mesh: layers and stages stay empty.", options->no_field);
+  Command command{
+      .name = "info",
+      .summary = "what a mesh, field or workspace is and what it costs to feel",
+      .description =
+          "Size, defects, whether the mesh is watertight and what of it is open and felt from one "
+          "side or two; the bytes of each layer of its field and of all that is held; the stages "
+          "of the servo that are on, why, and what each costs in bytes and ns (measured here, on "
+          "short strokes over the mesh). Of a field (.vti) written by patina: the file's own grid "
+          "and layers, and its surface as the mesh; stages stay empty. Where the scene has a "
+          "device (device.* values), the smallest K*(x)/K of the surface and where. Of a painted "
+          "scene also the bytes of its paint, how high its relief is and what height the device "
+          "bears, and the edits that can be undone.",
+      .examples = {"patina info bunny.ply", "patina info workspace --json",
+                   "patina info huge.stl --unit m --no-field"},
+      .keys = kKeys,
+      .arguments = {sceneInput(options->input, "FILE"),
+                    {"--no-field", "", "", "", "Only the mesh: layers and stages stay empty.",
+                     into(options->no_field)}},
+      .run = [options](Console& console) { return runInfo(*options, console); }};
   addFieldOptions(command, options->scene);
   addOpenOptions(command, options->scene.open);
-  command.run = [options](Console& console) { return runInfo(*options, console); };
   return command;
 }
 

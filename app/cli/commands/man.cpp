@@ -1,6 +1,6 @@
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/help.h"
-#include "core/error.h"
+#include "app/cli/output/reports.h"
 #include "core/file.h"
 
 namespace patina::cli {
@@ -14,14 +14,11 @@ struct ManOptions {
 
 int runMan(const ManOptions& options, Console& console) {
   const std::filesystem::path& folder = options.folder;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder))
-    throw FileError(folder.string(), 0, "this folder cannot be made");
+  requireFolder(folder);
   const std::vector<Command> commands = allCommands();
   if (options.markdown) {
     writeFileAtomically(folder / "command_line.md", markdown(commands));
-    console.report(Json(), (folder / "command_line.md").string() + "\n");
+    console.print((folder / "command_line.md").string() + "\n");
     return kDone;
   }
   writeFileAtomically(folder / "patina.1", programManPage(commands));
@@ -31,7 +28,7 @@ int runMan(const ManOptions& options, Console& console) {
     writeFileAtomically(page, commandManPage(command));
     list += page.string() + "\n";
   }
-  console.report(Json(), list);
+  console.print(list);
   return kDone;
 }
 
@@ -39,17 +36,16 @@ int runMan(const ManOptions& options, Console& console) {
 
 Command manCommand() {
   auto options = std::make_shared<ManOptions>();
-  Command command;
-  command.name = "man";
-  command.summary = "write the manual pages";
-  command.description = "Writes patina.1 and one patina-COMMAND.1 for each command, with the text "
-                        "of --help.";
-  command.examples = {"patina man -o man/man1 && man -l man/man1/patina-feel.1"};
-  command.reports = false;
-  command.output("FOLDER", "Where to; made if it is missing.", options->folder);
-  command.flag("--markdown", "One command_line.md in place of the pages.", options->markdown);
-  command.run = [options](Console& console) { return runMan(*options, console); };
-  return command;
+  return {.name = "man",
+          .summary = "write the manual pages",
+          .description = "Writes patina.1 and one patina-COMMAND.1 for each command, with the text "
+                         "of --help.",
+          .examples = {"patina man -o man/man1 && man -l man/man1/patina-feel.1"},
+          .keys = {},
+          .arguments = {outputTo(options->folder, "FOLDER", "Where to; made if it is missing."),
+                        {"--markdown", "", "", "", "One command_line.md in place of the pages.",
+                         into(options->markdown)}},
+          .run = [options](Console& console) { return runMan(*options, console); }};
 }
 
 } // namespace patina::cli

@@ -1,8 +1,9 @@
-#include <array>
+#include <algorithm>
 #include <functional>
 #include <map>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/suggestion.h"
 #include "app/cli/output/mesh_output.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
@@ -86,98 +87,86 @@ struct ModelOptions {
   Sizes sizes; // those given
 };
 
-std::string namesOf(const std::vector<std::pair<std::string, double>>& sizes) {
-  std::string text;
-  for (const auto& [key, value] : sizes) text += (text.empty() ? "--" : " --") + key;
-  return text;
+const Model& modelNamed(const std::string& name) {
+  const auto found = std::ranges::find(models(), name, &Model::name);
+  if (found != models().end()) return *found;
+  const std::vector<std::string> known = namesIn(models(), &Model::name);
+  throw Error("unknown model '" + name + "'" + suggestion(name, known, ".") +
+              " There are: " + joined(known));
 }
 
-const Model& modelNamed(const std::string& name) {
-  std::string known;
-  for (const Model& model : models()) {
-    if (model.name == name) return model;
-    known += " " + model.name;
-  }
-  throw Error("model: there is no '" + name + "'; there are" + known);
-}
+const Keys kKeys = {{"model", "", "model"},
+                    {"triangles", "", "triangles"},
+                    {"vertices", "", "vertices", "", Shown::never},
+                    {"bounds", "m", "bounds", "lowest and highest corner", Shown::never},
+                    {"watertight", "", "watertight"},
+                    {"unit", "", "written in"}};
 
 int runModel(const ModelOptions& options, Console& console) {
   const Model& model = modelNamed(options.name);
   Sizes sizes(model.sizes.begin(), model.sizes.end());
   for (const auto& [key, value] : options.sizes) {
     if (!sizes.contains(key))
-      throw Error("model: the " + model.name + " has no --" + key + "; it has " +
-                  namesOf(model.sizes));
+      throw Error("model: the " + model.name + " has no --" + key + "; it has --" +
+                  joined(namesIn(model.sizes, [](const auto& size) { return size.first; }), " --"));
     sizes[key] = value;
   }
   requireMeshOutput(options.output, options.unit);
   const TriangleMesh mesh = model.make(sizes);
   console.progress().throwIfCancelled();
   const Box3 box = bounds(mesh);
-  const MeshReport report = inspect(mesh);
+  const MeshReport counts = inspect(mesh);
   writeMeshIn(options.output, mesh, options.unit);
 
-  Json json = Json::object();
-  json.set("model", model.name);
-  json.set("triangles", report.triangles);
-  json.set("vertices", report.vertices);
-  json.set("bounds", Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
-  json.set("unit", std::string(name(options.unit)));
-  json.set("watertight", report.watertight);
-  console.report(json, aligned({{"model", model.name},
-                                {"triangles", formatCount(report.triangles)},
-                                {"watertight", report.watertight ? "yes" : "no"},
-                                {"written in", std::string(name(options.unit))}}));
+  Report report(kKeys);
+  report.set("model", model.name);
+  report.set("triangles", counts.triangles).set("vertices", counts.vertices);
+  report.set("bounds", Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
+  report.set("watertight", counts.watertight).set("unit", std::string(name(options.unit)));
+  console.report(report);
   return kDone;
+}
+
+Argument sizeArgument(const std::string& key, const std::string& users, Sizes& sizes) {
+  const auto set = [&sizes, key](double value) { sizes[key] = value; };
+  if (isCount(key))
+    return {"--" + key, "N", "", users, "How fine.", inRange(1, 2000, set, NumberKind::whole)};
+  return {"--" + key, "LENGTH", "m", users, "Size.", [set](const std::string& word) {
+            const double value = parseLength(word);
+            if (!(value > 0)) throw Error("'" + word + "' is not a positive length");
+            set(value);
+          }};
 }
 
 } // namespace
 
 Command modelCommand() {
   auto options = std::make_shared<ModelOptions>();
-  Command command;
-  command.name = "model";
-  command.summary = "write one of the program's own test objects as a mesh";
-  std::string list;
+  std::vector<std::string> list;
   std::map<std::string, std::string> users; // size -> "sphere 50 mm, torus 40 mm"
   for (const Model& model : models()) {
-    list += (list.empty() ? "" : "; ") + model.name + " (" + model.what + ")";
+    list.push_back(model.name + " (" + model.what + ")");
     for (const auto& [key, value] : model.sizes)
       users[key] += (users[key].empty() ? "" : ", ") + model.name + " " +
                     (isCount(key) ? formatNumber(value) : formatLength(value));
   }
-  command.description = "NAME is one of: " + list +
-                        ".\nSizes that the model does not have are an error. The same words give "
-                        "the same mesh.\nJSON: model, triangles, vertices, bounds [m], unit, "
-                        "watertight.";
-  command.examples = {"patina model vase -o vase.ply --height 120mm --wall 2mm",
-                      "patina model sphere -o sphere.obj --radius 30mm --frequency 71"};
-  command.arguments.push_back(
-      {"NAME", "NAME", "Which model.", "", true, false, [options](const auto& text) {
-         (void)modelNamed(text);
-         options->name = text;
-       }});
-  command.output("MESH", "Mesh file (.obj .ply .stl).", options->output);
-  for (const auto& [key, text] : users) {
-    const bool counts = isCount(key);
-    command.arguments.push_back(
-        {"--" + key, counts ? "N" : "LENGTH", counts ? "How fine." : "Size [m].", text, false,
-         false, [options, key, counts](const std::string& word) {
-           double value = 0;
-           if (counts) {
-             const auto number = parseNumber(word);
-             if (!number || *number != static_cast<int>(*number) || *number < 1 || *number > 2000)
-               throw Error("'" + word + "' is not a whole number from 1 to 2000");
-             value = *number;
-           } else {
-             value = parseLength(word);
-             if (!(value > 0)) throw Error("'" + word + "' is not a positive length");
-           }
-           options->sizes[key] = value;
-         }});
-  }
-  addUnitOfOutput(command, options->unit);
-  command.run = [options](Console& console) { return runModel(*options, console); };
+  Command command{.name = "model",
+                  .summary = "write one of the program's own test objects as a mesh",
+                  .description = "NAME is one of: " + joined(list, "; ") +
+                                 ".\nSizes that the model does not have are an error. The same "
+                                 "words give the same mesh.",
+                  .examples = {"patina model vase -o vase.ply --height 120mm --wall 2mm",
+                               "patina model sphere -o sphere.obj --radius 30mm --frequency 71"},
+                  .keys = kKeys,
+                  .arguments = {input("NAME", "Which model.",
+                                      [options](const std::string& text) {
+                                        options->name = modelNamed(text).name;
+                                      }),
+                                outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
+                  .run = [options](Console& console) { return runModel(*options, console); }};
+  for (const auto& [key, text] : users)
+    command.arguments.push_back(sizeArgument(key, text, options->sizes));
+  command.arguments.push_back(unitOfOutput(options->unit));
   return command;
 }
 

@@ -130,34 +130,39 @@ void requireHeight(const Scene& scene, const std::vector<ScriptStroke>& script) 
       throw Error(one.where + ": relief.height is 0: no relief can be painted");
 }
 
+const Keys kKeys = {
+    {"workspace", "", "workspace"},
+    {"strokes", "", "strokes"},
+    {"edits", "", "edits", "strokes that painted something", Shown::never},
+    {"dabs", "", "dabs"},
+    {"faces", "", "touched", "faces, summed over dabs, as texels and nodes"},
+    {"texels", "", "texels", "", Shown::never},
+    {"nodes", "", "nodes", "", Shown::never},
+    {"blocks", "", "blocks", "of material, each once", Shown::never},
+    {"seconds", "s", "painted in"},
+    {"dab_ms", "ms", "a sample", "until it is felt", Shown::always, percentileParts()},
+    {"history", "", "history", "edits that can be undone"}};
+
 int report(const PaintOptions& options, const Editor& editor, std::size_t strokes,
            const PaintRun& run, Console& console) {
   Percentiles dab = percentiles(run.dab_seconds);
   for (double* value : {&dab.p50, &dab.p99, &dab.p999, &dab.max}) *value *= 1e3;
-  Json json = Json::object();
-  json.set("workspace", options.output.string());
-  json.set("strokes", strokes);
-  json.set("edits", run.edits);
-  json.set("dabs", run.sum.dabs);
-  json.set("faces", run.sum.faces);
-  json.set("texels", run.sum.texels);
-  json.set("nodes", run.sum.nodes);
-  json.set("blocks", run.blocks.size());
-  json.set("seconds", run.seconds);
-  json.set("dab_ms", toJson(dab));
-  json.set("history", editor.history().undoable());
-  console.report(
-      json,
-      aligned({{"workspace", options.output.string()},
-               {"strokes", formatCount(strokes) + ", painted something " + formatCount(run.edits)},
-               {"dabs", formatCount(run.sum.dabs)},
-               {"touched", formatCount(run.sum.faces) + " faces, " + formatCount(run.sum.texels) +
-                               " texels, " + formatCount(run.sum.nodes) + " nodes in " +
-                               formatCount(run.blocks.size()) + " blocks"},
-               {"painted in", rounded(run.seconds) + " s"},
-               {"a sample", rounded(dab.p50) + " ms (p50), " + rounded(dab.p99) + " (p99), " +
-                                rounded(dab.max) + " (max), until it is felt"},
-               {"history", formatCount(editor.history().undoable()) + " to undo"}}));
+  const PaintReport& sum = run.sum;
+  Report report(kKeys);
+  report.set("workspace", options.output.string());
+  report.set("strokes", strokes,
+             formatCount(strokes) + ", painted something " + formatCount(run.edits));
+  report.set("edits", run.edits).set("dabs", sum.dabs);
+  report.set("faces", sum.faces,
+             formatCount(sum.faces) + " faces, " + formatCount(sum.texels) + " texels, " +
+                 formatCount(sum.nodes) + " nodes in " + formatCount(run.blocks.size()) +
+                 " blocks");
+  report.set("texels", sum.texels).set("nodes", sum.nodes).set("blocks", run.blocks.size());
+  report.set("seconds", run.seconds);
+  report.set("dab_ms", toJson(dab), spreadText(dab, "ms") + ", until it is felt");
+  const std::size_t undoable = editor.history().undoable();
+  report.set("history", undoable, formatCount(undoable) + " to undo");
+  console.report(report);
   return kDone;
 }
 
@@ -201,40 +206,36 @@ int runPaint(const PaintOptions& options, Console& console) {
 
 Command paintCommand() {
   auto options = std::make_shared<PaintOptions>();
-  Command command;
-  command.name = "paint";
-  command.summary = "replay strokes: colour, relief, stiffness, friction, damping, roughness";
-  command.description =
-      "Strokes come from files of version 1 (docs/file_formats.md) or from the journal of a "
-      "workspace (its journal-1.jsonl or the like), whose strokes that are not undone are painted "
-      "again. The same "
-      "strokes on the same scene give the same bits.\n"
-      "With an output of its own the input stays as it is, byte for byte, and the output gets the "
-      "whole history. With the input itself as output every stroke is on disk as soon as it is "
-      "painted: what was painted before Ctrl-C, or before a stroke that fails, stays, and patina "
-      "undo takes it back. A stroke that touches nothing is warned of and is no edit.\n"
-      "A stroke may carry several layers, such as colour, stiffness and relief at once; it is one "
-      "edit. Its brush starts from the surface's nearest point, or with seed segment from where "
-      "the "
-      "way from the tip goes through the surface.\n"
-      "A radius below 1.73 voxels reaches some nodes of a cell only: painted stiffness and "
-      "friction are then felt diluted.\n"
-      "JSON: workspace, strokes, edits (strokes that painted something), dabs, faces, texels, "
-      "nodes "
-      "(touched, summed over dabs), blocks (of material, each once), seconds, dab_ms (p50, p99, "
-      "p999, max: of a sample, until it is felt), history (edits that can be undone).";
-  command.examples = {"patina paint cup --strokes glaze.json -o painted",
-                      "patina paint cup --strokes painted/journal-1.jsonl -o cup",
-                      "patina paint cup.ply --strokes glaze.json --strokes grip.json -o painted"};
-  command.input("WORKSPACE", "Workspace, mesh (.obj .ply .stl) or volume (.vti).", options->input);
-  command.arguments.push_back({"--strokes", "STROKES.json", "What to paint.", "", true, true,
-                               [options](const auto& text) { options->strokes.push_back(text); }});
-  command.arguments.push_back({"--seed", "nearest|segment",
-                               "Where brushes start, whatever the strokes say.", "", false, false,
-                               [options](const auto& text) { options->seed = parseSeed(text); }});
-  command.output("WORKSPACE", "The folder, which may be the input.", options->output);
+  Command command{
+      .name = "paint",
+      .summary = "replay strokes: colour, relief, stiffness, friction, damping, roughness",
+      .description =
+          "Strokes come from files of version 1 (docs/file_formats.md) or from the journal of a "
+          "workspace (its journal-1.jsonl or the like), whose strokes that are not undone are "
+          "painted again. The same strokes on the same scene give the same bits.\n"
+          "With an output of its own the input stays as it is, byte for byte, and the output gets "
+          "the whole history. With the input itself as output every stroke is on disk as soon as "
+          "it is painted: what was painted before Ctrl-C, or before a stroke that fails, stays, "
+          "and patina undo takes it back. A stroke that touches nothing is warned of and is no "
+          "edit.\n"
+          "A stroke may carry several layers, such as colour, stiffness and relief at once; it is "
+          "one edit. Its brush starts from the surface's nearest point, or with seed segment from "
+          "where the way from the tip goes through the surface.\n"
+          "A radius below 1.73 voxels reaches some nodes of a cell only: painted stiffness and "
+          "friction are then felt diluted.",
+      .examples = {"patina paint cup --strokes glaze.json -o painted",
+                   "patina paint cup --strokes painted/journal-1.jsonl -o cup",
+                   "patina paint cup.ply --strokes glaze.json --strokes grip.json -o painted"},
+      .keys = kKeys,
+      .arguments = {sceneInput(options->input, "WORKSPACE"),
+                    {"--strokes", "STROKES.json", "", "", "What to paint.", into(options->strokes),
+                     Times::at_least_once},
+                    {"--seed", "nearest|segment", "", "",
+                     "Where brushes start, whatever the strokes say.",
+                     parsedInto(options->seed, parseSeed)},
+                    outputTo(options->output, "WORKSPACE", "The folder, which may be the input.")},
+      .run = [options](Console& console) { return runPaint(*options, console); }};
   addOpenOptions(command, options->open);
-  command.run = [options](Console& console) { return runPaint(*options, console); };
   return command;
 }
 

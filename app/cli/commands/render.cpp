@@ -28,6 +28,14 @@ struct RenderOptions {
   SceneOptions scene;
 };
 
+const Keys kKeys = {{"picture", "", "picture"},
+                    {"layers", "", "layers"},
+                    {"width", "", "width", "", Shown::never},
+                    {"height", "", "height", "", Shown::never},
+                    {"view", "", "view", "", Shown::never},
+                    {"stability", "", "K*/K where it is shown", "", Shown::always, stabilityKeys()},
+                    {"range", "", "range", "ends of the scale of what was painted"}};
+
 PictureSize parseSize(const std::string& text) {
   PictureSize size;
   char rest = 0;
@@ -49,10 +57,8 @@ Vec3 parsePoint(const std::string& text) {
   return point;
 }
 
-template <typename Value> std::string choices(const std::vector<Value>& all) {
-  std::string text;
-  for (const Value value : all) text += (text.empty() ? "" : " ") + std::string(name(value));
-  return text;
+template <typename Values> std::vector<std::string> wordsFor(const Values& values) {
+  return namesIn(values, [](const auto& value) { return std::string(name(value)); });
 }
 
 // LOW,HIGH in SI, or with a unit where they are lengths.
@@ -130,8 +136,10 @@ int runRender(const RenderOptions& options, Console& console) {
   });
   SceneView view;
   if (quantity) view.lockPaintRange(*quantity, options.range);
-  Json json = Json::object();
-  TextRows rows = {{"picture", options.output.string()}};
+  const std::vector<std::string> layers = wordsFor(options.layers);
+  Report report(kKeys);
+  report.set("picture", options.output.string());
+  report.set("layers", jsonOf(layers), joined(layers, " "));
   if (only_mesh) {
     view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
     view.setPaint(scene);
@@ -148,11 +156,9 @@ int runRender(const RenderOptions& options, Console& console) {
     if (options.layers.contains(Layer::stability)) {
       const SurfaceStability stability = requiredStability(*compiled, console.progress());
       view.setStability(stability.surface.get(), stability.map.ratio);
-      json.set("stability", stabilityJson(stability, compiled->scene));
-      const TextRows more = stabilityRows(stability, compiled->scene);
-      rows.insert(rows.end(), more.begin(), more.end());
-      rows.emplace_back("colours", "K*/K from " + rounded(kLeastRatioShown) + " to " +
-                                       rounded(kMostRatioShown) + ", clipped beyond");
+      report.set("stability", stabilityReport(stability, compiled->scene));
+      report.tell("colours", "K*/K from " + rounded(kLeastRatioShown) + " to " +
+                                 rounded(kMostRatioShown) + ", clipped beyond");
     }
     if (options.tip) view.setTool(toolAt(*compiled, *options.tip, console.progress()));
   }
@@ -161,28 +167,15 @@ int runRender(const RenderOptions& options, Console& console) {
   view.setView(options.view);
   renderToPng(view, options.size, options.output);
 
-  Json layers = Json::array();
-  std::string layer_text;
-  for (const Layer layer : options.layers) {
-    layers.push(std::string(name(layer)));
-    layer_text += (layer_text.empty() ? "" : " ") + std::string(name(layer));
-  }
-  json.set("picture", options.output.string());
-  json.set("width", options.size.width);
-  json.set("height", options.size.height);
-  json.set("layers", layers);
-  json.set("view", std::string(name(options.view)));
+  report.set("width", options.size.width).set("height", options.size.height);
+  report.set("view", std::string(name(options.view)));
   if (quantity) {
     const ValueRange range = view.paintRange(*quantity);
-    Json ends = Json::array();
-    ends.push(range.low);
-    ends.push(range.high);
-    json.set("range", ends);
-    rows.emplace_back("range", arrayName(*quantity) + " from " + formatNumber(range.low) + " to " +
-                                   formatNumber(range.high));
+    report.set("range", Json(Json::Array{range.low, range.high}),
+               arrayName(*quantity) + " from " + formatNumber(range.low) + " to " +
+                   formatNumber(range.high));
   }
-  rows.insert(rows.begin() + 1, {"layers", layer_text});
-  console.report(json, aligned(rows));
+  console.report(report);
   return kDone;
 }
 
@@ -190,50 +183,43 @@ int runRender(const RenderOptions& options, Console& console) {
 
 Command renderCommand() {
   auto options = std::make_shared<RenderOptions>();
-  Command command;
-  command.name = "render";
-  command.summary = "a picture of a mesh or workspace and its field";
-  command.description =
-      "Layers: " + choices(allLayers()) + ". Views: " + choices(allViews()) +
-      "; +x is seen from the +x side. The layers tip and nodes show what the servo makes of the "
-      "tool at --tip, come to from outside; the layer band is where an offset or a magnet acts; "
-      "the layer stability colours the surface by K*(x)/K for the scene's device (device.* values; "
-      "without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below 1 the loop would buzz "
-      "when pressed with 1 N, grey where the force jumps; "
-      "colours end at 0.25 and 4. The layers from color on show what was painted in a workspace: "
-      "color with relief shaded as relief, the others against a scale, one at a time, material "
-      "also "
-      "on the slice; objects without it stay as they are.\n"
-      "Needs a display; on a machine without one: xvfb-run -a patina render ...\n"
-      "JSON: picture, width, height, layers, view; stability (ratio_min, at [m], ratio_median, "
-      "buzzing, slipping, jumping (fractions of the surface), limit [N/m], limit_damped [N/m], "
-      "coupled, device_given); range (of the scale, [2]).";
-  command.examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
-                      "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm",
-                      "patina render workspace -o stiffness.png --show stiffness --range 0,2000"};
-  command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
-  command.output("PICTURE.png", "The picture.", options->output);
-  command.arguments.push_back(
-      {"--show", "LAYERS", "Layers, with commas between.", "mesh,color", false, false,
-       [options](const auto& text) { options->layers = parseLayers(text); }});
-  command.arguments.push_back({"--view", "NAME", "Where the camera stands.", "iso", false, false,
-                               [options](const auto& text) { options->view = parseView(text); }});
-  command.arguments.push_back(
-      {"--size", "WxH", "Pixels.",
-       std::to_string(options->size.width) + "x" + std::to_string(options->size.height), false,
-       false, [options](const std::string& text) { options->size = parseSize(text); }});
-  command.arguments.push_back(
-      {"--tip", "X,Y,Z", "Place of the tip [m]; units as 1mm,0,2mm.", "", false, false,
-       [options](const std::string& text) { options->tip = parsePoint(text); }});
-  command.arguments.push_back(
-      {"--range", "LOW,HIGH", "Ends of the scale of what was painted, SI or as 0,0.5mm.",
-       "what is there", false, false,
-       [options](const std::string& text) { options->range = parseRange(text); }});
+  const PictureSize& size = options->size;
+  Command command{
+      .name = "render",
+      .summary = "a picture of a mesh or workspace and its field",
+      .description =
+          "Layers: " + joined(wordsFor(allLayers()), " ") +
+          ". Views: " + joined(wordsFor(allViews()), " ") +
+          "; +x is seen from the +x side. The layers tip and nodes show what the servo makes of "
+          "the tool at --tip, come to from outside; the layer band is where an offset or a magnet "
+          "acts; the layer stability colours the surface by K*(x)/K for the scene's device "
+          "(device.* values; without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below "
+          "1 the loop would buzz when pressed with 1 N, grey where the force jumps; colours end at "
+          "0.25 and 4. The layers from color on show what was painted in a workspace: color with "
+          "relief shaded as relief, the others against a scale, one at a time, material also on "
+          "the slice; objects without it stay as they are.\n"
+          "Needs a display; on a machine without one: xvfb-run -a patina render ...",
+      .examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
+                   "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm",
+                   "patina render workspace -o stiffness.png --show stiffness --range 0,2000"},
+      .keys = kKeys,
+      .arguments = {sceneInput(options->input),
+                    outputTo(options->output, "PICTURE.png", "The picture."),
+                    {"--show", "LAYERS", "", "mesh,color", "Layers, with commas between.",
+                     parsedInto(options->layers, parseLayers)},
+                    {"--view", "NAME", "", "iso", "Where the camera stands.",
+                     parsedInto(options->view, parseView)},
+                    {"--size", "WxH", "",
+                     std::to_string(size.width) + "x" + std::to_string(size.height), "Pixels.",
+                     parsedInto(options->size, parseSize)},
+                    {"--tip", "X,Y,Z", "m", "", "Place of the tip; units as 1mm,0,2mm.",
+                     parsedInto(options->tip, parsePoint)},
+                    {"--range", "LOW,HIGH", "", "what is there",
+                     "Ends of the scale of what was painted, SI or as 0,0.5mm.",
+                     parsedInto(options->range, parseRange)}},
+      .run = [options](Console& console) { return runRender(*options, console); }};
   addHapticOptions(command, options->scene);
-  addFieldOptions(command, options->scene);
-  addSamplerOption(command, options->scene);
-  addOpenOptions(command, options->scene.open);
-  command.run = [options](Console& console) { return runRender(*options, console); };
+  addSampledFieldOptions(command, options->scene);
   return command;
 }
 

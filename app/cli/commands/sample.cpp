@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/point_file.h"
 #include "app/cli/input/scene_options.h"
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
@@ -24,10 +25,15 @@ struct SampleOptions {
   SceneOptions scene;
 };
 
-const std::vector<std::string> kPointColumns = {"x [m]", "y [m]", "z [m]"};
 const std::vector<std::string> kColumns = {
     "x [m]",  "y [m]",  "z [m]",   "phi [m]",         "nx",      "ny", "nz", "face", "cx [m]",
     "cy [m]", "cz [m]", "in_band", "stiffness [N/m]", "friction"};
+
+const Keys kKeys = {{"points", "", "points"},
+                    {"in_band", "", "in the band", "points", Shown::never},
+                    {"bad_points", "", "bad points", "NaN or infinite", Shown::if_any},
+                    {"sampler", "", "sampler"},
+                    {"voxel", "m", "voxel"}};
 
 // Exact closest points on what can be felt, under the indices of the mesh as given.
 class SurfaceOracle {
@@ -130,16 +136,15 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
 
 int runSample(const SampleOptions& options, Console& console) {
   requireWritable(options.output, {options.input, options.points});
-  CsvReader points(options.points, kPointColumns);
-  std::vector<double> row;
-  bool more = points.next(row); // one that is wrong from the start is refused before the build
+  PointReader points(options.points);
+  std::optional<Vec3> p = points.next(); // one that is wrong from the start is refused now
   const SampledSurface surface = open(options, console);
   const FieldSampler sampler(*surface.field, surface.sampler);
   CsvWriter samples(options.output, kColumns);
   std::size_t count = 0, in_band = 0, bad_points = 0;
-  for (; more; more = points.next(row)) {
+  for (; p; p = points.next()) {
     if (count++ % 1024 == 0) console.progress().throwIfCancelled();
-    const std::vector<double> sample = sampleRow(surface, sampler, {row[0], row[1], row[2]});
+    const std::vector<double> sample = sampleRow(surface, sampler, *p);
     samples.add(sample);
     in_band += sample[11] != 0;
     bad_points += std::isnan(sample[3]);
@@ -147,19 +152,15 @@ int runSample(const SampleOptions& options, Console& console) {
   console.progress().throwIfCancelled();
   samples.commit();
 
-  Json json = Json::object();
-  json.set("points", count);
-  json.set("in_band", in_band);
-  json.set("bad_points", bad_points);
-  json.set("sampler", std::string(name(surface.sampler)));
-  json.set("voxel", surface.field->grid.voxel);
   if (bad_points)
     console.warn(options.points.string() + ": " + formatCount(bad_points) +
                  (bad_points == 1 ? " point is" : " points are") + " NaN or infinite");
-  console.report(json,
-                 aligned({{"points", formatCount(count) + ", in the band " + formatCount(in_band)},
-                          {"sampler", std::string(name(surface.sampler))},
-                          {"voxel", formatLength(surface.field->grid.voxel)}}));
+  Report report(kKeys);
+  report.set("points", count, formatCount(count) + ", in the band " + formatCount(in_band));
+  report.set("in_band", in_band).set("bad_points", bad_points);
+  report.set("sampler", std::string(name(surface.sampler)));
+  report.set("voxel", surface.field->grid.voxel);
+  console.report(report);
   return kDone;
 }
 
@@ -167,33 +168,30 @@ int runSample(const SampleOptions& options, Console& console) {
 
 Command sampleCommand() {
   auto options = std::make_shared<SampleOptions>();
-  Command command;
-  command.name = "sample";
-  command.summary = "distance, direction, nearest face and material at points";
-  command.description =
-      "Points come with the columns x [m],y [m],z [m]; further columns are ignored. Out go phi [m] "
-      "(negative inside), the unit direction nx,ny,nz, the nearest face, the closest point "
-      "cx,cy,cz "
-      "[m], in_band (1 or 0), stiffness [N/m] and friction that holds: as painted at the closest "
-      "point, "
-      "the scene's own elsewhere.\n"
-      "With a mesh or workspace the face and closest point are exact, and so are phi and the "
-      "direction beyond the band; of several objects the closest point is one of their union's, "
-      "which "
-      "none of them hides. Where relief is baked, phi and the direction are those of the relief. "
-      "With a field alone they are what the field knows: closest point "
-      "= point - phi n, and beyond the band phi is a bound outside, the coarse nodes' estimate "
-      "inside; trust neither where in_band is 0.\n"
-      "JSON: points, in_band, bad_points (NaN or infinite), sampler, voxel [m].";
-  command.examples = {"patina sample bunny.ply --points points.csv -o samples.csv",
-                      "patina sample bunny.vti --points points.csv -o samples.csv --sampler kim"};
-  command.input("INPUT", "Mesh (.obj .ply .stl), workspace or volume (.vti).", options->input);
-  command.file("--points", "POINTS.csv", "The points.", options->points).required = true;
-  command.output("SAMPLES.csv", "One row a point.", options->output);
-  addFieldOptions(command, options->scene);
-  addSamplerOption(command, options->scene);
-  addOpenOptions(command, options->scene.open);
-  command.run = [options](Console& console) { return runSample(*options, console); };
+  Command command{
+      .name = "sample",
+      .summary = "distance, direction, nearest face and material at points",
+      .description =
+          "Points come with the columns x [m],y [m],z [m], or as a path with t [s] before them, "
+          "which is not read; further columns are ignored. Out go phi [m] (negative inside), the "
+          "unit direction nx,ny,nz, the nearest face, the closest point cx,cy,cz [m], in_band (1 "
+          "or 0), stiffness [N/m] and friction that holds: as painted at the closest point, the "
+          "scene's own elsewhere.\n"
+          "With a mesh or workspace the face and closest point are exact, and so are phi and the "
+          "direction beyond the band; of several objects the closest point is one of their "
+          "union's, which none of them hides. Where relief is baked, phi and the direction are "
+          "those of the relief. With a field alone they are what the field knows: closest point = "
+          "point - phi n, and beyond the band phi is a bound outside, the coarse nodes' estimate "
+          "inside; trust neither where in_band is 0.",
+      .examples = {"patina sample bunny.ply --points points.csv -o samples.csv",
+                   "patina sample bunny.vti --points tip.csv -o samples.csv --sampler kim"},
+      .keys = kKeys,
+      .arguments = {sceneInput(options->input),
+                    {"--points", "POINTS.csv", "", "", "The points.", into(options->points),
+                     Times::once},
+                    outputTo(options->output, "SAMPLES.csv", "One row a point.")},
+      .run = [options](Console& console) { return runSample(*options, console); }};
+  addSampledFieldOptions(command, options->scene);
   return command;
 }
 

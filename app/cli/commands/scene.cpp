@@ -28,26 +28,38 @@ Json poseJson(const Pose& pose) {
   return rows;
 }
 
+const Keys kKeys = {{"workspace", "", "workspace", "", Shown::never},
+                    {"saved", "", "saved", "whether this command wrote it", Shown::never},
+                    {"objects",
+                     "",
+                     "objects",
+                     "",
+                     Shown::never,
+                     {{"name", "", ""}, {"triangles", "", ""}, {"world_from_object", "", ""}}},
+                    {"values", "", "values", "by their keys", Shown::never}};
+
 int report(const std::filesystem::path& folder, const Scene& scene, bool saved, Console& console) {
+  Report report(kKeys);
   Json objects = Json::array();
-  TextRows rows;
   for (const SceneObject& object : scene.objects) {
-    Json entry = Json::object();
-    entry.set("name", object.name);
-    entry.set("triangles", object.mesh->triangles.size());
-    entry.set("world_from_object", poseJson(object.world_from_object));
-    objects.push(entry);
-    rows.emplace_back("object", object.name + ", " + formatCount(object.mesh->triangles.size()) +
-                                    " triangles" + (object.paint ? ", painted" : ""));
+    const std::size_t triangles = object.mesh->triangles.size();
+    objects.push(Json::object()
+                     .set("name", object.name)
+                     .set("triangles", triangles)
+                     .set("world_from_object", poseJson(object.world_from_object)));
+    report.tell("object", object.name + ", " + formatCount(triangles) + " triangles" +
+                              (object.paint ? ", painted" : ""));
   }
-  for (const auto& [key, value] : values(scene)) rows.emplace_back(key, withUnit(key, value));
-  Json json = Json::object();
-  json.set("workspace", folder.string());
-  json.set("saved", saved);
-  json.set("objects", objects);
-  json.set("values", valuesJson(scene));
-  console.report(json, aligned(rows));
+  report.set("workspace", folder.string()).set("saved", saved).set("objects", objects);
+  tellValues(scene, report);
+  console.report(report);
   return kDone;
+}
+
+std::pair<std::string, std::string> parseSetting(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) throw Error("'" + text + "' is not KEY=VALUE");
+  return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 WorkspaceLink::Opened opened(const std::filesystem::path& folder, bool own, bool recover,
@@ -115,68 +127,59 @@ int runScene(const SceneCommandOptions& options, Console& console) {
 
 Command sceneCommand() {
   auto options = std::make_shared<SceneCommandOptions>();
-  Command command;
-  command.name = "scene";
-  command.summary = "make or change a workspace";
-  command.description =
-      "A workspace is a folder that holds meshes, where they are, what is painted on them, how "
-      "they "
-      "feel, and the history of all that; several meshes are felt as one surface, their union. "
-      "Without --add, --move, --remove, --set and --image an existing one is only listed. Removals "
-      "come first, then moves, additions, settings and images; together they are one edit, which "
-      "patina undo takes back, and an error leaves the folder as it was. A mesh added again gets a "
-      "name of its own: cup, cup-2. Where objects overlap deeply, merge.redistance=on measures "
-      "depths to the union's own surface.\n"
-      "Keys: stiffness [N/m], damping [N s/m], damping.cutoff [Hz], friction.static, "
-      "friction.dynamic, friction.depth, friction.slip, offset [m], magnet.range [m], "
-      "magnet.strength [N/m], magnet.fades (on or off), contact (proxy or ray), "
-      "tip.radius [m], force.limit [N], resolution, voxel [m], band [voxels], sampler, "
-      "surface.sides (one or two: from where open meshes are felt), "
-      "merge.redistance (on or off), relief.mode (pulled: read at the contact point; baked: moved "
-      "into the field), relief.source (painted, or color: the grey value of the painted colour), "
-      "relief.height [m] (of a relief of 1; below 0 engraves what was raised), "
-      "relief.force and material.force (conservative: no closed path does work; literal: as in the "
-      "papers), relief.smoothing [m] (deviation along the surface), paint.size (texels a side of "
-      "the images that painting makes), stabiliser (auto, none, coupling, passivity), device.mass "
-      "[kg], device.damping [N s/m], device.coulomb [N], device.encoder [m], device.rate [Hz], "
-      "device.delay [samples], device. The value none makes a feature absent.\n"
-      "A pose is a text file of 4 x 4 numbers, row by row: world from object, in metres. A picture "
-      "is laid as colour unless it says relief (its grey is the relief, 0 to 1), through the "
-      "mesh's "
-      "own texture coordinates (mapped) or along an axis of the object, onto all of it.\n"
-      "--recover reads what it can of a damaged workspace, says what is lost, and writes the rest "
-      "to the output, which may be the damaged folder itself only if it is named.\n"
-      "JSON: workspace, saved, objects (name, triangles, world_from_object), values.";
-  command.examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
-                      "patina scene -o cup --add spoon.ply@spoon.txt --move cup@aside.txt",
-                      "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3",
-                      "patina scene -o cup --image cup=weave.png,relief,z",
-                      "patina scene -o mended --recover cup"};
-  command.output("WORKSPACE", "The folder.", options->workspace);
-  command.file("--recover", "DAMAGED", "Read a damaged workspace as far as it can be read.",
-               options->recovered);
-  command.arguments.push_back(
-      {"--add", "MESH[@POSE.txt]", "Put a mesh into the scene, where the pose says.", "", false,
-       true, [options](const auto& text) { options->edits.added.push_back(text); }});
-  command.arguments.push_back(
-      {"--move", "NAME@POSE.txt", "Put an object elsewhere.", "", false, true,
-       [options](const auto& text) { options->edits.moved.push_back(text); }});
-  command.arguments.push_back(
-      {"--remove", "NAME", "Take an object out.", "", false, true,
-       [options](const auto& text) { options->edits.removed.push_back(text); }});
-  command.arguments.push_back({"--set", "KEY=VALUE", "Change a value.", "", false, true,
-                               [options](const std::string& text) {
-                                 const std::size_t equals = text.find('=');
-                                 if (equals == std::string::npos || equals == 0)
-                                   throw Error("'" + text + "' is not KEY=VALUE");
-                                 options->edits.settings.emplace_back(text.substr(0, equals),
-                                                                      text.substr(equals + 1));
-                               }});
-  command.arguments.push_back(
-      {"--image", "OBJECT=FILE[,color|relief][,mapped|x|y|z]", "Lay a picture onto an object.", "",
-       false, true, [options](const auto& text) { options->edits.images.push_back(text); }});
+  SceneEdits& edits = options->edits;
+  Command command{
+      .name = "scene",
+      .summary = "make or change a workspace",
+      .description =
+          "A workspace is a folder that holds meshes, where they are, what is painted on them, how "
+          "they feel, and the history of all that; several meshes are felt as one surface, their "
+          "union. Without --add, --move, --remove, --set and --image an existing one is only "
+          "listed. Removals come first, then moves, additions, settings and images; together they "
+          "are one edit, which patina undo takes back, and an error leaves the folder as it was. A "
+          "mesh added again gets a name of its own: cup, cup-2. Where objects overlap deeply, "
+          "merge.redistance=on measures depths to the union's own surface.\n"
+          "Keys: stiffness [N/m], damping [N s/m], damping.cutoff [Hz], friction.static, "
+          "friction.dynamic, friction.depth, friction.slip, offset [m], magnet.range [m], "
+          "magnet.strength [N/m], magnet.fades (on or off), contact (proxy or ray), tip.radius "
+          "[m], force.limit [N], resolution, voxel [m], band [voxels], sampler, surface.sides (one "
+          "or two: from where open meshes are felt), merge.redistance (on or off), relief.mode "
+          "(pulled: read at the contact point; baked: moved into the field), relief.source "
+          "(painted, or color: the grey value of the painted colour), relief.height [m] (of a "
+          "relief of 1; below 0 engraves what was raised), relief.force and material.force "
+          "(conservative: no closed path does work; literal: as in the papers), relief.smoothing "
+          "[m] (deviation along the surface), paint.size (texels a side of the images that "
+          "painting makes), stabiliser (auto, none, coupling, passivity), device.mass [kg], "
+          "device.damping [N s/m], device.coulomb [N], device.encoder [m], device.rate [Hz], "
+          "device.delay [samples], device. The value none makes a feature absent.\n"
+          "A pose is a text file of 4 x 4 numbers, row by row: world from object, in metres. A "
+          "picture is laid as colour unless it says relief (its grey is the relief, 0 to 1), "
+          "through the mesh's own texture coordinates (mapped) or along an axis of the object, "
+          "onto all of it.\n"
+          "--recover reads what it can of a damaged workspace, says what is lost, and writes the "
+          "rest to the output, which may be the damaged folder itself only if it is named.",
+      .examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
+                   "patina scene -o cup --add spoon.ply@spoon.txt --move cup@aside.txt",
+                   "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3",
+                   "patina scene -o cup --image cup=weave.png,relief,z",
+                   "patina scene -o mended --recover cup"},
+      .keys = kKeys,
+      .arguments =
+          {outputTo(options->workspace, "WORKSPACE", "The folder."),
+           {"--recover", "DAMAGED", "", "", "Read a damaged workspace as far as it can be read.",
+            into(options->recovered)},
+           {"--add", "MESH[@POSE.txt]", "", "", "Put a mesh into the scene, where the pose says.",
+            into(edits.added), Times::any},
+           {"--move", "NAME@POSE.txt", "", "", "Put an object elsewhere.", into(edits.moved),
+            Times::any},
+           {"--remove", "NAME", "", "", "Take an object out.", into(edits.removed), Times::any},
+           {"--set", "KEY=VALUE", "", "", "Change a value.",
+            [&edits](const std::string& text) { edits.settings.push_back(parseSetting(text)); },
+            Times::any},
+           {"--image", "OBJECT=FILE[,color|relief][,mapped|x|y|z]", "", "",
+            "Lay a picture onto an object.", into(edits.images), Times::any}},
+      .run = [options](Console& console) { return runScene(*options, console); }};
   addOpenOptions(command, options->open);
-  command.run = [options](Console& console) { return runScene(*options, console); };
   return command;
 }
 

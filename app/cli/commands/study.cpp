@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/suggestion.h"
+#include "app/cli/output/folded_table.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -19,18 +21,22 @@ struct StudyCommandOptions {
   StudyOptions study;
 };
 
-std::string knownStudies() {
-  std::string text;
-  for (const Study& study : studies()) text += std::string(study.name) + " ";
-  return text + "all";
-}
+const Keys kKeys = {
+    {"rows", "", "rows", "of all tables: the settings, error, error_max, ns, bytes", Shown::never},
+    {"order_fitted", "", "order fitted", "of the first table that has a theory", Shown::never},
+    {"order_expected", "", "order expected", "", Shown::never},
+    {"tables", "", "tables", "each with its own rows and orders", Shown::never},
+    {"files", "", "files", "in the folder", Shown::never}};
 
 std::vector<Study> chosen(const std::string& name) {
   std::vector<Study> list;
   for (const Study& study : studies())
     if (name == "all" || name == study.name) list.push_back(study);
-  if (list.empty()) throw Error("there is no study '" + name + "'; there are: " + knownStudies());
-  return list;
+  if (!list.empty()) return list;
+  std::vector<std::string> known = namesIn(studies(), &Study::name);
+  known.emplace_back("all");
+  throw Error("unknown study '" + name + "'" + suggestion(name, known, ".") +
+              " There are: " + joined(known));
 }
 
 bool canDraw(Console& console) {
@@ -67,18 +73,15 @@ void addRows(const Json& table, Json& rows) {
 int runStudy(const StudyCommandOptions& options, Console& console) {
   const std::vector<Study> list = chosen(options.name);
   const std::filesystem::path& folder = options.output;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder))
-    throw FileError(folder.string(), 0, "this folder cannot be made");
+  requireFolder(folder);
   const bool draws = canDraw(console);
 
   Json tables = Json::array(), rows = Json::array(), files = Json::array();
   Json order_fitted, order_expected; // of the first table that has a theory to be held against
   std::string text;
   for (const Study& study : list) {
-    const std::vector<WorkPrecisionTable> results = study.run(options.study, console.progress());
-    console.progress().throwIfCancelled();
+    const std::vector<WorkPrecisionTable> results =
+        tablesOf(study, options.study, console.progress());
     for (std::size_t i = 0; i < results.size(); ++i) {
       const WorkPrecisionTable& table = results[i];
       const std::string base = baseName(study, i, results.size());
@@ -97,17 +100,14 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
       }
       addRows(json, rows);
       tables.push(json);
-      text += toText(table) + "  " + (folder / base).string() + ".csv .json" +
+      text += foldedText(table) + "  " + (folder / base).string() + ".csv .json" +
               (draws && hasTimes(table) ? " .png\n\n" : "\n\n");
     }
   }
-  Json json = Json::object();
-  json.set("rows", rows);
-  json.set("order_fitted", order_fitted);
-  json.set("order_expected", order_expected);
-  json.set("tables", tables);
-  json.set("files", files);
-  console.report(json, text);
+  Report report(kKeys);
+  report.set("rows", rows).set("order_fitted", order_fitted).set("order_expected", order_expected);
+  report.set("tables", tables).set("files", files);
+  console.report(report, text);
   return kDone;
 }
 
@@ -115,29 +115,30 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
 
 Command studyCommand() {
   auto options = std::make_shared<StudyCommandOptions>();
-  Command command;
-  command.name = "study";
-  command.summary = "error against run time: tables and plots";
-  command.description = "NAME is all or one of:";
+  std::string description = "NAME is all or one of:";
   for (const Study& study : studies())
-    command.description += "\n" + std::string(study.name) + ": " + std::string(study.about) + ".";
-  command.description +=
-      "\nEach table becomes NAME-I.csv, NAME-I.json (with machine, compiler, scheduling policy and "
+    description += "\n" + std::string(study.name) + ": " + std::string(study.about) + ".";
+  description +=
+      "\n"
+      "Each table becomes NAME-I.csv, NAME-I.json (with machine, compiler, scheduling policy and "
       "load) and, where there is a display, NAME-I.png; a study of one table leaves the number "
-      "out. Measure on a quiet machine.\n"
-      "JSON: rows (the settings, error, error_max, ns, bytes), order_fitted and order_expected (of "
-      "the first table that has a theory), tables (each with its own), files.";
-  command.examples = {"patina study field -o studies", "patina study all -o studies --quick"};
-  command.arguments.push_back(
-      {"NAME", "NAME", "Which study.", "", true, false, [options](const std::string& text) {
-         (void)chosen(text);
-         options->name = text;
-       }});
-  command.output("FOLDER", "Where to; made if it is missing.", options->output);
-  command.flag("--quick", "Coarser and fewer: seconds instead of minutes.", options->study.quick);
-  command.flag("--thorough", "Ten times as many random touches: minutes.", options->study.thorough);
-  command.run = [options](Console& console) { return runStudy(*options, console); };
-  return command;
+      "out. A wide table is printed in pieces. Measure on a quiet machine.";
+  return {.name = "study",
+          .summary = "error against run time: tables and plots",
+          .description = description,
+          .examples = {"patina study field -o studies", "patina study all -o studies --quick"},
+          .keys = kKeys,
+          .arguments = {input("NAME", "Which study.",
+                              [options](const std::string& text) {
+                                (void)chosen(text);
+                                options->name = text;
+                              }),
+                        outputTo(options->output, "FOLDER", "Where to; made if it is missing."),
+                        {"--quick", "", "", "", "Coarser and fewer: seconds instead of minutes.",
+                         into(options->study.quick)},
+                        {"--thorough", "", "", "", "Ten times as many random touches: minutes.",
+                         into(options->study.thorough)}},
+          .run = [options](Console& console) { return runStudy(*options, console); }};
 }
 
 } // namespace patina::cli

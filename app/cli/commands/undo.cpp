@@ -2,6 +2,7 @@
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/workspace_place.h"
+#include "app/cli/output/reports.h"
 #include "core/numbers.h"
 #include "session/store/journal_fold.h"
 #include "session/store/replay.h"
@@ -19,24 +20,32 @@ struct HistoryOptions {
 
 enum class Way { back, forth };
 
+const Keys kKeys = {{"edits",
+                     "",
+                     "edits",
+                     "oldest first, with --list",
+                     Shown::never,
+                     {{"what", "", ""}, {"done", "", ""}}},
+                    {"undone", "", "undone", "by this command", Shown::if_any},
+                    {"redone", "", "redone", "by this command", Shown::if_any},
+                    {"history", "", "history", "edits that can be undone"},
+                    {"redo", "", "redo", "edits that can be redone", Shown::never}};
+
 std::string describe(const JournalEvent& event) {
   if (const auto* stroke = std::get_if<Stroke>(&event)) return patina::describe(*stroke);
   if (const auto* values = std::get_if<ValueEdit>(&event)) return patina::describe(*values);
   return std::get<StoredSceneEdit>(event).what;
 }
 
-void listEdits(const FoldedJournal& fold, Json& json, std::string& text) {
+void listEdits(const FoldedJournal& fold, Report& report) {
   Json edits = Json::array();
   for (std::size_t i = 0; i < fold.steps.size(); ++i) {
     const std::string what = describe(*fold.steps[i].event);
     const bool done = i < fold.position;
-    Json edit = Json::object();
-    edit.set("what", what);
-    edit.set("done", done);
-    edits.push(std::move(edit));
-    text += std::to_string(i + 1) + "  " + what + (done ? "" : "  (undone)") + "\n";
+    edits.push(Json::object().set("what", what).set("done", done));
+    report.tell(std::to_string(i + 1), what + (done ? "" : "  (undone)"));
   }
-  json.set("edits", std::move(edits));
+  report.set("edits", edits);
 }
 
 struct Counts {
@@ -66,14 +75,13 @@ Counts move(const std::filesystem::path& folder, std::size_t steps, Way way, Con
 int runHistory(const HistoryOptions& options, Way way, Console& console) {
   const std::filesystem::path folder = workspaceFolder(options.workspace);
   Counts counts;
-  Json json = Json::object();
-  std::string text;
+  Report report(kKeys);
   {
     const OpenedWorkspace found = openHistory(folder);
     for (const std::string& note : found.notes) console.warn(note);
     const FoldedJournal fold = folded(found.journal, found.journal_file.string());
     counts = {fold.position, fold.steps.size() - fold.position, 0};
-    if (options.list) listEdits(fold, json, text);
+    if (options.list) listEdits(fold, report);
   }
   const std::size_t possible = way == Way::back ? counts.undoable : counts.redoable;
   if (!options.list && possible > 0)
@@ -81,43 +89,38 @@ int runHistory(const HistoryOptions& options, Way way, Console& console) {
   if (!options.list && counts.moved == 0)
     console.warn(folder.string() +
                  (way == Way::back ? ": there is nothing to undo" : ": there is nothing to redo"));
-  json.set("history", counts.undoable);
-  json.set("redo", counts.redoable);
-  json.set("undone", way == Way::back ? counts.moved : 0);
-  json.set("redone", way == Way::forth ? counts.moved : 0);
-  const std::pair<std::string, std::string> moved{way == Way::back ? "undone" : "redone",
-                                                  formatCount(counts.moved)};
-  std::vector<std::pair<std::string, std::string>> rows;
-  if (!options.list) rows.push_back(moved);
-  rows.emplace_back("history", formatCount(counts.undoable) + " to undo, " +
-                                   formatCount(counts.redoable) + " to redo");
-  console.report(json, text + aligned(rows));
+  const bool back = way == Way::back;
+  report.set("undone", back ? counts.moved : 0).set("redone", back ? 0 : counts.moved);
+  report.set("history", counts.undoable, historyText(counts.undoable, counts.redoable));
+  report.set("redo", counts.redoable);
+  console.report(report);
   return kDone;
 }
 
 Command historyCommand(Way way) {
   auto options = std::make_shared<HistoryOptions>();
   const bool back = way == Way::back;
-  Command command;
-  command.name = back ? "undo" : "redo";
-  command.summary = back ? "take back edits of a workspace" : "do again what was undone";
-  command.description =
-      std::string(back ? "The workspace is as it was before its last edit, bit for bit; what was "
-                         "undone can be redone until something else is edited."
-                       : "The workspace is as it was before patina undo, bit for bit.") +
-      " Edits are strokes, values set, and objects added, moved or removed. If there are fewer "
-      "steps than asked for, all are taken; with none the folder stays as it is and the exit code "
-      "is 0.\n"
-      "JSON: history (edits that can be undone), redo (that can be redone), undone, redone (by "
-      "this command); with --list edits (what, done), oldest first.";
-  command.examples = {"patina " + command.name + " cup",
-                      "patina " + command.name + " cup --steps 3",
-                      "patina " + command.name + " cup --list"};
-  command.input("WORKSPACE", "The folder.", options->workspace);
-  command.integer("--steps", "How many edits.", options->steps, 1);
-  command.flag("--list", "Only print the history.", options->list);
-  command.run = [options, way](Console& console) { return runHistory(*options, way, console); };
-  return command;
+  const std::string name = back ? "undo" : "redo";
+  return {
+      .name = name,
+      .summary = back ? "take back edits of a workspace" : "do again what was undone",
+      .description =
+          std::string(back ? "The workspace is as it was before its last edit, bit for bit; what "
+                             "was undone can be redone until something else is edited."
+                           : "The workspace is as it was before patina undo, bit for bit.") +
+          " Edits are strokes, values set, and objects added, moved or removed. If there are fewer "
+          "steps than asked for, all are taken; with none the folder stays as it is and the exit "
+          "code is 0.",
+      .examples = {"patina " + name + " cup", "patina " + name + " cup --steps 3",
+                   "patina " + name + " cup --list"},
+      .keys = kKeys,
+      .arguments = {input("WORKSPACE", "The folder.", into(options->workspace)),
+                    {"--steps", "N", "", "1", "How many edits.",
+                     inRange(
+                         1, 1e9, [options](double n) { options->steps = static_cast<int>(n); },
+                         NumberKind::whole)},
+                    {"--list", "", "", "", "Only print the history.", into(options->list)}},
+      .run = [options, way](Console& console) { return runHistory(*options, way, console); }};
 }
 
 } // namespace

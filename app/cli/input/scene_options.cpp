@@ -1,7 +1,10 @@
 #include "app/cli/input/scene_options.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/numbers.h"
+#include "scene/scene_values.h"
 #include "session/build/compile_warnings.h"
 
 namespace patina::cli {
@@ -16,87 +19,89 @@ Scene trialFor(const std::string& key) {
   return trial;
 }
 
+// "--friction-static"
+std::string optionFor(std::string key) {
+  std::ranges::replace(key, '.', '-');
+  return "--" + key;
+}
+
+Argument setting(SceneOptions& options, const SettingEntry& entry) {
+  const SceneKey& known = sceneKey(entry.key);
+  // Of what is counted the caption tells what.
+  const bool counted = known.unit == "cells" || known.unit == "voxels" || known.unit == "samples";
+  return {entry.option.empty() ? optionFor(entry.key) : entry.option,
+          entry.value,
+          counted ? "" : std::string(known.unit),
+          entry.usual.value_or(known.usual == "none" ? "" : known.usual),
+          entry.caption,
+          [&options, key = entry.key](const std::string& text) {
+            Scene trial = trialFor(key);
+            setValue(trial, key, text);
+            options.settings.emplace_back(key, text);
+          }};
+}
+
 } // namespace
 
-void addSetting(Command& command, SceneOptions& options, const std::string& name,
-                const std::string& key, const std::string& value, const std::string& help,
-                const std::string& fallback) {
-  command.arguments.push_back(
-      {name, value, help, fallback, false, false, [&options, key](const std::string& text) {
-         Scene trial = trialFor(key);
-         setValue(trial, key, text);
-         options.settings.emplace_back(key, text);
-       }});
+void addSettings(Command& command, SceneOptions& options,
+                 const std::vector<SettingEntry>& entries) {
+  for (const SettingEntry& entry : entries) command.arguments.push_back(setting(options, entry));
 }
 
 void addOpenOptions(Command& command, OpenOptions& open) {
-  command.arguments.push_back({"--unit", "mm|cm|m|in|fit",
+  command.arguments.push_back({"--unit", "mm|cm|m|in|fit", "", "mm",
                                "Unit of a mesh file; fit scales its longest side to 100 mm. "
                                "Workspaces and fields written by patina are in metres already.",
-                               "mm", false, false, [&open](const auto& text) {
+                               [&open](const std::string& text) {
                                  open.unit = parseMeshUnit(text);
                                  open.unit_chosen = true;
                                }});
-  command.number("--iso", "VALUE", "Value at which a volume (.vti) from elsewhere is a surface.",
-                 open.iso);
+  command.arguments.push_back({"--iso", "VALUE", "", "",
+                               "Value at which a volume (.vti) from elsewhere is a surface.",
+                               into(open.iso)});
 }
 
 void addFieldOptions(Command& command, SceneOptions& options) {
-  const FieldSpec usual;
-  addSetting(command, options, "--resolution", "resolution", "N",
-             "Cells along the longest side, with the band on both ends.",
-             std::to_string(usual.resolution));
-  addSetting(command, options, "--voxel", "voxel", "LENGTH",
-             "Side of a cell [m]; takes the place of --resolution.", "");
-  addSetting(command, options, "--band", "band", "N",
-             "Voxels on each side of the surface in which the field is stored.",
-             formatNumber(usual.band));
+  addSettings(command, options,
+              {{"resolution", "N", "Cells along the longest side, with the band on both ends."},
+               {"voxel", "LENGTH", "Side of a cell; takes the place of --resolution."},
+               {"band", "N", "Voxels on each side of the surface in which the field is stored."}});
 }
 
-void addSamplerOption(Command& command, SceneOptions& options) {
-  std::string names, captions;
+void addSampledFieldOptions(Command& command, SceneOptions& options) {
+  std::vector<std::string> names, captions;
   for (const SamplerEntry& entry : kSamplers) {
-    names += (names.empty() ? "" : "|") + std::string(entry.name);
-    captions +=
-        (captions.empty() ? "" : ", ") + std::string(entry.name) + " " + std::string(entry.caption);
+    names.emplace_back(entry.name);
+    captions.push_back(names.back() + " " + std::string(entry.caption));
   }
-  addSetting(command, options, "--sampler", "sampler", names,
-             "How the field is read between nodes: " + captions + ".",
-             std::string(name(Scene{}.sampler)));
+  addFieldOptions(command, options);
+  addSettings(command, options,
+              {{"sampler", joined(names, "|"),
+                "How the field is read between nodes: " + joined(captions) + "."}});
+  addOpenOptions(command, options.open);
 }
 
 void addHapticOptions(Command& command, SceneOptions& options) {
-  const HapticProperties usual;
-  addSetting(command, options, "--stiffness", "stiffness", "K", "Spring [N/m].",
-             formatNumber(usual.stiffness));
-  addSetting(command, options, "--damping", "damping", "B", "Damper along the normal [N s/m].", "");
-  addSetting(command, options, "--friction-static", "friction.static", "MU",
-             "Coefficient that holds the tip at rest.", "");
-  addSetting(command, options, "--friction-dynamic", "friction.dynamic", "MU",
-             "Coefficient while the tip slips; not above the static one.", "");
-  addSetting(command, options, "--friction-depth", "friction.depth", "GAIN",
-             "Growth of friction with depth, for each mm.", "");
-  addSetting(command, options, "--friction-slip", "friction.slip", "paper|displacement",
-             "Direction of slip: towards the tip, or against the contact point's own motion.",
-             "paper");
-  addSetting(command, options, "--damping-cutoff", "damping.cutoff", "HZ",
-             "Low-pass of the velocity that the damper sees.", "");
-  addSetting(command, options, "--offset", "offset", "LENGTH",
-             "Offset surface [m]: contact begins this far from the model.", "");
-  addSetting(command, options, "--magnet-range", "magnet.range", "LENGTH",
-             "Magnetic surface: the tip is pulled from this far [m].", "");
-  addSetting(command, options, "--magnet-strength", "magnet.strength", "K",
-             "Pull of the magnet for each metre of distance [N/m].", "");
-  addSetting(command, options, "--magnet-fades", "magnet.fades", "on|off",
-             "The pull falls to zero over the last quarter of its range.", "off");
-  addSetting(command, options, "--contact", "contact", "proxy|ray",
-             "proxy: the nearest point that the tip's proxy reaches over the surface; ray: the "
-             "paper's, from the tip alone.",
-             "proxy");
-  addSetting(command, options, "--tip-radius", "tip.radius", "LENGTH",
-             "Radius of the tip [m]; its centre feels the surface that far out.", "");
-  addSetting(command, options, "--force-limit", "force.limit", "N", "Largest force [N].",
-             formatNumber(usual.force_limit));
+  addSettings(
+      command, options,
+      {{"stiffness", "K", "Spring."},
+       {"damping", "B", "Damper along the normal."},
+       {"friction.static", "MU", "Coefficient that holds the tip at rest."},
+       {"friction.dynamic", "MU", "Coefficient while the tip slips; not above the static one."},
+       {"friction.depth", "GAIN", "Growth of friction with depth, for each mm."},
+       {"friction.slip", "paper|displacement",
+        "Direction of slip: towards the tip, or against the contact point's own motion.", "paper"},
+       {"damping.cutoff", "HZ", "Low-pass of the velocity that the damper sees."},
+       {"offset", "LENGTH", "Offset surface: contact begins this far from the model."},
+       {"magnet.range", "LENGTH", "Magnetic surface: the tip is pulled from this far."},
+       {"magnet.strength", "K", "Pull of the magnet for each metre of distance."},
+       {"magnet.fades", "on|off", "The pull falls to zero over the last quarter of its range.",
+        "off"},
+       {"contact", "proxy|ray",
+        "proxy: the nearest point that the tip's proxy reaches over the surface; ray: the "
+        "paper's, from the tip alone."},
+       {"tip.radius", "LENGTH", "Radius of the tip; its centre feels the surface that far out."},
+       {"force.limit", "N", "Largest force."}});
 }
 
 void applySettings(Scene& scene, const Settings& settings) {

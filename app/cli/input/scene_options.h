@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,15 +22,20 @@ struct SceneOptions {
   Settings settings;
 };
 
-// An option that stands for a key of the scene: the scene says what is allowed.
-void addSetting(Command& command, SceneOptions& options, const std::string& name,
-                const std::string& key, const std::string& value, const std::string& help,
-                const std::string& fallback);
+// An option that stands for a key of the scene: the scene says what is allowed, in which unit, and
+// what holds without it.
+struct SettingEntry {
+  std::string key, value, caption;       // "friction.static", "MU", ...
+  std::optional<std::string> usual = {}; // where the command's differs from the scene's
+  std::string option = {};               // where it is not the key's name: "--mass"
+};
+void addSettings(Command& command, SceneOptions& options, const std::vector<SettingEntry>& entries);
 // --unit and --iso.
 void addOpenOptions(Command& command, OpenOptions& open);
-// --resolution --voxel --band; and --sampler.
+// --resolution --voxel --band.
 void addFieldOptions(Command& command, SceneOptions& options);
-void addSamplerOption(Command& command, SceneOptions& options);
+// The same, --sampler, --unit and --iso.
+void addSampledFieldOptions(Command& command, SceneOptions& options);
 // --stiffness --damping --friction-... --tip-radius --force-limit.
 void addHapticOptions(Command& command, SceneOptions& options);
 

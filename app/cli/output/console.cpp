@@ -55,10 +55,13 @@ void Console::warn(const std::string& line) {
   std::fprintf(stderr, "patina: warning: %s\n", line.c_str());
 }
 
-void Console::report(const Json& object, const std::string& text) {
+void Console::report(const Report& report, const std::string& below) {
+  print(json ? report.json().dump() + "\n" : report.text() + below);
+}
+
+void Console::print(const std::string& text) {
   clearBar();
-  const std::string out = json ? object.dump() + "\n" : text;
-  std::fwrite(out.data(), 1, out.size(), stdout);
+  std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
 void Console::say(const std::string& line) {
@@ -85,15 +88,6 @@ void Console::drawBar(double fraction, std::string_view what) {
                           std::string(static_cast<std::size_t>(kWidth - done), '.');
   std::fprintf(stderr, "\r[%s] %3.0f %% %.*s\033[K", bar.c_str(), 100 * fraction,
                static_cast<int>(what.size()), what.data());
-}
-
-std::string aligned(const std::vector<std::pair<std::string, std::string>>& rows) {
-  std::size_t width = 0;
-  for (const auto& [name, value] : rows) width = std::max(width, name.size());
-  std::string text;
-  for (const auto& [name, value] : rows)
-    text += name + std::string(width - name.size() + 2, ' ') + value + "\n";
-  return text;
 }
 
 } // namespace patina::cli

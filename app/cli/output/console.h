@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/json.h"
+#include "app/cli/output/report.h"
 #include "core/progress.h"
 
 namespace patina::cli {
@@ -26,8 +26,9 @@ class Console {
   // From here on Ctrl-C ends the process: for work that touches no file and cannot be polled.
   void endOnInterrupt();
   void warn(const std::string& line);
-  // The report of a command: the object with --json, else the text.
-  void report(const Json& object, const std::string& text);
+  // The object with --json, else the rows, and below them what else is for people.
+  void report(const Report& report, const std::string& below = "");
+  void print(const std::string& text); // on stdout
   // For people who wait: no line of it is part of a report. Nothing with --json.
   void say(const std::string& line);
   // Removes the progress bar, if one is drawn.
@@ -41,8 +42,5 @@ class Console {
   std::chrono::steady_clock::time_point last_draw_;
   Progress progress_;
 };
-
-// "name   value" lines with the values aligned.
-std::string aligned(const std::vector<std::pair<std::string, std::string>>& rows);
 
 } // namespace patina::cli

@@ -7,8 +7,6 @@ namespace patina::cli {
 
 namespace {
 
-constexpr std::size_t kWidth = 80;
-
 const char* const kAbout = "A workspace for touch research: a mesh becomes a sampled implicit "
                            "surface, and a 1 kHz servo feels it.";
 const char* const kUnits =
@@ -20,10 +18,8 @@ const char* const kExitCodes[] = {
     "2    bad input or usage; one line on stderr says what and where",
     "130  cancelled with Ctrl-C; no output file was touched",
 };
-const Argument kJson{"--json", "", "Print the report as one JSON object on stdout.", "", false,
-                     false,    {}};
-const Argument kHelp{"-h,--help", "", "Print this help.", "", false, false, {}};
-const Argument kVersion{"--version", "", "Print the version.", "", false, false, {}};
+
+using Lines = std::vector<std::pair<std::string, std::string>>; // a name, and what it is
 
 std::vector<std::string> paragraphs(const std::string& text) {
   std::vector<std::string> lines;
@@ -33,63 +29,74 @@ std::vector<std::string> paragraphs(const std::string& text) {
   return lines;
 }
 
-// Words of `text`, wrapped, each line after the first indented.
-std::string wrapped(const std::string& text, std::size_t indent, std::size_t column) {
-  std::istringstream in(text);
-  std::string out;
-  for (std::string word; in >> word;) {
-    if (column + word.size() + 1 > kWidth && column > indent) {
-      out += "\n" + std::string(indent, ' ');
-      column = indent;
-    } else if (!out.empty()) {
-      out += ' ';
-      ++column;
-    }
-    out += word;
-    column += word.size();
-  }
-  return out;
-}
-
 std::string namesOf(const Argument& argument) {
   std::string names;
   for (const char c : argument.names) names += c == ',' ? std::string(", ") : std::string(1, c);
-  return argument.positional() || argument.value.empty() ? names : names + " " + argument.value;
+  return argument.isInput() || argument.isFlag() ? names : names + " " + argument.value;
 }
 
+std::string inBrackets(const std::string& text) {
+  return text.empty() ? "" : " [" + text + "]";
+}
+
+// The unit stands before the caption's full stop.
 std::string textOf(const Argument& argument) {
-  std::string text = argument.help;
-  if (argument.repeated) text += " May be given more than once.";
-  if (argument.required && !argument.positional()) text += " Required.";
-  if (!argument.fallback.empty()) text += " [" + argument.fallback + "]";
-  return text;
+  std::string text = argument.caption;
+  if (!argument.unit.empty())
+    text.insert(std::min(text.find_first_of(".;:"), text.size()), inBrackets(argument.unit));
+  if (argument.isRepeated()) text += " May be given more than once.";
+  if (argument.isRequired() && !argument.isInput()) text += " Required.";
+  return text + inBrackets(argument.fallback);
 }
 
-std::vector<Argument> allOf(const Command& command) {
+std::string nameOf(const Key& key) {
+  return key.name + inBrackets(key.unit == "B" ? "bytes" : key.unit);
+}
+
+std::string textOf(const Key& key) {
+  std::vector<std::string> parts;
+  for (const Key& part : key.parts)
+    parts.push_back(nameOf(part) + (part.about.empty() ? "" : ": " + part.about));
+  std::string plain = key.name; // what only says the name again is left out
+  std::ranges::replace(plain, '_', ' ');
+  const std::string text = key.about.empty()      ? key.caption
+                           : key.caption == plain ? key.about
+                                                  : key.caption + ": " + key.about;
+  return text + (parts.empty() ? "" : " (" + joined(parts) + ")");
+}
+
+Lines linesOf(const Command& command, bool inputs) {
+  Lines lines;
   std::vector<Argument> all = command.arguments;
-  if (command.reports) all.push_back(kJson);
-  all.push_back(kHelp);
-  return all;
+  for (Argument& argument : commonArguments(command)) all.push_back(std::move(argument));
+  for (const Argument& argument : all)
+    if (argument.isInput() == inputs) lines.emplace_back(namesOf(argument), textOf(argument));
+  return lines;
+}
+
+Lines linesOf(const Keys& keys) {
+  Lines lines;
+  for (const Key& key : keys) lines.emplace_back(nameOf(key), textOf(key));
+  return lines;
 }
 
 std::string usage(const Command& command) {
   std::string line = "patina " + command.name;
-  bool optional = false;
+  bool optional = !command.keys.empty();
   for (const Argument& argument : command.arguments) {
-    if (argument.positional()) {
-      const std::string name = argument.value + (argument.repeated ? "..." : "");
-      line += argument.required ? " " + name : " [" + name + "]";
-    } else if (argument.required) {
-      const std::string& names = argument.names;
-      line += " " + names.substr(0, names.find(',')) + " " + argument.value;
+    if (argument.isInput()) {
+      const std::string name = argument.value + (argument.isRepeated() ? "..." : "");
+      line += argument.isRequired() ? " " + name : " [" + name + "]";
+    } else if (argument.isRequired()) {
+      line += " " + argument.names.substr(0, argument.names.find(',')) + " " + argument.value;
     } else {
       optional = true;
     }
   }
-  return line + (optional || command.reports ? " [options]" : "");
+  return line + (optional ? " [options]" : "");
 }
 
-std::string table(const std::vector<std::pair<std::string, std::string>>& rows) {
+std::string table(const Lines& rows) {
   std::size_t width = 0;
   for (const auto& row : rows) width = std::max(width, row.first.size());
   const std::size_t indent = std::min<std::size_t>(width, 26) + 4;
@@ -105,11 +112,8 @@ std::string table(const std::vector<std::pair<std::string, std::string>>& rows) 
   return out;
 }
 
-std::string argumentTable(const std::vector<Argument>& arguments, bool positional) {
-  std::vector<std::pair<std::string, std::string>> rows;
-  for (const Argument& argument : arguments)
-    if (argument.positional() == positional) rows.emplace_back(namesOf(argument), textOf(argument));
-  return rows.empty() ? "" : (positional ? "\nInput:\n" : "\nOptions:\n") + table(rows);
+std::string section(const std::string& title, const Lines& rows) {
+  return rows.empty() ? "" : "\n" + title + ":\n" + table(rows);
 }
 
 std::string exitCodes() {
@@ -142,7 +146,7 @@ std::string manHeader(const std::string& page, const std::string& summary) {
          roff(page) + " \\- " + roff(summary) + "\n";
 }
 
-std::string manList(const std::vector<std::pair<std::string, std::string>>& rows) {
+std::string manList(const Lines& rows) {
   std::string out;
   for (const auto& [name, text] : rows) out += ".TP\n.B " + roff(name) + "\n" + roff(text) + "\n";
   return out;
@@ -156,24 +160,42 @@ std::string manExitCodes() {
 
 } // namespace
 
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t column,
+                    std::size_t width) {
+  std::istringstream in(text);
+  std::string out;
+  for (std::string word; in >> word;) {
+    if (column + word.size() + 1 > width && column > indent) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (!out.empty()) {
+      out += ' ';
+      ++column;
+    }
+    out += word;
+    column += word.size();
+  }
+  return out;
+}
+
 std::string programHelp(const std::vector<Command>& commands) {
-  std::vector<std::pair<std::string, std::string>> rows;
+  Lines rows;
   for (const Command& command : commands) rows.emplace_back(command.name, command.summary);
   return "patina " PATINA_VERSION "\n" + wrapped(kAbout, 0, 0) +
          "\n\nUsage: patina COMMAND INPUT... -o OUTPUT [options]\n\nCommands:\n" + table(rows) +
          "\n" + wrapped(kUnits, 0, 0) + "\n\nOptions:\n" +
-         table({{namesOf(kHelp), "Print this help; after a command, that of the command."},
-                {namesOf(kVersion), kVersion.help}}) +
+         table({{"-h, --help", "Print this help; after a command, that of the command."},
+                {"--version", "Print the version."}}) +
          "\nExample:\n  patina model dinosaur -o dino.ply\n  patina info dino.ply\n" + exitCodes();
 }
 
 std::string commandHelp(const Command& command) {
-  const std::vector<Argument> all = allOf(command);
   std::string out =
       "patina " + command.name + ": " + command.summary + "\n\nUsage: " + usage(command) + "\n";
   for (const std::string& paragraph : paragraphs(command.description))
     out += "\n" + wrapped(paragraph, 0, 0) + "\n";
-  out += argumentTable(all, true) + argumentTable(all, false);
+  out += section("Input", linesOf(command, true)) + section("Options", linesOf(command, false)) +
+         section("Keys of --json", linesOf(command.keys));
   out += "\n" + wrapped(kUnits, 0, 0) + "\n";
   out += command.examples.size() > 1 ? "\nExamples:\n" : "\nExample:\n";
   for (const std::string& example : command.examples) out += "  " + example + "\n";
@@ -181,7 +203,7 @@ std::string commandHelp(const Command& command) {
 }
 
 std::string programManPage(const std::vector<Command>& commands) {
-  std::vector<std::pair<std::string, std::string>> rows;
+  Lines rows;
   for (const Command& command : commands)
     rows.emplace_back("patina-" + command.name + "(1)", command.summary);
   return manHeader("patina", "a workspace for touch research") +
@@ -191,14 +213,14 @@ std::string programManPage(const std::vector<Command>& commands) {
 }
 
 std::string commandManPage(const Command& command) {
-  std::vector<std::pair<std::string, std::string>> rows;
-  for (const Argument& argument : allOf(command))
-    rows.emplace_back(namesOf(argument), textOf(argument));
   std::string out = manHeader("patina-" + command.name, command.summary) + ".SH SYNOPSIS\n" +
                     roff(usage(command)) + "\n.SH DESCRIPTION\n";
   for (const std::string& paragraph : paragraphs(command.description))
     out += roff(paragraph) + "\n.PP\n";
-  out += roff(kUnits) + "\n.SH OPTIONS\n" + manList(rows) + ".SH EXAMPLES\n.nf\n";
+  out += roff(kUnits) + "\n.SH OPTIONS\n" + manList(linesOf(command, true)) +
+         manList(linesOf(command, false));
+  if (!command.keys.empty()) out += ".SH KEYS OF JSON\n" + manList(linesOf(command.keys));
+  out += ".SH EXAMPLES\n.nf\n";
   for (const std::string& example : command.examples) out += roff(example) + "\n";
   return out + ".fi\n" + manExitCodes() + ".SH SEE ALSO\n.BR patina (1)\n";
 }

@@ -8,6 +8,13 @@
 
 namespace patina::cli {
 
+constexpr std::size_t kHelpWidth = 80;
+
+// Words of `text`, wrapped at `width`, each line after the first indented; the first begins at
+// `column`.
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t column,
+                    std::size_t width = kHelpWidth);
+
 // Of the program: what every command has in common and the list of commands.
 std::string programHelp(const std::vector<Command>& commands);
 std::string commandHelp(const Command& command);

@@ -24,10 +24,13 @@ double metresPer(MeshUnit unit) {
 
 } // namespace
 
-void addUnitOfOutput(Command& command, MeshUnit& unit) {
-  command.arguments.push_back({"--unit", "mm|cm|m|in", "Unit of the numbers in the file.", "mm",
-                               false, false,
-                               [&unit](const auto& text) { unit = parseMeshUnit(text); }});
+Argument unitOfOutput(MeshUnit& unit) {
+  return {"--unit",
+          "mm|cm|m|in",
+          "",
+          "mm",
+          "Unit of the numbers in the file.",
+          parsedInto(unit, parseMeshUnit)};
 }
 
 void requireMeshOutput(const std::filesystem::path& path, MeshUnit unit,

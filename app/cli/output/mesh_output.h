@@ -9,7 +9,7 @@
 namespace patina::cli {
 
 // --unit mm|cm|m|in, of the numbers in the file; mm, as files are read, unless chosen.
-void addUnitOfOutput(Command& command, MeshUnit& unit);
+Argument unitOfOutput(MeshUnit& unit);
 // `mesh` in metres. Throws FileError; Error for MeshUnit::fit, which is for reading.
 void writeMeshIn(const std::filesystem::path& path, TriangleMesh mesh, MeshUnit unit);
 // Before any work: whether a mesh of that name can be written at all.

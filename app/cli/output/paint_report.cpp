@@ -84,26 +84,31 @@ std::vector<LayerBytes> paintLayers(const CompiledScene& compiled) {
   return layers;
 }
 
-void describeRelief(const CompiledScene& compiled, Json& json, TextRows& rows) {
+const Keys& reliefKeys() {
+  static const Keys keys = {{"object", "", "object", "", Shown::never},
+                            {"highest", "m", "relief", "at most"},
+                            {"wavelength", "m", "wavelength", "", Shown::never},
+                            {"admissible", "m", "admissible", "with a device", Shown::never},
+                            {"exceeded", "", "exceeded", "", Shown::never}};
+  return keys;
+}
+
+std::optional<Report> reliefReport(const CompiledScene& compiled) {
   const std::optional<Worst> worst = worstRelief(compiled);
-  if (!worst) return;
+  if (!worst) return std::nullopt;
   const ReliefLimit& limit = worst->limit;
-  Json relief = Json::object();
-  relief.set("object", worst->object);
-  relief.set("highest", limit.highest);
-  relief.set("wavelength", limit.wavelength);
+  const bool exceeded = excess(limit) > 1;
   std::string text = formatLength(limit.highest) + " at most, as curved as a wave of " +
                      formatLength(limit.wavelength);
-  if (limit.admissible) {
-    const bool exceeded = limit.highest > *limit.admissible;
-    relief.set("admissible", *limit.admissible);
-    relief.set("exceeded", exceeded);
+  if (limit.admissible)
     text += "; at " + formatNumber(compiled.scene.haptics.force_limit) +
             " N, the force limit, the device bears " + formatLength(*limit.admissible) +
             (exceeded ? ": it will buzz, smooth it" : "");
-  }
-  json.set("relief", std::move(relief));
-  rows.emplace_back("relief", text);
+  Report report(reliefKeys());
+  report.set("object", worst->object).set("highest", limit.highest, text);
+  report.set("wavelength", limit.wavelength);
+  if (limit.admissible) report.set("admissible", *limit.admissible).set("exceeded", exceeded);
+  return report;
 }
 
 } // namespace patina::cli

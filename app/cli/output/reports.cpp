@@ -1,112 +1,112 @@
 #include "app/cli/output/reports.h"
 
-#include <cmath>
-#include <cstdio>
 #include <unistd.h>
 
 #include "core/error.h"
 #include "core/numbers.h"
+#include "scene/scene_values.h"
 
 namespace patina::cli {
-
-namespace {
-
-std::string fixed(double value, const char* format) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-} // namespace
 
 Json vectorJson(const Vec3& v) {
   return Json(Json::Array{v.x(), v.y(), v.z()});
 }
 
-Json fieldJson(const SurfaceField& field, const FieldReport& report) {
-  const FieldGrid& grid = field.grid;
-  Json resolution = Json::array();
-  for (const int nodes : grid.nodes) resolution.push(nodes - 1);
-  Json json = Json::object();
-  json.set("seconds", report.seconds);
-  json.set("cpu_seconds", report.cpu_seconds);
-  json.set("voxel", grid.voxel);
-  json.set("resolution", resolution);
-  json.set("origin", vectorJson(grid.origin));
-  json.set("band_voxels", field.band);
-  json.set("blocks", report.blocks);
-  json.set("bytes", report.bytes);
-  json.set("dense_bytes", report.dense_bytes);
-  json.set("dropped_triangles", report.dropped_triangles);
-  json.set("ambiguous_signs", report.ambiguous_signs);
-  json.set("redistanced_nodes", report.redistanced_nodes);
-  return json;
+const Keys& fieldKeys() {
+  static const Keys keys = {
+      {"seconds", "s", "built in", "on the wall", Shown::if_any},
+      {"cpu_seconds", "s", "of all processors", "", Shown::never},
+      {"voxel", "m", "voxel", "", Shown::never},
+      {"resolution", "", "grid", "cells along x, y, z"},
+      {"origin", "m", "first node", "x, y, z", Shown::never},
+      {"band_voxels", "voxels", "band", "on each side"},
+      {"blocks", "", "blocks", "", Shown::never},
+      {"bytes", "B", "memory"},
+      {"dense_bytes", "B", "memory of the whole grid", "", Shown::never},
+      {"dropped_triangles", "", "left out", "triangles non-finite or without area", Shown::if_any},
+      {"ambiguous_signs", "", "unsure", "nodes that may be inside or outside", Shown::if_any},
+      {"redistanced_nodes", "", "depths", "nodes re-measured where objects overlap",
+       Shown::if_any}};
+  return keys;
 }
 
-TextRows fieldRows(const SurfaceField& field, const FieldReport& report) {
+Report fieldReport(const SurfaceField& field, const FieldReport& built) {
   const FieldGrid& grid = field.grid;
-  TextRows rows;
-  rows.emplace_back("grid", std::to_string(grid.nodes[0] - 1) + " x " +
-                                std::to_string(grid.nodes[1] - 1) + " x " +
-                                std::to_string(grid.nodes[2] - 1) + " cells of " +
-                                formatLength(grid.voxel));
-  rows.emplace_back("band", formatNumber(field.band) + " voxels = " +
-                                formatLength(field.band * grid.voxel) + " each side");
-  if (report.seconds > 0)
-    rows.emplace_back("built in", fixed(report.seconds, "%.3f s, ") +
-                                      fixed(report.cpu_seconds, "%.3f s of CPU"));
-  rows.emplace_back("memory", formatBytes(static_cast<double>(report.bytes)) + " in " +
-                                  formatCount(report.blocks) + " blocks; the whole grid " +
-                                  formatBytes(static_cast<double>(report.dense_bytes)));
-  if (report.dropped_triangles)
-    rows.emplace_back("left out", formatCount(report.dropped_triangles) + " triangles");
-  if (report.ambiguous_signs)
-    rows.emplace_back("unsure",
-                      formatCount(report.ambiguous_signs) + " nodes may be inside or outside");
-  if (report.redistanced_nodes)
-    rows.emplace_back("depths", formatCount(report.redistanced_nodes) +
-                                    " nodes re-measured to the union's own surface");
-  return rows;
+  Json resolution = Json::array();
+  std::vector<std::string> cells;
+  for (const int nodes : grid.nodes) {
+    resolution.push(nodes - 1);
+    cells.push_back(std::to_string(nodes - 1));
+  }
+  Report report(fieldKeys());
+  report.set("resolution", resolution,
+             joined(cells, " x ") + " cells of " + formatLength(grid.voxel));
+  report.set("voxel", grid.voxel).set("origin", vectorJson(grid.origin));
+  report.set("band_voxels", field.band,
+             formatNumber(field.band) + " voxels = " + formatLength(field.band * grid.voxel) +
+                 " each side");
+  report.set("seconds", built.seconds,
+             shown(built.seconds, "s") + ", " + shown(built.cpu_seconds, "s") + " of CPU");
+  report.set("cpu_seconds", built.cpu_seconds);
+  report.set("blocks", built.blocks);
+  report.set("bytes", built.bytes,
+             formatBytes(static_cast<double>(built.bytes)) + " in " + formatCount(built.blocks) +
+                 " blocks; the whole grid " + formatBytes(static_cast<double>(built.dense_bytes)));
+  report.set("dense_bytes", built.dense_bytes);
+  report.set("dropped_triangles", built.dropped_triangles,
+             formatCount(built.dropped_triangles) + " triangles");
+  report.set("ambiguous_signs", built.ambiguous_signs,
+             formatCount(built.ambiguous_signs) + " nodes may be inside or outside");
+  report.set("redistanced_nodes", built.redistanced_nodes,
+             formatCount(built.redistanced_nodes) +
+                 " nodes re-measured to the union's own surface");
+  return report;
 }
 
 Json toJson(const Percentiles& p) {
   Json json = Json::object();
-  json.set("p50", p.p50);
-  json.set("p99", p.p99);
-  json.set("p999", p.p999);
-  json.set("max", p.max);
+  json.set("p50", p.p50).set("p99", p.p99).set("p999", p.p999).set("max", p.max);
   return json;
 }
 
-std::string rounded(double value) {
-  const double size = std::abs(value);
-  if (size >= 999.5)
-    return (value < 0 ? "-" : "") + formatCount(static_cast<std::size_t>(size + 0.5));
-  const int digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : 3;
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+Keys percentileParts() {
+  return {{"p50", "", ""}, {"p99", "", ""}, {"p999", "", ""}, {"max", "", ""}};
 }
 
+std::string spreadText(const Percentiles& p, const std::string& unit) {
+  return rounded(p.p50) + " " + unit + " (p50), " + rounded(p.p99) + " (p99), " + rounded(p.p999) +
+         " (p99.9), " + rounded(p.max) + " (max)";
+}
+
+namespace {
+
+// "800" of stiffness is "800 N/m".
 std::string withUnit(const std::string& key, const std::string& value) {
-  if (key == "tip.radius" || key == "voxel") return formatLength(parseLength(value));
-  const std::pair<const char*, const char*> units[] = {{"stiffness", " N/m"},
-                                                       {"damping", " N s/m"},
-                                                       {"force.limit", " N"},
-                                                       {"resolution", " cells"},
-                                                       {"band", " voxels"}};
-  for (const auto& [name, unit] : units)
-    if (key == name) return value + unit;
-  return value;
+  const std::string_view unit = sceneKey(key).unit;
+  if (unit.empty() || !parseNumber(value)) return value;
+  return unit == "m" ? formatLength(parseLength(value)) : value + " " + std::string(unit);
 }
 
-Json valuesJson(const Scene& scene) {
+} // namespace
+
+void tellValues(const Scene& scene, Report& report) {
   Json json = Json::object();
   for (const auto& [key, value] : values(scene)) {
     const auto number = parseNumber(value);
     json.set(key, number ? Json(*number) : Json(value));
+    report.tell(key, withUnit(key, value));
   }
-  return json;
+  report.set("values", json);
+}
+
+std::string historyText(std::size_t undoable, std::size_t redoable) {
+  return formatCount(undoable) + " to undo, " + formatCount(redoable) + " to redo";
+}
+
+Json jsonOf(const std::vector<std::string>& words) {
+  Json list = Json::array();
+  for (const std::string& word : words) list.push(word);
+  return list;
 }
 
 void requireWritable(const std::filesystem::path& path,
@@ -125,6 +125,13 @@ void requireWritable(const std::filesystem::path& path,
   }
   if (access(folder.c_str(), W_OK) != 0)
     throw FileError(path.string(), 0, "cannot be written: no permission in " + folder.string());
+}
+
+void requireFolder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (!std::filesystem::is_directory(path))
+    throw FileError(path.string(), 0, "this folder cannot be made");
 }
 
 } // namespace patina::cli

@@ -2,38 +2,48 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "core/json.h"
+#include "app/cli/output/report.h"
 #include "core/percentiles.h"
 #include "field/build/build_field.h"
-#include "geometry/mesh/mesh_report.h"
 #include "scene/scene.h"
 
 namespace patina::cli {
 
-using TextRows = std::vector<std::pair<std::string, std::string>>;
-
 Json vectorJson(const Vec3& v);
-Json fieldJson(const SurfaceField& field, const FieldReport& report);
-TextRows fieldRows(const SurfaceField& field, const FieldReport& report);
+
+const Keys& fieldKeys();
+Report fieldReport(const SurfaceField& field, const FieldReport& built);
 
 Json toJson(const Percentiles& p);
+// What --help says of them.
+Keys percentileParts();
+// "0.8 ns (p50), 1.2 (p99), 3.1 (p99.9), 28.1 (max)".
+std::string spreadText(const Percentiles& p, const std::string& unit);
 
-// For people: three significant digits, never an exponent ("0.8", "28.1", "1,411").
-std::string rounded(double value);
+// A scene's values: numbers as numbers and words as words under the key "values", each a row.
+void tellValues(const Scene& scene, Report& report);
 
-// A scene's value by its key, with the unit: "stiffness", "800" -> "800 N/m".
-std::string withUnit(const std::string& key, const std::string& value);
+// "3 to undo, 1 to redo".
+std::string historyText(std::size_t undoable, std::size_t redoable);
 
-// A scene's values by their keys: numbers as numbers, words as words.
-Json valuesJson(const Scene& scene);
+// The names of all in a list, such as stages and layers.
+template <typename List, typename Name>
+std::vector<std::string> namesIn(const List& list, Name name) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.emplace_back(std::invoke(name, item));
+  return names;
+}
+Json jsonOf(const std::vector<std::string>& words);
 
 // Throws FileError now rather than after a minute's work if `path` cannot become a file.
 // `inputs` are not to be replaced by it.
 void requireWritable(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& inputs = {});
+// Makes a folder of that name where there is none; FileError if that cannot be.
+void requireFolder(const std::filesystem::path& path);
 
 } // namespace patina::cli

@@ -46,39 +46,41 @@ SurfaceStability requiredStability(const CompiledScene& compiled, Progress& prog
   return std::move(*stability);
 }
 
-Json stabilityJson(const SurfaceStability& stability, const Scene& scene) {
-  const StabilityMap& map = stability.map;
-  Json json = Json::object();
-  json.set("ratio_min", map.worst_ratio);
-  json.set("at", vectorJson(stability.surface->positions[map.worst]));
-  json.set("ratio_median", median(map.ratio));
-  json.set("buzzing", share(map.buzzing, map));
-  json.set("slipping", share(map.slipping, map));
-  json.set("jumping", share(map.jumping, map));
-  json.set("limit", map.limits.plain);
-  json.set("limit_damped", map.limits.damped);
-  json.set("coupled", map.limits.coupled());
-  json.set("device_given", scene.device_model.has_value());
-  return json;
+const Keys& stabilityKeys() {
+  static const Keys keys = {
+      {"ratio_min", "", "stability", "smallest K*/K of the surface"},
+      {"at", "m", "where", "", Shown::never},
+      {"ratio_median", "", "median K*/K", "", Shown::never},
+      {"buzzing", "", "buzzing", "fraction of the surface below 1", Shown::never},
+      {"slipping", "", "slipping", "fraction that a light grip does not hold", Shown::if_any},
+      {"jumping", "", "jumping", "fraction where the force jumps", Shown::if_any},
+      {"limit", "N/m", "limit", "", Shown::never},
+      {"limit_damped", "N/m", "damped limit", "", Shown::never},
+      {"device_given", "", "device", "the scene's, not the assumed one"},
+      {"coupled", "", "coupling", "", Shown::if_any}};
+  return keys;
 }
 
-TextRows stabilityRows(const SurfaceStability& stability, const Scene& scene) {
+Report stabilityReport(const SurfaceStability& stability, const Scene& scene) {
   const StabilityMap& map = stability.map;
   const Vec3& at = stability.surface->positions[map.worst];
+  const double middle = median(map.ratio);
   const auto percent = [&](std::size_t count) { return rounded(100 * share(count, map)) + " %"; };
   std::string where = "smallest K*/K " + ratioText(map.worst_ratio) + " at " +
-                      formatLength(at.x()) + ", " + formatLength(at.y()) + ", " +
-                      formatLength(at.z()) + "; median " + ratioText(median(map.ratio));
+                      shown(vectorJson(at), "m") + "; median " + ratioText(middle);
   if (map.buzzing) where += "; " + percent(map.buzzing) + " of the surface is below 1: it buzzes";
-  TextRows rows = {{"stability", where}};
-  if (map.slipping)
-    rows.emplace_back("slipping",
-                      percent(map.slipping) +
-                          ": a light grip does not hold the tip there; judged as a plane");
-  if (map.jumping) rows.emplace_back("jumping", percent(map.jumping) + ": the force jumps; grey");
-  rows.emplace_back("device", deviceText(scene));
-  if (map.limits.coupled()) rows.emplace_back("coupling", "on: the map is of the coupled loop");
-  return rows;
+  Report report(stabilityKeys());
+  report.set("ratio_min", map.worst_ratio, where);
+  report.set("at", vectorJson(at)).set("ratio_median", middle);
+  report.set("buzzing", share(map.buzzing, map));
+  report.set("slipping", share(map.slipping, map),
+             percent(map.slipping) +
+                 ": a light grip does not hold the tip there; judged as a plane");
+  report.set("jumping", share(map.jumping, map), percent(map.jumping) + ": the force jumps; grey");
+  report.set("limit", map.limits.plain).set("limit_damped", map.limits.damped);
+  report.set("device_given", scene.device_model.has_value(), deviceText(scene));
+  report.set("coupled", map.limits.coupled(), "on: the map is of the coupled loop");
+  return report;
 }
 
 } // namespace patina::cli

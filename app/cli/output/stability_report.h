@@ -9,10 +9,8 @@ namespace patina::cli {
 // For commands that were asked for it: Error where there is none.
 SurfaceStability requiredStability(const CompiledScene& compiled, Progress& progress);
 
-// Keys: ratio_min, at[3], ratio_median; buzzing, slipping, jumping (fractions of the vertices; see
-// StabilityMap); limit, limit_damped [N/m], coupled; device_given: the scene's device and not the
-// default one.
-Json stabilityJson(const SurfaceStability& stability, const Scene& scene);
-TextRows stabilityRows(const SurfaceStability& stability, const Scene& scene);
+// Fractions are of the vertices; see StabilityMap.
+const Keys& stabilityKeys();
+Report stabilityReport(const SurfaceStability& stability, const Scene& scene);
 
 } // namespace patina::cli

@@ -20,10 +20,6 @@ std::shared_ptr<const SurfaceField> fieldOf(const StudyShape& shape, int resolut
       std::make_shared<const SurfaceField>(sampleFunction(shape.distance, grid, kBand)));
 }
 
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"field", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 // Where the points of one study lie.
 struct Points {
   Points(const StudyShape& shape, std::size_t count)
@@ -173,7 +169,6 @@ std::vector<WorkPrecisionTable> fieldStudy(const StudyOptions& options, Progress
   tables.push_back(studyMesh(shapes[0], quick ? std::vector{7, 22} : std::vector{22, 71, 224},
                              quick ? 64 : 150, count, progress));
   tables.push_back(studyLayouts(shapes[1], quick ? 112 : 150, count, progress));
-  progress.report(1, "field study");
   return tables;
 }
 

@@ -19,10 +19,6 @@ constexpr double kPeriod = 1e-3;
 constexpr double kReach = 4.2e-3; // [m]: the deepest point of the loops
 
 using Method = HapticProperties::Contact;
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"surfaces", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 Vec3 randomDirection(std::mt19937& random) {
   std::normal_distribution<double> normal;
   return Vec3(normal(random), normal(random), normal(random)).normalized();
@@ -302,20 +298,18 @@ std::vector<WorkPrecisionTable> surfacesStudy(const StudyOptions& options, Progr
   const std::vector<int> resolutions =
       options.quick ? std::vector{48, 96} : std::vector{48, 72, 104, 150, 200};
   const int tips = options.quick ? 1500 : 6000;
-  std::vector<WorkPrecisionTable> tables;
-  for (const Mode& mode : modes()) {
-    progress.report(0.2 * static_cast<double>(tables.size()), mode.name);
-    tables.push_back(force(mode, resolutions, tips, progress));
-  }
-  progress.report(0.6, "closed loops");
-  tables.push_back(energy(resolutions, options.quick ? 12 : 40, progress));
-  progress.report(0.7, "objects that overlap");
-  tables.push_back(
-      overlap(options.quick ? std::vector{80} : std::vector{80, 150, 250}, tips / 4, progress));
-  progress.report(0.9, "many objects");
-  tables.push_back(crowd(options.quick ? std::vector{1, 3} : std::vector{1, 3, 10}, progress));
-  progress.report(1, "surfaces study");
-  return tables;
+  const std::vector<int> overlaps = options.quick ? std::vector{80} : std::vector{80, 150, 250};
+  const std::vector<int> balls = options.quick ? std::vector{1, 3} : std::vector{1, 3, 10};
+  std::vector<StudyPart> parts;
+  for (const Mode& mode : modes())
+    parts.push_back({0.2 * static_cast<double>(parts.size()), mode.name,
+                     [&, mode] { return force(mode, resolutions, tips, progress); }});
+  parts.push_back({0.6, "closed loops",
+                   [&] { return energy(resolutions, options.quick ? 12 : 40, progress); }});
+  parts.push_back(
+      {0.7, "objects that overlap", [&] { return overlap(overlaps, tips / 4, progress); }});
+  parts.push_back({0.9, "many objects", [&] { return crowd(balls, progress); }});
+  return tablesOf(parts, progress);
 }
 
 } // namespace patina

@@ -26,10 +26,6 @@ struct Surface {
   std::shared_ptr<const SurfaceField> field;
 };
 
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"contact", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 WorkPrecisionRow rowOf(const Surface& surface, const ContactTestSpec& spec, int repeats) {
   const ContactTest test = makeContactTest(spec);
   const auto snapshot = compileStages(contactTestScene(spec), surface.field);
@@ -205,22 +201,16 @@ std::vector<WorkPrecisionTable> contactStudy(const StudyOptions& options, Progre
     Progress build;
     surfaces.push_back({triangles, meshSphere(kRadius, frequency, 0, build)});
   }
-  std::vector<WorkPrecisionTable> tables;
-  progress.report(0.05, "contact without friction");
-  tables.push_back(frictionless(surfaces, repeats));
-  progress.report(0.1, "contact with friction");
-  tables.push_back(withFriction(surfaces, repeats));
-  progress.report(0.2, "cracks");
-  tables.push_back(cracks(options.quick ? 22 : 71, repeats, progress));
-  progress.report(0.3, "scale");
-  tables.push_back(scales(repeats));
-  progress.report(0.35, "order of the contact point");
-  tables.push_back(
-      vcpOrder(options.quick ? std::vector{48, 96} : std::vector{48, 72, 104, 150, 200}, progress));
-  progress.report(0.4, "contact on any shape");
-  tables.push_back(contactOnShapes(options, progress));
-  progress.report(1, "contact study");
-  return tables;
+  const std::vector<int> grids =
+      options.quick ? std::vector{48, 96} : std::vector{48, 72, 104, 150, 200};
+  return tablesOf(
+      {{0.05, "contact without friction", [&] { return frictionless(surfaces, repeats); }},
+       {0.1, "contact with friction", [&] { return withFriction(surfaces, repeats); }},
+       {0.2, "cracks", [&] { return cracks(options.quick ? 22 : 71, repeats, progress); }},
+       {0.3, "scale", [&] { return scales(repeats); }},
+       {0.35, "order of the contact point", [&] { return vcpOrder(grids, progress); }},
+       {0.4, "contact on any shape", [&] { return contactOnShapes(options, progress); }}},
+      progress);
 }
 
 } // namespace patina

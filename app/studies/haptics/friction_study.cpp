@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"friction", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 std::vector<double> rates(bool quick) {
   return quick ? std::vector{1000., 4000.} : std::vector{1000., 2000., 5000., 10000.};
 }
@@ -301,17 +297,14 @@ WorkPrecisionTable directions(Friction::SlipDirection slip, bool quick, Progress
 } // namespace
 
 std::vector<WorkPrecisionTable> frictionStudy(const StudyOptions& options, Progress& progress) {
-  std::vector<WorkPrecisionTable> tables;
-  progress.report(0, "energy of a cycle");
-  tables.push_back(cycles(options.quick, progress));
-  progress.report(0.4, "stick and slip");
-  tables.push_back(stickSlip(options.quick, progress));
-  progress.report(0.8, "direction of slip");
   using Slip = Friction::SlipDirection;
-  for (const Slip slip : {Slip::paper, Slip::displacement})
-    tables.push_back(directions(slip, options.quick, progress));
-  progress.report(1, "friction study");
-  return tables;
+  const bool quick = options.quick;
+  return tablesOf(
+      {{0, "energy of a cycle", [&] { return cycles(quick, progress); }},
+       {0.4, "stick and slip", [&] { return stickSlip(quick, progress); }},
+       {0.8, "direction of slip", [&] { return directions(Slip::paper, quick, progress); }},
+       {0.9, "direction of slip", [&] { return directions(Slip::displacement, quick, progress); }}},
+      progress);
 }
 
 } // namespace patina

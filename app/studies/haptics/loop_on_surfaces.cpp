@@ -262,10 +262,6 @@ void addTexture(WorkPrecisionTable& table, bool quick, Progress& progress) {
   }
 }
 
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"stability", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 } // namespace
 
 WorkPrecisionTable loopLimitsOnSurfaces(const StudyOptions& options, Progress& progress) {

@@ -14,10 +14,6 @@
 namespace patina {
 namespace {
 
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"stability", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 HapticProperties wall(double stiffness, double damping = 0) {
   HapticProperties haptics;
   haptics.stiffness = stiffness;
@@ -203,21 +199,14 @@ WorkPrecisionTable remedies(bool quick, Progress& progress) {
 } // namespace
 
 std::vector<WorkPrecisionTable> stabilityStudy(const StudyOptions& options, Progress& progress) {
-  std::vector<WorkPrecisionTable> tables;
-  progress.report(0, "boundary");
-  tables.push_back(boundaries(options.quick, progress));
-  progress.report(0.2, "restitution");
-  tables.push_back(restitution(options.quick, progress));
-  progress.report(0.3, "encoder and dry friction");
-  tables.push_back(quantiser(progress));
-  progress.report(0.4, "stabilisers");
-  tables.push_back(remedies(options.quick, progress));
-  progress.report(0.5, "curved surfaces, corners and relief");
-  tables.push_back(loopLimitsOnSurfaces(options, progress));
-  progress.report(0.6, "rest on surfaces");
-  tables.push_back(restOnSurfaces(options, progress));
-  progress.report(1, "stability study");
-  return tables;
+  return tablesOf({{0, "boundary", [&] { return boundaries(options.quick, progress); }},
+                   {0.2, "restitution", [&] { return restitution(options.quick, progress); }},
+                   {0.3, "encoder and dry friction", [&] { return quantiser(progress); }},
+                   {0.4, "stabilisers", [&] { return remedies(options.quick, progress); }},
+                   {0.5, "curved surfaces, corners and relief",
+                    [&] { return loopLimitsOnSurfaces(options, progress); }},
+                   {0.6, "rest on surfaces", [&] { return restOnSurfaces(options, progress); }}},
+                  progress);
 }
 
 } // namespace patina

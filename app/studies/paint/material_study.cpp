@@ -17,10 +17,6 @@ constexpr double kDeep = 2e-3;                    // [m] of material above and b
 constexpr double kPeriod = 1e-3;
 constexpr double kPi = std::numbers::pi;
 
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"material", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 Scene slab(int resolution, ForceForm form) {
   Scene scene = slabScene(kSide, kThickness, resolution);
   scene.haptics.force_limit = 100;
@@ -141,13 +137,10 @@ std::vector<WorkPrecisionTable> materialStudy(const StudyOptions& options, Progr
   const std::vector<double> voxels = options.quick
                                          ? std::vector{1e-3, 0.5e-3}
                                          : std::vector{1.5e-3, 1e-3, 0.7e-3, 0.5e-3, 0.35e-3};
-  std::vector<WorkPrecisionTable> tables;
-  progress.report(0, "value");
-  tables.push_back(value(voxels, options.quick ? 1000 : 5000, progress));
-  progress.report(0.5, "closed loops");
-  tables.push_back(energy(voxels, progress));
-  progress.report(1, "material study");
-  return tables;
+  const int points = options.quick ? 1000 : 5000;
+  return tablesOf({{0, "value", [&] { return value(voxels, points, progress); }},
+                   {0.5, "closed loops", [&] { return energy(voxels, progress); }}},
+                  progress);
 }
 
 } // namespace patina

@@ -21,10 +21,6 @@ constexpr double kThickness = 0.01; // [m]
 constexpr double kPeriod = 1e-3;    // [s]
 constexpr double kPi = std::numbers::pi;
 
-WorkPrecisionTable tableOf(const std::string& title, const std::string& unit) {
-  return {"paint", title, unit, {}, std::nullopt, std::nullopt};
-}
-
 double secondsSince(const std::chrono::steady_clock::time_point& start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -290,26 +286,23 @@ WorkPrecisionTable raised(const std::vector<int>& resolutions, int points, Progr
 std::vector<WorkPrecisionTable> paintStudy(const StudyOptions& options, Progress& progress) {
   const bool quick = options.quick;
   const int points = quick ? 400 : 2000, resolution = quick ? 80 : 150;
-  std::vector<WorkPrecisionTable> tables;
-  progress.report(0, "coverage");
-  tables.push_back(
-      coverage(quick ? std::vector{128, 512} : std::vector{128, 256, 512, 1024}, 40, progress));
+  const std::vector<int> images = quick ? std::vector{128, 512} : std::vector{128, 256, 512, 1024};
+  const std::vector<int> texel_counts =
+      quick ? std::vector{128, 256} : std::vector{64, 128, 256, 512};
+  const std::vector<int> grids = quick ? std::vector{64} : std::vector{64, 100, 150};
   const std::vector<double> waves =
       quick ? std::vector<double>{2.5, 8, 12, 16} : std::vector<double>{2.5, 4, 6, 8, 12, 16};
+  std::vector<StudyPart> parts = {{0, "coverage", [&] { return coverage(images, 40, progress); }}};
   for (const Reading& reading : {Reading{"baked (kim)", ReliefMode::baked, Sampler::kim, 96},
                                  Reading{"baked (high)", ReliefMode::baked, Sampler::high, 96},
-                                 Reading{"pulled", ReliefMode::pulled, Sampler::high, 22}}) {
-    progress.report(0.15 * static_cast<double>(1 + tables.size()), reading.name);
-    tables.push_back(wavelengths(reading, waves, resolution, points, progress));
-  }
-  progress.report(0.7, "relief by texels");
-  tables.push_back(
-      texels(quick ? std::vector{128, 256} : std::vector{64, 128, 256, 512}, points, progress));
-  progress.report(0.8, "raised sphere");
-  tables.push_back(
-      raised(quick ? std::vector{64} : std::vector{64, 100, 150}, points / 4, progress));
-  progress.report(1, "paint study");
-  return tables;
+                                 Reading{"pulled", ReliefMode::pulled, Sampler::high, 22}})
+    parts.push_back({0.15 * static_cast<double>(1 + parts.size()), reading.name, [&, reading] {
+                       return wavelengths(reading, waves, resolution, points, progress);
+                     }});
+  parts.push_back(
+      {0.7, "relief by texels", [&] { return texels(texel_counts, points, progress); }});
+  parts.push_back({0.8, "raised sphere", [&] { return raised(grids, points / 4, progress); }});
+  return tablesOf(parts, progress);
 }
 
 } // namespace patina
