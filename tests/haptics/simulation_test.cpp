@@ -219,11 +219,11 @@ TEST(Simulation, RestitutionIsSpeedOutOverSpeedIn) {
     const Recorded done = recorded(spec, 400, 0.3);
     double in = 0;
     std::optional<double> ratio;
-    for (std::size_t k = 1; k < done.rows.size() && !ratio; ++k) {
+    const auto late = static_cast<std::size_t>(delay); // its last force acts so many ticks on
+    for (std::size_t k = 1; k + late < done.rows.size() && !ratio; ++k) {
       if (done.ticks[k].felt.touching && in == 0) in = done.rows[k].velocity.dot(spec.inward);
-      const auto ended = k >= static_cast<std::size_t>(delay) + 1 ? k - 1 - delay : 0;
-      if (in > 0 && !done.ticks[k].felt.touching && done.ticks[ended].felt.touching)
-        ratio = -done.rows[k].velocity.dot(spec.inward) / in;
+      if (done.ticks[k - 1].felt.touching && !done.ticks[k].felt.touching)
+        ratio = -done.rows[k + late].velocity.dot(spec.inward) / in;
     }
     ASSERT_TRUE(done.report.restitution && ratio);
     EXPECT_NEAR(*done.report.restitution, *ratio, 1e-12) << delay;

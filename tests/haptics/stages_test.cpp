@@ -191,7 +191,7 @@ TEST(CompileStages, WhatReachesBeyondTheBandIsNamedInFull) {
                                                [](const Vec3&) { return 2e-4; }),
                                    scene);
   object.relief =
-      feltRelief(fineSlab().faces, reliefImage(8, [](double, double) { return 1; }), 1e-3).relief;
+      feltRelief(fineSlab().faces, reliefImage(64, [](double, double) { return 1; }), 1e-3).relief;
   object.highest = 1e-3;
   const double peak = kRoughnessPeak * object.material->most.roughness;
   const auto fieldOf = [](double band) {
