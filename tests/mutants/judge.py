@@ -101,8 +101,7 @@ def build(mutants, jobs):
             inside = [m for m in mutants if m.path == f]
             write(TREE / f, mutate.written((ROOT / f).read_text(), inside, TREE / "mutant.h"))
         done = run(["cmake", "-S", ROOT, "-B", TREE, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                    "-DPATINA_WERROR=ON", "-DPATINA_MUTANTS=ON",
-                    "-DCMAKE_CXX_FLAGS=-Wno-error=maybe-uninitialized"],
+                    "-DPATINA_WERROR=OFF", "-DPATINA_MUTANTS=ON", "-DCMAKE_CXX_FLAGS=-w"],
                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         if done.returncode:
             sys.exit(done.stdout)
