@@ -271,6 +271,34 @@ TEST(BuildField, StopsWhenCancelled) {
   }
 }
 
+TEST(BuildField, TellsEachStepInItsOrder) {
+  const auto steps = [](const TriangleMesh& mesh, bool cancelled) {
+    std::vector<std::string> told;
+    double first = -1, last = -1;
+    Progress progress([&](double fraction, std::string_view what) {
+      if (told.empty()) first = fraction;
+      if (told.empty() || told.back() != what) told.emplace_back(what);
+      last = fraction;
+    });
+    FieldSpec spec;
+    spec.resolution = 60;
+    if (cancelled) {
+      progress.cancel();
+      EXPECT_THROW(buildField(mesh, spec, progress), Cancelled);
+    } else {
+      buildField(mesh, spec, progress);
+      EXPECT_EQ(first, 0);
+      EXPECT_EQ(last, 1);
+    }
+    return told;
+  };
+  using Steps = std::vector<std::string>;
+  EXPECT_EQ(steps(icosphere(1, 8), false), (Steps{"triangles", "distances", "signs", "field"}));
+  EXPECT_EQ(steps(sheet(1, 1, 4), false),
+            (Steps{"triangles", "distances", "signs", "distances", "field"}));
+  EXPECT_EQ(steps(icosphere(1, 8), true), Steps{});
+}
+
 TEST(BuildField, ReportsWhatItDid) {
   const BuiltField built = build(icosphere(1, 10), 60, 8);
   EXPECT_EQ(built.report.blocks, built.field->blockCount());

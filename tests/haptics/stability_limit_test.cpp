@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <numbers>
+#include <random>
 
 #include <gtest/gtest.h>
+
+#include "haptics/devices/exact_step.h"
 
 namespace patina {
 namespace {
@@ -63,6 +68,57 @@ TEST(StabilityLimit, SpectralRadiusPassesOneThere) {
       EXPECT_LT(spectralRadius(loop, 0.999 * limit), 1);
       EXPECT_GT(spectralRadius(loop, 1.001 * limit), 1);
     }
+}
+
+// The loop tick by tick, from anywhere: how much it grows in one, over many.
+double growth(const SampledLoop& loop, double stiffness, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const HeldStep held = heldStep({loop.mass, loop.damping, loop.hand_stiffness, 0}, loop.period);
+  const double time = loop.cutoff ? 1 / (2 * std::numbers::pi * *loop.cutoff) : 0;
+  double x = normal(random), last = normal(random), v = normal(random), filtered = normal(random);
+  std::deque<double> under_way(static_cast<std::size_t>(loop.delay), normal(random));
+  constexpr int kTicks = 40000;
+  double logarithm = 0;
+  for (int k = 0; k < kTicks; ++k) {
+    filtered += loop.period / (time + loop.period) * ((x - last) / loop.period - filtered);
+    under_way.push_back(-stiffness * x - loop.virtual_damping * filtered);
+    const double force = under_way.front();
+    under_way.pop_front();
+    last = x;
+    x = held.xx * last + held.xv * v + held.xf * force;
+    v = held.vx * last + held.vv * v + held.vf * force;
+    if (stiffness == 0 && loop.hand_stiffness == 0) { // where it is then changes nothing
+      last -= x;
+      x = 0;
+    }
+    double size = std::abs(x) + std::abs(last) + loop.period * (std::abs(v) + std::abs(filtered));
+    for (const double f : under_way) size += std::abs(f) * loop.period * loop.period / loop.mass;
+    if (k >= kTicks / 2) logarithm += std::log(size);
+    x /= size;
+    last /= size;
+    v /= size;
+    filtered /= size;
+    for (double& f : under_way) f /= size;
+  }
+  return std::exp(logarithm / (kTicks / 2));
+}
+
+TEST(StabilityLimit, SpectralRadiusIsTheGrowthOfTheLoop) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int round = 0; round < 60; ++round) {
+    SampledLoop loop;
+    loop.mass = 0.05 + unit(random);
+    loop.damping = 3 * unit(random);
+    loop.period = round % 2 ? 1e-3 : 2e-3;
+    loop.delay = round % 4;
+    loop.virtual_damping = unit(random) * loop.mass / loop.period;
+    if (round % 3 == 0) loop.cutoff = 20 + 200 * unit(random);
+    if (round % 5 > 1) loop.hand_stiffness = 1000 * unit(random);
+    const double stiffness =
+        round % 6 == 5 ? 0 : unit(random) * loop.mass / (loop.period * loop.period);
+    EXPECT_NEAR(growth(loop, stiffness, random), spectralRadius(loop, stiffness), 1e-3) << round;
+  }
 }
 
 // With two states the damper's loop has a closed form: v' = a v - e B v becomes unstable at -1.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/numbers.h"
 #include "field/merge/merge_fields.h"
 #include "haptics/neutral_stages.h"
 #include "haptics/painted_fixture.h"
@@ -178,6 +179,45 @@ TEST(CompileStages, ATipWiderThanTheBandIsNamedWithTheRemedy) {
     EXPECT_NE(text.find("tip.radius"), std::string::npos) << text;
     EXPECT_NE(text.find("set band to 9"), std::string::npos) << text;
   }
+}
+
+// Its radius first, then all that reaches farther; the band that it names holds it, and no less.
+TEST(CompileStages, WhatReachesBeyondTheBandIsNamedInFull) {
+  Scene scene = sceneOf(500);
+  scene.haptics.tip_radius = 3e-3;
+  scene.haptics.offset = 2e-3;
+  scene.haptics.magnet = Magnet{4e-3, 500};
+  FeltObject object = feltMaterial(*coveredMap(0.5e-3, cube(0.012), MaterialChannel::roughness,
+                                               [](const Vec3&) { return 2e-4; }),
+                                   scene);
+  object.relief =
+      feltRelief(fineSlab().faces, reliefImage(64, [](double, double) { return 1; }), 1e-3).relief;
+  object.highest = 1e-3;
+  const double peak = kRoughnessPeak * object.material->most.roughness;
+  const auto fieldOf = [](double band) {
+    return cubeField([](const Vec3& p) { return p.z(); }, 1e-3, 64, band);
+  };
+  const auto refusal = [&](double band) -> std::string {
+    try {
+      compileStages(scene, fieldOf(band), std::vector<FeltObject>{object});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  // 3 + 1 + peak + 4 voxels of reach, and 3 beyond.
+  const int needed = static_cast<int>(std::ceil(8 + peak / 1e-3 + 3));
+  EXPECT_EQ(refusal(8), "tip.radius = 3 mm with offset = 2 mm with magnet.range = 4 mm with "
+                        "relief, highest = 1 mm with roughness, peak = " +
+                            formatLength(peak) +
+                            " does not fit into the band of 8 voxels; set band to " +
+                            std::to_string(needed) + " or more");
+  EXPECT_EQ(refusal(needed), "");
+  EXPECT_NE(refusal(needed - 1), "");
+  scene.haptics.tip_radius.reset();
+  scene.haptics.magnet.reset();
+  scene.haptics.offset = 9e-3;
+  EXPECT_EQ(refusal(8).substr(0, 42), "offset = 9 mm with relief, highest = 1 mm ");
 }
 
 // The tick is a pure function of snapshot, memory, tip and dt.

@@ -133,6 +133,8 @@ class Source:
         bare, text = self.bare[begin:end], self.text[begin:end]
         if not bare.strip() or not balanced(bare) or re.search(r"[{}]|\b(constexpr|static)\b", bare):
             return
+        if re.match(r"assert\(|[\w.]+\.reserve\(", bare):  # compiled out; memory ahead of time
+            return
         site = (begin, end + 1)
         drop = "{{ if (!::patina::mutant(@)) {0}; }}".format
         if re.fullmatch(r"break|continue|return", bare):
