@@ -59,7 +59,6 @@ const std::vector<Library>& libraries() {
       {"OpenImageIO", {"OpenImageIO/"}, {{"modules/pictures/", false}}},
       {"OpenSSL", {"openssl/"}, {{"modules/workspace/", false}}},
       {"pthread", {"pthread.h"}, {{"modules/haptics/", false}}},
-      {"CLI11", {"CLI/"}, {{"app/cli/", false}}},
       {"Qt", {"Q", "qt"}, {{"app/gui/", true}}},
       {"VTK", {"vtk"}, {{"modules/visualization/", true}, {"app/", true}}},
       {"X11", {"X11/"}, {{"modules/visualization/", false}}},
