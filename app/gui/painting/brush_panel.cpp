@@ -47,10 +47,10 @@ BrushPanel::BrushPanel(QWidget* parent) : QGroupBox(parent), layout_(new QVBoxLa
   layout_->setContentsMargins(0, 0, 0, 0);
 }
 
-void BrushPanel::show(const Brush& brush, const BrushBook& book) {
+void BrushPanel::show(const Brush& brush, const BrushPresets& presets) {
   brush_ = brush;
   setTitle(titleOf(brush.tool));
-  rebuild(book);
+  rebuild(presets);
 }
 
 void BrushPanel::change() {
@@ -84,7 +84,7 @@ QComboBox* BrushPanel::addCombo(const char* name, const QString& caption, const 
   return combo;
 }
 
-void BrushPanel::rebuild(const BrushBook& book) {
+void BrushPanel::rebuild(const BrushPresets& presets) {
   takeAway(rows_);
   rows_ = new QWidget(this);
   auto* column = new QVBoxLayout(rows_);
@@ -93,9 +93,9 @@ void BrushPanel::rebuild(const BrushBook& book) {
   if (brush_.tool == Tool::color)
     addColor();
   else
-    addValue(book.extent());
-  addLayers(book);
-  addSize(book);
+    addValue(presets.extent());
+  addLayers(presets);
+  addSize(presets);
   addShape();
   addChoices();
   layout_->addWidget(rows_);
@@ -189,7 +189,7 @@ void BrushPanel::addErased() {
   });
 }
 
-void BrushPanel::addLayers(const BrushBook& book) {
+void BrushPanel::addLayers(const BrushPresets& presets) {
   if (brush_.tool == Tool::erase) return;
   auto* box = new QToolButton(rows_);
   box->setObjectName(QStringLiteral("brush_also"));
@@ -212,7 +212,7 @@ void BrushPanel::addLayers(const BrushBook& book) {
                           QString::fromUtf8(std::string(name(tool)).c_str()));
     action->setCheckable(true);
     action->setChecked(layerOf(brush_, tool) != nullptr);
-    const BrushLayer layer = book.brush(tool);
+    const BrushLayer layer = presets.brush(tool);
     connect(action, &QAction::toggled, this, [this, layer, say](bool on) {
       std::erase_if(brush_.also, [&](const BrushLayer& l) { return l.tool == layer.tool; });
       if (on) brush_.also.push_back(layer);
@@ -225,8 +225,8 @@ void BrushPanel::addLayers(const BrushBook& book) {
   rows_->layout()->addWidget(box);
 }
 
-void BrushPanel::addSize(const BrushBook& book) {
-  const double most = 500 * book.extent();
+void BrushPanel::addSize(const BrushPresets& presets) {
+  const double most = 500 * presets.extent();
   ValueRow* radius = addRow("brush_radius", tr("Radius"), QStringLiteral("mm"),
                             {most / 500, most, most / 100, 2, true}, 1000 * brush_.radius,
                             tr("[ smaller, ] larger"));
@@ -242,10 +242,10 @@ void BrushPanel::addSize(const BrushBook& book) {
     brush_.radius_per_force = value / 1000;
     change();
   });
-  ValueRow* press =
-      addRow("brush_press", tr("Pressing force"), QStringLiteral("N"), {0.1, 3, 0.1, 1}, book.press,
-             tr("How hard the mouse, or a pen at full pressure, presses the tool "
-                "onto the surface"));
+  ValueRow* press = addRow("brush_press", tr("Pressing force"), QStringLiteral("N"),
+                           {0.1, 3, 0.1, 1}, presets.press,
+                           tr("How hard the mouse, or a pen at full pressure, presses the tool "
+                              "onto the surface"));
   connect(press, &ValueRow::edited, this, &BrushPanel::pressed);
 }
 

@@ -5,7 +5,7 @@
 #include <QGroupBox>
 #include <QVBoxLayout>
 
-#include "app/gui/painting/brush_book.h"
+#include "app/gui/painting/brush_presets.h"
 #include "app/gui/panels/value_row.h"
 
 namespace patina {
@@ -15,7 +15,7 @@ class BrushPanel : public QGroupBox {
  public:
   explicit BrushPanel(QWidget* parent = nullptr);
 
-  void show(const Brush& brush, const BrushBook& book); // sends no signal
+  void show(const Brush& brush, const BrushPresets& presets); // sends no signal
   const Brush& brush() const { return brush_; }
 
  signals:
@@ -24,15 +24,15 @@ class BrushPanel : public QGroupBox {
   void toolAsked(patina::Tool tool);
 
  private:
-  void rebuild(const BrushBook& book);
+  void rebuild(const BrushPresets& presets);
   void addValue(double extent);
   void addColor();
   void addChannels(MaterialChannel channel);
   void addErased();
-  void addSize(const BrushBook& book);
+  void addSize(const BrushPresets& presets);
   void addShape();
   void addChoices();
-  void addLayers(const BrushBook& book);
+  void addLayers(const BrushPresets& presets);
   void change();
   ValueRow* addRow(const char* name, const QString& caption, const QString& unit,
                    const RowRange& range, double value, const QString& tip = {});

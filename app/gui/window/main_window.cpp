@@ -32,7 +32,7 @@ MainWindow::MainWindow(QWidget* parent)
                        },
                        stateFolder()});
   loader_ = new SceneLoader(edits_->listener(), this);
-  desk_ = new PaintDesk({*tools_, *brush_, *view_, feel_, *edits_}, this);
+  desk_ = new PaintController({*tools_, *brush_, *view_, feel_, *edits_}, this);
   setWindowTitle(tr("Patina[*]"));
   setAcceptDrops(true);
   buildLayout();

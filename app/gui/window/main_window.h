@@ -11,7 +11,7 @@
 #include "app/gui/loading/recent_files.h"
 #include "app/gui/loading/recover_bar.h"
 #include "app/gui/loading/scene_loader.h"
-#include "app/gui/painting/paint_desk.h"
+#include "app/gui/painting/paint_controller.h"
 #include "app/gui/painting/paint_display.h"
 #include "app/gui/painting/relief_panel.h"
 #include "app/gui/panels/device_panel.h"
@@ -62,9 +62,9 @@ class MainWindow : public QMainWindow {
   EnergyPlot& energyPlot() { return *energy_plot_; }
   StatusLine& status() { return *status_; }
   EditThread& edits() { return *edits_; }
-  const EditStanding& standing() const { return standing_; } // of the history
+  const EditStatus& standing() const { return standing_; } // of the history
   ToolBar& tools() { return *tools_; }
-  PaintDesk& desk() { return *desk_; }
+  PaintController& desk() { return *desk_; }
   BrushPanel& brushPanel() { return *brush_; }
   ReliefPanel& relief() { return *relief_; }
   PaintDisplay& paintDisplay() { return *paint_display_; }
@@ -97,9 +97,9 @@ class MainWindow : public QMainWindow {
   void tick();
 
   void takeNews();
-  void takeStanding(const EditStanding& standing);
-  void takeScene(const EditNews& news);
-  void showDoing(const std::optional<EditDoing>& doing);
+  void takeStanding(const EditStatus& standing);
+  void takeScene(const EditEvents& news);
+  void showDoing(const std::optional<EditProgress>& doing);
   void showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name);
   void take(OpenedEditor& opened);
   void restore(); // what was open before a load that came to nothing
@@ -153,7 +153,7 @@ class MainWindow : public QMainWindow {
   RecentFiles* recent_ = nullptr;
   SceneLoader* loader_;
   StabilityJob* stability_;
-  PaintDesk* desk_ = nullptr;
+  PaintController* desk_ = nullptr;
   QDockWidget* history_dock_ = nullptr;
   QAction* save_action_ = nullptr;
   QAction* save_as_action_ = nullptr;
@@ -167,7 +167,7 @@ class MainWindow : public QMainWindow {
   std::unique_ptr<EditThread> edits_; // goes before feel_, to which it publishes
   QTimer timer_;
   std::shared_ptr<const CompiledScene> current_;
-  EditStanding standing_;
+  EditStatus standing_;
   QString name_; // of what is open
   ToolChoice before_navigating_;
   bool previewing_ = false;

@@ -153,7 +153,7 @@ void showPainting(MainWindow& window, const std::filesystem::path& folder) {
     Brush brush = window.desk().brush();
     if (tool != Tool::color) brush.value = value;
     brush.falloff = falloff;
-    brush.radius = share * window.desk().book().extent();
+    brush.radius = share * window.desk().presets().extent();
     window.desk().setBrush(brush);
     wait(200);
   };
@@ -163,7 +163,7 @@ void showPainting(MainWindow& window, const std::filesystem::path& folder) {
   };
   choose(Tool::color, 0, 4, 0.02);
   line(middle + Vec2(-0.05, 0.02), middle + Vec2(0.06, 0.03));
-  choose(Tool::relief, 0.006 * window.desk().book().extent(), 2, 0.012);
+  choose(Tool::relief, 0.006 * window.desk().presets().extent(), 2, 0.012);
   const auto ring = [&](double t) {
     return Vec2(middle + 0.03 * Vec2(std::cos(2 * M_PI * t), std::sin(2 * M_PI * t)));
   };

@@ -99,8 +99,8 @@ void MainWindow::connectPanels() {
 }
 
 void MainWindow::connectPaint() {
-  connect(desk_, &PaintDesk::chosen, this, &MainWindow::chooseTool);
-  connect(desk_, &PaintDesk::underPointer, status_, &StatusLine::showPicked);
+  connect(desk_, &PaintController::chosen, this, &MainWindow::chooseTool);
+  connect(desk_, &PaintController::underPointer, status_, &StatusLine::showPicked);
   connect(relief_, &ReliefPanel::edited, this, [this](const ReliefSettings& relief) {
     setWindowModified(true);
     edits_->tryValues([relief](Scene& scene) { scene.relief = relief; });
@@ -131,17 +131,17 @@ void MainWindow::chooseTool(const ToolChoice& choice) {
 }
 
 void MainWindow::takeNews() {
-  const EditNews news = edits_->take();
-  if (news.standing) takeStanding(*news.standing);
+  const EditEvents news = edits_->take();
+  if (news.status) takeStanding(*news.status);
   if (news.compiled) takeScene(news);
-  showDoing(news.doing);
+  showDoing(news.progress);
   if (!news.problems.empty())
     showProblem(this, tr("That cannot be done"), QString::fromStdString(news.problems.back()),
                 tr("The scene is as it was before."));
   for (const auto& done : news.done) done();
 }
 
-void MainWindow::takeStanding(const EditStanding& standing) {
+void MainWindow::takeStanding(const EditStatus& standing) {
   standing_ = standing;
   if (standing.folder) name_ = QString::fromStdString(standing.folder->filename().string());
   setWindowTitle(name_.isEmpty() ? tr("Patina[*]") : tr("%1[*] – Patina").arg(name_));
@@ -152,7 +152,7 @@ void MainWindow::takeStanding(const EditStanding& standing) {
   redo_action_->setEnabled(standing.done < standing.edits.size());
 }
 
-void MainWindow::takeScene(const EditNews& news) {
+void MainWindow::takeScene(const EditEvents& news) {
   const auto before = std::exchange(current_, news.compiled);
   if (news.anew || !before) {
     // Whether a preview was shown or not: the camera of another scene says nothing of this one.
@@ -190,7 +190,7 @@ void MainWindow::syncPanels() {
     objects_->setValues(scene);
 }
 
-void MainWindow::showDoing(const std::optional<EditDoing>& doing) {
+void MainWindow::showDoing(const std::optional<EditProgress>& doing) {
   if (loader_->busy()) return; // it has the bar
   if (!doing) return load_bar_->end();
   const QString title = QString::fromStdString(doing->title);
