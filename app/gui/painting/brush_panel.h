@@ -1,12 +1,12 @@
 // The brush of the tool that paints; not there while nothing paints.
 #pragma once
 
-#include <QComboBox>
 #include <QGroupBox>
 #include <QVBoxLayout>
 
+#include "app/gui/painting/brush_curve.h"
 #include "app/gui/painting/brush_presets.h"
-#include "app/gui/panels/value_row.h"
+#include "app/gui/panels/form.h"
 
 namespace patina {
 
@@ -16,7 +16,6 @@ class BrushPanel : public QGroupBox {
   explicit BrushPanel(QWidget* parent = nullptr);
 
   void show(const Brush& brush, const BrushPresets& presets); // sends no signal
-  const Brush& brush() const { return brush_; }
 
  signals:
   void edited(const patina::Brush& brush);
@@ -34,14 +33,11 @@ class BrushPanel : public QGroupBox {
   void addChoices();
   void addLayers(const BrushPresets& presets);
   void change();
-  ValueRow* addRow(const char* name, const QString& caption, const QString& unit,
-                   const RowRange& range, double value, const QString& tip = {});
-  QComboBox* addCombo(const char* name, const QString& caption, const QStringList& words, int now);
 
   Brush brush_;
   QVBoxLayout* layout_;
-  QWidget* rows_ = nullptr;
-  QWidget* curve_ = nullptr;
+  Form* form_ = nullptr;
+  BrushCurve* curve_ = nullptr; // of the form
 };
 
 } // namespace patina

@@ -47,22 +47,17 @@ PaintController::PaintController(const Parts& parts, QObject* parent)
 void PaintController::take(const ToolChoice& choice) {
   down_ = lingers_ = false;
   send(tracker_.feed({}, {}));
-  using Mode = SceneWidget::Mode;
   if (choice.handling == Handling::paint) {
     tool_ = choice.tool;
     at_.panel.show(brush(), presets_);
     if (scene_) at_.edits.prepare(tool_);
   }
-  at_.view.setMode(choice.handling == Handling::navigate ? Mode::navigate
-                   : choice.handling == Handling::feel   ? Mode::feel
-                   : choice.handling == Handling::paint  ? Mode::paint
-                                                         : Mode::pick);
+  at_.view.setHandling(choice.handling);
   emit chosen(choice);
 }
 
 void PaintController::setScene(std::shared_ptr<const CompiledScene> scene, bool anew) {
   scene_ = std::move(scene);
-  at_.bar.setPaints(scene_ != nullptr);
   if (!anew || !scene_) return;
   down_ = lingers_ = false;
   tracker_ = {};

@@ -36,12 +36,6 @@ class PaintController : public QObject {
   void refresh();                                  // brush cursor and what is under the pointer
   void resizeBrush(double factor);
   void softenBrush(double factor);
-  void pickAt(const Vec3& surface);
-
-  BrushPresets& presets() { return presets_; }
-  void setBrush(const Brush& brush);
-  Brush brush() const { return presets_.brush(tool_); }
-  bool painting() const { return tracker_.painting(); }
 
  signals:
   void chosen(const patina::ToolChoice& choice);
@@ -49,6 +43,9 @@ class PaintController : public QObject {
 
  private:
   void take(const ToolChoice& choice);
+  Brush brush() const { return presets_.brush(tool_); }
+  void setBrush(const Brush& brush);
+  void pickAt(const Vec3& surface);
   void follow(const Pointed& where);
   void press(const Vec3& surface, double newtons);
   void lift();
