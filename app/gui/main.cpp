@@ -103,7 +103,9 @@ int run(const Arguments& arguments, int argc, char** argv) {
   QApplication::setOrganizationName(QStringLiteral("patina"));
   patina::applyStyle(application);
   patina::MainWindow window;
-  window.setAsks(!arguments.tour && !arguments.log && !arguments.first_picture_time);
+  patina::DocumentController& documents = window.controllers().documents;
+  patina::FeelController& feel = window.controllers().feel;
+  documents.setAsks(!arguments.tour && !arguments.log && !arguments.first_picture_time);
   window.resize(1280, 800);
   window.show();
   if (arguments.tour) {
@@ -114,16 +116,16 @@ int run(const Arguments& arguments, int argc, char** argv) {
     std::cout << patina::firstPictureSeconds(window, arguments.request) << '\n';
     return 0;
   }
-  window.offerRecovery();
-  window.open(arguments.request);
-  if (arguments.log) window.startLog();
+  documents.offerRecovery();
+  documents.open(arguments.request);
+  if (arguments.log) feel.startLog();
   // Ctrl-C, kill and a lost terminal are ways to close the window: the log is still written.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     std::signal(signal, [](int) { interrupted = 1; });
   QTimer watch;
   QObject::connect(&watch, &QTimer::timeout, &window, [&] {
     if (interrupted == 0) return;
-    window.setAsks(false);
+    documents.setAsks(false);
     window.close();
     // A question that is still open would keep the program alive.
     if (!window.isVisible()) QApplication::quit();
@@ -131,8 +133,8 @@ int run(const Arguments& arguments, int argc, char** argv) {
   watch.start(100);
   const int code = QApplication::exec();
   if (arguments.log) {
-    const std::size_t lost = window.log().lost();
-    window.log().save(*arguments.log);
+    const std::size_t lost = feel.log().lost();
+    feel.log().save(*arguments.log);
     if (lost > 0)
       std::cerr << "patina-gui: " << arguments.log->string() << ": " << lost
                 << " ticks came too fast to be kept\n";

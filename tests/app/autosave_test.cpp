@@ -39,7 +39,7 @@ TEST(Autosave, DISABLED_PaintsAndIsKilled) {
     desk.edits.dabs(stroke.samples);
     desk.edits.endStroke();
   }
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == kStrokes; }));
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == kStrokes; }));
   desk.edits.beginStroke(stiffBrush()); // the one that is lost
   desk.edits.dabs(circle(6));
   kill(getpid(), SIGKILL);
@@ -69,17 +69,17 @@ TEST(Autosave, EveryStrokeThatWasDoneIsThereAfterAKill) {
   auto editor = Editor::open(autosave->workspace(), {true, true, kHistoryBudget}, progress,
                              desk.edits.listener());
   desk.edits.adopt(std::move(editor), std::move(autosave));
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == kStrokes; }));
-  EXPECT_TRUE(desk.standing.unsaved);
-  EXPECT_FALSE(desk.standing.folder.has_value());
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == kStrokes; }));
+  EXPECT_TRUE(desk.status.unsaved);
+  EXPECT_FALSE(desk.status.folder.has_value());
 
   Editor painted(oneBall(), progress);
   for (int i = 0; i < kStrokes; ++i) painted.apply(strokeOf(i), progress);
   EXPECT_TRUE(same(*desk.compiled->scene.objects[0].paint, *painted.scene().objects[0].paint));
 
   desk.edits.saveAs(folder.path() / "ws");
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.folder.has_value(); }));
-  EXPECT_EQ(desk.standing.edits.size(), static_cast<std::size_t>(kStrokes)) << "the history too";
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.folder.has_value(); }));
+  EXPECT_EQ(desk.status.edits.size(), static_cast<std::size_t>(kStrokes)) << "the history too";
   EXPECT_FALSE(std::filesystem::exists(places[0]));
 }
 
@@ -109,7 +109,7 @@ TEST(Autosave, ADiskThatRefusesIsToldOfOnceAndPaintingGoesOn) {
     desk.edits.endStroke();
   }
   ASSERT_TRUE(desk.settle());
-  EXPECT_EQ(desk.standing.done, 2u);
+  EXPECT_EQ(desk.status.done, 2u);
   EXPECT_EQ(desk.problems.size(), 1u);
 }
 

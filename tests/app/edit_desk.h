@@ -1,4 +1,4 @@
-// An edit thread with somebody who waits for its news.
+// An edit thread with somebody who waits for its events.
 #pragma once
 
 #include <atomic>
@@ -62,49 +62,49 @@ class Desk {
     waitUntil([this] { return compiled != nullptr; });
   }
 
-  // Takes news until it is so; false after 20 s.
+  // Takes events until it is so; false after 20 s.
   bool waitUntil(const std::function<bool()>& so) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     for (;;) {
-      takeNews();
+      takeEvents();
       if (so()) return true;
       std::unique_lock lock(mutex_);
-      if (!woken_.wait_until(lock, end, [this] { return news_; })) return false;
+      if (!woken_.wait_until(lock, end, [this] { return changed_; })) return false;
     }
   }
-  // What was asked for so far is done, and its news taken.
+  // What was asked for so far is done, and its events taken.
   bool settle() {
     bool done = false;
     edits.goTo(1000000, [&](const std::string&) { done = true; }); // nothing to redo: in its turn
     return waitUntil([&] { return done; });
   }
-  void takeNews() {
+  void takeEvents() {
     {
       const std::lock_guard lock(mutex_);
-      news_ = false;
+      changed_ = false;
     }
-    EditNews news = edits.take();
-    if (news.compiled) compiled = news.compiled;
-    if (news.standing) standing = *news.standing;
-    problems.insert(problems.end(), news.problems.begin(), news.problems.end());
-    for (const auto& then : news.done) then();
+    EditEvents events = edits.take();
+    if (events.compiled) compiled = events.compiled;
+    if (events.status) status = *events.status;
+    problems.insert(problems.end(), events.problems.begin(), events.problems.end());
+    for (const auto& then : events.done) then();
   }
 
   std::shared_ptr<const CompiledScene> compiled;
-  EditStanding standing;
+  EditStatus status;
   std::vector<std::string> problems;
 
  private:
   void wake() {
     {
       const std::lock_guard lock(mutex_);
-      news_ = true;
+      changed_ = true;
     }
     woken_.notify_one();
   }
   std::mutex mutex_;
   std::condition_variable woken_;
-  bool news_ = false;
+  bool changed_ = false;
 
  public:
   EditThread edits; // last: it wakes what stands above

@@ -32,9 +32,9 @@ TEST(EditThread, AStrokeInPiecesIsOneEditAndPaintsWhatTheEditorPaints) {
   desk.edits.dabs({samples.begin() + 3, samples.end()});
   desk.edits.endStroke();
   ASSERT_TRUE(desk.settle());
-  EXPECT_EQ(desk.standing.edits.size(), 1u);
-  EXPECT_EQ(desk.standing.done, 1u);
-  EXPECT_TRUE(desk.standing.unsaved);
+  EXPECT_EQ(desk.status.edits.size(), 1u);
+  EXPECT_EQ(desk.status.done, 1u);
+  EXPECT_TRUE(desk.status.unsaved);
 
   Progress progress;
   Editor editor(oneBall(), progress);
@@ -68,9 +68,9 @@ TEST(EditThread, DraggedValuesAreFeltAtOnceAndAreOneEditWhenTheyRest) {
   for (int k = 510; k <= 700; k += 10)
     desk.edits.tryValues([k](Scene& scene) { scene.haptics.stiffness = k; });
   ASSERT_TRUE(desk.waitUntil([&] { return felt == 700; }));
-  EXPECT_EQ(desk.standing.done, 0u);
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 1; }));
-  EXPECT_EQ(desk.standing.edits.front(), "stiffness = 700");
+  EXPECT_EQ(desk.status.done, 0u);
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 1; }));
+  EXPECT_EQ(desk.status.edits.front(), "stiffness = 700");
   EXPECT_EQ(desk.compiled->scene.haptics.stiffness, 700);
 }
 
@@ -82,7 +82,7 @@ TEST(EditThread, ValuesThatComeBackToWhereTheyWereAreNoEdit) {
   desk.edits.tryValues([](Scene& scene) { scene.haptics.stiffness = 500; });
   ASSERT_TRUE(desk.settle());
   EXPECT_EQ(felt, 500);
-  EXPECT_TRUE(desk.standing.edits.empty());
+  EXPECT_TRUE(desk.status.edits.empty());
 }
 
 TEST(EditThread, ValuesThatMakeNoSenseAreToldOfAndChangeNothing) {
@@ -105,8 +105,8 @@ TEST(EditThread, AnythingElseEndsTheStrokeFirst) {
   desk.edits.undo();
   desk.edits.dabs(circle(5)); // of no stroke
   ASSERT_TRUE(desk.settle()); // which redoes it
-  EXPECT_EQ(desk.standing.edits.size(), 1u);
-  EXPECT_EQ(desk.standing.done, 1u);
+  EXPECT_EQ(desk.status.edits.size(), 1u);
+  EXPECT_EQ(desk.status.done, 1u);
   EXPECT_TRUE(desk.problems.empty());
 }
 
@@ -115,14 +115,14 @@ TEST(EditThread, TheHistoryGoesToAnyStepAndBack) {
   desk.open(oneBall());
   for (const char* name : {"a", "b", "c"})
     desk.edits.apply(name, [name](const CompiledScene& c) { return renamed(c, name); });
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 3; }));
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 3; }));
   EXPECT_EQ(desk.compiled->scene.objects[0].name, "c");
   desk.edits.goTo(1);
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 1; }));
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 1; }));
   EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
-  EXPECT_EQ(desk.standing.edits.size(), 3u);
+  EXPECT_EQ(desk.status.edits.size(), 3u);
   desk.edits.redo();
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.done == 2; }));
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 2; }));
   EXPECT_EQ(desk.compiled->scene.objects[0].name, "b");
 }
 
@@ -151,7 +151,7 @@ TEST(EditThread, NoCallWaitsForWhatIsUnderWayAndCancelEndsIt) {
   EXPECT_EQ(outcome, "cancelled");
   ASSERT_TRUE(desk.settle());
   EXPECT_EQ(desk.compiled->scene.field.resolution, 50);
-  EXPECT_TRUE(desk.standing.edits.empty()) << "the stroke was waiting, and so was cancelled too";
+  EXPECT_TRUE(desk.status.edits.empty()) << "the stroke was waiting, and so was cancelled too";
 }
 
 TEST(EditThread, SavingGivesTheSceneAFolderAndDiscardingGoesBackToIt) {
@@ -160,15 +160,15 @@ TEST(EditThread, SavingGivesTheSceneAFolderAndDiscardingGoesBackToIt) {
   desk.open(oneBall());
   desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
   desk.edits.saveAs(folder.path() / "ws");
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.folder.has_value(); }));
-  EXPECT_FALSE(desk.standing.unsaved);
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.folder.has_value(); }));
+  EXPECT_FALSE(desk.status.unsaved);
   EXPECT_TRUE(leftBehind(folder.path() / "state").empty());
   desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.standing.unsaved; }));
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.unsaved; }));
   bool done = false;
   desk.edits.discard([&](const std::string& problem) { done = problem.empty(); });
   ASSERT_TRUE(desk.waitUntil([&] { return done; }));
-  EXPECT_FALSE(desk.standing.unsaved);
+  EXPECT_FALSE(desk.status.unsaved);
   EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
   EXPECT_EQ(loadWorkspace(folder.path() / "ws").objects[0].name, "a");
 }
@@ -181,8 +181,8 @@ TEST(EditThread, AFolderThatCannotBeMadeIsToldOfAndTheEditsStay) {
   desk.edits.saveAs("/proc/no/ws", [&](const std::string& line) { problem = line; });
   ASSERT_TRUE(desk.waitUntil([&] { return !problem.empty(); }));
   EXPECT_NE(problem.find("/proc/no"), std::string::npos) << problem;
-  EXPECT_EQ(desk.standing.done, 1u);
-  EXPECT_TRUE(desk.standing.unsaved);
+  EXPECT_EQ(desk.status.done, 1u);
+  EXPECT_TRUE(desk.status.unsaved);
 }
 
 TEST(ValueEdits, TheDifferenceOfTwoScenesMakesOneOfTheOther) {

@@ -27,14 +27,14 @@ TEST_F(MouseFeels, ADoubleClickSetsTheTipOntoTheSurface) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   settle();
   EXPECT_NEAR(view().target().norm(), kRadius, 2e-4);
-  EXPECT_NEAR(window_->lastSample().tip.norm(), kRadius, 2e-4);
+  EXPECT_NEAR(feel().sample().tip.norm(), kRadius, 2e-4);
 }
 
 TEST_F(MouseFeels, TheDrawnToolIsHeldOutByContactWhileTheTipGoesIn) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(6);
   settle();
-  const ToolSample sample = window_->lastSample();
+  const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
   EXPECT_LT(sample.tip.norm(), kRadius - 1e-3);  // the true tip is inside
   EXPECT_NEAR(sample.vcp.norm(), kRadius, 1e-4); // the proxy is on the surface
@@ -46,8 +46,8 @@ TEST_F(MouseFeels, TheDrawnToolIsHeldOutByContactWhileTheTipGoesIn) {
 
 TEST_F(MouseFeels, WithoutContactThereIsNoForceAndNoArrow) {
   settle();
-  EXPECT_FALSE(window_->lastSample().contact);
-  EXPECT_EQ(window_->lastSample().force.norm(), 0);
+  EXPECT_FALSE(feel().sample().contact);
+  EXPECT_EQ(feel().sample().force.norm(), 0);
   EXPECT_EQ(forceShare(), 0);
   EXPECT_GT(toolShare(), 0);
 }
@@ -101,9 +101,8 @@ TEST_F(MouseFeels, EveryMoveOfTheCameraIsDrawnAtOnce) {
     move();
     return waitUntil([&] { return drawn > 0; }, 500);
   };
-  for (const SceneWidget::Mode mode : {SceneWidget::Mode::feel, SceneWidget::Mode::navigate}) {
-    window_->setMode(mode);
-    const bool feels = mode == SceneWidget::Mode::feel;
+  for (const bool feels : {true, false}) {
+    trigger(feels ? "tool_feel" : "tool_navigate");
     for (int i = 0; i < 6; ++i) {
       const QPoint to = middle() + QPoint(5, i - 2);
       const auto turn = feels ? Qt::ShiftModifier : Qt::NoModifier;
@@ -118,7 +117,7 @@ TEST_F(MouseFeels, EveryMoveOfTheCameraIsDrawnAtOnce) {
 }
 
 TEST_F(MouseFeels, NavigateModeGivesTheLeftButtonToTheCamera) {
-  window_->setMode(SceneWidget::Mode::navigate);
+  trigger("tool_navigate");
   const Vec3 target = view().target();
   auto* camera = view().view().renderer().GetActiveCamera();
   const Vec3 before(camera->GetPosition());
@@ -132,31 +131,25 @@ TEST_F(MouseFeels, EditsReachTheServoWhileItRuns) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(4);
   settle();
-  const double before = window_->lastSample().force.norm();
-  HapticProperties haptics = window_->haptics().values();
-  haptics.stiffness = 250;
-  window_->haptics().setValues(haptics);
-  emit window_->haptics().edited(haptics);
-  ASSERT_TRUE(waitUntil([&] { return window_->scene()->scene.haptics.stiffness == 250; }, 20000));
+  const double before = feel().sample().force.norm();
+  setRow("stiffness", 250);
+  ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.haptics.stiffness == 250; }, 20000));
   wait(200);
-  EXPECT_NEAR(window_->lastSample().force.norm(), 0.5 * before, 0.05 * before);
+  EXPECT_NEAR(feel().sample().force.norm(), 0.5 * before, 0.05 * before);
 }
 
 TEST_F(MouseFeels, ALargeEditUnderAPressedTipRampsAndIsNoFault) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(14);
   settle();
-  ASSERT_TRUE(window_->lastSample().contact);
-  window_->startRecording();
-  HapticProperties haptics = window_->haptics().values();
-  haptics.stiffness = 3000;
-  haptics.force_limit = 20;
-  window_->haptics().setValues(haptics);
-  emit window_->haptics().edited(haptics);
-  ASSERT_TRUE(waitUntil([&] { return window_->scene()->scene.haptics.stiffness == 3000; }, 20000));
+  ASSERT_TRUE(feel().sample().contact);
+  feel().startLog();
+  setRow("stiffness", 3000);
+  setRow("force_limit", 20);
+  ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.haptics.stiffness == 3000; }, 20000));
   wait(200);
   double jump = 0;
-  const auto samples = window_->takeRecording();
+  const auto samples = feel().log().samples();
   for (std::size_t i = 1; i < samples.size(); ++i) {
     ASSERT_FALSE(samples[i].fault);
     jump = std::max(jump, (samples[i].force - samples[i - 1].force).norm());
@@ -166,27 +159,26 @@ TEST_F(MouseFeels, ALargeEditUnderAPressedTipRampsAndIsNoFault) {
 }
 
 TEST_F(MouseFeels, FrictionHoldsTheProxyBackWhenTheTipMovesSideways) {
-  HapticProperties haptics = window_->haptics().values();
-  haptics.friction = Friction{0.8, 0.8, 0, {}};
-  window_->haptics().setValues(haptics);
-  emit window_->haptics().edited(haptics);
+  addProperty("Friction");
+  setRow("friction_static", 0.8);
+  setRow("friction_dynamic", 0.8);
   wait(600);
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(5);
   settle();
   dragFromTo(middle(), middle() + QPoint(4, 0));
   settle();
-  const ToolSample sample = window_->lastSample();
+  const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
   // The line from tip to proxy leans against the motion: a force along the surface.
   const Vec3 along = sample.force - sample.force.dot(sample.normal) * sample.normal;
   EXPECT_GT(along.norm(), 0.05);
 }
 
-TEST_F(MouseFeels, ARecordingHoldsEveryTickAsItWas) {
-  window_->startRecording();
+TEST_F(MouseFeels, ALogHoldsEveryTickAsItWas) {
+  feel().startLog();
   wait(400);
-  const auto samples = window_->takeRecording();
+  const auto samples = feel().log().samples();
   ASSERT_GT(samples.size(), 200U);
   for (std::size_t i = 1; i < samples.size(); ++i) ASSERT_GT(samples[i].t, samples[i - 1].t);
 }

@@ -27,37 +27,38 @@ TEST_F(Loading, TheMeshIsSeenBeforeTheFieldIsReady) {
   bool ready = false;
   double seen = -1;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
-  QObject::connect(&window_->loader(), &SceneLoader::meshReady, window_.get(), [&] {
+  QObject::connect(find<SceneLoader>(), &SceneLoader::meshReady, window_.get(), [&] {
     EXPECT_FALSE(ready);
     seen = surfaceShare();
   });
-  window_->open(requestFor(path));
+  documents().open(requestFor(path));
   ASSERT_TRUE(waitUntil([&] { return ready; }));
   EXPECT_GT(seen, 0.1);
   EXPECT_GT(surfaceShare(), 0.1);
 }
 
 TEST_F(Loading, NoSceneNoPanels) {
-  EXPECT_FALSE(window_->haptics().isVisible());
-  EXPECT_FALSE(window_->display().isVisible());
-  EXPECT_FALSE(window_->feel().running());
+  EXPECT_FALSE(find<HapticsPanel>()->isVisible());
+  EXPECT_FALSE(find<DisplayPanel>()->isVisible());
+  EXPECT_FALSE(feel().servo().running());
   EXPECT_EQ(surfaceShare(), 0);
 }
 
 TEST_F(Loading, AFailedLoadLeavesTheSceneAsItWas) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
-  const CompiledScene* before = window_->scene();
+  const auto before = edits().scene();
   std::ofstream(folder_ / "bad.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999\n";
   QString message;
-  QObject::connect(window_.get(), &MainWindow::loadFailed, [&](const QString& m) { message = m; });
-  window_->open(requestFor(folder_ / "bad.obj"));
+  QObject::connect(&documents(), &DocumentController::failed,
+                   [&](const QString& m) { message = m; });
+  documents().open(requestFor(folder_ / "bad.obj"));
   ASSERT_TRUE(waitUntil([&] { return !message.isEmpty(); }));
   wait(80);
   EXPECT_TRUE(message.contains(QStringLiteral("bad.obj:4"))) << message.toStdString();
-  EXPECT_EQ(window_->scene(), before);
-  EXPECT_TRUE(window_->feel().running());
+  EXPECT_EQ(edits().scene(), before);
+  EXPECT_TRUE(feel().servo().running());
   EXPECT_GT(surfaceShare(), 0.1);
-  auto* box = window_->findChild<QMessageBox*>(QStringLiteral("problem"));
+  auto* box = find<QMessageBox>("problem");
   ASSERT_NE(box, nullptr);
   EXPECT_FALSE(box->informativeText().isEmpty());
   box->accept();
@@ -67,10 +68,11 @@ TEST_F(Loading, ASceneWithoutObjectsAsksForAMesh) {
   Scene empty;
   saveWorkspace(empty, folder_ / "empty");
   QString message;
-  QObject::connect(window_.get(), &MainWindow::loadFailed, [&](const QString& m) { message = m; });
-  window_->open(requestFor(folder_ / "empty"));
+  QObject::connect(&documents(), &DocumentController::failed,
+                   [&](const QString& m) { message = m; });
+  documents().open(requestFor(folder_ / "empty"));
   ASSERT_TRUE(waitUntil([&] { return !message.isEmpty(); }));
-  auto* box = window_->findChild<QMessageBox*>(QStringLiteral("problem"));
+  auto* box = find<QMessageBox>("problem");
   ASSERT_NE(box, nullptr);
   EXPECT_TRUE(box->informativeText().contains(QStringLiteral("File → Add object")))
       << message.toStdString() << '\n'
@@ -87,37 +89,36 @@ TEST_F(Loading, ASceneWithoutObjectsAsksForAMesh) {
 
 TEST_F(Loading, CancelLeavesTheSceneAsItWas) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
-  const CompiledScene* before = window_->scene();
+  const auto before = edits().scene();
   const auto path = saved(torus(0.035, 0.015, 500, 250), "torus.obj");
   bool cancelled = false;
-  QObject::connect(window_.get(), &MainWindow::loadCancelled, [&] { cancelled = true; });
-  QObject::connect(&window_->loader(), &SceneLoader::meshReady, window_.get(), [&] {
-    window_->findChild<QAbstractButton*>(QStringLiteral("cancel_load"))->click();
-  });
-  window_->open(requestFor(path));
+  QObject::connect(&documents(), &DocumentController::cancelled, [&] { cancelled = true; });
+  QObject::connect(find<SceneLoader>(), &SceneLoader::meshReady, window_.get(),
+                   [&] { find<QAbstractButton>("cancel_load")->click(); });
+  documents().open(requestFor(path));
   ASSERT_TRUE(waitUntil([&] { return cancelled; }));
   wait(80);
-  EXPECT_EQ(window_->scene(), before);
-  EXPECT_TRUE(window_->feel().running());
-  EXPECT_FALSE(window_->findChild<LoadBar*>()->isVisible());
+  EXPECT_EQ(edits().scene(), before);
+  EXPECT_TRUE(feel().servo().running());
+  EXPECT_FALSE(find<LoadBar>()->isVisible());
   EXPECT_GT(surfaceShare(), 0.1);
 }
 
 TEST_F(Loading, AnOddSizeAsksForTheUnitAndTheAnswerCounts) {
   LoadRequest request;
   request.path = saved(icosphere(0.03, 12), "small.obj"); // 0.06 mm, if it were millimetres
-  window_->open(request);
+  documents().open(request);
   QDialog* dialog = nullptr;
   ASSERT_TRUE(waitUntil([&] {
-    dialog = window_->findChild<QDialog*>(QStringLiteral("unit_dialog"));
+    dialog = find<QDialog>("unit_dialog");
     return dialog != nullptr;
   }));
-  EXPECT_EQ(window_->scene(), nullptr);
+  EXPECT_EQ(edits().scene(), nullptr);
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
   dialog->accept(); // the first choice: 100 mm
   ASSERT_TRUE(waitUntil([&] { return ready; }));
-  EXPECT_NEAR(bounds(*window_->scene()->mesh).sizes().maxCoeff(), 0.1, 1e-9);
+  EXPECT_NEAR(bounds(*edits().scene()->mesh).sizes().maxCoeff(), 0.1, 1e-9);
 }
 
 TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {
@@ -139,39 +140,36 @@ TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {
 
   LoadRequest request;
   request.path = folder_ / "v.vti";
-  window_->open(request);
+  documents().open(request);
   QDialog* dialog = nullptr;
   ASSERT_TRUE(waitUntil([&] {
-    dialog = window_->findChild<QDialog*>(QStringLiteral("iso_dialog"));
+    dialog = find<QDialog>("iso_dialog");
     return dialog != nullptr;
   }));
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
   dialog->accept(); // a distance: 0 is offered
   ASSERT_TRUE(waitUntil([&] { return ready; }));
-  EXPECT_NEAR(bounds(*window_->scene()->mesh).sizes().maxCoeff(), 0.030, 1e-4);
+  EXPECT_NEAR(bounds(*edits().scene()->mesh).sizes().maxCoeff(), 0.030, 1e-4);
 }
 
 TEST_F(Loading, AWorkspaceThatWasSavedOpensAgainWithItsValues) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
-  HapticProperties haptics = window_->haptics().values();
-  haptics.stiffness = 321;
-  haptics.damping = 2.5;
-  window_->haptics().setValues(haptics);
-  emit window_->haptics().edited(haptics);
+  setRow("stiffness", 321);
+  addProperty("Damping");
+  setRow("damping", 2.5);
   wait(100);
-  window_->saveWorkspaceTo(QString::fromStdString((folder_ / "ws").string()));
+  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
   ASSERT_TRUE(open(folder_ / "ws"));
-  EXPECT_EQ(window_->scene()->scene.haptics.stiffness, 321);
-  EXPECT_EQ(window_->scene()->scene.haptics.damping, 2.5);
-  EXPECT_NE(window_->haptics().findChild<QWidget*>(QStringLiteral("damping")), nullptr);
+  EXPECT_EQ(edits().scene()->scene.haptics.stiffness, 321);
+  EXPECT_EQ(edits().scene()->scene.haptics.damping, 2.5);
+  EXPECT_NE(find<QWidget>("damping"), nullptr);
 }
 
 TEST_F(Loading, OpenedFilesAreRemembered) {
   const auto path = saved(icosphere(0.03, 8), "remember.obj");
   ASSERT_TRUE(open(path));
-  EXPECT_TRUE(
-      window_->findChild<RecentFiles*>()->paths().contains(QString::fromStdString(path.string())));
+  EXPECT_TRUE(find<RecentFiles>()->paths().contains(QString::fromStdString(path.string())));
 }
 
 TEST_F(Loading, NeitherCancelNorANewLoadWaitsForAReader) {
@@ -179,31 +177,31 @@ TEST_F(Loading, NeitherCancelNorANewLoadWaitsForAReader) {
   const auto pipe = folder_ / "endless.obj";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   bool cancelled = false;
-  QObject::connect(window_.get(), &MainWindow::loadCancelled, [&] { cancelled = true; });
-  window_->open(requestFor(pipe));
+  QObject::connect(&documents(), &DocumentController::cancelled, [&] { cancelled = true; });
+  documents().open(requestFor(pipe));
   wait(100);
-  window_->loader().cancel();
+  find<SceneLoader>()->cancel();
   ASSERT_TRUE(waitUntil([&] { return cancelled; }, 5000));
   ASSERT_TRUE(open(saved(icosphere(0.03, 8), "sphere.obj")));
-  EXPECT_FALSE(window_->loader().resting());
-  window_->open(requestFor(saved(torus(0.035, 0.015, 400, 200), "torus.obj")));
+  EXPECT_FALSE(find<SceneLoader>()->resting());
+  documents().open(requestFor(saved(torus(0.035, 0.015, 400, 200), "torus.obj")));
   // Closing asks nothing and says what it waits for; the window goes when the reader has ended.
   EXPECT_FALSE(window_->close());
   wait(200);
-  EXPECT_TRUE(window_->findChild<LoadBar*>()->isVisible());
-  EXPECT_FALSE(window_->feel().running());
+  EXPECT_TRUE(find<LoadBar>()->isVisible());
+  EXPECT_FALSE(feel().servo().running());
   { std::ofstream end(pipe); }
   EXPECT_TRUE(waitUntil([&] { return !window_->isVisible(); }, 10000));
-  EXPECT_TRUE(window_->loader().resting());
+  EXPECT_TRUE(find<SceneLoader>()->resting());
 }
 
 TEST_F(Loading, ANewLoadTakesThePlaceOfOneUnderWay) {
   const auto slow = saved(torus(0.035, 0.015, 400, 200), "torus.obj");
   const auto quick = saved(icosphere(0.03, 8), "sphere.obj");
-  window_->open(requestFor(slow));
+  documents().open(requestFor(slow));
   wait(20);
   ASSERT_TRUE(open(quick));
-  EXPECT_EQ(window_->scene()->mesh->triangles.size(), 20U * 64U);
+  EXPECT_EQ(edits().scene()->mesh->triangles.size(), 20U * 64U);
 }
 
 } // namespace

@@ -31,14 +31,11 @@ class Objects : public WindowTest {
     return rebuiltAfter([&] {
       LoadRequest request = requestFor(saved(icosphere(0.02, 16), name));
       request.adds = true;
-      window_->open(request);
+      documents().open(request);
     });
   }
-  QListWidget* list() { return window_->findChild<QListWidget*>(QStringLiteral("objects")); }
-  QDoubleSpinBox* number(const char* name) {
-    return window_->findChild<QDoubleSpinBox*>(QString::fromUtf8(name));
-  }
-  const std::vector<SceneObject>& objects() { return window_->scene()->scene.objects; }
+  QListWidget* list() { return find<QListWidget>("objects"); }
+  const std::vector<SceneObject>& objects() { return edits().scene()->scene.objects; }
 };
 
 TEST_F(Objects, AreAddedWithNamesOfTheirOwn) {
@@ -48,29 +45,29 @@ TEST_F(Objects, AreAddedWithNamesOfTheirOwn) {
   EXPECT_EQ(list()->item(1)->text(), QStringLiteral("cup"));
   EXPECT_EQ(list()->item(2)->text(), QStringLiteral("ball-2"));
   EXPECT_TRUE(window_->isWindowModified());
-  EXPECT_TRUE(window_->feel().running());
+  EXPECT_TRUE(feel().servo().running());
 }
 
 TEST_F(Objects, MoveAndAreFeltWhereTheyHaveGone) {
   ASSERT_TRUE(add("cup.obj"));
   list()->setCurrentRow(1);
-  ASSERT_TRUE(rebuiltAfter([&] { number("place_x")->setValue(60); }));
+  ASSERT_TRUE(rebuiltAfter([&] { find<QDoubleSpinBox>("place_x")->setValue(60); }));
   EXPECT_NEAR(objects()[1].world_from_object.translation()[0], 0.06, 1e-12);
   EXPECT_EQ(list()->currentRow(), 1);
-  window_->feel().setTarget(Vec3(0.06, 0, 0.03));
+  feel().servo().setTarget(Vec3(0.06, 0, 0.03));
   wait(200);
-  window_->feel().setTarget(Vec3(0.06, 0, 0.018));
+  feel().servo().setTarget(Vec3(0.06, 0, 0.018));
   wait(400);
-  EXPECT_TRUE(window_->lastSample().contact);
-  EXPECT_GT(window_->lastSample().force[2], 0.5);
+  EXPECT_TRUE(feel().sample().contact);
+  EXPECT_GT(feel().sample().force[2], 0.5);
 }
 
 TEST_F(Objects, EditsThatComeWhileOneIsUnderWayAreNotLost) {
   ASSERT_TRUE(add("cup.obj"));
   list()->setCurrentRow(1);
-  number("place_x")->setValue(50);
-  number("place_y")->setValue(10);
-  number("turn_z")->setValue(90);
+  find<QDoubleSpinBox>("place_x")->setValue(50);
+  find<QDoubleSpinBox>("place_y")->setValue(10);
+  find<QDoubleSpinBox>("turn_z")->setValue(90);
   ASSERT_TRUE(waitUntil([&] {
     const Pose& pose = objects()[1].world_from_object;
     return (pose.translation() - Vec3(0.05, 0.01, 0)).norm() < 1e-12 &&
@@ -79,7 +76,7 @@ TEST_F(Objects, EditsThatComeWhileOneIsUnderWayAreNotLost) {
 }
 
 TEST_F(Objects, AreRemovedButForTheLast) {
-  auto* remove = window_->findChild<QToolButton*>(QStringLiteral("remove_object"));
+  auto* remove = find<QToolButton>("remove_object");
   EXPECT_FALSE(remove->isEnabled());
   ASSERT_TRUE(add("cup.obj"));
   EXPECT_TRUE(remove->isEnabled());
@@ -91,23 +88,23 @@ TEST_F(Objects, AreRemovedButForTheLast) {
 }
 
 TEST_F(Objects, DepthToTheUnionIsOfferedWhereThereAreSeveral) { // F9
-  auto* union_depth = window_->findChild<QCheckBox*>(QStringLiteral("redistance"));
-  EXPECT_FALSE(union_depth->isVisibleTo(&window_->objects()));
+  auto* union_depth = find<QCheckBox>("redistance");
+  EXPECT_FALSE(union_depth->isVisibleTo(find<ObjectList>()));
   ASSERT_TRUE(add("cup.obj"));
-  EXPECT_TRUE(union_depth->isVisibleTo(&window_->objects()));
+  EXPECT_TRUE(union_depth->isVisibleTo(find<ObjectList>()));
   ASSERT_TRUE(rebuiltAfter([&] { union_depth->setChecked(true); }));
-  EXPECT_TRUE(window_->scene()->scene.redistance);
+  EXPECT_TRUE(edits().scene()->scene.redistance);
 }
 
 TEST_F(Objects, AFileThatCannotBeAddedLeavesTheSceneAsItWas) {
   bool failed = false;
-  QObject::connect(window_.get(), &MainWindow::loadFailed, [&] { failed = true; });
+  QObject::connect(&documents(), &DocumentController::failed, [&] { failed = true; });
   LoadRequest request = requestFor(folder_ / "none.obj");
   request.adds = true;
-  window_->open(request);
+  documents().open(request);
   ASSERT_TRUE(waitUntil([&] { return failed; }));
   EXPECT_EQ(objects().size(), 1U);
-  EXPECT_TRUE(window_->feel().running());
+  EXPECT_TRUE(feel().servo().running());
 }
 
 } // namespace

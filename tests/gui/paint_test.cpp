@@ -6,6 +6,7 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QKeyEvent>
+#include <QRegularExpression>
 #include <QTabletEvent>
 #include <QToolButton>
 
@@ -28,12 +29,18 @@ class Painting : public WindowTest {
     window_->activateWindow();
     view().setFocus();
   }
-  QAction* action(const char* name) {
-    return window_->findChild<QAction*>(QString::fromUtf8(name));
-  }
-  void choose(Tool tool) {
-    window_->tools().choose({Handling::paint, tool});
+  void choose(const QString& tool) {
+    trigger("tool_" + tool);
     wait(100);
+  }
+  double row(const QString& name) { return find<ValueRow>(name)->value(); }
+  // Layers that the brush paints beside its own.
+  int layersBeside() {
+    int count = 0;
+    for (const QAction* action :
+         find<BrushPanel>()->findChildren<QAction*>(QRegularExpression("^also_")))
+      count += action->isChecked() ? 1 : 0;
+    return count;
   }
   // As a hand does it: down, along, up, with the time that it takes.
   void stroke(const QPoint& from, const QPoint& to, int milliseconds = 400) {
@@ -47,10 +54,10 @@ class Painting : public WindowTest {
     }
     send(QEvent::MouseButtonRelease, to, Qt::LeftButton, Qt::NoButton);
   }
-  bool strokeDone(std::size_t edits) {
-    return waitUntil([&] { return window_->standing().edits.size() == edits; }, 20000);
+  bool strokeDone(std::size_t count) {
+    return waitUntil([&] { return edits().status().edits.size() == count; }, 20000);
   }
-  const ObjectPaint* paint() { return window_->scene()->scene.objects[0].paint.get(); }
+  const ObjectPaint* paint() { return edits().scene()->scene.objects[0].paint.get(); }
   void key(int code, Qt::KeyboardModifiers keys = Qt::NoModifier) {
     for (QAction* each : window_->findChildren<QAction*>())
       for (const QKeySequence& sequence : each->shortcuts())
@@ -64,24 +71,24 @@ class Painting : public WindowTest {
 };
 
 TEST_F(Painting, NothingToPaintWithIsThereBeforeItIsNeeded) {
-  EXPECT_FALSE(window_->brushPanel().isVisible());
-  EXPECT_FALSE(window_->relief().isVisible());
-  EXPECT_FALSE(window_->history().isVisible());
-  EXPECT_FALSE(window_->paintDisplay().isVisible());
-  choose(Tool::material(MaterialChannel::stiffness));
-  EXPECT_TRUE(window_->brushPanel().isVisible());
-  EXPECT_FALSE(window_->relief().isVisible());
-  choose(Tool::relief);
-  EXPECT_TRUE(window_->relief().isVisible());
-  window_->setMode(SceneWidget::Mode::feel);
-  EXPECT_FALSE(window_->brushPanel().isVisible());
-  EXPECT_FALSE(window_->relief().isVisible());
-  EXPECT_FALSE(window_->history().isVisible());
+  EXPECT_FALSE(find<BrushPanel>()->isVisible());
+  EXPECT_FALSE(find<ReliefPanel>()->isVisible());
+  EXPECT_FALSE(find<HistoryPanel>()->isVisible());
+  EXPECT_FALSE(find<PaintDisplay>()->isVisible());
+  choose("stiffness");
+  EXPECT_TRUE(find<BrushPanel>()->isVisible());
+  EXPECT_FALSE(find<ReliefPanel>()->isVisible());
+  choose("relief");
+  EXPECT_TRUE(find<ReliefPanel>()->isVisible());
+  trigger("tool_feel");
+  EXPECT_FALSE(find<BrushPanel>()->isVisible());
+  EXPECT_FALSE(find<ReliefPanel>()->isVisible());
+  EXPECT_FALSE(find<HistoryPanel>()->isVisible());
 }
 
 TEST_F(Painting, AStrokeIsSeenIsOneEditAndIsUndoneAndDoneAgain) {
-  choose(Tool::color);
-  window_->display().setShown(Layer::tip, false); // the tool is warm too
+  choose("color");
+  show(Layer::tip, false); // the tool is warm too
   const double before = redShare();
   stroke(middle() - QPoint(60, 0), middle() + QPoint(60, 0));
   ASSERT_TRUE(strokeDone(1));
@@ -89,33 +96,31 @@ TEST_F(Painting, AStrokeIsSeenIsOneEditAndIsUndoneAndDoneAgain) {
   ASSERT_NE(paint(), nullptr);
   EXPECT_TRUE(paint()->color);
   EXPECT_FALSE(paint()->material) << "what was not painted is not there";
-  EXPECT_TRUE(window_->history().isVisible());
+  EXPECT_TRUE(find<HistoryPanel>()->isVisible());
   EXPECT_TRUE(window_->isWindowModified());
   send(QEvent::MouseMove, QPoint(5, 5), Qt::NoButton, Qt::NoButton); // the cursor is red as well
   wait(100);
   EXPECT_GT(redShare(), before + 0.005);
   key(Qt::Key_Z, Qt::ControlModifier);
-  ASSERT_TRUE(waitUntil([&] { return window_->standing().done == 0; }));
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 0; }));
   wait(100);
   EXPECT_NEAR(redShare(), before, 0.001);
   key(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
-  ASSERT_TRUE(waitUntil([&] { return window_->standing().done == 1; }));
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 1; }));
   wait(100);
   EXPECT_GT(redShare(), before + 0.005);
 }
 
 TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
-  choose(Tool::material(MaterialChannel::stiffness));
-  const double base = window_->scene()->scene.haptics.stiffness;
-  Brush brush = window_->desk().brush();
-  brush.value = 4 * base;
-  brush.radius = 0.006;
-  brush.falloff = 16;
-  window_->desk().setBrush(brush);
-  window_->startRecording();
+  choose("stiffness");
+  const double base = edits().scene()->scene.haptics.stiffness;
+  setRow("brush_value", 4 * base);
+  setRow("brush_radius", 6);
+  setRow("brush_falloff", 16);
+  feel().startLog();
   stroke(middle() - QPoint(40, 0), middle() + QPoint(40, 0), 600);
   ASSERT_TRUE(strokeDone(1));
-  const auto felt = window_->takeRecording();
+  const auto felt = feel().log().samples();
   // Force on the hand while it painted, and harder than the bare surface at the same depth.
   double most = 0, stiffest = 0;
   for (const ToolSample& tick : felt) {
@@ -130,12 +135,12 @@ TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
 }
 
 TEST_F(Painting, AQuickClickPaintsToo) {
-  choose(Tool::color);
+  choose("color");
   send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
   Vec3 tip = Vec3::Constant(NAN);
   ASSERT_TRUE(waitUntil([&] { // the tip hovers there
     wait(50);
-    const Vec3 before = std::exchange(tip, window_->lastSample().tip);
+    const Vec3 before = std::exchange(tip, feel().sample().tip);
     return (tip - before).norm() < 1e-5 && tip.norm() > kRadius && tip.norm() < 1.1 * kRadius;
   }));
   send(QEvent::MouseButtonPress, middle(), Qt::LeftButton, Qt::LeftButton);
@@ -144,20 +149,20 @@ TEST_F(Painting, AQuickClickPaintsToo) {
 }
 
 TEST_F(Painting, BesideTheObjectNothingIsPainted) {
-  choose(Tool::color);
+  choose("color");
   stroke(QPoint(20, 20), QPoint(60, 30), 200);
   wait(400);
-  EXPECT_TRUE(window_->standing().edits.empty());
+  EXPECT_TRUE(edits().status().edits.empty());
 }
 
 TEST_F(Painting, LayersThatAreTickedArePaintedByTheSameStroke) {
-  choose(Tool::material(MaterialChannel::stiffness));
+  choose("stiffness");
   for (const char* name : {"also_color", "also_friction.static"}) {
-    ASSERT_NE(action(name), nullptr) << name;
-    action(name)->trigger();
+    ASSERT_NE(find<QAction>(name), nullptr) << name;
+    trigger(name);
   }
-  EXPECT_EQ(action("also_stiffness"), nullptr); // that is what the tool paints anyway
-  EXPECT_EQ(layersOf(window_->desk().brush()).size(), 3U);
+  EXPECT_EQ(find<QAction>("also_stiffness"), nullptr); // that is what the tool paints anyway
+  EXPECT_EQ(layersBeside(), 2);
   stroke(middle(), middle() + QPoint(40, 0));
   ASSERT_TRUE(strokeDone(1));
   ASSERT_NE(paint(), nullptr);
@@ -166,27 +171,27 @@ TEST_F(Painting, LayersThatAreTickedArePaintedByTheSameStroke) {
   EXPECT_TRUE(paint()->material->has(MaterialChannel::stiffness));
   EXPECT_TRUE(paint()->material->has(MaterialChannel::static_friction));
   // Another tool keeps the ticks, and its own layer is no second one.
-  choose(Tool::color);
-  EXPECT_EQ(layersOf(window_->desk().brush()).size(), 2U);
-  choose(Tool::erase);
-  EXPECT_EQ(layersOf(window_->desk().brush()).size(), 1U);
+  choose("color");
+  EXPECT_EQ(layersBeside(), 1);
+  choose("erase");
+  EXPECT_EQ(layersBeside(), 0);
 }
 
 TEST_F(Painting, AClickInTheHistoryGoesThere) {
-  choose(Tool::color);
+  choose("color");
   stroke(middle() - QPoint(50, 30), middle() + QPoint(50, -30), 200);
   ASSERT_TRUE(strokeDone(1));
-  choose(Tool::material(MaterialChannel::static_friction));
+  choose("friction");
   stroke(middle() - QPoint(50, -30), middle() + QPoint(50, 30), 200);
   ASSERT_TRUE(strokeDone(2));
-  ASSERT_EQ(window_->history().count(), 3);
-  EXPECT_EQ(window_->history().currentRow(), 2);
-  emit window_->history().itemClicked(window_->history().item(0));
-  ASSERT_TRUE(waitUntil([&] { return window_->standing().done == 0; }));
+  ASSERT_EQ(find<HistoryPanel>()->count(), 3);
+  EXPECT_EQ(find<HistoryPanel>()->currentRow(), 2);
+  emit find<HistoryPanel>()->itemClicked(find<HistoryPanel>()->item(0));
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 0; }));
   EXPECT_EQ(paint(), nullptr);
-  EXPECT_EQ(window_->history().currentRow(), 0);
-  emit window_->history().itemClicked(window_->history().item(1));
-  ASSERT_TRUE(waitUntil([&] { return window_->standing().done == 1; }));
+  EXPECT_EQ(find<HistoryPanel>()->currentRow(), 0);
+  emit find<HistoryPanel>()->itemClicked(find<HistoryPanel>()->item(1));
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 1; }));
   ASSERT_NE(paint(), nullptr);
   EXPECT_TRUE(paint()->color && !paint()->material);
 }
@@ -195,65 +200,59 @@ TEST_F(Painting, KeysChooseToolsAndTheBrushesSize) {
   for (const ToolCard& card : toolCards()) {
     key(card.key);
     if (card.choice.handling == Handling::pick) continue;
-    EXPECT_TRUE(window_->tools().choice() == card.choice) << card.words.toStdString();
+    EXPECT_TRUE(find<ToolBar>()->choice() == card.choice) << card.words.toStdString();
   }
   key(Qt::Key_P);
-  const Brush before = window_->desk().brush();
+  const double radius = row("brush_radius"), falloff = row("brush_falloff");
   key(Qt::Key_BracketRight);
-  EXPECT_NEAR(window_->desk().brush().radius, 1.15 * before.radius, 1e-9);
+  EXPECT_NEAR(row("brush_radius"), 1.15 * radius, 0.006);
   key(Qt::Key_BracketLeft);
   key(Qt::Key_BracketLeft, Qt::ShiftModifier);
-  EXPECT_NEAR(window_->desk().brush().radius, before.radius, 1e-9);
-  EXPECT_NEAR(window_->desk().brush().falloff, before.falloff / 1.15, 1e-9);
+  EXPECT_NEAR(row("brush_radius"), radius, 1e-9);
+  EXPECT_NEAR(row("brush_falloff"), falloff / 1.15, 0.006);
   key(Qt::Key_Space);
-  EXPECT_EQ(window_->tools().choice().handling, Handling::navigate);
+  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::navigate);
   key(Qt::Key_Space);
-  EXPECT_TRUE(window_->tools().choice() == (ToolChoice{Handling::paint, Tool::color}));
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::paint, Tool::color}));
 }
 
 TEST_F(Painting, TheEyedropperTakesWhatIsThereAndGivesTheBrushBack) {
-  choose(Tool::material(MaterialChannel::stiffness));
-  Brush brush = window_->desk().brush();
-  brush.value = 2345;
-  brush.radius = 0.008;
-  brush.falloff = 16;
-  window_->desk().setBrush(brush);
+  choose("stiffness");
+  setRow("brush_value", 2345);
+  setRow("brush_radius", 8);
+  setRow("brush_falloff", 16);
   stroke(middle(), middle() + QPoint(4, 0), 300);
   ASSERT_TRUE(strokeDone(1));
-  brush.value = 10;
-  window_->desk().setBrush(brush);
+  setRow("brush_value", 10);
   send(QEvent::MouseButtonPress, middle() + QPoint(2, 0), Qt::LeftButton, Qt::LeftButton,
        Qt::AltModifier);
   send(QEvent::MouseButtonRelease, middle(), Qt::LeftButton, Qt::NoButton, Qt::AltModifier);
-  EXPECT_NEAR(window_->desk().brush().value, 2345, 25);
-  window_->tools().choose({Handling::pick, {}});
-  brush.value = 10;
-  window_->desk().setBrush(brush);
+  EXPECT_NEAR(row("brush_value"), 2345, 25);
+  trigger("tool_pick");
+  setRow("brush_value", 10);
   send(QEvent::MouseButtonPress, middle() + QPoint(2, 0), Qt::LeftButton, Qt::LeftButton);
-  EXPECT_NEAR(window_->desk().brush().value, 2345, 25);
-  EXPECT_TRUE(window_->tools().choice() ==
+  EXPECT_NEAR(row("brush_value"), 2345, 25);
+  EXPECT_TRUE(find<ToolBar>()->choice() ==
               (ToolChoice{Handling::paint, Tool::material(MaterialChannel::stiffness)}));
   send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
   ASSERT_TRUE(waitUntil(
-      [&] { return window_->status().pickedText().contains(QStringLiteral("N/m")); }, 3000));
-  EXPECT_TRUE(window_->status().pickedText().contains(QRegExp("23[234]\\d N/m")))
-      << window_->status().pickedText().toStdString();
+      [&] { return find<QLabel>("picked")->text().contains(QStringLiteral("N/m")); }, 3000));
+  EXPECT_TRUE(find<QLabel>("picked")->text().contains(QRegExp("23[234]\\d N/m")))
+      << find<QLabel>("picked")->text().toStdString();
 }
 
 TEST_F(Painting, APensPressureIsForceAndMakesTheBrushLarger) { // K19
-  choose(Tool::material(MaterialChannel::stiffness));
-  Brush brush = window_->desk().brush();
-  brush.radius = 0.002;
-  brush.radius_per_force = 0.006;
-  brush.falloff = 16;
-  window_->desk().setBrush(brush);
+  choose("stiffness");
+  setRow("brush_radius", 1);
+  setRow("brush_grows", 3);
+  setRow("brush_falloff", 16);
   const auto pen = [&](QEvent::Type type, const QPoint& at, double pressure) {
     QTabletEvent event(type, at, view().mapToGlobal(at), QTabletEvent::Stylus, QTabletEvent::Pen,
                        pressure, 0, 0, 0, 0, 0, Qt::NoModifier, 1, Qt::LeftButton,
                        type == QEvent::TabletRelease ? Qt::NoButton : Qt::LeftButton);
     QApplication::sendEvent(&view(), &event);
   };
-  const auto blocksAfter = [&](double pressure, std::size_t edits) {
+  const auto blocksAfter = [&](double pressure, std::size_t count) {
     pen(QEvent::TabletMove, middle(), 0);
     wait(150);
     pen(QEvent::TabletPress, middle(), pressure);
@@ -262,7 +261,7 @@ TEST_F(Painting, APensPressureIsForceAndMakesTheBrushLarger) { // K19
       pen(QEvent::TabletMove, middle() + QPoint(i / 8, 0), pressure);
     }
     pen(QEvent::TabletRelease, middle(), 0);
-    EXPECT_TRUE(strokeDone(edits));
+    EXPECT_TRUE(strokeDone(count));
     std::size_t nodes = 0;
     if (paint() && paint()->material)
       for (const auto& [index, block] : paint()->material->blocks())
@@ -272,59 +271,63 @@ TEST_F(Painting, APensPressureIsForceAndMakesTheBrushLarger) { // K19
   };
   const std::size_t light = blocksAfter(0.2, 1);
   key(Qt::Key_Z, Qt::ControlModifier);
-  ASSERT_TRUE(waitUntil([&] { return window_->standing().done == 0; }));
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 0; }));
   const std::size_t hard = blocksAfter(1.0, 1);
   EXPECT_GT(light, 0u);
   EXPECT_GT(hard, 3 * light);
 }
 
 TEST_F(Painting, WhatIsShownFollowsTheToolUntilSomethingElseIsChosen) {
-  choose(Tool::color);
+  choose("color");
   stroke(middle() - QPoint(40, 20), middle() + QPoint(40, -20), 200);
   ASSERT_TRUE(strokeDone(1));
-  choose(Tool::material(MaterialChannel::stiffness));
+  choose("stiffness");
   stroke(middle() - QPoint(40, -20), middle() + QPoint(40, 20), 200);
   ASSERT_TRUE(strokeDone(2));
   wait(100);
-  auto* combo = window_->findChild<QComboBox*>(QStringLiteral("paint_shown"));
+  auto* combo = find<QComboBox>("paint_shown");
+  const auto pick = [combo](int index) {
+    combo->setCurrentIndex(index);
+    emit combo->activated(index); // as if a person had
+  };
   EXPECT_EQ(combo->count(), 4) << "as the tool, nothing, colour, stiffness";
-  EXPECT_EQ(window_->paintDisplay().shown(), quantityOf(MaterialChannel::stiffness));
-  choose(Tool::color);
-  EXPECT_EQ(window_->paintDisplay().shown(), PaintQuantity::color);
-  window_->paintDisplay().choose(quantityOf(MaterialChannel::stiffness));
-  choose(Tool::relief);
-  EXPECT_EQ(window_->paintDisplay().shown(), quantityOf(MaterialChannel::stiffness));
+  EXPECT_EQ(find<PaintDisplay>()->shown(), quantityOf(MaterialChannel::stiffness));
+  choose("color");
+  EXPECT_EQ(find<PaintDisplay>()->shown(), PaintQuantity::color);
+  pick(3); // stiffness
+  choose("relief");
+  EXPECT_EQ(find<PaintDisplay>()->shown(), quantityOf(MaterialChannel::stiffness));
   // The range can be held.
-  auto* lock = window_->findChild<QCheckBox*>(QStringLiteral("lock_range"));
+  auto* lock = find<QCheckBox>("lock_range");
   lock->setChecked(true);
-  window_->findChild<QDoubleSpinBox*>(QStringLiteral("range_low"))->setValue(100);
-  window_->findChild<QDoubleSpinBox*>(QStringLiteral("range_high"))->setValue(4000);
+  find<QDoubleSpinBox>("range_low")->setValue(100);
+  find<QDoubleSpinBox>("range_high")->setValue(4000);
   wait(100);
   const ValueRange range = view().view().paintRange(quantityOf(MaterialChannel::stiffness));
   EXPECT_EQ(range.low, 100);
   EXPECT_EQ(range.high, 4000);
-  window_->paintDisplay().choose(std::nullopt);
-  EXPECT_FALSE(window_->paintDisplay().shown().has_value());
+  pick(1); // nothing
+  EXPECT_FALSE(find<PaintDisplay>()->shown().has_value());
 }
 
 TEST_F(Painting, ReliefSaysHowHighItMayBe) { // F7
-  window_->display().setShown(Layer::tip, false);
-  choose(Tool::relief);
+  show(Layer::tip, false);
+  choose("relief");
   stroke(middle() - QPoint(40, 0), middle() + QPoint(40, 0), 300);
   ASSERT_TRUE(strokeDone(1));
-  auto* note = window_->findChild<QLabel*>(QStringLiteral("relief_note"));
+  auto* note = find<QLabel>("relief_note");
   ASSERT_TRUE(waitUntil([&] { return note->isVisible(); }, 10000));
   EXPECT_TRUE(note->text().contains(QStringLiteral("mm"))) << note->text().toStdString();
-  window_->setMode(SceneWidget::Mode::feel);
-  EXPECT_TRUE(window_->relief().isVisible()) << "the scene has relief";
-  auto* inverted = window_->findChild<QCheckBox*>(QStringLiteral("relief_inverted"));
+  trigger("tool_feel");
+  EXPECT_TRUE(find<ReliefPanel>()->isVisible()) << "the scene has relief";
+  auto* inverted = find<QCheckBox>("relief_inverted");
   inverted->setChecked(true);
-  ASSERT_TRUE(waitUntil([&] { return window_->scene()->scene.relief.height < 0; }));
+  ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.relief.height < 0; }));
   ASSERT_TRUE(strokeDone(2));
 }
 
 TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
-  choose(Tool::material(MaterialChannel::stiffness));
+  choose("stiffness");
   QElapsedTimer clock;
   const RunQueueWait queue; // what other programs take of the processor is not the window's
   // Its work by its own processor time, its waiting by what the edit takes beside it: both of them
@@ -345,7 +348,7 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
   // A field of 300 cells takes a second or more.
   bool done = false;
   const auto begin = std::chrono::steady_clock::now();
-  window_->edits().apply(
+  edits().thread().apply(
       "finer",
       [](const CompiledScene& now) {
         auto scene = std::make_shared<Scene>(now.scene);
@@ -369,23 +372,23 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
 }
 
 TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
-  choose(Tool::color);
+  choose("color");
   stroke(middle() - QPoint(40, 0), middle() + QPoint(40, 0), 200);
   ASSERT_TRUE(strokeDone(1));
-  window_->saveWorkspaceTo(QString::fromStdString((folder_ / "ws").string()));
+  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("ws")));
   stroke(middle() - QPoint(40, 30), middle() + QPoint(40, -30), 200); // journaled, not saved
   ASSERT_TRUE(strokeDone(2));
   EXPECT_TRUE(window_->isWindowModified());
   window_ = std::make_unique<MainWindow>();
-  window_->setAsks(false);
+  documents().setAsks(false);
   window_->resize(1100, 760);
   window_->show();
   ASSERT_TRUE(open(folder_ / "ws"));
-  EXPECT_EQ(window_->standing().edits.size(), 2u);
-  EXPECT_EQ(window_->standing().done, 2u);
-  EXPECT_TRUE(window_->standing().unsaved);
+  EXPECT_EQ(edits().status().edits.size(), 2u);
+  EXPECT_EQ(edits().status().done, 2u);
+  EXPECT_TRUE(edits().status().unsaved);
   EXPECT_TRUE(paint() && paint()->color);
   bool said = false;
   for (const QLabel* label : window_->findChildren<QLabel*>())

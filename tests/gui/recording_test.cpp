@@ -1,7 +1,5 @@
 // What was recorded is lost only when somebody says so.
 #include <QDialog>
-#include <QMenu>
-#include <QMenuBar>
 #include <QMessageBox>
 #include <QTimer>
 
@@ -53,75 +51,75 @@ class Recorded : public WindowTest {
       QWidget* modal = QApplication::activeModalWidget();
       if (modal == nullptr) return;
       ++asked_;
-      if (auto* box = qobject_cast<QMessageBox*>(modal))
+      if (auto* box = qobject_cast<QMessageBox*>(modal)) {
+        said_ = box->text();
         box->button(button)->click();
-      else if (auto* dialog = qobject_cast<QDialog*>(modal))
+      } else if (auto* dialog = qobject_cast<QDialog*>(modal))
         dialog->reject();
     });
     answers_.start(20);
   }
-  QAction* recordAction() {
-    for (QAction* menu : window_->menuBar()->actions())
-      for (QAction* action : menu->menu()->actions())
-        if (action->shortcut() == QKeySequence(Qt::Key_R)) return action;
-    return nullptr;
-  }
+  int ticksSaid() const { return said_.split(' ').first().toInt(); }
   QTimer answers_;
   int asked_ = 0;
+  QString said_; // by the last question
 };
 
 TEST_F(Recorded, TimeIncreasesOverAReload) {
-  window_->startRecording();
+  feel().startLog();
   wait(300);
   ASSERT_TRUE(open(saved(icosphere(0.03, 10), "other.obj")));
   wait(300);
-  const auto samples = window_->takeRecording();
+  const auto samples = feel().log().samples();
   ASSERT_GT(samples.size(), 300U);
   for (std::size_t i = 1; i < samples.size(); ++i) ASSERT_GT(samples[i].t, samples[i - 1].t) << i;
 }
 
 TEST_F(Recorded, RLeavesTheLogAlone) {
-  window_->startLog();
+  feel().startLog();
   wait(300);
-  const std::size_t before = window_->log().samples().size();
+  const std::size_t before = feel().log().samples().size();
   ASSERT_GT(before, 50U);
-  window_->startRecording();
+  trigger("record");
   wait(50);
-  window_->takeRecording();
-  EXPECT_GE(window_->log().samples().size(), before);
+  answerWith(QMessageBox::Discard);
+  trigger("record");
+  EXPECT_FALSE(find<QAction>("record")->isChecked());
+  EXPECT_GE(feel().log().samples().size(), before);
 }
 
 TEST_F(Recorded, ACancelledSaveGoesOnRecording) {
-  QAction* action = recordAction();
-  ASSERT_NE(action, nullptr);
-  action->trigger();
+  trigger("record");
+  EXPECT_TRUE(find<QAction>("record")->isChecked());
   wait(300);
-  const std::size_t before = window_->recording().samples().size();
-  ASSERT_GT(before, 50U);
   answerWith(QMessageBox::Cancel);
-  action->trigger();
+  trigger("record");
   EXPECT_GE(asked_, 2); // the name, then what to do
-  EXPECT_TRUE(action->isChecked());
-  EXPECT_TRUE(window_->recording().on());
-  EXPECT_GE(window_->recording().samples().size(), before);
+  EXPECT_TRUE(find<QAction>("record")->isChecked());
+  const int before = ticksSaid();
+  EXPECT_GT(before, 50);
+  wait(300);
+  trigger("record");
+  EXPECT_GT(ticksSaid(), before + 50) << "those of before, and more";
 }
 
 TEST_F(Recorded, ClosingAsksAndCancelKeepsTheWindow) {
-  window_->startRecording();
+  trigger("record");
   wait(200);
   answerWith(QMessageBox::Cancel);
   EXPECT_FALSE(window_->close());
   EXPECT_TRUE(window_->isVisible());
-  EXPECT_FALSE(window_->recording().samples().empty());
+  EXPECT_GT(ticksSaid(), 0);
+  EXPECT_TRUE(find<QAction>("record")->isChecked());
   answers_.disconnect();
   answerWith(QMessageBox::Discard);
   EXPECT_TRUE(window_->close());
 }
 
 TEST_F(Recorded, WithNobodyToAskClosingJustCloses) {
-  window_->startRecording();
+  trigger("record");
   wait(100);
-  window_->setAsks(false);
+  documents().setAsks(false);
   answerWith(QMessageBox::Cancel);
   EXPECT_TRUE(window_->close());
   EXPECT_EQ(asked_, 0);
@@ -129,15 +127,12 @@ TEST_F(Recorded, WithNobodyToAskClosingJustCloses) {
 
 TEST_F(Recorded, EditsAreAskedAboutUntilTheyAreSaved) {
   EXPECT_FALSE(window_->isWindowModified());
-  HapticProperties haptics = window_->haptics().values();
-  haptics.stiffness = 321;
-  window_->haptics().setValues(haptics);
-  emit window_->haptics().edited(haptics);
+  setRow("stiffness", 321);
   EXPECT_TRUE(window_->isWindowModified());
   answerWith(QMessageBox::Cancel);
   EXPECT_FALSE(window_->close());
   EXPECT_EQ(asked_, 1);
-  window_->saveWorkspaceTo(QString::fromStdString((folder_ / "ws").string()));
+  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(window_->close());
   EXPECT_EQ(asked_, 1);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 class Recovery : public WindowTest {
  protected:
   void paintOne() {
-    window_->tools().choose({Handling::paint, Tool::color});
+    trigger("tool_color");
     wait(200);
     send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
     wait(200);
@@ -27,17 +27,17 @@ class Recovery : public WindowTest {
     wait(200);
     send(QEvent::MouseButtonRelease, middle(), Qt::LeftButton, Qt::NoButton);
   }
-  bool edits(std::size_t count) {
-    return waitUntil([&] { return window_->standing().edits.size() == count; }, 20000);
+  bool editsDone(std::size_t count) {
+    return waitUntil([&] { return edits().status().edits.size() == count; }, 20000);
   }
-  QWidget* bar() { return window_->findChild<QWidget*>(QStringLiteral("recover_bar")); }
+  QWidget* bar() { return find<QWidget>("recover_bar"); }
 };
 
 // Runs in a program of its own, that kills itself when its stroke is done.
 TEST_F(Recovery, DISABLED_PaintsAndIsKilled) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   paintOne();
-  ASSERT_TRUE(edits(1));
+  ASSERT_TRUE(editsDone(1));
   fs::remove_all(folder_);
   kill(getpid(), SIGKILL);
 }
@@ -54,18 +54,18 @@ TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {
   ASSERT_TRUE(WIFSIGNALED(status)) << "it was to be killed";
 
   EXPECT_FALSE(bar()->isVisible());
-  window_->offerRecovery();
+  documents().offerRecovery();
   ASSERT_TRUE(bar()->isVisible());
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
-  window_->findChild<QAbstractButton*>(QStringLiteral("recover"))->click();
+  find<QAbstractButton>("recover")->click();
   EXPECT_FALSE(bar()->isVisible());
-  ASSERT_TRUE(waitUntil([&] { return ready && window_->standing().edits.size() == 1; }));
-  const auto& paint = window_->scene()->scene.objects[0].paint;
+  ASSERT_TRUE(waitUntil([&] { return ready && edits().status().edits.size() == 1; }));
+  const auto& paint = edits().scene()->scene.objects[0].paint;
   EXPECT_TRUE(paint && paint->color);
   EXPECT_TRUE(window_->isWindowModified()) << "it is in no folder of its own";
-  EXPECT_FALSE(window_->standing().folder.has_value());
-  window_->saveWorkspaceTo(QString::fromStdString((folder_ / "ws").string()));
+  EXPECT_FALSE(edits().status().folder.has_value());
+  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
 }
@@ -73,7 +73,7 @@ TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {
 TEST_F(Recovery, ACleanEndLeavesNothingToOffer) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   paintOne();
-  ASSERT_TRUE(edits(1));
+  ASSERT_TRUE(editsDone(1));
   EXPECT_FALSE(fs::is_empty(folder_ / "state" / "patina"));
   window_.reset();
   EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
@@ -83,14 +83,14 @@ TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   const fs::path ws = folder_ / "ws";
   paintOne();
-  ASSERT_TRUE(edits(1));
-  window_->saveWorkspaceTo(QString::fromStdString(ws.string()));
+  ASSERT_TRUE(editsDone(1));
+  documents().saveTo(QString::fromStdString(ws.string()));
   paintOne();
-  ASSERT_TRUE(edits(2));
+  ASSERT_TRUE(editsDone(2));
   int asked = 0;
   const auto answer = [&](QMessageBox::StandardButton button) {
     QTimer::singleShot(300, window_.get(), [this, button, &asked] {
-      auto* box = window_->findChild<QMessageBox*>(QStringLiteral("unsaved_edits"));
+      auto* box = find<QMessageBox>("unsaved_edits");
       if (box == nullptr) return;
       ++asked;
       box->button(button)->click();
@@ -99,15 +99,15 @@ TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
   answer(QMessageBox::Cancel);
   EXPECT_FALSE(window_->close());
   EXPECT_TRUE(window_->isVisible());
-  EXPECT_EQ(window_->standing().done, 2u);
+  EXPECT_EQ(edits().status().done, 2u);
   answer(QMessageBox::Discard);
   EXPECT_TRUE(window_->close());
   EXPECT_EQ(asked, 2);
   window_ = std::make_unique<MainWindow>();
   window_->show();
   ASSERT_TRUE(open(ws));
-  EXPECT_EQ(window_->standing().done, 1u);
-  EXPECT_EQ(window_->standing().edits.size(), 2u) << "and could be done again";
+  EXPECT_EQ(edits().status().done, 1u);
+  EXPECT_EQ(edits().status().edits.size(), 2u) << "and could be done again";
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(window_->close()) << "nothing to ask about";
 }
@@ -115,13 +115,13 @@ TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
 TEST_F(Recovery, ADamagedWorkspaceIsOfferedWhatCanBeRead) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   const fs::path ws = folder_ / "ws";
-  window_->saveWorkspaceTo(QString::fromStdString(ws.string()));
+  documents().saveTo(QString::fromStdString(ws.string()));
   paintOne();
-  ASSERT_TRUE(edits(1));
+  ASSERT_TRUE(editsDone(1));
   paintOne();
-  ASSERT_TRUE(edits(2));
+  ASSERT_TRUE(editsDone(2));
   window_ = std::make_unique<MainWindow>();
-  window_->setAsks(false);
+  documents().setAsks(false);
   window_->show();
   for (const auto& entry : fs::directory_iterator(ws)) { // in the middle of the first record
     if (entry.path().extension() != ".jsonl") continue;
@@ -132,16 +132,17 @@ TEST_F(Recovery, ADamagedWorkspaceIsOfferedWhatCanBeRead) {
     file << "#####";
   }
   QString message;
-  QObject::connect(window_.get(), &MainWindow::loadFailed, [&](const QString& m) { message = m; });
-  window_->open(requestFor(ws));
+  QObject::connect(&documents(), &DocumentController::failed,
+                   [&](const QString& m) { message = m; });
+  documents().open(requestFor(ws));
   ASSERT_TRUE(waitUntil([&] { return !message.isEmpty(); }));
-  auto* recover = window_->findChild<QAbstractButton*>(QStringLiteral("recover_damaged"));
+  auto* recover = find<QAbstractButton>("recover_damaged");
   ASSERT_NE(recover, nullptr) << message.toStdString();
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
   recover->click();
   ASSERT_TRUE(waitUntil([&] { return ready; }));
-  EXPECT_EQ(window_->scene()->scene.objects.size(), 1U);
+  EXPECT_EQ(edits().scene()->scene.objects.size(), 1U);
 }
 
 } // namespace

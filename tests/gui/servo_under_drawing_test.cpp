@@ -115,7 +115,7 @@ class ServoUnderDrawing : public WindowTest {
     auto owned = std::make_unique<WatchedDevice>();
     const WatchedDevice& device = *owned;
     ServoLoop loop(std::move(owned));
-    loop.publish(window_->scene()->snapshot);
+    loop.publish(edits().scene()->snapshot);
     loop.start();
     auto measuring = std::async(std::launch::async, [] { return measureLatency(kSeconds); });
     std::vector<ToolSample> samples;

@@ -19,7 +19,7 @@ TEST_F(SimulatedHandWindow, BalancesTheSurfaceInASceneThatAsksForIt) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(3);
   wait(700);
-  const ToolSample sample = window_->lastSample();
+  const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
   const Vec3 pull = HandSpec{}.stiffness * (view().target() - sample.tip);
   ASSERT_LT(pull.norm(), HandSpec{}.max_force);

@@ -21,14 +21,11 @@ class TouchPanels : public WindowTest {
     if (IsSkipped()) return;
     ASSERT_TRUE(open(saved(icosphere(kRadius, 30), "sphere.obj")));
   }
-  template <typename Widget> Widget* find(const char* name) {
-    return window_->findChild<Widget*>(QString::fromUtf8(name));
-  }
   void click(const char* name) {
     find<QToolButton>(name)->click();
     wait(150);
   }
-  const Scene& scene() { return window_->scene()->scene; }
+  const Scene& scene() { return edits().scene()->scene; }
   void pressMiddle(int notches) {
     send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
     turnWheel(notches);
@@ -49,7 +46,7 @@ TEST_F(TouchPanels, OffsetAndMagnetExcludeEachOther) {
   EXPECT_FALSE(scene().haptics.offset.has_value());
   ASSERT_TRUE(scene().haptics.magnet.has_value());
   EXPECT_EQ(find<ValueRow>("offset"), nullptr);
-  emit find<ValueRow>("magnet_strength")->edited(450);
+  setRow("magnet_strength", 450);
   find<QCheckBox>("magnet_fades")->setChecked(false);
   wait(150);
   EXPECT_EQ(scene().haptics.magnet->strength, 450);
@@ -62,10 +59,10 @@ TEST_F(TouchPanels, OffsetAndMagnetExcludeEachOther) {
 
 TEST_F(TouchPanels, AnOffsetIsFeltOutsideAndContactIsSeenOnTheSurface) { // K12
   click("mode_offset");
-  emit find<ValueRow>("offset")->edited(1.0);
+  setRow("offset", 1.0);
   wait(150);
   pressMiddle(0);
-  const ToolSample sample = window_->lastSample();
+  const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
   EXPECT_NEAR(sample.tip.norm(), kRadius, 2e-4);
   EXPECT_NEAR(sample.vcp.norm(), kRadius + 1e-3, 1e-4);
@@ -74,13 +71,13 @@ TEST_F(TouchPanels, AnOffsetIsFeltOutsideAndContactIsSeenOnTheSurface) { // K12
 }
 
 TEST_F(TouchPanels, TheBandIsThereOnlyWithAnOffsetOrAMagnet) {
-  window_->display().setShown(Layer::tip, false);
-  EXPECT_FALSE(find<QCheckBox>("band")->isVisibleTo(&window_->display()));
+  show(Layer::tip, false);
+  EXPECT_FALSE(find<QCheckBox>("band")->isVisibleTo(find<DisplayPanel>()));
   EXPECT_EQ(goldShare(), 0);
   click("mode_offset");
-  EXPECT_TRUE(find<QCheckBox>("band")->isVisibleTo(&window_->display()));
+  EXPECT_TRUE(find<QCheckBox>("band")->isVisibleTo(find<DisplayPanel>()));
   EXPECT_GT(goldShare(), 0.05);
-  window_->display().setShown(Layer::band, false);
+  show(Layer::band, false);
   EXPECT_EQ(goldShare(), 0);
 }
 
@@ -88,10 +85,10 @@ TEST_F(TouchPanels, AMagnetPullsFromOutside) { // K13
   pressMiddle(0);
   turnWheel(-1);
   wait(300);
-  ASSERT_EQ(window_->lastSample().force.norm(), 0);
+  ASSERT_EQ(feel().sample().force.norm(), 0);
   click("mode_magnetic");
   wait(400);
-  const ToolSample sample = window_->lastSample();
+  const ToolSample sample = feel().sample();
   EXPECT_FALSE(sample.contact);
   EXPECT_TRUE(sample.attracted);
   EXPECT_LT(sample.force.dot(sample.tip), 0);
@@ -99,11 +96,9 @@ TEST_F(TouchPanels, AMagnetPullsFromOutside) { // K13
 
 TEST_F(TouchPanels, ContactAndCutOffReachTheScene) {
   find<QCheckBox>("contact_proxy")->setChecked(false);
-  HapticProperties haptics = window_->haptics().values();
-  haptics.damping = 2;
-  haptics.damping_cutoff = 80;
-  window_->haptics().setValues(haptics);
-  emit find<ValueRow>("damping_cutoff")->edited(120);
+  addProperty("Damping");
+  addProperty("Damping cut-off");
+  setRow("damping_cutoff", 120);
   wait(150);
   EXPECT_EQ(scene().haptics.contact, HapticProperties::Contact::ray);
   EXPECT_EQ(scene().haptics.damping_cutoff, 120);
@@ -113,15 +108,15 @@ TEST_F(TouchPanels, ContactAndCutOffReachTheScene) {
 }
 
 TEST_F(TouchPanels, AnEditThatTheFieldDoesNotHoldSaysSoAndIsNotFelt) {
-  const auto felt = window_->scene();
-  HapticProperties haptics = window_->haptics().values();
+  const auto felt = edits().scene();
+  HapticProperties haptics = find<HapticsPanel>()->values();
   haptics.offset = 0.2;
-  window_->haptics().setValues(haptics);
-  emit window_->haptics().edited(haptics);
+  find<HapticsPanel>()->setValues(haptics);
+  emit find<HapticsPanel>()->edited(haptics);
   wait(150);
-  EXPECT_EQ(window_->scene(), felt);
+  EXPECT_EQ(edits().scene(), felt);
   bool said = false;
-  for (const QLabel* label : window_->haptics().findChildren<QLabel*>())
+  for (const QLabel* label : find<HapticsPanel>()->findChildren<QLabel*>())
     said = said || (label->isVisible() && label->text().contains(QStringLiteral("band")));
   EXPECT_TRUE(said);
 }
@@ -131,55 +126,55 @@ TEST_F(TouchPanels, DeviceNumbersAreThereForASimulatedDeviceAndMakeTheLoopSafe) 
   find<QComboBox>("device")->setCurrentIndex(1);
   wait(150);
   EXPECT_EQ(scene().device, "simulated");
-  EXPECT_TRUE(window_->feel().running());
+  EXPECT_TRUE(feel().servo().running());
   EXPECT_EQ(find<QDoubleSpinBox>("device_mass"), nullptr);
   click("device_numbers");
   ASSERT_NE(find<QDoubleSpinBox>("device_mass"), nullptr);
   find<QDoubleSpinBox>("device_mass")->setValue(60);
   find<QDoubleSpinBox>("device_encoder")->setValue(30);
-  emit window_->haptics().findChild<ValueRow*>(QStringLiteral("stiffness"))->edited(8000);
+  setRow("stiffness", 8000);
   // 8000 N/m on a device of 0.5 N s/m at 1 kHz is past 2b/T: automatic switches the coupling on.
   ASSERT_TRUE(waitUntil(
-      [&] { return window_->status().stabilisersText().startsWith(QStringLiteral("coupling ")); }));
+      [&] { return find<QLabel>("stabilisers")->text().startsWith(QStringLiteral("coupling ")); }));
   ASSERT_TRUE(scene().device_model.has_value());
   EXPECT_NEAR(scene().device_model->mass, 0.06, 1e-12);
   EXPECT_NEAR(scene().device_model->encoder_step, 30e-6, 1e-15);
-  EXPECT_TRUE(window_->status().stabilisersText().endsWith(QStringLiteral(" N/m")));
+  EXPECT_TRUE(find<QLabel>("stabilisers")->text().endsWith(QStringLiteral(" N/m")));
   EXPECT_FALSE(find<QLabel>("stabilisers")->toolTip().isEmpty());
   find<QComboBox>("stabiliser")->setCurrentIndex(1); // none
-  EXPECT_TRUE(waitUntil([&] { return window_->status().stabilisersText().isEmpty(); }));
+  EXPECT_TRUE(waitUntil([&] { return find<QLabel>("stabilisers")->text().isEmpty(); }));
   find<QComboBox>("stabiliser")->setCurrentIndex(3); // passivity
   EXPECT_TRUE(waitUntil(
-      [&] { return window_->status().stabilisersText() == QStringLiteral("passivity"); }));
+      [&] { return find<QLabel>("stabilisers")->text() == QStringLiteral("passivity"); }));
   click("device_numbers");
   EXPECT_TRUE(waitUntil([&] { return !scene().device_model.has_value(); }));
 }
 
 TEST_F(TouchPanels, EnergyGoesInAsTheTipDoes) {
   pressMiddle(0);
-  window_->findChild<QToolButton*>(QStringLiteral("energy_reset"))->click();
+  find<QToolButton>("energy_reset")->click();
   turnWheel(3);
   wait(500);
-  const ToolSample sample = window_->lastSample();
+  const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
   const double depth = kRadius - sample.tip.norm();
   const double spring = 0.5 * 500 * depth * depth;
-  EXPECT_NEAR(window_->energyPlot().meter().ledger.absorbed, spring, 0.1 * spring);
+  EXPECT_NEAR(find<EnergyPlot>()->meter().ledger.absorbed, spring, 0.1 * spring);
 }
 
 TEST_F(TouchPanels, TheStabilityMapComesWhenItIsAskedFor) {
-  window_->display().setShown(Layer::tip, false);
-  emit window_->haptics().findChild<ValueRow*>(QStringLiteral("stiffness"))->edited(8000);
+  show(Layer::tip, false);
+  setRow("stiffness", 8000);
   wait(150);
   const double sage = surfaceShare();
   ASSERT_GT(sage, 0.1);
-  window_->display().setShown(Layer::stability, true);
+  show(Layer::stability, true);
   auto* words = find<QLabel>("stability_words");
   EXPECT_TRUE(words->isVisible());
   ASSERT_TRUE(waitUntil([&] { return words->text().contains(QStringLiteral("K*/K")); }));
   EXPECT_LT(surfaceShare(), 0.5 * sage); // the map stands where the mesh was
   EXPECT_TRUE(words->text().contains(QStringLiteral("100 %"))) << words->text().toStdString();
-  window_->display().setShown(Layer::stability, false);
+  show(Layer::stability, false);
   wait(60);
   EXPECT_FALSE(words->isVisible());
   EXPECT_GT(surfaceShare(), 0.9 * sage);

@@ -19,17 +19,14 @@ class ValueFields : public WindowTest {
     WindowTest::SetUp();
     if (IsSkipped()) return;
     ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
-    window_->display().setShown(Layer::slice, true);
+    show(Layer::slice, true);
     window_->resize(1100, 500); // or there is nothing to scroll
     window_->activateWindow();
     wait(100);
     view().setFocus();
-    scroll_ = window_->findChild<QScrollArea*>();
+    scroll_ = find<QScrollArea>();
   }
-  QDoubleSpinBox* stiffness() {
-    auto* row = window_->haptics().findChild<QWidget*>(QStringLiteral("stiffness"));
-    return row->findChild<QDoubleSpinBox*>();
-  }
+  QDoubleSpinBox* stiffness() { return find<ValueRow>("stiffness")->findChild<QDoubleSpinBox*>(); }
   static void wheel(QWidget& over, int notches) {
     const QPoint at = over.rect().center();
     QWheelEvent event(at, over.mapToGlobal(at), {}, {0, 120 * notches}, Qt::NoButton,
@@ -61,8 +58,8 @@ TEST_F(ValueFields, TheWheelScrollsThePanelAndChangesNoValue) {
     EXPECT_GT(scroll_->verticalScrollBar()->value(), 0) << widget->metaObject()->className();
   };
   ASSERT_GT(scroll_->verticalScrollBar()->maximum(), 0) << window_->height();
-  auto* slider = window_->haptics().findChild<QSlider*>();
-  auto* choice = window_->display().findChild<QComboBox*>();
+  auto* slider = find<HapticsPanel>()->findChild<QSlider*>();
+  auto* choice = find<DisplayPanel>()->findChild<QComboBox*>();
   tried(stiffness(), [this] { return stiffness()->value(); });
   tried(slider, [=] { return slider->value(); });
   tried(choice, [=] { return choice->currentIndex(); });
@@ -79,17 +76,17 @@ TEST_F(ValueFields, EnterTakesTheNumberAndGivesTheKeysToTheView) {
   type(QStringLiteral("432"));
   key(*stiffness(), Qt::Key_Return);
   EXPECT_EQ(QApplication::focusWidget(), &view());
-  EXPECT_EQ(window_->haptics().values().stiffness, 432);
+  EXPECT_EQ(find<HapticsPanel>()->values().stiffness, 432);
   key(*stiffness(), Qt::Key_Enter); // leaves alone what was not edited
-  EXPECT_EQ(window_->haptics().values().stiffness, 432);
+  EXPECT_EQ(find<HapticsPanel>()->values().stiffness, 432);
 }
 
 TEST_F(ValueFields, EscapeDropsWhatWasTypedAndGivesTheKeysToTheView) {
-  const double before = window_->haptics().values().stiffness;
+  const double before = find<HapticsPanel>()->values().stiffness;
   type(QStringLiteral("432"));
   key(*stiffness(), Qt::Key_Escape);
   EXPECT_EQ(QApplication::focusWidget(), &view());
-  EXPECT_EQ(window_->haptics().values().stiffness, before);
+  EXPECT_EQ(find<HapticsPanel>()->values().stiffness, before);
   EXPECT_EQ(stiffness()->value(), before);
 }
 

@@ -7,9 +7,12 @@
 #include <memory>
 
 #include <QApplication>
+#include <QCheckBox>
 #include <QElapsedTimer>
+#include <QMenu>
 #include <QMouseEvent>
 #include <QSettings>
+#include <QToolButton>
 #include <QWheelEvent>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -82,7 +85,7 @@ class WindowTest : public ::testing::Test {
     bool ready = false;
     const auto connection =
         QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
-    window_->open(requestFor(path, unit));
+    documents().open(requestFor(path, unit));
     const bool done = waitUntil([&] { return ready; });
     QObject::disconnect(connection);
     wait(80);
@@ -96,7 +99,26 @@ class WindowTest : public ::testing::Test {
     return request;
   }
 
-  SceneWidget& view() { return window_->view(); }
+  // What is no widget: all else is found by its name, and driven as a person does.
+  DocumentController& documents() { return window_->controllers().documents; }
+  EditController& edits() { return window_->controllers().edits; }
+  FeelController& feel() { return window_->controllers().feel; }
+
+  template <typename Widget> Widget* find(const QString& name = {}) {
+    return window_->findChild<Widget*>(name);
+  }
+  void trigger(const QString& name) { find<QAction>(name)->trigger(); }
+  void show(Layer layer, bool on) {
+    find<QCheckBox>(QString::fromStdString(std::string(name(layer))))->setChecked(on);
+  }
+  void setRow(const QString& name, double value) { // in the unit of the row
+    find<ValueRow>(name)->findChild<QDoubleSpinBox*>()->setValue(value);
+  }
+  void addProperty(const QString& words) {
+    for (QAction* action : find<QToolButton>("add_property")->menu()->actions())
+      if (action->text() == words) action->trigger();
+  }
+  SceneWidget& view() { return *find<SceneWidget>(); }
   QPoint middle() { return view().rect().center(); }
   void send(QEvent::Type type, const QPoint& at, Qt::MouseButton button, Qt::MouseButtons held,
             Qt::KeyboardModifiers keys = Qt::NoModifier) {

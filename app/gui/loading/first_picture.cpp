@@ -35,20 +35,21 @@ double firstPictureSeconds(MainWindow& window, const LoadRequest& request) {
   bool mesh_shown = false;
   double presented = 0;
   QString problem;
-  QObject::connect(&window.loader(), &SceneLoader::meshReady, &window, [&] { mesh_shown = true; });
-  QObject::connect(&window, &MainWindow::loadFailed, &window,
+  DocumentController& documents = window.controllers().documents;
+  QObject::connect(&documents, &DocumentController::previewed, &window, [&] { mesh_shown = true; });
+  QObject::connect(&documents, &DocumentController::failed, &window,
                    [&](const QString& message) { problem = message; });
-  QObject::connect(&window.view(), &QOpenGLWidget::frameSwapped, &window, [&] {
+  QObject::connect(window.findChild<SceneWidget*>(), &QOpenGLWidget::frameSwapped, &window, [&] {
     if (mesh_shown && presented == 0) presented = now();
   });
-  window.open(request);
+  documents.open(request);
   QElapsedTimer clock;
   clock.start();
   while (presented == 0 && problem.isEmpty() && clock.elapsed() < 120000)
     QApplication::processEvents(QEventLoop::AllEvents, 5);
   if (!problem.isEmpty()) throw Error(problem.toStdString());
   if (presented == 0) throw Error("no frame was presented within two minutes");
-  window.loader().cancel();
+  documents.cancel();
   return presented - processStart();
 }
 

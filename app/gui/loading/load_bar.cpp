@@ -14,7 +14,6 @@ LoadBar::LoadBar(QWidget* parent)
   layout->addWidget(words_);
   layout->addWidget(bar_, 1);
   layout->addWidget(cancel_);
-  bar_->setRange(0, 1000);
   cancel_->setObjectName(QStringLiteral("cancel_load"));
   connect(cancel_, &QPushButton::clicked, this, [this] {
     words_->setText(tr("Cancelling…"));
@@ -27,36 +26,22 @@ LoadBar::LoadBar(QWidget* parent)
   hide();
 }
 
-void LoadBar::begin(const QString& words, const QString& name, bool later) {
-  name_ = name;
-  on_ = true;
-  hide();
-  words_->setText(words);
-  bar_->setValue(0);
-  bar_->setRange(0, 1000);
-  cancel_->setEnabled(true);
-  if (later)
-    patience_.start();
-  else
-    show();
-}
-
-void LoadBar::report(double fraction, const QString& what) {
-  if (cancel_->isEnabled()) words_->setText(QStringLiteral("%1: %2").arg(name_, what));
-  bar_->setValue(static_cast<int>(std::lround(1000 * fraction)));
-}
-
-void LoadBar::showClosing() {
-  words_->setText(tr("Closing when the file that is being read is done…"));
-  bar_->setRange(0, 0);
-  cancel_->setEnabled(false);
-  show();
-}
-
-void LoadBar::end() {
-  on_ = false;
-  patience_.stop();
-  hide();
+void LoadBar::setWork(const std::optional<Work>& work) {
+  if (!work) {
+    title_.clear();
+    patience_.stop();
+    return hide();
+  }
+  if (work->title != title_) {
+    title_ = work->title;
+    cancel_->setEnabled(work->fraction >= 0);
+    words_->setText(work->words);
+    setVisible(!work->later);
+    work->later ? patience_.start() : patience_.stop();
+  }
+  if (cancel_->isEnabled()) words_->setText(work->words);
+  bar_->setRange(0, work->fraction < 0 ? 0 : 1000);
+  bar_->setValue(static_cast<int>(std::lround(1000 * work->fraction)));
 }
 
 } // namespace patina

@@ -1,5 +1,7 @@
-// Progress of a load, with Cancel; hidden when nothing loads.
+// Progress of what takes its time, with Cancel; hidden when nothing does.
 #pragma once
+
+#include <optional>
 
 #include <QLabel>
 #include <QProgressBar>
@@ -7,18 +9,15 @@
 #include <QTimer>
 #include <QWidget>
 
+#include "app/gui/window/window_state.h"
+
 namespace patina {
 
 class LoadBar : public QWidget {
   Q_OBJECT
  public:
   explicit LoadBar(QWidget* parent = nullptr);
-  // later = seen only if it is still on after half a second.
-  void begin(const QString& words, const QString& name, bool later = false);
-  bool showing(const QString& words) const { return on_ && name_ == words; }
-  void report(double fraction, const QString& what);
-  void showClosing();
-  void end();
+  void setWork(const std::optional<Work>& work);
 
  signals:
   void cancelled();
@@ -27,8 +26,7 @@ class LoadBar : public QWidget {
   QLabel* words_;
   QProgressBar* bar_;
   QPushButton* cancel_;
-  QString name_;
-  bool on_ = false; // or waiting to be
+  QString title_; // of the work that is seen, or will be
   QTimer patience_;
 };
 

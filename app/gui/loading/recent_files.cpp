@@ -9,7 +9,7 @@ constexpr int kKept = 8;
 const QString kKey = QStringLiteral("recent_files");
 } // namespace
 
-RecentFiles::RecentFiles(QMenu* menu) : QObject(menu), menu_(menu) {
+RecentFiles::RecentFiles(QMenu& menu, QObject* parent) : QObject(parent), menu_(menu) {
   rebuild();
 }
 
@@ -28,15 +28,15 @@ void RecentFiles::add(const QString& path) {
 }
 
 void RecentFiles::rebuild() {
-  menu_->clear();
+  menu_.clear();
   for (const QString& path : paths()) {
-    QAction* action = menu_->addAction(QFileInfo(path).fileName());
+    QAction* action = menu_.addAction(QFileInfo(path).fileName());
     action->setToolTip(path);
     action->setStatusTip(path);
     connect(action, &QAction::triggered, this, [this, path] { emit chosen(path); });
   }
-  menu_->setToolTipsVisible(true);
-  menu_->setEnabled(!menu_->isEmpty());
+  menu_.setToolTipsVisible(true);
+  menu_.setEnabled(!menu_.isEmpty());
 }
 
 } // namespace patina

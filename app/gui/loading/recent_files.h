@@ -10,7 +10,7 @@ namespace patina {
 class RecentFiles : public QObject {
   Q_OBJECT
  public:
-  explicit RecentFiles(QMenu* menu);
+  RecentFiles(QMenu& menu, QObject* parent);
   void add(const QString& path);
   QStringList paths() const;
 
@@ -19,7 +19,7 @@ class RecentFiles : public QObject {
 
  private:
   void rebuild();
-  QMenu* menu_;
+  QMenu& menu_;
 };
 
 } // namespace patina

@@ -1,8 +1,7 @@
-// Scenes that a crash left behind: offered above the picture, and nothing waits for the answer.
+// A scene that a crash left behind: offered above the picture, and nothing waits for the answer.
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include <QLabel>
 #include <QWidget>
@@ -13,16 +12,14 @@ class RecoverBar : public QWidget {
   Q_OBJECT
  public:
   explicit RecoverBar(QWidget* parent = nullptr);
-  void offer(std::vector<std::filesystem::path> places); // see autosave.h; none: hidden
+  void setPlace(const std::filesystem::path& place); // see autosave.h
 
  signals:
-  void recoverAsked(const std::filesystem::path& place);
+  void recoverAsked();
+  void forgetAsked();
+  void laterAsked();
 
  private:
-  void next();
-  void showFirst();
-
-  std::vector<std::filesystem::path> places_; // what is offered comes first
   QLabel* words_;
 };
 

@@ -4,15 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include <QCheckBox>
 #include <QColorDialog>
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QMenu>
-#include <QSignalBlocker>
 #include <QToolButton>
 
-#include "app/gui/painting/brush_curve.h"
 #include "app/gui/painting/tool_choice.h"
 
 namespace patina {
@@ -47,65 +43,37 @@ BrushPanel::BrushPanel(QWidget* parent) : QGroupBox(parent), layout_(new QVBoxLa
   layout_->setContentsMargins(0, 0, 0, 0);
 }
 
-void BrushPanel::show(const Brush& brush, const BrushBook& book) {
+void BrushPanel::show(const Brush& brush, const BrushPresets& presets) {
   brush_ = brush;
   setTitle(titleOf(brush.tool));
-  rebuild(book);
+  rebuild(presets);
 }
 
 void BrushPanel::change() {
-  if (curve_ != nullptr) static_cast<BrushCurve*>(curve_)->setBrush(brush_);
+  curve_->setBrush(brush_);
   emit edited(brush_);
 }
 
-ValueRow* BrushPanel::addRow(const char* name, const QString& caption, const QString& unit,
-                             const RowRange& range, double value, const QString& tip) {
-  auto* row = new ValueRow(caption, unit, range, rows_);
-  row->setObjectName(QString::fromUtf8(name));
-  row->setValue(value);
-  row->setToolTip(tip);
-  rows_->layout()->addWidget(row);
-  return row;
-}
-
-QComboBox* BrushPanel::addCombo(const char* name, const QString& caption, const QStringList& words,
-                                int now) {
-  auto* line = new QHBoxLayout;
-  auto* label = new QLabel(caption, rows_);
-  label->setProperty("quiet", true);
-  auto* combo = new QComboBox(rows_);
-  combo->setObjectName(QString::fromUtf8(name));
-  combo->setAccessibleName(caption);
-  combo->addItems(words);
-  combo->setCurrentIndex(now);
-  line->addWidget(label);
-  line->addWidget(combo, 1);
-  static_cast<QVBoxLayout*>(rows_->layout())->addLayout(line);
-  return combo;
-}
-
-void BrushPanel::rebuild(const BrushBook& book) {
-  takeAway(rows_);
-  rows_ = new QWidget(this);
-  auto* column = new QVBoxLayout(rows_);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(6);
+void BrushPanel::rebuild(const BrushPresets& presets) {
+  takeAway(form_);
+  form_ = new Form(this);
+  connect(form_, &Form::edited, this, &BrushPanel::change);
   if (brush_.tool == Tool::color)
     addColor();
   else
-    addValue(book.extent());
-  addLayers(book);
-  addSize(book);
+    addValue(presets.extent());
+  addLayers(presets);
+  addSize(presets);
   addShape();
   addChoices();
-  layout_->addWidget(rows_);
+  layout_->addWidget(form_);
 }
 
 void BrushPanel::addColor() {
   auto* line = new QHBoxLayout;
   line->setSpacing(3);
   const auto swatch = [&](const QColor& color, int wide, bool now) {
-    auto* button = new QToolButton(rows_);
+    auto* button = new QToolButton(form_);
     button->setFixedSize(wide, 22);
     button->setStyleSheet(QStringLiteral("QToolButton { background: %1; border: %2; "
                                          "border-radius: 3px; }")
@@ -129,7 +97,7 @@ void BrushPanel::addColor() {
       change();
     });
   line->addStretch(1);
-  static_cast<QVBoxLayout*>(rows_->layout())->addLayout(line);
+  form_->addLine(line);
 }
 
 void BrushPanel::addValue(double extent) {
@@ -147,11 +115,7 @@ void BrushPanel::addValue(double extent) {
     range = {dial.least, dial.most, dial.step, dial.decimals, dial.logarithmic};
     per_si = row.reading.per_si;
   }
-  ValueRow* row = addRow("brush_value", caption, unit, range, per_si * brush_.value);
-  connect(row, &ValueRow::edited, this, [this, per_si](double value) {
-    brush_.value = value / per_si;
-    change();
-  });
+  form_->addRow({"brush_value", caption, unit, range, per_si}, brush_.value);
 }
 
 // Which of the channels that share a tool.
@@ -167,8 +131,7 @@ void BrushPanel::addChannels(MaterialChannel channel) {
   }
   if (shared.size() == 1) return;
   const std::string name = "which_" + std::string(rowOf(channel).tool);
-  auto* which = addCombo(name.c_str(), tr("Paints"), words, now);
-  connect(which, qOverload<int>(&QComboBox::activated), this, [this, shared](int index) {
+  form_->addChoice(name.c_str(), tr("Paints"), words, now, [this, shared](int index) {
     emit toolAsked(Tool::material(shared[static_cast<std::size_t>(index)]));
   });
 }
@@ -182,16 +145,14 @@ void BrushPanel::addErased() {
     names.emplace_back(name(tool));
   }
   const auto now = std::find(names.begin(), names.end(), brush_.erases) - names.begin();
-  auto* what = addCombo("erases", tr("Erases"), words, static_cast<int>(now));
-  connect(what, qOverload<int>(&QComboBox::activated), this, [this, names](int index) {
+  form_->addChoice("erases", tr("Erases"), words, static_cast<int>(now), [this, names](int index) {
     brush_.erases = names[static_cast<std::size_t>(index)];
-    change();
   });
 }
 
-void BrushPanel::addLayers(const BrushBook& book) {
+void BrushPanel::addLayers(const BrushPresets& presets) {
   if (brush_.tool == Tool::erase) return;
-  auto* box = new QToolButton(rows_);
+  auto* box = new QToolButton(form_);
   box->setObjectName(QStringLiteral("brush_also"));
   box->setText(tr("Paints also…"));
   box->setToolTip(tr("What the same stroke lays on beside this, each as its own tool is set"));
@@ -212,7 +173,7 @@ void BrushPanel::addLayers(const BrushBook& book) {
                           QString::fromUtf8(std::string(name(tool)).c_str()));
     action->setCheckable(true);
     action->setChecked(layerOf(brush_, tool) != nullptr);
-    const BrushLayer layer = book.brush(tool);
+    const BrushLayer layer = presets.brush(tool);
     connect(action, &QAction::toggled, this, [this, layer, say](bool on) {
       std::erase_if(brush_.also, [&](const BrushLayer& l) { return l.tool == layer.tool; });
       if (on) brush_.also.push_back(layer);
@@ -222,99 +183,81 @@ void BrushPanel::addLayers(const BrushBook& book) {
   }
   say();
   box->setMenu(menu);
-  rows_->layout()->addWidget(box);
+  form_->addWidget(box);
 }
 
-void BrushPanel::addSize(const BrushBook& book) {
-  const double most = 500 * book.extent();
-  ValueRow* radius = addRow("brush_radius", tr("Radius"), QStringLiteral("mm"),
-                            {most / 500, most, most / 100, 2, true}, 1000 * brush_.radius,
-                            tr("[ smaller, ] larger"));
-  connect(radius, &ValueRow::edited, this, [this](double value) {
-    brush_.radius = value / 1000;
-    change();
-  });
-  ValueRow* grows = addRow("brush_grows", tr("Radius from force"), QStringLiteral("mm/N"),
-                           {0, most / 10, most / 500, 2}, 1000 * brush_.radius_per_force,
-                           tr("The harder the tool presses, the larger the brush; a pen's "
-                              "pressure is such a force"));
-  connect(grows, &ValueRow::edited, this, [this](double value) {
-    brush_.radius_per_force = value / 1000;
-    change();
-  });
-  ValueRow* press =
-      addRow("brush_press", tr("Pressing force"), QStringLiteral("N"), {0.1, 3, 0.1, 1}, book.press,
-             tr("How hard the mouse, or a pen at full pressure, presses the tool "
-                "onto the surface"));
-  connect(press, &ValueRow::edited, this, &BrushPanel::pressed);
+void BrushPanel::addSize(const BrushPresets& presets) {
+  const double most = 500 * presets.extent();
+  form_->addRow({"brush_radius",
+                 tr("Radius"),
+                 QStringLiteral("mm"),
+                 {most / 500, most, most / 100, 2, true},
+                 1000,
+                 tr("[ smaller, ] larger")},
+                brush_.radius);
+  form_->addRow({"brush_grows",
+                 tr("Radius from force"),
+                 QStringLiteral("mm/N"),
+                 {0, most / 10, most / 500, 2},
+                 1000,
+                 tr("The harder the tool presses, the larger the brush; a pen's pressure is such "
+                    "a force")},
+                brush_.radius_per_force);
+  form_->addRow({"brush_press",
+                 tr("Pressing force"),
+                 QStringLiteral("N"),
+                 {0.1, 3, 0.1, 1},
+                 1,
+                 tr("How hard the mouse, or a pen at full pressure, presses the tool onto the "
+                    "surface")},
+                presets.press, [this](double now) { emit pressed(now); });
 }
 
 void BrushPanel::addShape() {
-  auto* shape = addCombo("brush_shape", tr("Shape"), {tr("power"), tr("cone"), tr("smooth")},
-                         static_cast<int>(brush_.shape));
-  shape->setItemData(0, QStringLiteral("1 − (d/r)^f"), Qt::ToolTipRole);
-  shape->setItemData(1, QStringLiteral("(1 − d/r)^f"), Qt::ToolTipRole);
-  shape->setItemData(2, QStringLiteral("(1 − (d/r)²)^f"), Qt::ToolTipRole);
-  connect(shape, qOverload<int>(&QComboBox::activated), this, [this](int index) {
-    brush_.shape = static_cast<BrushShape>(index);
-    change();
-  });
-  ValueRow* falloff = addRow("brush_falloff", tr("Fall-off"), {}, {0.25, 16, 0.25, 2, true},
-                             brush_.falloff, tr("{ less, } more: the exponent f of the shape"));
-  connect(falloff, &ValueRow::edited, this, [this](double value) {
-    brush_.falloff = value;
-    change();
-  });
-  auto* curve = new BrushCurve(rows_);
-  curve->setBrush(brush_);
-  rows_->layout()->addWidget(curve);
-  curve_ = curve;
+  form_->addChoice(
+      "brush_shape", tr("Shape"), {tr("power"), tr("cone"), tr("smooth")},
+      static_cast<int>(brush_.shape),
+      [this](int index) { brush_.shape = static_cast<BrushShape>(index); },
+      tr("1 − (d/r)^f, (1 − d/r)^f or (1 − (d/r)²)^f"));
+  form_->addRow({"brush_falloff",
+                 tr("Fall-off"),
+                 {},
+                 {0.25, 16, 0.25, 2, true},
+                 1,
+                 tr("{ less, } more: the exponent f of the shape")},
+                brush_.falloff);
+  curve_ = new BrushCurve(form_);
+  curve_->setBrush(brush_);
+  form_->addWidget(curve_);
 }
 
 void BrushPanel::addChoices() {
   if (brush_.tool != Tool::erase) {
     QStringList words = {tr("once a stroke"), tr("builds up"), tr("adds"), tr("smooths")};
-    int now = static_cast<int>(brush_.mode);
     std::vector<StrokeMode> modes = {StrokeMode::max, StrokeMode::build_up, StrokeMode::add,
                                      StrokeMode::smooth};
     if (brush_.tool == Tool::color) {
       words.removeAt(2);
       modes.erase(modes.begin() + 2);
-      if (now > 1) --now;
     }
-    auto* mode = addCombo("brush_mode", tr("Lays on"), words, now);
-    connect(mode, qOverload<int>(&QComboBox::activated), this, [this, modes](int index) {
-      brush_.mode = modes[static_cast<std::size_t>(index)];
-      change();
-    });
+    const auto now = std::find(modes.begin(), modes.end(), brush_.mode) - modes.begin();
+    form_->addChoice(
+        "brush_mode", tr("Lays on"), words, static_cast<int>(now),
+        [this, modes](int index) { brush_.mode = modes[static_cast<std::size_t>(index)]; });
   }
-  auto* seed =
-      addCombo("brush_seed", tr("Starts"), {tr("at the nearest point"), tr("under the tip")},
-               static_cast<int>(brush_.seed));
-  seed->setToolTip(
-      tr("Under the tip: where the way from the tip goes through the surface, as in the "
-         "paper; on thin parts it is the side that is touched"));
-  connect(seed, qOverload<int>(&QComboBox::activated), this, [this](int index) {
-    brush_.seed = static_cast<Seed>(index);
-    change();
-  });
-  auto* symmetry = addCombo("brush_symmetry", tr("Mirrored"),
-                            {tr("not"), tr("across x"), tr("across y"), tr("across z")},
-                            static_cast<int>(brush_.symmetry));
-  connect(symmetry, qOverload<int>(&QComboBox::activated), this, [this](int index) {
-    brush_.symmetry = static_cast<Symmetry>(index);
-    change();
-  });
-  auto* front = new QCheckBox(tr("Front faces only"), rows_);
-  front->setObjectName(QStringLiteral("front_only"));
-  front->setToolTip(tr("Leave out what looks away from the place that is touched, such as the "
-                       "far side of a thin part"));
-  front->setChecked(brush_.front_only);
-  connect(front, &QCheckBox::toggled, this, [this](bool on) {
-    brush_.front_only = on;
-    change();
-  });
-  rows_->layout()->addWidget(front);
+  form_->addChoice(
+      "brush_seed", tr("Starts"), {tr("at the nearest point"), tr("under the tip")},
+      static_cast<int>(brush_.seed), [this](int index) { brush_.seed = static_cast<Seed>(index); },
+      tr("Under the tip: where the way from the tip goes through the surface, as in "
+         "the paper; on thin parts it is the side that is touched"));
+  form_->addChoice("brush_symmetry", tr("Mirrored"),
+                   {tr("not"), tr("across x"), tr("across y"), tr("across z")},
+                   static_cast<int>(brush_.symmetry),
+                   [this](int index) { brush_.symmetry = static_cast<Symmetry>(index); });
+  form_->addCheck("front_only", tr("Front faces only"),
+                  tr("Leave out what looks away from the place that is touched, such as the far "
+                     "side of a thin part"),
+                  brush_.front_only, [this](bool on) { brush_.front_only = on; });
 }
 
 } // namespace patina

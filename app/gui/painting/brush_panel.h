@@ -1,12 +1,12 @@
 // The brush of the tool that paints; not there while nothing paints.
 #pragma once
 
-#include <QComboBox>
 #include <QGroupBox>
 #include <QVBoxLayout>
 
-#include "app/gui/painting/brush_book.h"
-#include "app/gui/panels/value_row.h"
+#include "app/gui/painting/brush_curve.h"
+#include "app/gui/painting/brush_presets.h"
+#include "app/gui/panels/form.h"
 
 namespace patina {
 
@@ -15,8 +15,7 @@ class BrushPanel : public QGroupBox {
  public:
   explicit BrushPanel(QWidget* parent = nullptr);
 
-  void show(const Brush& brush, const BrushBook& book); // sends no signal
-  const Brush& brush() const { return brush_; }
+  void show(const Brush& brush, const BrushPresets& presets); // sends no signal
 
  signals:
   void edited(const patina::Brush& brush);
@@ -24,24 +23,21 @@ class BrushPanel : public QGroupBox {
   void toolAsked(patina::Tool tool);
 
  private:
-  void rebuild(const BrushBook& book);
+  void rebuild(const BrushPresets& presets);
   void addValue(double extent);
   void addColor();
   void addChannels(MaterialChannel channel);
   void addErased();
-  void addSize(const BrushBook& book);
+  void addSize(const BrushPresets& presets);
   void addShape();
   void addChoices();
-  void addLayers(const BrushBook& book);
+  void addLayers(const BrushPresets& presets);
   void change();
-  ValueRow* addRow(const char* name, const QString& caption, const QString& unit,
-                   const RowRange& range, double value, const QString& tip = {});
-  QComboBox* addCombo(const char* name, const QString& caption, const QStringList& words, int now);
 
   Brush brush_;
   QVBoxLayout* layout_;
-  QWidget* rows_ = nullptr;
-  QWidget* curve_ = nullptr;
+  Form* form_ = nullptr;
+  BrushCurve* curve_ = nullptr; // of the form
 };
 
 } // namespace patina

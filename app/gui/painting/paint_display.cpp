@@ -87,20 +87,11 @@ void PaintDisplay::setAvailable(const std::vector<PaintQuantity>& quantities) {
       if (available_[i] == chosen) now = kFirst + static_cast<int>(i);
     combo_->setCurrentIndex(now);
   }
-  setVisible(!available_.empty());
   decide();
 }
 
 void PaintDisplay::setTool(const ToolChoice& choice) {
   tool_ = choice;
-  decide();
-}
-
-void PaintDisplay::choose(std::optional<PaintQuantity> quantity) {
-  int index = kNothing;
-  for (std::size_t i = 0; i < available_.size(); ++i)
-    if (available_[i] == quantity) index = kFirst + static_cast<int>(i);
-  combo_->setCurrentIndex(index);
   decide();
 }
 

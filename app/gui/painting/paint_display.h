@@ -20,7 +20,6 @@ class PaintDisplay : public QWidget {
   void setAvailable(const std::vector<PaintQuantity>& quantities);
   // What it follows unless a person has chosen.
   void setTool(const ToolChoice& choice);
-  void choose(std::optional<PaintQuantity> quantity); // as a person would; nullopt: nothing
   std::optional<PaintQuantity> shown() const { return shown_; }
   void setRange(const ValueRange& range); // as the picture has it; sends no signal
 

@@ -4,11 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include <QCheckBox>
-#include <QComboBox>
-#include <QGridLayout>
-
-#include "app/gui/panels/value_row.h"
 #include "authoring/relief/relief_limits.h"
 #include "core/numbers.h"
 
@@ -71,86 +66,56 @@ void ReliefPanel::cancel() {
 }
 
 void ReliefPanel::show(std::shared_ptr<const CompiledScene> scene) {
-  if (rows_ == nullptr || !(scene->scene.relief == relief_)) {
+  if (form_ == nullptr || !(scene->scene.relief == relief_)) {
     relief_ = scene->scene.relief;
-    rebuild(std::abs(relief_.height));
+    rebuild();
   }
   if (!measured_ || !sameRelief(*measured_, *scene)) measure(std::move(scene));
 }
 
-void ReliefPanel::rebuild(double height) {
-  takeAway(rows_);
-  rows_ = new QWidget(this);
-  auto* column = new QGridLayout(rows_);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setVerticalSpacing(6);
-  const double most = std::max(5.0, 4000 * height);
-  auto* scale = new ValueRow(tr("Height of full relief"), QStringLiteral("mm"),
-                             {0, most, most / 100, 2}, rows_);
-  scale->setObjectName(QStringLiteral("relief_height"));
-  scale->setToolTip(tr("Scales all of it: painted heights are shares of this one"));
-  scale->setValue(1000 * height);
-  connect(scale, &ValueRow::edited, this, [this](double value) {
-    relief_.height = std::copysign(value / 1000, relief_.height);
-    emit edited(relief_);
-  });
-  column->addWidget(scale, 0, 0, 1, 2);
-  auto* turned = new QCheckBox(tr("Inverted: what was raised is engraved"), rows_);
-  turned->setObjectName(QStringLiteral("relief_inverted"));
-  turned->setChecked(std::signbit(relief_.height));
-  connect(turned, &QCheckBox::toggled, this, [this](bool on) {
-    relief_.height = std::copysign(relief_.height, on ? -1.0 : 1.0);
-    emit edited(relief_);
-  });
-  column->addWidget(turned, 1, 0, 1, 2);
-  const auto combo = [&](int row, const char* name, const QString& caption,
-                         const QStringList& words, int now, const QString& tip, auto set) {
-    auto* label = new QLabel(caption, rows_);
-    label->setProperty("quiet", true);
-    auto* box = new QComboBox(rows_);
-    box->setObjectName(QString::fromUtf8(name));
-    box->addItems(words);
-    box->setCurrentIndex(now);
-    box->setToolTip(tip);
-    column->addWidget(label, row, 0);
-    column->addWidget(box, row, 1);
-    connect(box, qOverload<int>(&QComboBox::activated), this, [this, set](int index) {
-      set(relief_, index);
-      emit edited(relief_);
-    });
+void ReliefPanel::rebuild() {
+  takeAway(form_);
+  form_ = new Form(this);
+  connect(form_, &Form::edited, this, [this] { emit edited(relief_); });
+  const double height = std::abs(relief_.height), most = std::max(5.0, 4000 * height);
+  form_->addRow({"relief_height",
+                 tr("Height of full relief"),
+                 QStringLiteral("mm"),
+                 {0, most, most / 100, 2},
+                 1000,
+                 tr("Scales all of it: painted heights are shares of this one")},
+                height,
+                [this](double now) { relief_.height = std::copysign(now, relief_.height); });
+  form_->addCheck("relief_inverted", tr("Inverted: what was raised is engraved"), {},
+                  std::signbit(relief_.height), [this](bool on) {
+                    relief_.height = std::copysign(relief_.height, on ? -1.0 : 1.0);
+                  });
+  const auto add = [this](const char* name, const QString& caption, const QStringList& words,
+                          auto& value, auto second, auto first, const QString& tip) {
+    form_->addChoice(
+        name, caption, words, value == second ? 1 : 0,
+        [&value, first, second](int index) { value = index == 0 ? first : second; }, tip);
   };
-  combo(2, "relief_source", tr("Taken from"), {tr("what is painted as relief"), tr("the colour")},
-        relief_.source == ReliefFrom::painted ? 0 : 1,
-        tr("The colour: its grey value is felt as height, bright is high, and what is not painted "
-           "or black stays as it is."),
-        [](ReliefSettings& r, int index) {
-          r.source = index == 0 ? ReliefFrom::painted : ReliefFrom::color;
-        });
-  combo(3, "relief_mode", tr("Felt"), {tr("from the image"), tr("baked into the field")},
-        relief_.mode == ReliefMode::pulled ? 0 : 1,
-        tr("From the image: read at each contact, as fine as it is painted. Baked: the field is "
-           "moved, as in the paper; costs nothing a tick, and loses what is finer than 8 voxels."),
-        [](ReliefSettings& r, int index) {
-          r.mode = index == 0 ? ReliefMode::pulled : ReliefMode::baked;
-        });
-  combo(4, "relief_force", tr("Force"), {tr("conservative"), tr("literal")},
-        relief_.form == ForceForm::conservative ? 0 : 1,
-        tr("Conservative: the force has a potential, no loop does work. Literal: as the papers "
-           "have it."),
-        [](ReliefSettings& r, int index) {
-          r.form = index == 0 ? ForceForm::conservative : ForceForm::literal;
-        });
-  column->setColumnStretch(1, 1);
-  auto* smoothing = new ValueRow(tr("Smoothing"), QStringLiteral("mm"), {0, 5, 0.05, 2}, rows_);
-  smoothing->setObjectName(QStringLiteral("relief_smoothing"));
-  smoothing->setToolTip(tr("Of what is felt: a Gaussian's standard deviation along the surface"));
-  smoothing->setValue(1000 * relief_.smoothing);
-  connect(smoothing, &ValueRow::edited, this, [this](double value) {
-    relief_.smoothing = value / 1000;
-    emit edited(relief_);
-  });
-  column->addWidget(smoothing, 5, 0, 1, 2);
-  layout_->insertWidget(0, rows_);
+  add("relief_source", tr("Taken from"), {tr("what is painted as relief"), tr("the colour")},
+      relief_.source, ReliefFrom::color, ReliefFrom::painted,
+      tr("The colour: its grey value is felt as height, bright is high, and what is not painted "
+         "or black stays as it is."));
+  add("relief_mode", tr("Felt"), {tr("from the image"), tr("baked into the field")}, relief_.mode,
+      ReliefMode::baked, ReliefMode::pulled,
+      tr("From the image: read at each contact, as fine as it is painted. Baked: the field is "
+         "moved, as in the paper; costs nothing a tick, and loses what is finer than 8 voxels."));
+  add("relief_force", tr("Force"), {tr("conservative"), tr("literal")}, relief_.form,
+      ForceForm::literal, ForceForm::conservative,
+      tr("Conservative: the force has a potential, no loop does work. Literal: as the papers "
+         "have it."));
+  form_->addRow({"relief_smoothing",
+                 tr("Smoothing"),
+                 QStringLiteral("mm"),
+                 {0, 5, 0.05, 2},
+                 1000,
+                 tr("Of what is felt: a Gaussian's standard deviation along the surface")},
+                relief_.smoothing);
+  layout_->insertWidget(0, form_);
 }
 
 void ReliefPanel::measure(std::shared_ptr<const CompiledScene> scene) {

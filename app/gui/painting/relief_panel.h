@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
+#include "app/gui/panels/form.h"
 #include "app/gui/window/background.h"
 #include "scene/paint/relief_settings.h"
 #include "session/build/compile_scene.h"
@@ -28,13 +29,13 @@ class ReliefPanel : public QGroupBox {
   void rested();
 
  private:
-  void rebuild(double highest);
+  void rebuild();
   void measure(std::shared_ptr<const CompiledScene> scene);
 
   ReliefSettings relief_;
   QVBoxLayout* layout_;
   QLabel* note_;
-  QWidget* rows_ = nullptr;
+  Form* form_ = nullptr;
   std::shared_ptr<const CompiledScene> measured_; // the newest that the note is or will be of
   Background jobs_;
 };

@@ -1,4 +1,4 @@
-// What the left button does in the 3D view.
+// The tools that can be chosen: what the left button does, and what it paints.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,11 @@
 #include <QKeySequence>
 #include <QString>
 
+#include "app/gui/window/handling.h"
 #include "scene/stroke.h"
 #include "visualization/values/paint_quantity.h"
 
 namespace patina {
-
-enum class Handling { navigate, feel, paint, pick };
 
 struct ToolChoice {
   Handling handling = Handling::feel;

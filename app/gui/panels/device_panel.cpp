@@ -1,6 +1,7 @@
 #include "app/gui/panels/device_panel.h"
 
 #include <cmath>
+#include <utility>
 
 #include <QDoubleSpinBox>
 #include <QSignalBlocker>
@@ -45,6 +46,26 @@ std::vector<Number> numbers() {
       {"device_delay", tr("Delay"), tr("samples"), 1, 0, 20, 1, 0,
        [](const DeviceModel& m) { return static_cast<double>(m.delay); },
        [](DeviceModel& m, double v) { m.delay = static_cast<int>(std::lround(v)); }}};
+}
+
+QString newtonsPerMetre(double value) {
+  return QStringLiteral("%1 N/m").arg(value, 0, value < 1e5 ? 'f' : 'g', value < 1e5 ? 0 : 3);
+}
+
+QString wordsFor(const StabiliserPlan& plan) {
+  QString words;
+  if (plan.predicted_limit)
+    words = DevicePanel::tr("A plain wall is stable up to %1 on this device.")
+                .arg(newtonsPerMetre(*plan.predicted_limit));
+  if (plan.coupling)
+    words += DevicePanel::tr(" Coupling: %1, %2 N s/m.")
+                 .arg(newtonsPerMetre(plan.coupling->stiffness))
+                 .arg(plan.coupling->damping, 0, 'g', 2);
+  if (plan.lateral)
+    words += DevicePanel::tr(" Along the texture: %1, %2 N s/m.")
+                 .arg(newtonsPerMetre(plan.lateral->stiffness))
+                 .arg(plan.lateral->damping, 0, 'g', 2);
+  return words.trimmed();
 }
 
 } // namespace
@@ -110,13 +131,14 @@ void DevicePanel::setValues(const DeviceChoice& choice) {
   rebuild();
 }
 
-void DevicePanel::setNote(const QString& words) {
+void DevicePanel::showPlan(const StabiliserPlan& plan) {
+  const QString words = wordsFor(plan);
   note_->setText(words);
   note_->setVisible(!words.isEmpty());
 }
 
 void DevicePanel::rebuild() {
-  takeAway(numbers_);
+  takeAway(std::exchange(numbers_, nullptr));
   if (!choice_.model && !deviceNamed(choice_.device).takes_numbers) return;
   numbers_ = new QWidget(this);
   auto* column = new QVBoxLayout(numbers_);

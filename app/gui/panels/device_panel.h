@@ -11,6 +11,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "haptics/stability/stabilisers.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -31,7 +32,7 @@ class DevicePanel : public QGroupBox {
 
   void setValues(const DeviceChoice& choice); // sends no signal
   const DeviceChoice& values() const { return choice_; }
-  void setNote(const QString& words); // what follows from the numbers
+  void showPlan(const StabiliserPlan& plan); // what follows from the numbers
 
  signals:
   void edited();

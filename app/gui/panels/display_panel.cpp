@@ -2,41 +2,31 @@
 
 #include <QGridLayout>
 #include <QLabel>
-#include <QSignalBlocker>
 #include <QVBoxLayout>
 
 namespace patina {
 namespace {
 
-QString caption(Layer layer) {
-  switch (layer) {
-  case Layer::mesh:
-    return DisplayPanel::tr("Mesh");
-  case Layer::iso:
-    return DisplayPanel::tr("Iso-surface");
-  case Layer::slice:
-    return DisplayPanel::tr("Slice");
-  case Layer::band:
-    return DisplayPanel::tr("Band");
-  case Layer::extent:
-    return DisplayPanel::tr("Field extent");
-  case Layer::tip:
-    return DisplayPanel::tr("Tool and force");
-  case Layer::nodes:
-    return DisplayPanel::tr("Nodes at the tip");
-  case Layer::stability:
-    return DisplayPanel::tr("Stability");
-  case Layer::wireframe:
-    return DisplayPanel::tr("Wireframe");
-  default:
-    break;
-  }
-  return {};
-}
-
-bool needsField(Layer layer) {
-  return layer != Layer::mesh && layer != Layer::wireframe;
-}
+struct Box {
+  Layer layer;
+  const char* words;
+  bool needs_field = true, shown = false;
+  const char* tip = "";
+};
+// In the order of the panel.
+constexpr Box kBoxes[] = {
+    {Layer::mesh, "Mesh", false, true},
+    {Layer::tip, "Tool and force", true, true},
+    {Layer::slice, "Slice"},
+    {Layer::iso, "Iso-surface"},
+    {Layer::wireframe, "Wireframe", false},
+    {Layer::nodes, "Nodes at the tip"},
+    {Layer::extent, "Field extent"},
+    {Layer::stability, "Stability", true, false,
+     "Where the surface would buzz: K*(x)/K, what the loop bears over what this place asks of it. "
+     "Below 1, warm, a held tip swings up by itself."},
+    {Layer::band, "Band", true, true,
+     "Where the offset or the magnet acts: a shell, and a tint of the slice"}};
 
 } // namespace
 
@@ -52,17 +42,12 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   grid->setVerticalSpacing(4);
   column->addLayout(grid);
   int index = 0;
-  for (const Layer layer : {Layer::mesh, Layer::tip, Layer::slice, Layer::iso, Layer::wireframe,
-                            Layer::nodes, Layer::extent, Layer::stability, Layer::band}) {
-    auto* box = new QCheckBox(caption(layer), this);
-    if (layer == Layer::stability)
-      box->setToolTip(
-          tr("Where the surface would buzz: K*(x)/K, what the loop bears over what this "
-             "place asks of it. Below 1, warm, a held tip swings up by itself."));
-    if (layer == Layer::band)
-      box->setToolTip(tr("Where the offset or the magnet acts: a shell, and a tint of the slice"));
+  for (const Box& row : kBoxes) {
+    const Layer layer = row.layer;
+    auto* box = new QCheckBox(tr(row.words), this);
+    box->setToolTip(tr(row.tip));
     box->setObjectName(QString::fromUtf8(name(layer).data(), static_cast<int>(name(layer).size())));
-    box->setChecked(layer == Layer::mesh || layer == Layer::tip || layer == Layer::band);
+    box->setChecked(row.shown);
     connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
       arrange();
       emit layerToggled(layer, on);
@@ -87,6 +72,7 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   axis_->setCurrentIndex(slice_.axis);
   slice_layout->addWidget(axis_, 0, 1);
   slice_layout->addWidget(position_, 1, 0, 1, 2);
+  position_->setObjectName(QStringLiteral("slice_position"));
   position_->setValue(100 * slice_.position);
   column->addWidget(slice_card_);
   connect(axis_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int axis) {
@@ -111,6 +97,7 @@ void DisplayPanel::setField(const SurfaceField* field) {
     const double reach = 1000 * field->grid.voxel * (field->band - 1);
     iso_ = new ValueRow(tr("Iso-surface at"), QStringLiteral("mm"),
                         {-reach, reach, reach / 20, reach < 1 ? 3 : 2}, iso_card_);
+    iso_->setObjectName(QStringLiteral("iso_value"));
     iso_->setValue(kept);
     iso_card_->layout()->addWidget(iso_);
     connect(iso_, &ValueRow::edited, this, [this](double mm) { emit isoMoved(mm / 1000); });
@@ -119,8 +106,9 @@ void DisplayPanel::setField(const SurfaceField* field) {
 }
 
 void DisplayPanel::arrange() {
-  for (const auto& [layer, box] : boxes_)
-    box->setVisible((has_field_ || !needsField(layer)) && (has_band_ || layer != Layer::band));
+  for (const Box& box : kBoxes)
+    boxes_[box.layer]->setVisible((has_field_ || !box.needs_field) &&
+                                  (has_band_ || box.layer != Layer::band));
   slice_card_->setVisible(has_field_ && shown(Layer::slice));
   iso_card_->setVisible(has_field_ && shown(Layer::iso));
 }
@@ -143,21 +131,6 @@ void DisplayPanel::setShown(Layer layer, bool on) {
 bool DisplayPanel::shown(Layer layer) const {
   const auto box = boxes_.find(layer);
   return box != boxes_.end() && box->second->isChecked();
-}
-
-void DisplayPanel::setSlice(const SlicePlace& place) {
-  slice_ = place;
-  {
-    const QSignalBlocker quiet(axis_);
-    axis_->setCurrentIndex(place.axis);
-    position_->setValue(100 * place.position);
-  }
-  emit sliceMoved(slice_);
-}
-
-void DisplayPanel::setIso(double iso) {
-  if (iso_ != nullptr) iso_->setValue(1000 * iso);
-  emit isoMoved(iso);
 }
 
 } // namespace patina

@@ -24,9 +24,6 @@ class DisplayPanel : public QGroupBox {
   void setStabilityNote(const QString& words);
   void setShown(Layer layer, bool on); // sends layerToggled if it changes
   bool shown(Layer layer) const;
-  const SlicePlace& slice() const { return slice_; }
-  void setSlice(const SlicePlace& place); // sends sliceMoved
-  void setIso(double iso);                // [m]; sends isoMoved
 
  signals:
   void layerToggled(patina::Layer layer, bool on);

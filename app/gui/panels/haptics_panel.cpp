@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include <QCheckBox>
 #include <QToolButton>
 
 namespace patina {
@@ -34,59 +34,48 @@ void HapticsPanel::setProblem(const QString& line) {
   problem_->setVisible(!line.isEmpty());
 }
 
-void HapticsPanel::change() {
-  emit edited(haptics_);
-}
-
 double HapticsPanel::mostMillimetres() const {
   return std::max(0.1, std::floor(1e5 * reach_) / 100);
 }
 
 void HapticsPanel::rebuild() {
-  takeAway(rows_);
-  rows_ = new QWidget(this);
-  auto* column = new QVBoxLayout(rows_);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(6);
+  takeAway(form_);
+  form_ = new Form(this);
+  connect(form_, &Form::edited, this, [this] { emit edited(haptics_); });
   addModeRows();
-  ValueRow* stiffness = addRow("stiffness", tr("Stiffness"), QStringLiteral("N/m"),
-                               {10, 10000, 10, 0, true}, haptics_.stiffness);
-  connect(stiffness, &ValueRow::edited, this, [this](double value) {
-    haptics_.stiffness = value;
-    change();
-  });
+  form_->addRow({"stiffness", tr("Stiffness"), QStringLiteral("N/m"), {10, 10000, 10, 0, true}},
+                haptics_.stiffness);
   if (haptics_.friction) addFrictionRows();
   if (haptics_.damping) addDampingRows();
-  if (haptics_.tip_radius) addTipRow();
-  ValueRow* limit = addRow("force_limit", tr("Force limit"), QStringLiteral("N"), {0.1, 20, 0.1, 1},
-                           haptics_.force_limit);
-  connect(limit, &ValueRow::edited, this, [this](double value) {
-    haptics_.force_limit = value;
-    change();
-  });
-  addContactRow();
+  if (haptics_.tip_radius) {
+    const RowRange range{0.05, std::min(10.0, mostMillimetres()), 0.1, 2};
+    makeRemovable(form_->addRow({"tip_radius", tr("Tip radius"), QStringLiteral("mm"), range, 1000},
+                                *haptics_.tip_radius),
+                  tr("Feel with a point again"), [this] { haptics_.tip_radius.reset(); });
+  }
+  form_->addRow({"force_limit", tr("Force limit"), QStringLiteral("N"), {0.1, 20, 0.1, 1}},
+                haptics_.force_limit);
+  using Contact = HapticProperties::Contact;
+  form_->addCheck("contact_proxy", tr("Stays on the side it entered"),
+                  tr("The contact point is followed over the surface, round corners and edges, "
+                     "and stays on the side where the tip came in. Without, it is found from the "
+                     "tip alone, as in the paper: past the middle of a part the force turns "
+                     "round."),
+                  haptics_.contact == Contact::proxy,
+                  [this](bool on) { haptics_.contact = on ? Contact::proxy : Contact::ray; });
   addMenu();
-  layout_->insertWidget(0, rows_);
+  layout_->insertWidget(0, form_);
 }
 
-ValueRow* HapticsPanel::addRow(const char* name, const QString& caption, const QString& unit,
-                               const RowRange& range, double value, const QString& tip) {
-  auto* row = new ValueRow(caption, unit, range, rows_);
-  row->setObjectName(QString::fromUtf8(name));
-  row->setValue(value);
-  row->setToolTip(tip);
-  rows_->layout()->addWidget(row);
-  return row;
-}
-
-template <typename Remove>
-void HapticsPanel::makeRemovable(ValueRow* row, const QString& tip, Remove remove) {
+void HapticsPanel::makeRemovable(ValueRow* row, const QString& tip, std::function<void()> remove) {
   row->setRemovable(tip);
-  connect(row, &ValueRow::removed, this, [this, remove] {
-    remove(haptics_);
-    rebuild();
-    change();
-  });
+  connect(row, &ValueRow::removed, this, [this, remove = std::move(remove)] { change(remove); });
+}
+
+void HapticsPanel::change(const std::function<void()>& rows) {
+  rows();
+  rebuild();
+  emit edited(haptics_);
 }
 
 void HapticsPanel::setMode(TouchMode mode) {
@@ -102,142 +91,82 @@ void HapticsPanel::setMode(TouchMode mode) {
     haptics_.magnet = last_magnet_.value_or(Magnet{usual, 300, true});
     haptics_.magnet->range = std::min(most, haptics_.magnet->range);
   }
-  rebuild();
-  change();
 }
 
 void HapticsPanel::addModeRows() {
-  auto* modes = new ModeSwitch(rows_);
+  auto* modes = new ModeSwitch(form_);
   modes->setMode(touchMode(haptics_));
-  connect(modes, &ModeSwitch::chosen, this, &HapticsPanel::setMode);
-  rows_->layout()->addWidget(modes);
+  connect(modes, &ModeSwitch::chosen, this,
+          [this](TouchMode mode) { change([this, mode] { setMode(mode); }); });
+  form_->addWidget(modes);
   const RowRange lengths{0.05, mostMillimetres(), 0.05, 2};
   const QString limited = tr("Up to what the field's band holds; a wider band: "
                              "patina scene WORKSPACE --set band=N");
-  if (haptics_.offset) {
-    ValueRow* offset = addRow("offset", tr("Offset"), QStringLiteral("mm"), lengths,
-                              1000 * *haptics_.offset, limited);
-    connect(offset, &ValueRow::edited, this, [this](double value) {
-      haptics_.offset = value / 1000;
-      change();
-    });
-  }
+  if (haptics_.offset)
+    form_->addRow({"offset", tr("Offset"), QStringLiteral("mm"), lengths, 1000, limited},
+                  *haptics_.offset);
   if (!haptics_.magnet) return;
-  ValueRow* range = addRow("magnet_range", tr("Magnet range"), QStringLiteral("mm"), lengths,
-                           1000 * haptics_.magnet->range, limited);
-  connect(range, &ValueRow::edited, this, [this](double value) {
-    haptics_.magnet->range = value / 1000;
-    change();
-  });
-  ValueRow* strength = addRow("magnet_strength", tr("Magnet strength"), QStringLiteral("N/m"),
-                              {10, 3000, 10, 0, true}, haptics_.magnet->strength);
-  connect(strength, &ValueRow::edited, this, [this](double value) {
-    haptics_.magnet->strength = value;
-    change();
-  });
-  auto* fades = new QCheckBox(tr("Pull fades at the edge"), rows_);
-  fades->setObjectName(QStringLiteral("magnet_fades"));
-  fades->setToolTip(tr("Over the last quarter of the range the pull falls to zero; without this "
-                       "it steps there by strength × range"));
-  fades->setChecked(haptics_.magnet->fades);
-  connect(fades, &QCheckBox::toggled, this, [this](bool on) {
-    haptics_.magnet->fades = on;
-    change();
-  });
-  rows_->layout()->addWidget(fades);
+  form_->addRow({"magnet_range", tr("Magnet range"), QStringLiteral("mm"), lengths, 1000, limited},
+                haptics_.magnet->range);
+  form_->addRow(
+      {"magnet_strength", tr("Magnet strength"), QStringLiteral("N/m"), {10, 3000, 10, 0, true}},
+      haptics_.magnet->strength);
+  form_->addCheck("magnet_fades", tr("Pull fades at the edge"),
+                  tr("Over the last quarter of the range the pull falls to zero; without this "
+                     "it steps there by strength × range"),
+                  haptics_.magnet->fades, [this](bool on) { haptics_.magnet->fades = on; });
 }
 
 void HapticsPanel::addFrictionRows() {
-  const RowRange range{0, 2, 0.05, 2};
-  ValueRow* holds = addRow("friction_static", tr("Friction, static"), {}, range,
-                           haptics_.friction->static_coefficient);
-  ValueRow* slides = addRow("friction_dynamic", tr("Friction, dynamic"), {}, range,
-                            haptics_.friction->dynamic_coefficient);
   // Static friction is never below dynamic: each slider takes the other along.
-  connect(holds, &ValueRow::edited, this, [this, slides](double value) {
-    haptics_.friction->static_coefficient = value;
-    if (haptics_.friction->dynamic_coefficient > value) {
-      haptics_.friction->dynamic_coefficient = value;
-      slides->setValue(value);
-    }
-    change();
-  });
-  connect(slides, &ValueRow::edited, this, [this, holds](double value) {
-    haptics_.friction->dynamic_coefficient = value;
-    if (haptics_.friction->static_coefficient < value) {
-      haptics_.friction->static_coefficient = value;
-      holds->setValue(value);
-    }
-    change();
-  });
-  makeRemovable(holds, tr("Remove friction from the scene"),
-                [](HapticProperties& h) { h.friction.reset(); });
+  const auto addRow = [this](const char* name, const QString& caption, double& value,
+                             const char* other_name, double& other, bool upwards) {
+    return form_->addRow(
+        {name, caption, {}, {0, 2, 0.05, 2}}, value,
+        [this, &value, &other, other_name, upwards](double now) {
+          value = now;
+          if (upwards ? other <= now : other >= now) return;
+          other = now;
+          form_->findChild<ValueRow*>(QString::fromUtf8(other_name))->setValue(now);
+        });
+  };
+  double& holds = haptics_.friction->static_coefficient;
+  double& slides = haptics_.friction->dynamic_coefficient;
+  ValueRow* row =
+      addRow("friction_static", tr("Friction, static"), holds, "friction_dynamic", slides, true);
+  addRow("friction_dynamic", tr("Friction, dynamic"), slides, "friction_static", holds, false);
+  makeRemovable(row, tr("Remove friction from the scene"), [this] { haptics_.friction.reset(); });
 }
 
 void HapticsPanel::addDampingRows() {
-  ValueRow* damping =
-      addRow("damping", tr("Damping"), QStringLiteral("N s/m"), {0, 20, 0.1, 2}, *haptics_.damping);
-  connect(damping, &ValueRow::edited, this, [this](double value) {
-    haptics_.damping = value;
-    change();
-  });
-  makeRemovable(damping, tr("Remove damping from the scene"), [](HapticProperties& h) {
-    h.damping.reset();
-    h.damping_cutoff.reset();
-  });
+  const RowSpec damping{"damping", tr("Damping"), QStringLiteral("N s/m"), {0, 20, 0.1, 2}};
+  makeRemovable(form_->addRow(damping, *haptics_.damping), tr("Remove damping from the scene"),
+                [this] {
+                  haptics_.damping.reset();
+                  haptics_.damping_cutoff.reset();
+                });
   if (!haptics_.damping_cutoff) return;
-  ValueRow* cutoff = addRow("damping_cutoff", tr("Damping cut-off"), QStringLiteral("Hz"),
-                            {5, 500, 5, 0, true}, *haptics_.damping_cutoff,
-                            tr("Of the velocity that damping sees: lower is smoother, and later"));
-  connect(cutoff, &ValueRow::edited, this, [this](double value) {
-    haptics_.damping_cutoff = value;
-    change();
-  });
-  makeRemovable(cutoff, tr("Damp the velocity as it is measured"),
-                [](HapticProperties& h) { h.damping_cutoff.reset(); });
-}
-
-void HapticsPanel::addTipRow() {
-  ValueRow* radius =
-      addRow("tip_radius", tr("Tip radius"), QStringLiteral("mm"),
-             {0.05, std::min(10.0, mostMillimetres()), 0.1, 2}, 1000 * *haptics_.tip_radius);
-  connect(radius, &ValueRow::edited, this, [this](double value) {
-    haptics_.tip_radius = value / 1000;
-    change();
-  });
-  makeRemovable(radius, tr("Feel with a point again"),
-                [](HapticProperties& h) { h.tip_radius.reset(); });
-}
-
-void HapticsPanel::addContactRow() {
-  using Contact = HapticProperties::Contact;
-  auto* proxy = new QCheckBox(tr("Stays on the side it entered"), rows_);
-  proxy->setObjectName(QStringLiteral("contact_proxy"));
-  proxy->setToolTip(tr("The contact point is followed over the surface, round corners and edges, "
-                       "and stays on the side where the tip came in. Without, it is found from the "
-                       "tip alone, as in the paper: past the middle of a part the force turns "
-                       "round."));
-  proxy->setChecked(haptics_.contact == Contact::proxy);
-  connect(proxy, &QCheckBox::toggled, this, [this](bool on) {
-    haptics_.contact = on ? Contact::proxy : Contact::ray;
-    change();
-  });
-  rows_->layout()->addWidget(proxy);
+  const RowSpec cutoff{"damping_cutoff",
+                       tr("Damping cut-off"),
+                       QStringLiteral("Hz"),
+                       {5, 500, 5, 0, true},
+                       1,
+                       tr("Of the velocity that damping sees: lower is smoother, and later")};
+  makeRemovable(form_->addRow(cutoff, *haptics_.damping_cutoff),
+                tr("Damp the velocity as it is measured"),
+                [this] { haptics_.damping_cutoff.reset(); });
 }
 
 void HapticsPanel::addMenu() {
-  auto* button = new QToolButton(rows_);
+  auto* button = new QToolButton(form_);
   button->setObjectName(QStringLiteral("add_property"));
   button->setText(tr("+ Add property"));
   button->setPopupMode(QToolButton::InstantPopup);
   button->setToolTip(tr("What a scene does not have costs nothing: no stage, no memory, no row."));
   auto* menu = new QMenu(button);
   const auto offer = [&](const QString& words, auto add) {
-    connect(menu->addAction(words), &QAction::triggered, this, [this, add] {
-      add(haptics_);
-      rebuild();
-      change();
-    });
+    connect(menu->addAction(words), &QAction::triggered, this,
+            [this, add] { change([this, add] { add(haptics_); }); });
   };
   if (!haptics_.friction)
     offer(tr("Friction"), [](HapticProperties& h) { h.friction = Friction{0.5, 0.3, 0, {}}; });
@@ -248,7 +177,7 @@ void HapticsPanel::addMenu() {
     offer(tr("Tip radius"), [](HapticProperties& h) { h.tip_radius = 1e-3; });
   button->setMenu(menu);
   button->setVisible(!menu->isEmpty());
-  rows_->layout()->addWidget(button);
+  form_->addWidget(button);
 }
 
 } // namespace patina

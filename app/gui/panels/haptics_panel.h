@@ -6,7 +6,7 @@
 #include <QMenu>
 #include <QVBoxLayout>
 
-#include "app/gui/panels/value_row.h"
+#include "app/gui/panels/form.h"
 #include "app/gui/window/mode_switch.h"
 #include "scene/scene.h"
 
@@ -28,18 +28,14 @@ class HapticsPanel : public QGroupBox {
 
  private:
   void rebuild();
-  ValueRow* addRow(const char* name, const QString& caption, const QString& unit,
-                   const RowRange& range, double value, const QString& tip = {});
   void addModeRows();
   void addFrictionRows();
   void addDampingRows();
-  void addTipRow();
-  void addContactRow();
   void addMenu();
   void setMode(TouchMode mode);
-  template <typename Remove> void makeRemovable(ValueRow* row, const QString& tip, Remove remove);
+  void makeRemovable(ValueRow* row, const QString& tip, std::function<void()> remove);
+  void change(const std::function<void()>& rows); // which there are
   double mostMillimetres() const;
-  void change();
 
   HapticProperties haptics_;
   // What a mode had when it was left, for when it is chosen again.
@@ -47,7 +43,7 @@ class HapticsPanel : public QGroupBox {
   std::optional<Magnet> last_magnet_;
   double reach_ = 5e-3;
   QVBoxLayout* layout_;
-  QWidget* rows_ = nullptr;
+  Form* form_ = nullptr;
   QLabel* problem_;
 };
 

@@ -16,26 +16,25 @@ HistoryPanel::HistoryPanel(QWidget* parent) : QListWidget(parent) {
           [this](QListWidgetItem* item) { emit asked(static_cast<std::size_t>(row(item))); });
 }
 
-void HistoryPanel::show(const EditStanding& standing) {
+void HistoryPanel::show(const EditStatus& status) {
   // Painting appends: a history of thousands is not made anew for each stroke.
   std::size_t kept = 0;
-  while (kept < edits_.size() && kept < standing.edits.size() &&
-         edits_[kept] == standing.edits[kept])
+  while (kept < edits_.size() && kept < status.edits.size() && edits_[kept] == status.edits[kept])
     ++kept;
   if (count() == 0) addItem(tr("As it was opened"));
   while (count() > static_cast<int>(kept) + 1) delete takeItem(count() - 1);
-  for (std::size_t i = kept; i < standing.edits.size(); ++i)
-    addItem(QString::fromStdString(standing.edits[i]));
-  edits_ = standing.edits;
+  for (std::size_t i = kept; i < status.edits.size(); ++i)
+    addItem(QString::fromStdString(status.edits[i]));
+  edits_ = status.edits;
   for (int i = 0; i < count(); ++i) {
-    const bool done = i <= static_cast<int>(standing.done);
+    const bool done = i <= static_cast<int>(status.done);
     QFont font = this->font();
     font.setItalic(!done);
     item(i)->setFont(font);
     item(i)->setForeground(done ? QColor(0x22, 0x28, 0x32) : QColor(0x9a, 0xa3, 0xb0));
     item(i)->setToolTip(done ? item(i)->text() : tr("%1 (undone)").arg(item(i)->text()));
   }
-  setCurrentRow(static_cast<int>(standing.done));
+  setCurrentRow(static_cast<int>(status.done));
   scrollToItem(currentItem());
 }
 

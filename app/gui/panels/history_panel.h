@@ -11,7 +11,7 @@ class HistoryPanel : public QListWidget {
   Q_OBJECT
  public:
   explicit HistoryPanel(QWidget* parent = nullptr);
-  void show(const EditStanding& standing);
+  void show(const EditStatus& status);
 
  signals:
   void asked(std::size_t position); // so many edits are to be done

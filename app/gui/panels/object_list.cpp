@@ -114,13 +114,6 @@ void ObjectList::setValues(const Scene& scene) {
   showPose();
 }
 
-void ObjectList::moveLast(const Vec3& position) {
-  list_->setCurrentRow(list_->count() - 1);
-  choice_.objects.back().world_from_object.translation() = position;
-  showPose();
-  emit edited();
-}
-
 void ObjectList::setProblem(const QString& line) {
   problem_->setText(line);
   problem_->setVisible(!line.isEmpty());

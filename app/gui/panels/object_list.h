@@ -29,7 +29,6 @@ class ObjectList : public QGroupBox {
 
   void setValues(const Scene& scene); // sends no signal; the chosen object stays chosen by name
   const ObjectChoice& values() const { return choice_; }
-  void moveLast(const Vec3& position);  // [m]; sends edited
   void setProblem(const QString& line); // why the last edit does not count; empty = none
 
  signals:

@@ -79,12 +79,11 @@ void ValueRow::setRemovable(const QString& tip) {
   cross_->setVisible(true);
 }
 
-void takeAway(QWidget*& rows) {
+void takeAway(QWidget* rows) {
   if (rows == nullptr) return;
   rows->hide();
   rows->setParent(nullptr);
   rows->deleteLater();
-  rows = nullptr;
 }
 
 } // namespace patina

@@ -40,6 +40,6 @@ class ValueRow : public QWidget {
 
 // Takes the rows of a panel away, whether or not there are any, so that others can be made. They
 // may be the senders of the signal that leads here, and so live on until it is done.
-void takeAway(QWidget*& rows);
+void takeAway(QWidget* rows);
 
 } // namespace patina

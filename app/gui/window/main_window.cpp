@@ -1,193 +1,173 @@
 #include "app/gui/window/main_window.h"
 
-#include <QCloseEvent>
-#include <QDockWidget>
-#include <QDragEnterEvent>
-#include <QFileInfo>
-#include <QMimeData>
-#include <QScrollArea>
-#include <QVBoxLayout>
-
 #include <utility>
 
+#include <QCloseEvent>
+
 #include "app/gui/loading/load_dialogs.h"
-#include "app/gui/window/value_focus.h"
-#include "app/gui/window/window_style.h"
+#include "app/gui/window/window_menus.h"
 
 namespace patina {
 
 MainWindow::MainWindow(QWidget* parent)
-    : QMainWindow(parent), view_(new SceneWidget), load_bar_(new LoadBar), warnings_(new QLabel),
-      objects_(new ObjectList), object_(new ObjectPanel), haptics_(new HapticsPanel),
-      device_(new DevicePanel), display_(new DisplayPanel), paint_display_(new PaintDisplay),
-      brush_(new BrushPanel), relief_(new ReliefPanel), history_(new HistoryPanel),
-      tools_(new ToolBar), recover_(new RecoverBar), force_plot_(new ForcePlot),
-      energy_plot_(new EnergyPlot), status_(new StatusLine(statusBar())),
-      stability_(new StabilityJob(this)) {
-  edits_ = std::make_unique<EditThread>(
-      EditThread::Spec{[this](const CompiledScene& compiled) { feel_.publish(compiled.snapshot); },
-                       [this] {
-                         QMetaObject::invokeMethod(
-                             this, [this] { takeNews(); }, Qt::QueuedConnection);
-                       },
-                       stateFolder()});
-  loader_ = new SceneLoader(edits_->listener(), this);
-  desk_ = new PaintDesk({*tools_, *brush_, *view_, feel_, *edits_}, this);
-  setWindowTitle(tr("Patina[*]"));
-  setAcceptDrops(true);
-  buildLayout();
-  buildMenus();
-  connectLoader();
-  connectPanels();
-  connectPaint();
-  restore();
+    : QMainWindow(parent), parts_(layOut(*this)),
+      feel_({*this, *parts_.force, *parts_.energy}, this),
+      view_({*parts_.view, *parts_.display, *parts_.paint, *parts_.mesh}, this),
+      edits_(
+          {*parts_.haptics, *parts_.device, *parts_.objects, *parts_.relief, *parts_.history},
+          [this](const CompiledScene& compiled) { feel_.servo().publish(compiled.snapshot); },
+          this),
+      paint_({*parts_.tools, *parts_.brush, *parts_.view, feel_.servo(), edits_.thread()}, this),
+      documents_({*this, *parts_.recover, *parts_.recent, edits_}, this) {
+  addMenus(*this, parts_, controllers());
+  connectFiles();
+  connectScene();
+  connectTools();
+  refresh();
   // One timer draws everything; what did not change is not drawn again.
   timer_.setTimerType(Qt::PreciseTimer);
   connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
   timer_.start(33);
 }
 
-QList<QWidget*> MainWindow::cards() const {
-  return {haptics_, display_, device_, objects_, object_};
+void MainWindow::connectFiles() {
+  const auto say = [this](const QString& words, int milliseconds) {
+    statusBar()->showMessage(words, milliseconds);
+  };
+  connect(&documents_, &DocumentController::changed, this, &MainWindow::refresh);
+  connect(&documents_, &DocumentController::previewed, this, &MainWindow::showPreview);
+  connect(&documents_, &DocumentController::abandoned, this, &MainWindow::showAgain);
+  connect(&documents_, &DocumentController::openAlready, this, &MainWindow::sceneReady);
+  connect(&documents_, &DocumentController::said, this, say);
+  connect(&feel_, &FeelController::said, this, say);
+  connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
+  connect(parts_.objects, &ObjectList::addAsked, &documents_,
+          [this] { documents_.openDialog(true); });
 }
 
-MainWindow::~MainWindow() {
-  timer_.stop();
-  edits_.reset();
-  feel_.close();
+void MainWindow::connectScene() {
+  connect(&edits_, &EditController::sceneChanged, this, &MainWindow::showScene);
+  connect(&edits_, &EditController::changed, this, &MainWindow::refresh);
+  connect(&edits_, &EditController::refused, this, [this](const QString& problem) {
+    showProblem(this, tr("That cannot be done"), problem, tr("The scene is as it was before."));
+  });
+  connect(&feel_, &FeelController::changed, this, &MainWindow::refresh);
+  connect(&feel_, &FeelController::collected, &paint_, &PaintController::feed);
+  connect(&feel_, &FeelController::failed, parts_.haptics, &HapticsPanel::setProblem);
+  connect(&feel_.stability(), &StabilityJob::said, parts_.display, &DisplayPanel::setStabilityNote);
+  connect(&feel_.stability(), &StabilityJob::done, &view_, &ViewController::showStability);
 }
 
-QDockWidget* MainWindow::dock(const QString& title, const char* name, QWidget* widget,
-                              Qt::DockWidgetArea area) {
-  auto* made = new QDockWidget(title, this);
-  made->setObjectName(QString::fromUtf8(name));
-  made->setWidget(widget);
-  made->setFeatures(QDockWidget::DockWidgetClosable | QDockWidget::DockWidgetMovable);
-  addDockWidget(area, made);
-  return made;
+void MainWindow::connectTools() {
+  connect(&paint_, &PaintController::chosen, this, [this](const ToolChoice& choice) {
+    parts_.paint->setTool(choice);
+    edits_.setTool(choice);
+    refresh();
+  });
+  connect(&paint_, &PaintController::underPointer, parts_.status, &StatusLine::showPicked);
+  connect(parts_.view, &SceneWidget::tipMoved, &feel_,
+          [this](const Vec3& target) { feel_.servo().setTarget(target); });
+  connect(parts_.display, &DisplayPanel::layerToggled, this, [this](Layer layer) {
+    if (layer == Layer::stability) askStability();
+  });
 }
 
-void MainWindow::buildLayout() {
-  auto* centre = new QWidget;
-  auto* column = new QVBoxLayout(centre);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
-  warnings_->setWordWrap(true);
-  warnings_->setContentsMargins(10, 5, 10, 5);
-  warnings_->setStyleSheet(QStringLiteral("background: #fff4d6; color: #6b4e00;"));
-  warnings_->hide();
-  column->addWidget(load_bar_);
-  column->addWidget(recover_);
-  column->addWidget(warnings_);
-  column->addWidget(view_, 1);
-  setCentralWidget(centre);
-  addToolBar(Qt::LeftToolBarArea, tools_);
-
-  auto* side = new QWidget;
-  side->setStyleSheet(cardStyle());
-  auto* stack = new QVBoxLayout(side);
-  stack->setContentsMargins(8, 0, 8, 8);
-  stack->setSpacing(4);
-  stack->addWidget(brush_);
-  stack->addWidget(relief_);
-  for (QWidget* card : cards()) stack->addWidget(card);
-  stack->addStretch(1);
-  for (QWidget* absent : {static_cast<QWidget*>(brush_), static_cast<QWidget*>(relief_)})
-    absent->hide();
-  display_->layout()->addWidget(paint_display_);
-  new ValueFocus(*side, *view_);
-  auto* scroll = new QScrollArea;
-  scroll->setWidget(side);
-  scroll->setWidgetResizable(true);
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  // Room for the scroll bar from the start, or it would cover the cards when it comes.
-  scroll->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
-  scroll->setFixedWidth(318);
-  panels_ << dock(tr("Scene"), "scene_dock", scroll, Qt::RightDockWidgetArea)->toggleViewAction();
-  QDockWidget* force =
-      dock(tr("Force on the hand"), "force_dock", force_plot_, Qt::BottomDockWidgetArea);
-  QDockWidget* energy = dock(tr("Energy taken by the surface"), "energy_dock", energy_plot_,
-                             Qt::BottomDockWidgetArea);
-  splitDockWidget(force, energy, Qt::Horizontal);
-  resizeDocks({force, energy}, {1, 1}, Qt::Horizontal);
-  for (QDockWidget* plot : {force, energy}) panels_ << plot->toggleViewAction();
-  setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-  history_dock_ = dock(tr("History"), "history_dock", history_, Qt::RightDockWidgetArea);
-  history_->setMinimumHeight(60);
-  resizeDocks({history_dock_}, {170}, Qt::Vertical);
-  history_dock_->hide();
+WindowState MainWindow::state() const {
+  WindowState state;
+  state.content = view_.content();
+  state.open = edits_.scene() != nullptr;
+  state.tool = parts_.tools->choice();
+  state.relief = edits_.hasRelief();
+  state.paint = view_.hasPaint();
+  state.undoable = edits_.status().done;
+  state.redoable = edits_.status().edits.size() - edits_.status().done;
+  state.unsaved = edits_.unsaved();
+  state.recording = feel_.recording();
+  state.name = documents_.name();
+  state.warnings = documents_.warnings();
+  state.work = documents_.work() ? documents_.work() : edits_.work();
+  state.left_behind = documents_.leftBehind();
+  return state;
 }
 
-void MainWindow::collect() {
-  const std::vector<ToolSample> samples = feel_.drain();
-  recording_.add(samples, feel_.dropped());
-  log_.add(samples, feel_.dropped());
-  desk_->feed(samples);
-  if (samples.empty()) return;
-  last_sample_ = samples.back();
-  force_plot_->addSamples(samples);
-  energy_plot_->addSamples(samples, feel_.dropped());
-}
-
-void MainWindow::closeFeel() {
-  feel_.close();
-  collect();
+void MainWindow::refresh() {
+  const WindowState now = state();
+  showState(now, shown_, parts_, *this);
+  shown_ = now;
 }
 
 void MainWindow::tick() {
-  if (values_edited_) tryValues();
-  collect();
-  desk_->refresh();
-  if (feel_.running()) view_->view().setTool(last_sample_);
-  view_->refresh();
-  if (const auto shown = paint_display_->shown(); shown && *shown != PaintQuantity::color)
-    paint_display_->setRange(view_->view().paintRange(*shown));
-  force_plot_->refresh();
-  energy_plot_->refresh();
+  edits_.tryValues();
+  feel_.collect();
+  paint_.refresh();
+  if (feel_.servo().running()) view_.view().setTool(feel_.sample());
+  view_.refresh();
+  parts_.force->refresh();
+  parts_.energy->refresh();
   if (ticks_++ % 10 != 0) return;
-  if (!std::exchange(stages_shown_, true)) status_->showScene(current_.get());
-  status_->showTiming(feel_.timing(), feel_.running());
-  status_->showFault(feel_.running() && last_sample_.fault);
+  if (!std::exchange(stages_shown_, true)) parts_.status->showScene(edits_.scene().get());
+  parts_.status->showTiming(feel_.servo().timing(), feel_.servo().running());
+  parts_.status->showFault(feel_.servo().running() && feel_.sample().fault);
 }
 
-void MainWindow::setMode(SceneWidget::Mode mode) {
-  tools_->choose({mode == SceneWidget::Mode::navigate ? Handling::navigate : Handling::feel, {}});
+void MainWindow::clear() {
+  feel_.close();
+  paint_.setScene(nullptr, false);
+  parts_.status->showScene(nullptr);
 }
 
-void MainWindow::startRecording() {
-  collect();
-  recording_.start(feel_.dropped());
+void MainWindow::showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name) {
+  clear();
+  view_.showPreview(std::move(mesh), name);
+  refresh();
+  view_.refresh();
 }
 
-std::vector<ToolSample> MainWindow::takeRecording() {
-  collect();
-  std::vector<ToolSample> samples = recording_.samples();
-  recording_.clear();
-  return samples;
+void MainWindow::showAgain() {
+  if (edits_.scene() == nullptr) {
+    clear();
+    view_.clear();
+  } else if (view_.content() == Content::preview) {
+    edits_.showAgain();
+  }
+  refresh();
 }
 
-void MainWindow::startLog() {
-  collect();
-  log_.start(feel_.dropped());
+void MainWindow::showScene(const SceneChange& change) {
+  const bool edited = change.step == SceneChange::Step::edited;
+  if (edited && view_.content() == Content::preview) return; // seen if the preview comes to nothing
+  view_.showScene(change);
+  if (change.device) {
+    const Vec3 start = edited ? feel_.sample().tip : parts_.view->restingPlace();
+    parts_.view->setTarget(start);
+    feel_.open(change.scene->scene, start);
+  }
+  paint_.setScene(change.scene, change.step == SceneChange::Step::another);
+  if (change.values) {
+    parts_.status->showScene(change.scene.get());
+    askStability();
+  } else {
+    stages_shown_ = false;
+  }
+  refresh();
+  if (change.surface && change.step != SceneChange::Step::again) emit sceneReady();
 }
 
-Recording& MainWindow::log() {
-  collect();
-  return log_;
+void MainWindow::askStability() {
+  const bool wanted = view_.content() == Content::scene && parts_.display->shown(Layer::stability);
+  feel_.stability().request(wanted ? edits_.scene() : nullptr);
 }
 
-void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-  if (event->mimeData()->hasUrls() && event->mimeData()->urls().front().isLocalFile())
-    event->acceptProposedAction();
-}
-
-void MainWindow::dropEvent(QDropEvent* event) {
-  LoadRequest request;
-  request.path = event->mimeData()->urls().front().toLocalFile().toStdString();
-  // A question must not hold up the program that the file is dragged from.
-  QMetaObject::invokeMethod(
-      this, [this, request] { openAsked(request); }, Qt::QueuedConnection);
+void MainWindow::closeEvent(QCloseEvent* event) {
+  if (documents_.asks() && !closing_ && !(feel_.settleRecording() && documents_.settleEdits()))
+    return event->ignore();
+  closing_ = true;
+  timer_.stop();
+  parts_.relief->cancel();
+  feel_.close();
+  if (documents_.close()) return event->accept();
+  connect(&documents_, &DocumentController::rested, this, &QWidget::close, Qt::UniqueConnection);
+  event->ignore();
 }
 
 } // namespace patina

@@ -24,20 +24,20 @@ SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
                  320);    // without one, a docked layout may give it no pixel and nothing is drawn
   setMouseTracking(true); // the brush is seen before it paints
   setFocusPolicy(Qt::StrongFocus);
-  setMode(mode_);
+  setHandling(handling_);
 }
 
 SceneWidget::~SceneWidget() = default;
 
-void SceneWidget::setMode(Mode mode) {
-  mode_ = mode;
-  setCursor(feels() || paints() || mode_ == Mode::pick ? Qt::CrossCursor : Qt::OpenHandCursor);
-  emit modeChanged();
+void SceneWidget::setHandling(Handling handling) {
+  handling_ = handling;
+  setCursor(feels() || paints() || handling_ == Handling::pick ? Qt::CrossCursor
+                                                               : Qt::OpenHandCursor);
 }
 
 void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
   field_ = std::move(field);
-  setMode(mode_);
+  setHandling(handling_);
 }
 
 bool SceneWidget::refresh() {
@@ -99,8 +99,9 @@ void SceneWidget::brush(const QPoint& pixel, bool down, double pressure) {
 }
 
 bool SceneWidget::pick(const QMouseEvent& event) {
-  const bool asked = mode_ == Mode::pick || (event.modifiers().testFlag(Qt::AltModifier) &&
-                                             (mode_ == Mode::paint || mode_ == Mode::feel));
+  const bool asked = handling_ == Handling::pick ||
+                     (event.modifiers().testFlag(Qt::AltModifier) &&
+                      (handling_ == Handling::paint || handling_ == Handling::feel));
   if (!asked || event.button() != Qt::LeftButton || event.modifiers().testFlag(Qt::ShiftModifier))
     return false;
   if (const auto hit = surfaceAt(event.pos())) emit pickAsked(*hit);
@@ -131,10 +132,10 @@ void SceneWidget::press(QMouseEvent& event) {
   const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
   switch (event.button()) {
   case Qt::LeftButton:
-    drag_ = paints() && !shift                 ? Drag::brush
-            : feels() && !shift                ? Drag::tip
-            : shift && mode_ == Mode::navigate ? Drag::pan
-                                               : Drag::orbit;
+    drag_ = paints() && !shift                         ? Drag::brush
+            : feels() && !shift                        ? Drag::tip
+            : shift && handling_ == Handling::navigate ? Drag::pan
+                                                       : Drag::orbit;
     break;
   case Qt::MiddleButton:
     drag_ = Drag::pan;

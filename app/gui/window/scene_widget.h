@@ -8,6 +8,7 @@
 #include <QPoint>
 #include <QVTKOpenGLNativeWidget.h>
 
+#include "app/gui/window/handling.h"
 #include "core/types.h"
 #include "visualization/view/scene_view.h"
 
@@ -20,22 +21,19 @@ struct Pointed {
   double pressure = 1; // of a pen, in [0, 1]
 };
 
-// In feel mode the left button moves the tip in the plane that faces the viewer, the wheel moves it
-// in depth and a double click sets it onto the surface; Shift + left, middle, right and Ctrl +
-// wheel move the camera. In navigate mode the left button and the wheel move the camera too. In
-// paint mode the left button, or a pen, is on the surface under it, and the wheel zooms; in pick
-// mode, and with Alt in feel and paint mode, it asks what is there.
+// Feeling, the left button moves the tip in the plane that faces the viewer, the wheel moves it in
+// depth and a double click sets it onto the surface; Shift + left, middle, right and Ctrl + wheel
+// move the camera. Navigating, the left button and the wheel move the camera too. Painting, the
+// left button, or a pen, is on the surface under it, and the wheel zooms; picking, and with Alt
+// when feeling or painting, it asks what is there.
 class SceneWidget : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
-  enum class Mode { feel, navigate, paint, pick };
-
   explicit SceneWidget(QWidget* parent = nullptr);
   ~SceneWidget() override;
 
   SceneView& view() { return view_; }
-  void setMode(Mode mode);
-  Mode mode() const { return mode_; }
+  void setHandling(Handling handling);
   // What a double click looks for the surface in; nullptr = no contact yet, the mouse navigates.
   void setField(std::shared_ptr<const SurfaceField> field);
   void setTarget(const Vec3& target) { target_ = target; }
@@ -56,17 +54,16 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
 
  signals:
   void tipMoved(const patina::Vec3& target);
-  void modeChanged();
-  void
-  pointed(const patina::Pointed& where); // paint mode, while the button is down and when it goes
+  // When painting, while the button is down and when it goes.
+  void pointed(const patina::Pointed& where);
   void pickAsked(const patina::Vec3& surface);
 
  protected:
   bool event(QEvent* event) override;
 
  private:
-  bool feels() const { return mode_ == Mode::feel && field_ != nullptr; }
-  bool paints() const { return mode_ == Mode::paint && field_ != nullptr; }
+  bool feels() const { return handling_ == Handling::feel && field_ != nullptr; }
+  bool paints() const { return handling_ == Handling::paint && field_ != nullptr; }
   std::optional<Vec3> surfaceAt(const QPoint& pixel);
   void brush(const QPoint& pixel, bool down, double pressure);
   bool pick(const QMouseEvent& event); // false: it is no picking
@@ -82,7 +79,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   enum class Drag { none, tip, orbit, pan, zoom, brush };
   SceneView view_;
   std::shared_ptr<const SurfaceField> field_;
-  Mode mode_ = Mode::feel;
+  Handling handling_ = Handling::feel;
   Drag drag_ = Drag::none;
   QPoint last_;
   std::optional<QPoint> pointer_; // over the view

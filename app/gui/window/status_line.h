@@ -17,9 +17,6 @@ class StatusLine : public QObject {
   void showTiming(const ServoTiming& timing, bool running);
   void showFault(bool on);               // the force jumped and was faded to zero (F13)
   void showPicked(const QString& words); // what is under the pointer; empty: nothing
-  QString pickedText() const { return picked_->text(); }
-  QString stabilisersText() const { return stabilisers_->text(); } // empty: none is on
-  QString stagesText() const { return stages_->text(); }
 
  private:
   void showStabilisers(const CompiledScene& scene);

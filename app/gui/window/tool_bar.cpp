@@ -68,7 +68,6 @@ ToolBar::ToolBar(QWidget* parent)
     }
   }
   actionOf(choice_)->setChecked(true);
-  setPaints(false);
 }
 
 QAction* ToolBar::actionOf(const ToolChoice& choice) const {
@@ -83,6 +82,12 @@ void ToolBar::choose(const ToolChoice& choice) {
   if (choice == choice_) return;
   choice_ = choice;
   emit chosen(choice_);
+}
+
+void ToolBar::toggleNavigation() {
+  if (choice_.handling == Handling::navigate) return choose(before_navigating_);
+  before_navigating_ = choice_;
+  choose({Handling::navigate, {}});
 }
 
 void ToolBar::setPaints(bool can) {

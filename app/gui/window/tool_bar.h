@@ -17,6 +17,7 @@ class ToolBar : public QToolBar {
 
   const ToolChoice& choice() const { return choice_; }
   void choose(const ToolChoice& choice); // sends chosen() if it changes
+  void toggleNavigation();               // to the camera, and back to the tool
   void setPaints(bool can);              // without a scene there is nothing to paint on
   QList<QAction*> actionsOfTools() const { return group_->actions(); }
 
@@ -28,7 +29,7 @@ class ToolBar : public QToolBar {
 
   QActionGroup* group_;
   QToolButton* more_; // shows the tool of its menu that was used last
-  ToolChoice choice_;
+  ToolChoice choice_, before_navigating_;
 };
 
 } // namespace patina

@@ -17,18 +17,20 @@ namespace {
 void openAndWait(MainWindow& window, const LoadRequest& request) {
   QString problem;
   bool ready = false;
-  const auto failed = QObject::connect(&window, &MainWindow::loadFailed,
+  DocumentController& documents = window.controllers().documents;
+  const auto failed = QObject::connect(&documents, &DocumentController::failed,
                                        [&](const QString& message) { problem = message; });
   const auto done = QObject::connect(&window, &MainWindow::sceneReady, [&] { ready = true; });
-  const auto unit = QObject::connect(&window.loader(), &SceneLoader::needsUnit, [&] {
+  SceneLoader& loader = find<SceneLoader>(window);
+  const auto unit = QObject::connect(&loader, &SceneLoader::needsUnit, [&] {
     problem = QStringLiteral("its size in millimetres is odd: say --unit fit, m, cm, mm or in");
   });
-  const auto iso = QObject::connect(&window.loader(), &SceneLoader::needsIso, [&] {
+  const auto iso = QObject::connect(&loader, &SceneLoader::needsIso, [&] {
     problem = QStringLiteral("a volume needs the value of its surface: say --iso VALUE");
   });
   LoadRequest only_read = request; // what the tour shows is nobody's edit
   only_read.own = false;
-  window.open(only_read);
+  documents.open(only_read);
   const bool in_time = waitUntil([&] { return ready || !problem.isEmpty(); }, 10 * 60 * 1000);
   for (const auto& connection : {failed, done, unit, iso}) QObject::disconnect(connection);
   if (!problem.isEmpty()) throw Error(problem.toStdString());
@@ -45,8 +47,8 @@ bool isBlank(const QImage& image) {
 
 void grab(MainWindow& window, const std::filesystem::path& path) {
   wait(120);
-  waitUntil([&] { return window.view().settled(); }, 5000);
-  if (isBlank(window.view().grabFramebuffer()))
+  waitUntil([&] { return find<SceneWidget>(window).settled(); }, 5000);
+  if (isBlank(find<SceneWidget>(window).grabFramebuffer()))
     throw Error("nothing was drawn: OpenGL gave an empty picture");
   if (!window.grab().toImage().save(QString::fromStdString(path.string()), "PNG", 0))
     throw FileError(path.string(), 0, "cannot be written");
@@ -54,17 +56,18 @@ void grab(MainWindow& window, const std::filesystem::path& path) {
 
 // Nearer to where the tool is.
 void lookCloser(MainWindow& window, double factor) {
-  vtkCamera& camera = *window.view().view().renderer().GetActiveCamera();
-  const Vec3 shift = window.lastSample().vcp - Vec3(camera.GetFocalPoint());
+  vtkCamera& camera = *find<SceneWidget>(window).view().renderer().GetActiveCamera();
+  const Vec3 shift = window.controllers().feel.sample().vcp - Vec3(camera.GetFocalPoint());
   const Vec3 eye = Vec3(camera.GetPosition()) + shift;
   camera.SetPosition(eye[0], eye[1], eye[2]);
-  const Vec3& at = window.lastSample().vcp;
+  const Vec3& at = window.controllers().feel.sample().vcp;
   camera.SetFocalPoint(at[0], at[1], at[2]);
   zoom(camera, factor);
 }
 
 void show(MainWindow& window, std::set<Layer> layers) {
-  for (const Layer layer : allLayers()) window.display().setShown(layer, layers.count(layer) != 0);
+  for (const Layer layer : allLayers())
+    find<DisplayPanel>(window).setShown(layer, layers.count(layer) != 0);
 }
 
 void checkFelt(const std::vector<ToolSample>& samples) {
@@ -80,16 +83,22 @@ void checkFelt(const std::vector<ToolSample>& samples) {
 }
 
 void edit(MainWindow& window, const std::function<void(HapticProperties&)>& change) {
-  HapticProperties haptics = window.haptics().values();
+  HapticsPanel& panel = find<HapticsPanel>(window);
+  HapticProperties haptics = panel.values();
   change(haptics);
-  window.haptics().setValues(haptics);
-  emit window.haptics().edited(haptics);
+  panel.setValues(haptics);
+  emit panel.edited(haptics);
   wait(250);
+}
+
+// As a person types it, in the row's own unit.
+void setRow(MainWindow& window, const char* name, double value) {
+  find<ValueRow>(window, name).findChild<QDoubleSpinBox*>()->setValue(value);
 }
 
 // The tip on the offset surface, and the magnetic band cut by the slice.
 void showBands(MainWindow& window, const std::filesystem::path& folder) {
-  const double edge = 3 * window.scene()->built.field->grid.voxel;
+  const double edge = 3 * window.controllers().edits.scene()->built.field->grid.voxel;
   edit(window, [&](HapticProperties& haptics) {
     haptics.magnet.reset();
     haptics.offset = edge;
@@ -98,27 +107,28 @@ void showBands(MainWindow& window, const std::filesystem::path& folder) {
   press(window, place, -0.35 * edge, 1200);
   lookCloser(window, 2);
   grab(window, folder / "offset.png");
-  play(window, {window.view().restingPlace()});
+  play(window, {find<SceneWidget>(window).restingPlace()});
   wait(400);
   edit(window, [&](HapticProperties& haptics) {
     haptics.offset.reset();
     haptics.magnet = Magnet{edge, 300, true};
   });
   show(window, {Layer::mesh, Layer::slice, Layer::band});
-  window.view().view().setView(ViewPreset::iso);
+  find<SceneWidget>(window).view().setView(ViewPreset::iso);
   grab(window, folder / "magnet.png");
   edit(window, [](HapticProperties& haptics) { haptics.magnet.reset(); });
 }
 
 // A surface near the limit of a device, so that its form decides where it would buzz.
 void showStability(MainWindow& window, const std::filesystem::path& folder) {
-  DeviceChoice choice = window.device().values();
+  DevicePanel& panel = find<DevicePanel>(window);
+  DeviceChoice choice = panel.values();
   if (!choice.model) choice.model = DeviceModel{0.1, 0.5, 0.05, 30e-6, 1000, 0};
-  window.device().setValues(choice);
-  emit window.device().edited();
+  panel.setValues(choice);
+  emit panel.edited();
   edit(window, [](HapticProperties& haptics) { haptics.stiffness = 1500; });
   show(window, {Layer::mesh, Layer::tip, Layer::stability});
-  if (!waitUntil([&] { return !window.stability().busy(); }, 120000))
+  if (!waitUntil([&] { return !window.controllers().feel.stability().busy(); }, 120000))
     throw Error("the stability map was not ready after two minutes");
   grab(window, folder / "stability.png");
   show(window, {Layer::mesh, Layer::band, Layer::tip});
@@ -127,34 +137,36 @@ void showStability(MainWindow& window, const std::filesystem::path& folder) {
 // The same file once more, beside what is open.
 void showObjects(MainWindow& window, const LoadRequest& request,
                  const std::filesystem::path& folder) {
-  const double wide = 0.8 * window.view().view().extent().sizes()[0];
+  const double wide = 0.8 * find<SceneWidget>(window).view().extent().sizes()[0];
   LoadRequest more = request;
   more.adds = true;
   openAndWait(window, more);
-  window.objects().moveLast(Vec3(wide, 0, 0));
+  QListWidget& list = find<QListWidget>(window, "objects");
+  list.setCurrentRow(list.count() - 1);
+  find<QDoubleSpinBox>(window, "place_x").setValue(1000 * wide);
   bool moved = false;
   const auto done = QObject::connect(&window, &MainWindow::sceneReady, [&] { moved = true; });
   const bool in_time = waitUntil([&] { return moved; }, 10 * 60 * 1000);
   QObject::disconnect(done);
   if (!in_time) throw Error("the second object was not there after ten minutes");
-  window.view().view().setView(ViewPreset::iso);
-  play(window, {window.view().restingPlace()});
+  find<SceneWidget>(window).view().setView(ViewPreset::iso);
+  play(window, {find<SceneWidget>(window).restingPlace()});
   wait(400);
   grab(window, folder / "objects.png");
 }
 
 // Stripes of stiffness, a raised ring and a spot of colour, as a person lays them on.
 void showPainting(MainWindow& window, const std::filesystem::path& folder) {
-  const std::size_t before = window.standing().done;
-  window.view().view().setView(ViewPreset::iso);
+  EditController& edits = window.controllers().edits;
+  const std::size_t before = edits.status().done;
+  const double extent = bounds(*edits.scene()->mesh).sizes().maxCoeff();
+  find<SceneWidget>(window).view().setView(ViewPreset::iso);
   const Vec2 middle = placeToTouch(window);
   const auto choose = [&](Tool tool, double value, double falloff, double share) {
-    window.tools().choose({Handling::paint, tool});
-    Brush brush = window.desk().brush();
-    if (tool != Tool::color) brush.value = value;
-    brush.falloff = falloff;
-    brush.radius = share * window.desk().book().extent();
-    window.desk().setBrush(brush);
+    find<ToolBar>(window).choose({Handling::paint, tool});
+    if (tool != Tool::color) setRow(window, "brush_value", value);
+    setRow(window, "brush_falloff", falloff);
+    setRow(window, "brush_radius", 1000 * share * extent);
     wait(200);
   };
   const auto line = [&](const Vec2& from, const Vec2& to) {
@@ -163,7 +175,7 @@ void showPainting(MainWindow& window, const std::filesystem::path& folder) {
   };
   choose(Tool::color, 0, 4, 0.02);
   line(middle + Vec2(-0.05, 0.02), middle + Vec2(0.06, 0.03));
-  choose(Tool::relief, 0.006 * window.desk().book().extent(), 2, 0.012);
+  choose(Tool::relief, 6 * extent, 2, 0.012);
   const auto ring = [&](double t) {
     return Vec2(middle + 0.03 * Vec2(std::cos(2 * M_PI * t), std::sin(2 * M_PI * t)));
   };
@@ -174,9 +186,9 @@ void showPainting(MainWindow& window, const std::filesystem::path& folder) {
   paintAlong(
       window, [&](double t) { return Vec2(from + t * (to - from)); }, 900,
       [&] { grab(window, folder / "paint.png"); }); // tool, force and brush together
-  window.tools().choose({Handling::feel, {}});
-  window.edits().goTo(before);
-  if (!waitUntil([&] { return window.standing().done == before; }, 20000))
+  find<ToolBar>(window).choose({Handling::feel, {}});
+  edits.thread().goTo(before);
+  if (!waitUntil([&] { return edits.status().done == before; }, 20000))
     throw Error("what the tour painted was not undone");
 }
 
@@ -188,8 +200,9 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   if (code) throw FileError(folder.string(), 0, "cannot be made: " + code.message());
   openAndWait(window, request);
   wait(300);
-  window.startRecording();
-  const double depth = 3.5 * window.scene()->built.field->grid.voxel;
+  FeelController& feel = window.controllers().feel;
+  feel.startLog();
+  const double depth = 3.5 * window.controllers().edits.scene()->built.field->grid.voxel;
   const Vec2 start = placeToTouch(window);
   const Vec2 end = start + Vec2(-0.06, 0.03);
   press(window, start, depth, 1200);
@@ -198,7 +211,7 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
 
   lookCloser(window, 3.2);
   // The person gives the surface friction and strokes on: one row more, one stage more.
-  const HapticProperties opened = window.haptics().values();
+  const HapticProperties opened = find<HapticsPanel>(window).values();
   edit(window, [](HapticProperties& haptics) {
     if (!haptics.friction) haptics.friction = Friction{0.5, 0.3, 0, {}};
   });
@@ -209,16 +222,16 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   lookCloser(window, 1.8);
   grab(window, folder / "nodes.png");
 
-  play(window, {window.view().restingPlace()});
+  play(window, {find<SceneWidget>(window).restingPlace()});
   wait(300);
   show(window, {Layer::mesh, Layer::slice, Layer::iso, Layer::extent});
-  window.display().setSlice({1, 0.5});
-  window.display().setIso(1.5 * window.scene()->built.field->grid.voxel);
-  window.view().view().setView(ViewPreset::iso);
+  setRow(window, "iso_value", 1500 * window.controllers().edits.scene()->built.field->grid.voxel);
+  find<SceneWidget>(window).view().setView(ViewPreset::iso);
   grab(window, folder / "slice.png");
   show(window, {Layer::mesh, Layer::band, Layer::tip});
 
-  const std::vector<ToolSample> samples = window.takeRecording();
+  const std::vector<ToolSample> samples = feel.log().samples();
+  feel.log().clear();
   checkFelt(samples);
   edit(window, [&](HapticProperties& haptics) { haptics = opened; });
   wait(600);

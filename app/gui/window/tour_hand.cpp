@@ -19,9 +19,10 @@ constexpr std::chrono::milliseconds kBeat{4};
 
 // The surface under a place of the picture, in fractions of its height from the centre.
 std::optional<Vec3> surfaceAt(MainWindow& window, double x, double y, Vec3& inward) {
-  const Ray ray = rayThrough(*window.view().view().renderer().GetActiveCamera(), x, y);
+  const Ray ray = rayThrough(*find<SceneWidget>(window).view().renderer().GetActiveCamera(), x, y);
   inward = ray.direction;
-  return firstSurfaceAlong(*window.scene()->built.field, ray.origin, ray.direction);
+  return firstSurfaceAlong(*window.controllers().edits.scene()->built.field, ray.origin,
+                           ray.direction);
 }
 
 // One target a beat, at(0 .. 1).
@@ -55,14 +56,14 @@ void play(MainWindow& window, const std::vector<Vec3>& targets) {
   std::thread hand([&] {
     auto due = std::chrono::steady_clock::now();
     for (const Vec3& target : targets) {
-      window.feel().setTarget(target);
+      window.controllers().feel.servo().setTarget(target);
       std::this_thread::sleep_until(due += kBeat);
     }
     done = true;
   });
   waitUntil([&] { return done.load(); }, 120000);
   hand.join();
-  window.view().setTarget(targets.back());
+  find<SceneWidget>(window).setTarget(targets.back());
 }
 
 Vec2 placeToTouch(MainWindow& window) {
@@ -80,7 +81,7 @@ void press(MainWindow& window, const Vec2& place, double depth, int milliseconds
   Vec3 inward;
   const auto hit = surfaceAt(window, place[0], place[1], inward);
   if (!hit) throw Error("the tour lost the surface");
-  const double gap = 0.05 * window.view().view().extent().diagonal().norm();
+  const double gap = 0.05 * find<SceneWidget>(window).view().extent().diagonal().norm();
   play(window, path(milliseconds, [&](double t) -> std::optional<Vec3> {
          return *hit + inward * (t * (gap + depth) - gap);
        }));
@@ -98,11 +99,13 @@ void slide(MainWindow& window, const Vec2& from, const Vec2& to, double depth, i
 
 void paintAlong(MainWindow& window, const std::function<Vec2(double)>& at, int milliseconds,
                 const std::function<void()>& at_last) {
-  const std::size_t before = window.standing().edits.size();
+  const EditController& edits = window.controllers().edits;
+  const std::size_t before = edits.status().edits.size();
   Vec3 inward;
   const auto point = [&](double t, bool down) {
     const Vec2 place = at(t);
-    emit window.view().pointed({surfaceAt(window, place[0], place[1], inward), down, 1});
+    emit find<SceneWidget>(window).pointed(
+        {surfaceAt(window, place[0], place[1], inward), down, 1});
   };
   QElapsedTimer clock;
   clock.start();
@@ -114,7 +117,7 @@ void paintAlong(MainWindow& window, const std::function<Vec2(double)>& at, int m
   wait(60);
   if (at_last) at_last();
   point(1, false);
-  if (!waitUntil([&] { return window.standing().edits.size() > before; }, 20000))
+  if (!waitUntil([&] { return edits.status().edits.size() > before; }, 20000))
     throw Error("the tour's brush painted nothing");
 }
 

@@ -9,6 +9,11 @@
 
 namespace patina {
 
+// A widget by what it is, and by its name where there are several.
+template <typename Widget> Widget& find(MainWindow& window, const char* name = nullptr) {
+  return *window.findChild<Widget*>(QString::fromUtf8(name));
+}
+
 // Events go on while we wait; false after the time is up.
 bool waitUntil(const std::function<bool()>& done, int milliseconds);
 void wait(int milliseconds);

@@ -1,15 +1,21 @@
-// Menus and the bar below them.
+#include "app/gui/window/window_menus.h"
+
+#include <QDockWidget>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QToolBar>
 
-#include "app/gui/window/main_window.h"
+#include "app/gui/control/document_controller.h"
+#include "app/gui/control/edit_controller.h"
+#include "app/gui/control/feel_controller.h"
+#include "app/gui/control/view_controller.h"
+#include "app/gui/painting/paint_controller.h"
 
 namespace patina {
 namespace {
 
 QString shortcutsText() {
-  return MainWindow::tr(
+  return QMainWindow::tr(
       "<table cellspacing='6'>"
       "<tr><td><b>Left drag</b></td><td>move the tip in the plane you look at</td></tr>"
       "<tr><td><b>Wheel</b></td><td>move the tip away from you, and back</td></tr>"
@@ -31,44 +37,139 @@ QString shortcutsText() {
 
 QString signed_(ViewPreset preset) {
   QString words = QString::fromUtf8(name(preset).data(), static_cast<int>(name(preset).size()));
-  return words == QStringLiteral("iso") ? MainWindow::tr("At an angle")
+  return words == QStringLiteral("iso") ? QMainWindow::tr("At an angle")
                                         : words.replace('-', QStringLiteral("−"));
+}
+
+QString tr(const char* words) {
+  return QMainWindow::tr(words);
+}
+
+void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
+  QMenu* file = window.menuBar()->addMenu(tr("&File"));
+  DocumentController* documents = &at.documents;
+  bar.addAction(file->addAction(
+      tr("&Open…"), documents, [=] { documents->openDialog(false); }, QKeySequence::Open));
+  QAction* add = file->addAction(
+      tr("&Add object…"), documents, [=] { documents->openDialog(true); },
+      Qt::CTRL | Qt::SHIFT | Qt::Key_O);
+  add->setToolTip(tr("A mesh or volume that is felt together with what is open"));
+  file->addMenu(parts.recent);
+  file->addAction(tr("Open the toy &dinosaur"), documents, [=] { documents->openAsked({}); });
+  file->addSeparator();
+  QAction* save =
+      file->addAction(tr("&Save"), documents, &DocumentController::save, QKeySequence::Save);
+  save->setToolTip(tr("Into the workspace that is open, or into a new one"));
+  parts.commands[Command::save] = save;
+  parts.commands[Command::save_as] =
+      file->addAction(tr("Save workspace &as…"), documents, &DocumentController::saveDialog,
+                      Qt::CTRL | Qt::SHIFT | Qt::Key_S);
+  file->addAction(tr("&Export picture…"), &at.view, &ViewController::exportPicture);
+  QAction* record = file->addAction(tr("&Record forces"));
+  record->setObjectName(QStringLiteral("record"));
+  record->setCheckable(true);
+  record->setShortcut(Qt::Key_R);
+  record->setToolTip(tr("Record every tick, then save a CSV table"));
+  QObject::connect(record, &QAction::triggered, &at.feel, &FeelController::toggleRecording);
+  parts.commands[Command::record] = record;
+  file->addSeparator();
+  file->addAction(tr("&Quit"), &window, &QWidget::close, QKeySequence::Quit);
+  bar.addAction(save);
+  bar.addSeparator();
+}
+
+void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
+  QMenu* edit = window.menuBar()->addMenu(tr("&Edit"));
+  EditController* edits = &at.edits;
+  QAction* undo = edit->addAction(
+      tr("&Undo"), edits, [=] { edits->thread().undo(); }, QKeySequence::Undo);
+  QAction* redo = edit->addAction(tr("&Redo"), edits, [=] { edits->thread().redo(); });
+  redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
+  parts.commands[Command::undo] = undo;
+  parts.commands[Command::redo] = redo;
+  edit->addSeparator();
+  edit->addActions(parts.tools->actionsOfTools());
+  edit->addSeparator();
+  PaintController* paint = &at.paint;
+  const auto add = [&](const QString& words, const QList<QKeySequence>& keys, auto act) {
+    edit->addAction(words, paint, act)->setShortcuts(keys);
+  };
+  // On keyboards where Shift makes a brace of a bracket the key is the brace.
+  add(tr("Smaller brush"), {Qt::Key_BracketLeft}, [=] { paint->resizeBrush(1 / 1.15); });
+  add(tr("Larger brush"), {Qt::Key_BracketRight}, [=] { paint->resizeBrush(1.15); });
+  add(tr("Softer brush"), {QKeySequence("Shift+["), Qt::Key_BraceLeft},
+      [=] { paint->softenBrush(1 / 1.15); });
+  add(tr("Harder brush"), {QKeySequence("Shift+]"), Qt::Key_BraceRight},
+      [=] { paint->softenBrush(1.15); });
+  bar.addActions({undo, redo});
+  bar.addSeparator();
+}
+
+void addLayers(QMenu& menu, DisplayPanel* display) {
+  const std::pair<Layer, int> keys[] = {
+      {Layer::mesh, Qt::Key_M}, {Layer::tip, Qt::Key_T},       {Layer::slice, Qt::Key_S},
+      {Layer::iso, Qt::Key_I},  {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
+      {Layer::band, Qt::Key_B}, {Layer::extent, Qt::Key_E},    {Layer::stability, Qt::Key_K}};
+  for (const auto& [layer, key] : keys) {
+    const auto words = name(layer);
+    QAction* action = menu.addAction(
+        tr("Show %1").arg(QString::fromUtf8(words.data(), static_cast<int>(words.size()))));
+    action->setCheckable(true);
+    action->setChecked(display->shown(layer));
+    action->setShortcut(key);
+    QObject::connect(action, &QAction::toggled, display,
+                     [display, layer = layer](bool on) { display->setShown(layer, on); });
+    QObject::connect(display, &DisplayPanel::layerToggled, action,
+                     [action, layer = layer](Layer toggled, bool on) {
+                       if (toggled == layer) action->setChecked(on);
+                     });
+  }
+}
+
+void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
+  QMenu* menu = window.menuBar()->addMenu(tr("&View"));
+  menu->addAction(tr("Navigate, or back to the tool"), parts.tools, &ToolBar::toggleNavigation,
+                  Qt::Key_Space);
+  menu->addSeparator();
+  ViewController* view = &at.view;
+  bar.addAction(menu->addAction(
+      tr("&Fit"), view, [=] { view->view().fit(); }, Qt::Key_F));
+  QMenu* camera = menu->addMenu(tr("&Camera"));
+  int digit = Qt::Key_1;
+  for (const ViewPreset preset : allViews())
+    bar.addAction(camera->addAction(
+        signed_(preset), view, [=] { view->view().setView(preset); }, digit++));
+  menu->addSeparator();
+  addLayers(*menu, parts.display);
+  menu->addSeparator();
+  for (QDockWidget* dock : window.findChildren<QDockWidget*>())
+    menu->addAction(dock->toggleViewAction());
+  bar.addSeparator();
+  bar.addAction(parts.commands[Command::record]);
+}
+
+void addHelpMenu(QMainWindow* window) {
+  QMenu* help = window->menuBar()->addMenu(tr("&Help"));
+  const auto tell = [window](const QString& title, const QString& words) {
+    auto* box = new QMessageBox(QMessageBox::NoIcon, title, words, QMessageBox::Ok, window);
+    box->setAttribute(Qt::WA_DeleteOnClose);
+    box->open();
+  };
+  help->addAction(
+      tr("&Mouse and keys"), window, [tell] { tell(tr("Mouse and keys"), shortcutsText()); },
+      Qt::Key_F1);
+  help->addAction(tr("&About Patina"), window, [tell] {
+    tell(tr("About Patina"),
+         tr("<h3>Patina %1</h3><p>A mesh becomes a sampled implicit surface, and a 1 kHz servo "
+            "feels it.</p><p>BSD-3-Clause. Built on VTK, Qt, Eigen, OpenMesh and TBB.</p>")
+             .arg(QStringLiteral(PATINA_VERSION)));
+  });
 }
 
 } // namespace
 
-void MainWindow::buildMenus() {
-  QMenu* file = menuBar()->addMenu(tr("&File"));
-  QAction* open_action = file->addAction(
-      tr("&Open…"), this, [this] { openDialog(false); }, QKeySequence::Open);
-  QAction* add_action = file->addAction(
-      tr("&Add object…"), this, [this] { openDialog(true); }, Qt::CTRL | Qt::SHIFT | Qt::Key_O);
-  add_action->setToolTip(tr("A mesh or volume that is felt together with what is open"));
-  recent_ = new RecentFiles(file->addMenu(tr("Open &recent")));
-  connect(recent_, &RecentFiles::chosen, this, [this](const QString& path) {
-    LoadRequest request;
-    request.path = path.toStdString();
-    openAsked(request);
-  });
-  file->addAction(tr("Open the toy &dinosaur"), this, [this] { openAsked({}); });
-  file->addSeparator();
-  save_action_ = file->addAction(tr("&Save"), this, &MainWindow::save, QKeySequence::Save);
-  save_action_->setToolTip(tr("Into the workspace that is open, or into a new one"));
-  save_as_action_ = file->addAction(tr("Save workspace &as…"), this, &MainWindow::saveDialog,
-                                    Qt::CTRL | Qt::SHIFT | Qt::Key_S);
-  file->addAction(tr("&Export picture…"), this, &MainWindow::exportDialog);
-  record_action_ = file->addAction(tr("&Record forces"));
-  record_action_->setCheckable(true);
-  record_action_->setShortcut(Qt::Key_R);
-  record_action_->setToolTip(tr("Record every tick, then save a CSV table"));
-  connect(record_action_, &QAction::triggered, this, &MainWindow::recordDialog);
-  file->addSeparator();
-  file->addAction(tr("&Quit"), this, &QWidget::close, QKeySequence::Quit);
-  buildEditMenu();
-  buildViewMenu();
-  buildHelpMenu();
-
-  QToolBar* bar = addToolBar(tr("View"));
+void addMenus(QMainWindow& window, WindowParts& parts, const Controllers& controllers) {
+  QToolBar* bar = window.addToolBar(tr("View"));
   bar->setObjectName(QStringLiteral("tools"));
   bar->setMovable(false);
   bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
@@ -77,99 +178,10 @@ void MainWindow::buildMenus() {
       "QToolButton { padding: 3px 8px; border: 1px solid transparent; border-radius: 4px; }"
       "QToolButton:hover { background: #e0e6ee; }"
       "QToolButton:checked { background: #2b6cb0; color: white; }"));
-  bar->addAction(open_action);
-  bar->addAction(save_action_);
-  bar->addSeparator();
-  bar->addAction(undo_action_);
-  bar->addAction(redo_action_);
-  bar->addSeparator();
-  bar->addActions(views_);
-  bar->addSeparator();
-  bar->addAction(record_action_);
-}
-
-void MainWindow::buildEditMenu() {
-  QMenu* edit = menuBar()->addMenu(tr("&Edit"));
-  undo_action_ = edit->addAction(
-      tr("&Undo"), this, [this] { edits_->undo(); }, QKeySequence::Undo);
-  redo_action_ = edit->addAction(tr("&Redo"), this, [this] { edits_->redo(); });
-  redo_action_->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
-  edit->addSeparator();
-  edit->addActions(tools_->actionsOfTools());
-  edit->addSeparator();
-  const auto add = [&](const QString& words, const QList<QKeySequence>& keys, auto act) {
-    QAction* action = edit->addAction(words, this, act);
-    action->setShortcuts(keys);
-  };
-  // On keyboards where Shift makes a brace of a bracket the key is the brace.
-  add(tr("Smaller brush"), {Qt::Key_BracketLeft}, [this] { desk_->resizeBrush(1 / 1.15); });
-  add(tr("Larger brush"), {Qt::Key_BracketRight}, [this] { desk_->resizeBrush(1.15); });
-  add(tr("Softer brush"), {QKeySequence("Shift+["), Qt::Key_BraceLeft},
-      [this] { desk_->softenBrush(1 / 1.15); });
-  add(tr("Harder brush"), {QKeySequence("Shift+]"), Qt::Key_BraceRight},
-      [this] { desk_->softenBrush(1.15); });
-}
-
-void MainWindow::buildViewMenu() {
-  QMenu* view_menu = menuBar()->addMenu(tr("&View"));
-  view_menu->addAction(
-      tr("Navigate, or back to the tool"), this,
-      [this] {
-        const ToolChoice now = tools_->choice();
-        if (now.handling == Handling::navigate) return tools_->choose(before_navigating_);
-        before_navigating_ = now;
-        tools_->choose({Handling::navigate, {}});
-      },
-      Qt::Key_Space);
-  view_menu->addSeparator();
-  views_ << view_menu->addAction(
-      tr("&Fit"), this, [this] { view_->view().fit(); }, Qt::Key_F);
-  QMenu* camera_menu = view_menu->addMenu(tr("&Camera"));
-  int digit = Qt::Key_1;
-  for (const ViewPreset preset : allViews())
-    views_ << camera_menu->addAction(
-        signed_(preset), this, [this, preset] { view_->view().setView(preset); }, digit++);
-  view_menu->addSeparator();
-  const std::pair<Layer, int> keys[] = {
-      {Layer::mesh, Qt::Key_M}, {Layer::tip, Qt::Key_T},       {Layer::slice, Qt::Key_S},
-      {Layer::iso, Qt::Key_I},  {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
-      {Layer::band, Qt::Key_B}, {Layer::extent, Qt::Key_E},    {Layer::stability, Qt::Key_K}};
-  for (const auto& [layer, key] : keys) {
-    const auto words = name(layer);
-    QAction* action = view_menu->addAction(
-        tr("Show %1").arg(QString::fromUtf8(words.data(), static_cast<int>(words.size()))));
-    action->setCheckable(true);
-    action->setChecked(display_->shown(layer));
-    action->setShortcut(key);
-    const Layer which = layer;
-    connect(action, &QAction::toggled, this,
-            [this, which](bool on) { display_->setShown(which, on); });
-    connect(display_, &DisplayPanel::layerToggled, action, [action, which](Layer toggled, bool on) {
-      if (toggled == which) action->setChecked(on);
-    });
-  }
-
-  view_menu->addSeparator();
-  view_menu->addActions(panels_);
-  view_menu->addAction(history_dock_->toggleViewAction());
-}
-
-void MainWindow::buildHelpMenu() {
-  QMenu* help = menuBar()->addMenu(tr("&Help"));
-  const auto tell = [this](const QString& title, const QString& words) {
-    auto* box = new QMessageBox(QMessageBox::NoIcon, title, words, QMessageBox::Ok, this);
-    box->setAttribute(Qt::WA_DeleteOnClose);
-    box->open();
-  };
-  help->addAction(
-      tr("&Mouse and keys"), this, [tell] { tell(tr("Mouse and keys"), shortcutsText()); },
-      Qt::Key_F1);
-  help->addAction(tr("&About Patina"), this, [tell] {
-    tell(tr("About Patina"),
-         tr("<h3>Patina %1</h3><p>A mesh becomes a sampled implicit surface, and a 1 kHz servo "
-            "feels it.</p><p>BSD-3-Clause. Built on VTK, Qt, Eigen, OpenMesh and TBB.</p>")
-             .arg(QStringLiteral(PATINA_VERSION)));
-  });
+  addFileMenu(window, parts, controllers, *bar);
+  addEditMenu(window, parts, controllers, *bar);
+  addViewMenu(window, parts, controllers, *bar);
+  addHelpMenu(&window);
 }
 
 } // namespace patina

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "session/edit/edit_news.h"
 #include "session/edit/edit_worker.h"
 
 namespace patina {
@@ -41,8 +40,8 @@ struct EditThread::Impl {
   };
 
   explicit Impl(Spec spec)
-      : board(std::move(spec.wake)),
-        worker(board, std::move(spec.publish), std::move(spec.autosave_root)),
+      : events(std::move(spec.wake)),
+        worker(events, std::move(spec.publish), std::move(spec.autosave_root)),
         thread([this] { run(); }) {}
 
   void push(Task task) {
@@ -59,7 +58,7 @@ struct EditThread::Impl {
   template <typename Meant> void drop(Meant meant) {
     for (Task& task : queue)
       if (meant(task) && task.done)
-        board.done([done = std::move(task.done)] { done(Cancelled().what()); });
+        events.addDone([done = std::move(task.done)] { done(Cancelled().what()); });
     std::erase_if(queue, meant);
   }
 
@@ -87,7 +86,7 @@ struct EditThread::Impl {
             [this, title = task.title, shown = -1.0](double part, std::string_view what) mutable {
               if (part >= shown && part < shown + 0.01) return;
               shown = part;
-              board.doing(EditDoing{title, part, std::string(what)});
+              events.setProgress(EditProgress{title, part, std::string(what)});
             });
       }
       perform(task);
@@ -111,14 +110,14 @@ struct EditThread::Impl {
     }
     if (task.of_values && worker.hasValues()) rests_at = std::chrono::steady_clock::now() + kRest;
     if (task.work) worker.report();
-    board.doing(std::nullopt);
+    events.setProgress(std::nullopt);
     if (task.done)
-      board.done([done = std::move(task.done), problem] { done(problem); });
+      events.addDone([done = std::move(task.done), problem] { done(problem); });
     else if (!problem.empty() && problem != Cancelled().what())
-      board.problem(problem);
+      events.addProblem(problem);
   }
 
-  EditNewsBoard board;
+  EditEventBuffer events;
   EditWorker worker; // the thread's own
   std::mutex mutex;  // of what follows, but rests_at
   std::condition_variable wakes;
@@ -249,8 +248,8 @@ void EditThread::cancel() {
   if (impl_->working && impl_->progress) impl_->progress->cancel();
 }
 
-EditNews EditThread::take() {
-  return impl_->board.take();
+EditEvents EditThread::take() {
+  return impl_->events.take();
 }
 
 bool EditThread::busy() const {

@@ -4,40 +4,14 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "session/edit/edit_events.h"
 #include "session/edit/editor.h"
 #include "session/store/autosave.h"
 
 namespace patina {
-
-// Where the history stands, and what of it is in the workspace's folder.
-struct EditStanding {
-  std::vector<std::string> edits; // of all edits, oldest first
-  std::size_t done = 0;           // how many of them are done; the others can be redone
-  bool unsaved = false;
-  std::optional<std::filesystem::path> folder{}; // absent: the scene has none of its own
-  bool operator==(const EditStanding&) const = default;
-};
-
-// What an edit that takes its time is at.
-struct EditDoing {
-  std::string title; // "Merging the objects"
-  double fraction = 0;
-  std::string what;
-};
-
-// All that has happened since the last take(), however many edits that were.
-struct EditNews {
-  std::shared_ptr<const CompiledScene> compiled; // null: the scene is as it was
-  bool anew = false;                             // it is another scene: see adopt()
-  std::shared_ptr<const EditStanding> standing;  // null: as it was
-  std::optional<EditDoing> doing;                // absent: nothing that takes time is under way
-  std::vector<std::string> problems;             // one line each: what could not be done, and why
-  std::vector<std::function<void()>> done;       // to be called, in this order
-};
 
 // All calls come from one thread, the window's, and none waits but the destructor.
 class EditThread {
@@ -45,7 +19,7 @@ class EditThread {
   struct Spec {
     // On the edit thread, first thing after an edit: the snapshot goes to the servo.
     std::function<void(const CompiledScene&)> publish;
-    // On the edit thread: there is news. Once until it is taken; must not wait.
+    // On the edit thread: there are events. Once until they are taken; must not wait.
     std::function<void()> wake;
     // Where a scene without a folder is kept from its first edit on; empty: nowhere.
     std::filesystem::path autosave_root;
@@ -73,7 +47,7 @@ class EditThread {
   // slider that is dragged is one step of the history.
   void tryValues(std::function<void(Scene&)> set, Done done = {});
 
-  // Done is called by way of take(); without it problems are news.
+  // Done is called by way of take(); without it problems are events.
   // Another scene, made of the present one; one that waits is replaced by a newer one that
   // `replaces` it. Null: nothing to do.
   using Change = std::function<std::shared_ptr<const Scene>(const CompiledScene& present)>;
@@ -87,7 +61,7 @@ class EditThread {
   void discard(Done done = {});
   void cancel(); // what is under way, and what waits
 
-  EditNews take();
+  EditEvents take();
   bool busy() const; // something is under way or waits
 
  private:

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "session/edit/edit_news.h"
 #include "session/edit/value_edit.h"
 
 namespace patina {
@@ -17,13 +16,13 @@ bool sameField(const Scene& a, const Scene& b) {
 
 } // namespace
 
-EditWorker::EditWorker(EditNewsBoard& board, std::function<void(const CompiledScene&)> publish,
+EditWorker::EditWorker(EditEventBuffer& events, std::function<void(const CompiledScene&)> publish,
                        std::filesystem::path autosave_root)
-    : board_(board), publish_(std::move(publish)), autosave_root_(std::move(autosave_root)) {}
+    : events_(events), publish_(std::move(publish)), autosave_root_(std::move(autosave_root)) {}
 
 void EditWorker::show(std::shared_ptr<const CompiledScene> compiled, bool anew) {
   if (publish_) publish_(*compiled); // first: what is felt is waited for, what is seen is not
-  board_.scene(std::move(compiled), anew);
+  events_.addScene(std::move(compiled), anew);
 }
 
 void EditWorker::take(const EditorNotice& notice) {
@@ -61,8 +60,8 @@ void EditWorker::keep() {
     autosave_ = std::move(place);
   } catch (const std::exception& error) {
     keeps_ = false;
-    board_.problem(std::string("A crash would lose the edits, which cannot be kept on disk: ") +
-                   error.what());
+    events_.addProblem(std::string("A crash would lose the edits, which cannot be kept on disk: ") +
+                       error.what());
   }
 }
 
@@ -150,19 +149,18 @@ void EditWorker::discard(Progress& progress) {
 }
 
 void EditWorker::report() {
-  EditStanding standing;
+  EditStatus status;
   if (editor_) {
     const EditHistory& history = editor_->history();
     if (history.undoable() > 0) keep();
-    standing.edits = history.descriptions();
-    standing.done = history.undoable();
-    standing.unsaved =
-        tried_ || (ownsFolder() ? editor_->unsaved() : recovered_ || standing.done > 0);
-    if (ownsFolder()) standing.folder = editor_->folder();
+    status.edits = history.descriptions();
+    status.done = history.undoable();
+    status.unsaved = tried_ || (ownsFolder() ? editor_->unsaved() : recovered_ || status.done > 0);
+    if (ownsFolder()) status.folder = editor_->folder();
   }
-  if (standing == told_) return;
-  told_ = standing;
-  board_.standing(std::make_shared<const EditStanding>(std::move(standing)));
+  if (status == told_) return;
+  told_ = status;
+  events_.setStatus(std::make_shared<const EditStatus>(std::move(status)));
 }
 
 void EditWorker::close() {
@@ -171,7 +169,7 @@ void EditWorker::close() {
     Progress progress;
     settleValues(progress);
   } catch (const std::exception& error) {
-    board_.problem(error.what());
+    events_.addProblem(error.what());
   }
   editor_.reset();
   autosave_.reset();

@@ -8,17 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "session/edit/edit_thread.h"
+#include "session/edit/edit_events.h"
 #include "session/edit/editor.h"
 #include "session/store/autosave.h"
 
 namespace patina {
 
-class EditNewsBoard;
-
 class EditWorker {
  public:
-  EditWorker(EditNewsBoard& board, std::function<void(const CompiledScene&)> publish,
+  EditWorker(EditEventBuffer& events, std::function<void(const CompiledScene&)> publish,
              std::filesystem::path autosave_root);
 
   void take(const EditorNotice& notice); // the editor's listener
@@ -39,7 +37,7 @@ class EditWorker {
   void save();
   void saveAs(const std::filesystem::path& folder);
   void discard(Progress& progress);
-  void report(); // where the history stands, if that is news
+  void report(); // where the history stands, if that has changed
   void close();  // ends the stroke, settles values and lets the scene go
 
  private:
@@ -48,7 +46,7 @@ class EditWorker {
   void appended(std::size_t done_before);
   bool ownsFolder() const;
 
-  EditNewsBoard& board_;
+  EditEventBuffer& events_;
   std::function<void(const CompiledScene&)> publish_;
   std::filesystem::path autosave_root_;
   std::unique_ptr<Autosave> autosave_; // the editor's folder, as long as it has no other
@@ -57,7 +55,7 @@ class EditWorker {
   bool keeps_ = true;                  // until it failed: a full disk is told of once
   std::optional<ValueEdit> tried_;
   std::optional<std::size_t> saved_at_; // position in the history; absent: not in it
-  EditStanding told_;
+  EditStatus told_;
 };
 
 } // namespace patina

@@ -1,4 +1,4 @@
-#include "app/gui/painting/brush_book.h"
+#include "app/gui/painting/brush_presets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ double rounded(double value) {
 
 } // namespace
 
-void BrushBook::suit(double extent, const HapticProperties& haptics) {
+void BrushPresets::suit(double extent, const HapticProperties& haptics) {
   extent_ = extent;
   common_ = {};
   also_.clear();
@@ -38,7 +38,7 @@ void BrushBook::suit(double extent, const HapticProperties& haptics) {
   own(Tool::erase, 0);
 }
 
-Brush BrushBook::brush(Tool tool) const {
+Brush BrushPresets::brush(Tool tool) const {
   Brush brush = common_;
   brush.tool = tool;
   const auto own = own_.find(tool);
@@ -53,7 +53,7 @@ Brush BrushBook::brush(Tool tool) const {
   return brush;
 }
 
-void BrushBook::set(const Brush& brush) {
+void BrushPresets::set(const Brush& brush) {
   common_ = brush;
   own_[brush.tool] = brush;
   for (const auto& [tool, own] : own_)

@@ -1,4 +1,4 @@
-#include "app/gui/painting/paint_desk.h"
+#include "app/gui/painting/paint_controller.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,72 +31,70 @@ QString measured(const Channel& row, double value) {
 
 } // namespace
 
-PaintDesk::PaintDesk(const Parts& parts, QObject* parent) : QObject(parent), at_(parts) {
-  connect(&at_.bar, &ToolBar::chosen, this, &PaintDesk::take);
-  connect(&at_.view, &SceneWidget::pointed, this, &PaintDesk::follow);
-  connect(&at_.view, &SceneWidget::pickAsked, this, &PaintDesk::pickAt);
-  connect(&at_.panel, &BrushPanel::edited, this, [this](const Brush& brush) { book_.set(brush); });
-  connect(&at_.panel, &BrushPanel::pressed, this, [this](double force) { book_.press = force; });
+PaintController::PaintController(const Parts& parts, QObject* parent)
+    : QObject(parent), at_(parts) {
+  connect(&at_.bar, &ToolBar::chosen, this, &PaintController::take);
+  connect(&at_.view, &SceneWidget::pointed, this, &PaintController::follow);
+  connect(&at_.view, &SceneWidget::pickAsked, this, &PaintController::pickAt);
+  connect(&at_.panel, &BrushPanel::edited, this,
+          [this](const Brush& brush) { presets_.set(brush); });
+  connect(&at_.panel, &BrushPanel::pressed, this, [this](double force) { presets_.press = force; });
   connect(&at_.panel, &BrushPanel::toolAsked, this, [this](Tool tool) {
     at_.bar.choose({Handling::paint, tool});
   });
 }
 
-void PaintDesk::take(const ToolChoice& choice) {
+void PaintController::take(const ToolChoice& choice) {
   down_ = lingers_ = false;
   send(tracker_.feed({}, {}));
-  using Mode = SceneWidget::Mode;
   if (choice.handling == Handling::paint) {
     tool_ = choice.tool;
-    at_.panel.show(brush(), book_);
+    at_.panel.show(brush(), presets_);
     if (scene_) at_.edits.prepare(tool_);
   }
-  at_.view.setMode(choice.handling == Handling::navigate ? Mode::navigate
-                   : choice.handling == Handling::feel   ? Mode::feel
-                   : choice.handling == Handling::paint  ? Mode::paint
-                                                         : Mode::pick);
+  at_.view.setHandling(choice.handling);
   emit chosen(choice);
 }
 
-void PaintDesk::setScene(std::shared_ptr<const CompiledScene> scene, bool anew) {
+void PaintController::setScene(std::shared_ptr<const CompiledScene> scene, bool anew) {
   scene_ = std::move(scene);
-  at_.bar.setPaints(scene_ != nullptr);
   if (!anew || !scene_) return;
   down_ = lingers_ = false;
   tracker_ = {};
   const Box3 box = bounds(*scene_->mesh);
-  book_.suit(box.isEmpty() ? 0.1 : box.sizes().maxCoeff(), scene_->scene.haptics);
-  at_.panel.show(brush(), book_);
+  presets_.suit(box.isEmpty() ? 0.1 : box.sizes().maxCoeff(), scene_->scene.haptics);
+  at_.panel.show(brush(), presets_);
   if (at_.bar.choice().handling == Handling::paint) at_.edits.prepare(tool_);
 }
 
-void PaintDesk::setBrush(const Brush& brush) {
-  book_.set(brush);
-  if (brush.tool == tool_) at_.panel.show(brush, book_);
+void PaintController::setBrush(const Brush& brush) {
+  presets_.set(brush);
+  if (brush.tool == tool_) at_.panel.show(brush, presets_);
 }
 
-void PaintDesk::resizeBrush(double factor) {
+void PaintController::resizeBrush(double factor) {
   if (at_.bar.choice().handling != Handling::paint) return;
   Brush changed = brush();
-  changed.radius = std::clamp(changed.radius * factor, 1e-3 * book_.extent(), 0.5 * book_.extent());
+  changed.radius =
+      std::clamp(changed.radius * factor, 1e-3 * presets_.extent(), 0.5 * presets_.extent());
   setBrush(changed);
 }
 
-void PaintDesk::softenBrush(double factor) {
+void PaintController::softenBrush(double factor) {
   if (at_.bar.choice().handling != Handling::paint) return;
   Brush changed = brush();
   changed.falloff = std::clamp(changed.falloff * factor, 0.25, 16.0);
   setBrush(changed);
 }
 
-Vec3 PaintDesk::normalAt(const Vec3& surface) const {
+Vec3 PaintController::normalAt(const Vec3& surface) const {
   const Vec3 gradient =
       FieldSampler(*scene_->built.field, scene_->scene.sampler).at(surface).gradient;
   const double size = gradient.norm();
   return size > 1e-9 ? Vec3(gradient / size) : Vec3::UnitZ();
 }
 
-std::optional<SurfaceValues> PaintDesk::valuesAt(const Vec3& surface, QString* object) const {
+std::optional<SurfaceValues> PaintController::valuesAt(const Vec3& surface, QString* object) const {
   const auto joint = surfacePointAt(*scene_->built.field, *scene_->mesh, surface);
   const auto own = joint ? objectPointOf(scene_->scene, *joint) : std::nullopt;
   if (!own) return std::nullopt;
@@ -104,12 +102,12 @@ std::optional<SurfaceValues> PaintDesk::valuesAt(const Vec3& surface, QString* o
   return surfaceValues(scene_->scene, own->object, own->point);
 }
 
-void PaintDesk::moveTip(const Vec3& target) {
+void PaintController::moveTip(const Vec3& target) {
   at_.view.setTarget(target);
   at_.feel.setTarget(target);
 }
 
-void PaintDesk::press(const Vec3& surface, double newtons) {
+void PaintController::press(const Vec3& surface, double newtons) {
   const HapticProperties& haptics = scene_->scene.haptics;
   // By the scene's own stiffness: what is painted harder or softer is felt as another force. Relief
   // is followed, or an engraved place would be out of reach.
@@ -125,23 +123,23 @@ void PaintDesk::press(const Vec3& surface, double newtons) {
   moveTip(surface + (skin + (values ? values->height : 0) - depth) * normalAt(surface));
 }
 
-void PaintDesk::lift() {
+void PaintController::lift() {
   newtons_ = 0;
   const HapticProperties& haptics = scene_->scene.haptics;
   const double skin = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0) +
                       (haptics.magnet ? haptics.magnet->range : 0);
   const auto values = valuesAt(aim_);
   const double raised = values ? std::max(0.0, values->height) : 0;
-  moveTip(aim_ + (skin + raised + 0.02 * book_.extent()) * normalAt(aim_));
+  moveTip(aim_ + (skin + raised + 0.02 * presets_.extent()) * normalAt(aim_));
 }
 
-void PaintDesk::follow(const Pointed& where) {
+void PaintController::follow(const Pointed& where) {
   if (!scene_) return;
   if (where.down) {
     down_ = true;
     lingers_ = false;
     if (where.surface)
-      press(*where.surface, book_.press * where.pressure);
+      press(*where.surface, presets_.press * where.pressure);
     else
       lift(); // beside the object: the stroke ends with its contact
   } else if (down_) {
@@ -152,12 +150,12 @@ void PaintDesk::follow(const Pointed& where) {
   }
 }
 
-bool PaintDesk::arrived(const std::vector<ToolSample>& ticks) const {
+bool PaintController::arrived(const std::vector<ToolSample>& ticks) const {
   return tracker_.painting() && !ticks.empty() &&
          (ticks.back().surface - aim_).norm() < 0.25 * brush().radius;
 }
 
-void PaintDesk::send(const std::vector<StrokePiece>& pieces) {
+void PaintController::send(const std::vector<StrokePiece>& pieces) {
   for (const StrokePiece& piece : pieces) {
     if (piece.begins) at_.edits.beginStroke(brush());
     at_.edits.dabs(piece.samples);
@@ -165,11 +163,11 @@ void PaintDesk::send(const std::vector<StrokePiece>& pieces) {
   }
 }
 
-void PaintDesk::feed(const std::vector<ToolSample>& ticks) {
+void PaintController::feed(const std::vector<ToolSample>& ticks) {
   if (!ticks.empty()) last_ = ticks.back();
   if (!scene_) return;
   if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
-  const double near = std::max(brush().radius, 0.02 * book_.extent());
+  const double near = std::max(brush().radius, 0.02 * presets_.extent());
   send(tracker_.feed(ticks, {down_ || lingers_, aim_, near}));
   const bool over = lingered_ > kLingerTicks && released_.elapsed() > kLinger;
   lingered_ += ticks.size(); // only after: the first of them may be from before the button
@@ -179,7 +177,7 @@ void PaintDesk::feed(const std::vector<ToolSample>& ticks) {
   lift();
 }
 
-void PaintDesk::refresh() {
+void PaintController::refresh() {
   const bool paints = scene_ && at_.bar.choice().handling == Handling::paint;
   const auto surface = scene_ ? at_.view.underPointer() : std::nullopt;
   if (paints && surface && !down_ && !lingers_) { // the tool hovers where it would paint
@@ -190,23 +188,23 @@ void PaintDesk::refresh() {
   if (refreshes_++ % 3 == 0) emit underPointer(surface ? wordsFor(*surface) : QString());
 }
 
-void PaintDesk::showCursor(const std::optional<Vec3>& surface) {
+void PaintController::showCursor(const std::optional<Vec3>& surface) {
   if (!surface) return at_.view.view().setBrush(std::nullopt);
   const Brush now = brush();
-  const double radius = brushRadius(now, last_.contact ? last_.force.norm() : book_.press);
+  const double radius = brushRadius(now, last_.contact ? last_.force.norm() : presets_.press);
   BrushPlace place{*surface, normalAt(*surface), radius, halfRadius(now, radius), {1, 1, 1}};
   if (now.tool == Tool::color) place.color = now.color;
   at_.view.view().setBrush(place);
 }
 
-void PaintDesk::pickAt(const Vec3& surface) {
+void PaintController::pickAt(const Vec3& surface) {
   if (!scene_) return;
   if (const auto values = valuesAt(surface)) setBrush(picked(brush(), *values));
   // The eyedropper is used once: what was picked is painted with next.
   if (at_.bar.choice().handling == Handling::pick) at_.bar.choose({Handling::paint, tool_});
 }
 
-QString PaintDesk::wordsFor(const Vec3& surface) const {
+QString PaintController::wordsFor(const Vec3& surface) const {
   QString object;
   const auto values = valuesAt(surface, &object);
   if (!values) return {};

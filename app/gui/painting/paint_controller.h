@@ -7,8 +7,8 @@
 #include <QElapsedTimer>
 #include <QObject>
 
-#include "app/gui/painting/brush_book.h"
 #include "app/gui/painting/brush_panel.h"
+#include "app/gui/painting/brush_presets.h"
 #include "app/gui/painting/stroke_tracker.h"
 #include "app/gui/window/scene_widget.h"
 #include "app/gui/window/tool_bar.h"
@@ -19,7 +19,7 @@ namespace patina {
 
 // Painting is feeling: the pointer presses the tool onto the surface under it, the servo feels
 // that, and where it feels contact the brush paints. All of these outlive it.
-class PaintDesk : public QObject {
+class PaintController : public QObject {
   Q_OBJECT
  public:
   struct Parts {
@@ -29,19 +29,13 @@ class PaintDesk : public QObject {
     TipServo& feel;
     EditThread& edits;
   };
-  explicit PaintDesk(const Parts& parts, QObject* parent = nullptr);
+  explicit PaintController(const Parts& parts, QObject* parent = nullptr);
 
   void setScene(std::shared_ptr<const CompiledScene> scene, bool anew); // null: none
   void feed(const std::vector<ToolSample>& ticks); // of every window tick, be there any or none
   void refresh();                                  // brush cursor and what is under the pointer
   void resizeBrush(double factor);
   void softenBrush(double factor);
-  void pickAt(const Vec3& surface);
-
-  BrushBook& book() { return book_; }
-  void setBrush(const Brush& brush);
-  Brush brush() const { return book_.brush(tool_); }
-  bool painting() const { return tracker_.painting(); }
 
  signals:
   void chosen(const patina::ToolChoice& choice);
@@ -49,6 +43,9 @@ class PaintDesk : public QObject {
 
  private:
   void take(const ToolChoice& choice);
+  Brush brush() const { return presets_.brush(tool_); }
+  void setBrush(const Brush& brush);
+  void pickAt(const Vec3& surface);
   void follow(const Pointed& where);
   void press(const Vec3& surface, double newtons);
   void lift();
@@ -62,7 +59,7 @@ class PaintDesk : public QObject {
 
   Parts at_;
   std::shared_ptr<const CompiledScene> scene_;
-  BrushBook book_;
+  BrushPresets presets_;
   Tool tool_ = Tool::color; // of the brush, also while something else is chosen
   StrokeTracker tracker_;
   Vec3 aim_ = Vec3::Zero(); // on the surface

@@ -9,7 +9,7 @@
 
 namespace patina {
 
-class BrushBook {
+class BrushPresets {
  public:
   // Sizes that suit an object `extent` [m] long, and values that are felt beside the scene's own.
   void suit(double extent, const HapticProperties& haptics);

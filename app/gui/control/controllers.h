@@ -1,0 +1,20 @@
+// What works behind the window's widgets, each for one thing.
+#pragma once
+
+namespace patina {
+
+class DocumentController;
+class EditController;
+class FeelController;
+class PaintController;
+class ViewController;
+
+struct Controllers {
+  DocumentController& documents;
+  EditController& edits;
+  FeelController& feel;
+  PaintController& paint;
+  ViewController& view;
+};
+
+} // namespace patina

@@ -1,0 +1,303 @@
+#include "app/gui/control/document_controller.h"
+
+#include <QDragEnterEvent>
+#include <QFileDialog>
+#include <QMessageBox>
+#include <QMimeData>
+
+#include "app/gui/loading/load_dialogs.h"
+#include "core/error.h"
+#include "session/store/autosave.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+QString fileNameOf(const std::filesystem::path& path) {
+  return QString::fromStdString(path.filename().string());
+}
+
+QString wordsFor(const LoadRequest& request) {
+  return !request.place.empty() ? DocumentController::tr("the recovered scene")
+         : request.path.empty() ? DocumentController::tr("the toy dinosaur")
+                                : fileNameOf(request.path);
+}
+
+LoadRequest requestFor(const QString& path) {
+  LoadRequest request;
+  request.path = path.toStdString();
+  return request;
+}
+
+} // namespace
+
+DocumentController::DocumentController(const Parts& parts, QObject* parent)
+    : QObject(parent), at_(parts), loader_(parts.edits.thread().listener(), this),
+      recent_(parts.recent, this) {
+  connectLoader();
+  connectRecovery();
+  connect(&recent_, &RecentFiles::chosen, this,
+          [this](const QString& path) { openAsked(requestFor(path)); });
+  at_.window.setAcceptDrops(true);
+  at_.window.installEventFilter(this);
+}
+
+void DocumentController::connectLoader() {
+  connect(&loader_, &SceneLoader::rested, this, &DocumentController::rested);
+  connect(&loader_, &SceneLoader::meshReady, this, &DocumentController::previewed);
+  connect(&loader_, &SceneLoader::progressed, this, [this](double fraction, const QString& what) {
+    if (!work_) return;
+    work_->words = QStringLiteral("%1: %2").arg(wordsFor(loader_.request()), what);
+    work_->fraction = fraction;
+    emit changed();
+  });
+  connect(&loader_, &SceneLoader::ready, this,
+          [this](std::shared_ptr<OpenedEditor> opened) { take(*opened); });
+  connect(&loader_, &SceneLoader::read, this,
+          [this](std::shared_ptr<OpenedScene> opened) { add(*opened); });
+  connect(&loader_, &SceneLoader::failed, this, &DocumentController::fail);
+  connect(&loader_, &SceneLoader::cancelled, this, [this] {
+    if (closing_) return;
+    abandon();
+    emit cancelled();
+  });
+  connect(&loader_, &SceneLoader::needsUnit, this, [this](double longest) {
+    abandon();
+    askUnit(&at_.window, wordsFor(loader_.request()), longest, [this](MeshUnit unit) {
+      LoadRequest request = loader_.request();
+      request.options.unit = unit;
+      request.unit_chosen = true;
+      open(request);
+    });
+  });
+  connect(&loader_, &SceneLoader::needsIso, this, [this](double low, double high) {
+    abandon();
+    askIso(&at_.window, wordsFor(loader_.request()), low, high, [this](double iso) {
+      LoadRequest request = loader_.request();
+      request.options.iso = iso;
+      open(request);
+    });
+  });
+}
+
+void DocumentController::connectRecovery() {
+  const auto next = [this] {
+    left_behind_.erase(left_behind_.begin());
+    emit changed();
+  };
+  connect(&at_.recover, &RecoverBar::laterAsked, this, next);
+  connect(&at_.recover, &RecoverBar::forgetAsked, this, [this, next] {
+    try {
+      Autosave::adopt(left_behind_.front())->own(); // and let it go
+    } catch (const Error&) {                        // another program has taken it meanwhile
+    }
+    next();
+  });
+  connect(&at_.recover, &RecoverBar::recoverAsked, this, [this, next] {
+    LoadRequest request;
+    request.place = left_behind_.front();
+    next();
+    openAsked(request);
+  });
+}
+
+void DocumentController::offerRecovery() {
+  left_behind_ = patina::leftBehind(stateFolder());
+  emit changed();
+}
+
+std::optional<std::filesystem::path> DocumentController::leftBehind() const {
+  return left_behind_.empty() ? std::nullopt : std::optional(left_behind_.front());
+}
+
+QString DocumentController::name() const {
+  const auto& folder = at_.edits.status().folder;
+  return folder ? fileNameOf(*folder) : name_;
+}
+
+void DocumentController::open(const LoadRequest& request) {
+  std::error_code code;
+  const auto& folder = at_.edits.status().folder;
+  const bool is_open = !request.adds && !request.recover && folder &&
+                       std::filesystem::equivalent(request.path, *folder, code);
+  if (is_open) { // its journal is ours: there is nothing in the folder that is not in the window
+    QMetaObject::invokeMethod(this, &DocumentController::openAlready, Qt::QueuedConnection);
+    return;
+  }
+  const QString words = (request.adds ? tr("Adding %1") : tr("Opening %1")).arg(wordsFor(request));
+  work_ = Work{words, words};
+  loader_.start(request);
+  emit changed();
+}
+
+void DocumentController::openAsked(const LoadRequest& request) {
+  if (!asks_ || settleEdits()) open(request);
+}
+
+void DocumentController::openDialog(bool adds) {
+  auto* dialog =
+      new QFileDialog(&at_.window, adds ? tr("Add a mesh, volume or workspace to the scene")
+                                        : tr("Open a mesh, volume or workspace"));
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  dialog->setNameFilters({tr("Meshes, volumes and workspaces (*.obj *.ply *.stl *.vti *.OBJ *.PLY "
+                             "*.STL *.VTI workspace.json)"),
+                          tr("All files (*)")});
+  connect(dialog, &QFileDialog::fileSelected, this, [this, adds](const QString& path) {
+    LoadRequest request = requestFor(path);
+    request.adds = adds && at_.edits.scene() != nullptr;
+    // Of a workspace, which is a folder, people see the file in it.
+    if (request.path.filename() == "workspace.json") request.path = request.path.parent_path();
+    request.adds ? open(request) : openAsked(request);
+  });
+  dialog->open();
+}
+
+void DocumentController::take(OpenedEditor& opened) {
+  const LoadRequest& request = loader_.request();
+  name_ = !request.place.empty() ? tr("Recovered scene") : fileNameOf(request.path);
+  if (!request.path.empty()) recent_.add(QString::fromStdString(request.path.string()));
+  warnings_ = opened.warnings;
+  work_.reset();
+  at_.edits.thread().adopt(std::move(opened.editor), std::move(opened.autosave));
+  emit changed();
+}
+
+void DocumentController::add(const OpenedScene& opened) {
+  QStringList lines;
+  for (const std::string& line : opened.warnings) lines << QString::fromStdString(line);
+  work_.reset();
+  at_.edits.addObjects(opened.scene.objects, [this, lines](const std::string& problem) {
+    if (problem == Cancelled().what()) return emit cancelled();
+    if (!problem.empty()) return fail(QString::fromStdString(problem));
+    if (lines.isEmpty()) return;
+    warnings_ = lines;
+    emit changed();
+  });
+}
+
+void DocumentController::abandon() {
+  work_.reset();
+  emit abandoned();
+}
+
+void DocumentController::fail(const QString& message) {
+  const LoadRequest request = loader_.request();
+  abandon();
+  const QString name = request.path.empty() ? tr("The scene") : fileNameOf(request.path);
+  const bool damaged = !request.adds && !request.recover && isWorkspace(request.path) &&
+                       !message.contains(QStringLiteral("no object"));
+  if (damaged)
+    askRecover(&at_.window, name, message, [this, request] {
+      LoadRequest again = request;
+      again.recover = true;
+      open(again);
+    });
+  else
+    showProblem(&at_.window, tr("%1 cannot be opened").arg(name), message, adviceFor(message));
+  emit failed(message);
+}
+
+void DocumentController::cancel() {
+  if (loader_.busy()) return loader_.cancel();
+  at_.edits.thread().cancel();
+}
+
+bool DocumentController::trySaving(const std::function<void()>& save, const QString& where,
+                                   const QString& advice) {
+  try {
+    save();
+    emit said(tr("Saved %1").arg(where), 4000);
+    return true;
+  } catch (const std::exception& error) {
+    showProblem(&at_.window, tr("The workspace cannot be saved"),
+                QString::fromStdString(error.what()), advice);
+    return false;
+  }
+}
+
+void DocumentController::saveTo(const QString& folder) {
+  if (!at_.edits.scene()) throw Error("there is no scene to save");
+  at_.edits.tryValues(); // what this tick's timer has not asked for yet
+  at_.edits.waitFor([&](EditThread::Done done) {
+    at_.edits.thread().saveAs(folder.toStdString(), std::move(done));
+  });
+  recent_.add(folder);
+}
+
+bool DocumentController::save() {
+  if (!at_.edits.scene()) return false;
+  if (!at_.edits.status().folder) return saveDialog();
+  const auto save = [this] {
+    at_.edits.tryValues();
+    at_.edits.waitFor([this](EditThread::Done done) { at_.edits.thread().save(std::move(done)); });
+  };
+  return trySaving(save, name(), tr("Nothing is lost: make room, or save to another folder."));
+}
+
+bool DocumentController::saveDialog() {
+  const QString folder = QFileDialog::getSaveFileName(
+      &at_.window, tr("Save the workspace as a folder"), QStringLiteral("scene.patina"), {},
+      nullptr, QFileDialog::DontConfirmOverwrite | QFileDialog::HideNameFilterDetails);
+  if (folder.isEmpty()) return false;
+  return trySaving([&] { saveTo(folder); }, folder, tr("Choose a folder that you may write to."));
+}
+
+bool DocumentController::settleEdits() {
+  at_.edits.settle(); // a stroke that was just painted may not be in the history yet
+  while (at_.edits.unsaved()) {
+    const bool has_folder = at_.edits.status().folder.has_value();
+    QMessageBox box(QMessageBox::Question, tr("The edits are not saved"),
+                    has_folder ? tr("%1 was edited since it was saved.").arg(name())
+                               : tr("The scene was edited and is in no workspace yet."),
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, &at_.window);
+    box.setObjectName(QStringLiteral("unsaved_edits"));
+    const int answer = box.exec();
+    if (answer == QMessageBox::Save) {
+      save();
+      continue;
+    }
+    if (answer == QMessageBox::Discard) discard();
+    return answer == QMessageBox::Discard;
+  }
+  return true;
+}
+
+void DocumentController::discard() {
+  if (!at_.edits.status().folder) return;
+  try {
+    at_.edits.waitFor(
+        [this](EditThread::Done done) { at_.edits.thread().discard(std::move(done)); });
+  } catch (const std::exception& error) {
+    showProblem(&at_.window, tr("The edits stay in the workspace"),
+                QString::fromStdString(error.what()), tr("They can be undone later."));
+  }
+}
+
+bool DocumentController::close() {
+  closing_ = true;
+  loader_.cancel();
+  if (loader_.resting()) return true;
+  // A reader cannot be stopped within a file: the window says so and goes when it is done.
+  const QString words = tr("Closing when the file that is being read is done…");
+  work_ = Work{words, words, -1};
+  emit changed();
+  return false;
+}
+
+bool DocumentController::eventFilter(QObject*, QEvent* event) {
+  if (event->type() == QEvent::DragEnter) {
+    auto* drag = static_cast<QDragEnterEvent*>(event);
+    const QMimeData& data = *drag->mimeData();
+    if (data.hasUrls() && data.urls().front().isLocalFile()) drag->acceptProposedAction();
+    return true;
+  }
+  if (event->type() != QEvent::Drop) return false;
+  const QString path = static_cast<QDropEvent*>(event)->mimeData()->urls().front().toLocalFile();
+  // A question must not hold up the program that the file is dragged from.
+  QMetaObject::invokeMethod(
+      this, [this, path] { openAsked(requestFor(path)); }, Qt::QueuedConnection);
+  return true;
+}
+
+} // namespace patina

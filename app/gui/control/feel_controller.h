@@ -1,0 +1,57 @@
+// Feels what is open: the servo, what it says, and what is kept of that.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <QObject>
+
+#include "app/gui/servo/live_plots.h"
+#include "app/gui/servo/recording.h"
+#include "app/gui/servo/stability_job.h"
+#include "haptics/servo/tip_servo.h"
+#include "scene/scene.h"
+
+namespace patina {
+
+class FeelController : public QObject {
+  Q_OBJECT
+ public:
+  struct Parts {
+    QWidget& window; // which questions are asked over
+    ForcePlot& force;
+    EnergyPlot& energy;
+  };
+  FeelController(const Parts& parts, QObject* parent);
+  ~FeelController() override;
+
+  TipServo& servo() { return servo_; }
+  StabilityJob& stability() { return stability_; }
+  const ToolSample& sample() const { return sample_; } // the last one
+  void open(const Scene& scene, const Vec3& start);
+  void close();   // and nothing that the servo said is lost
+  void collect(); // what it has said since the last time; of every window tick
+
+  bool recording() const { return recording_.on(); }
+  void toggleRecording(); // begins, or ends and is saved
+  bool settleRecording(); // saved or dropped; false: the person goes on
+  void startLog();        // a recording of its own
+  Recording& log();       // up to this tick
+
+ signals:
+  void collected(const std::vector<patina::ToolSample>& samples); // also none
+  void failed(const QString& problem);                            // of the device
+  void changed();
+  void said(const QString& words, int milliseconds); // 0: until something else is
+
+ private:
+  bool saveRecording(); // false: not written, the samples are kept
+
+  Parts at_;
+  TipServo servo_;
+  StabilityJob stability_;
+  ToolSample sample_;
+  Recording recording_, log_;
+};
+
+} // namespace patina

@@ -1,0 +1,8 @@
+// What the left button does in the 3D view.
+#pragma once
+
+namespace patina {
+
+enum class Handling { navigate, feel, paint, pick };
+
+} // namespace patina

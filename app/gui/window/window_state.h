@@ -1,0 +1,60 @@
+// What the window is at, as one value, and what of the window follows from it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <QString>
+#include <QStringList>
+
+#include "app/gui/painting/tool_choice.h"
+
+namespace patina {
+
+// The 3D view holds nothing, the mesh of a file that is still being opened, or a scene.
+enum class Content { nothing, preview, scene };
+
+// Something that takes its time.
+struct Work {
+  QString title;       // the same while it lasts
+  QString words;       // what it is at
+  double fraction = 0; // below 0: nobody knows, and it cannot be cancelled
+  bool later = false;  // seen only if it lasts
+  bool operator==(const Work&) const = default;
+};
+
+struct WindowState {
+  Content content = Content::nothing;
+  bool open = false; // a scene is, though a preview may stand before it
+  ToolChoice tool;
+  bool relief = false, paint = false; // the scene has some
+  std::size_t undoable = 0, redoable = 0;
+  bool unsaved = false;
+  bool recording = false;
+  QString name; // of what is open; empty: the toy
+  QStringList warnings;
+  std::optional<Work> work;
+  std::optional<std::filesystem::path> left_behind; // by a crash, and offered
+};
+
+enum class Panel {
+  recovery, // bars above the picture
+  warnings,
+  brush, // cards at its side
+  relief,
+  touch,
+  display,
+  paint,
+  device,
+  objects,
+  mesh,
+  history // a dock
+};
+bool isShown(Panel panel, const WindowState& state);
+
+enum class Command { save, save_as, record, undo, redo, paint };
+bool isEnabled(Command command, const WindowState& state);
+
+QString titleOf(const WindowState& state); // with the place of the mark of what is unsaved
+
+} // namespace patina
