@@ -34,12 +34,11 @@ class Painting : public WindowTest {
     wait(100);
   }
   double row(const QString& name) { return find<ValueRow>(name)->value(); }
-  // Layers that the brush paints beside its own.
-  int layersBeside() {
+  int layersBeside() { // the brush's own
     int count = 0;
-    for (const QAction* action :
-         find<BrushPanel>()->findChildren<QAction*>(QRegularExpression("^also_")))
-      count += action->isChecked() ? 1 : 0;
+    const QRegularExpression name("^also_");
+    for (const QAction* action : find<BrushPanel>()->findChildren<QAction*>(name))
+      count += action->isChecked();
     return count;
   }
   // As a hand does it: down, along, up, with the time that it takes.
