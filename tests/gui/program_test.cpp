@@ -101,7 +101,7 @@ TEST_F(Program, CtrlCAndKillAndALostTerminalWriteTheLog) {
   for (const std::string signal : {"INT", "TERM", "HUP"}) {
     const fs::path log = folder_ / (signal + ".csv");
     const Outcome outcome = run("--log" + quoted(log) + quoted(folder_ / "sphere.obj"),
-                                "timeout --preserve-status -s " + signal + " 5");
+                                "timeout --preserve-status -s " + signal + " 10");
     EXPECT_EQ(outcome.code, 0) << signal << ": " << outcome.err;
     ASSERT_TRUE(fs::exists(log)) << signal;
     EXPECT_GT(readCsv(log, {"t [s]", "x [m]"}).rows.size(), 100U) << signal;
