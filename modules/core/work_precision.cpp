@@ -1,8 +1,6 @@
 #include "core/work_precision.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,14 +9,6 @@
 
 namespace patina {
 namespace {
-
-// Four digits: what a reader compares by eye. The files keep every digit.
-std::string shown(double value) {
-  std::array<char, 64> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                    std::chars_format::general, 4);
-  return {buffer.data(), result.ptr};
-}
 
 std::string plain(const Json& value) {
   if (value.isString()) return value.asString();
@@ -57,9 +47,7 @@ std::vector<std::string> header(const WorkPrecisionTable& table) {
   return names;
 }
 
-template <typename Format>
-std::vector<std::string> cells(const WorkPrecisionTable& table, const WorkPrecisionRow& row,
-                               Format format) {
+std::vector<std::string> cells(const WorkPrecisionTable& table, const WorkPrecisionRow& row) {
   std::vector<std::string> line;
   for (const std::string& name : knobNames(table)) {
     std::string cell;
@@ -68,11 +56,11 @@ std::vector<std::string> cells(const WorkPrecisionTable& table, const WorkPrecis
     line.push_back(std::move(cell));
   }
   for (const double value : {row.error, row.error_max, row.ns, row.bytes})
-    line.push_back(format(value));
+    line.push_back(formatNumber(value));
   for (const std::string& name : moreNames(table)) {
     std::string cell;
     for (const auto& [key, value] : row.more)
-      if (key == name) cell = format(value);
+      if (key == name) cell = formatNumber(value);
     line.push_back(std::move(cell));
   }
   return line;
@@ -125,31 +113,6 @@ Json toJson(const WorkPrecisionTable& table) {
   return json;
 }
 
-std::string toText(const WorkPrecisionTable& table) {
-  std::vector<std::vector<std::string>> lines{header(table)};
-  for (const WorkPrecisionRow& row : table.rows) lines.push_back(cells(table, row, shown));
-
-  std::vector<std::size_t> width(lines.front().size(), 0);
-  for (const auto& line : lines)
-    for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], line[i].size());
-
-  std::string text = table.title + "\n";
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      if (i > 0) text += "  ";
-      text.append(width[i] - line[i].size(), ' ');
-      text += line[i];
-    }
-    text += '\n';
-  }
-  if (table.order_fitted) {
-    text += "order fitted " + shown(*table.order_fitted);
-    if (table.order_expected) text += ", expected " + shown(*table.order_expected);
-    text += '\n';
-  }
-  return text;
-}
-
 void writeCsv(const std::filesystem::path& path, const WorkPrecisionTable& table) {
   std::string text;
   const auto append = [&](const std::vector<std::string>& line) {
@@ -157,7 +120,7 @@ void writeCsv(const std::filesystem::path& path, const WorkPrecisionTable& table
     text += '\n';
   };
   append(header(table));
-  for (const WorkPrecisionRow& row : table.rows) append(cells(table, row, formatNumber));
+  for (const WorkPrecisionRow& row : table.rows) append(cells(table, row));
   writeFileAtomically(path, text);
 }
 

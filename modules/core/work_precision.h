@@ -38,7 +38,6 @@ double fittedOrder(const std::vector<double>& h, const std::vector<double>& erro
 Json machineDescription();
 
 Json toJson(const WorkPrecisionTable& table);
-std::string toText(const WorkPrecisionTable& table); // aligned columns for a terminal
 void writeCsv(const std::filesystem::path& path, const WorkPrecisionTable& table);
 
 } // namespace patina

@@ -37,8 +37,8 @@ bool changesImages(const Brush& brush, const ObjectPaint* paint) {
 ObjectStroke::ObjectStroke(std::shared_ptr<const PaintSurface> surface, std::size_t object,
                            std::shared_ptr<const ObjectPaint> start, const StrokeTask& task)
     : surface_(std::move(surface)), object_(object), brush_(task.brush), paint_(std::move(start)) {
-  static const ObjectPaint kNone{};
-  const ObjectPaint& paint = paint_ ? *paint_ : kNone;
+  static const ObjectPaint kBare{};
+  const ObjectPaint& paint = paint_ ? *paint_ : kBare;
   if (const BrushLayer* layer = layerOf(brush_, Tool::color)) {
     const auto& [red, green, blue] = layer->color;
     color_.emplace(surface_, object, paint.color, kColorChannels,

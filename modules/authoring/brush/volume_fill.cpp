@@ -7,10 +7,6 @@
 namespace patina {
 namespace {
 
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 ClosestPoint closestOn(const TriangleMesh& mesh, std::int32_t face, const Vec3& p) {
   const std::size_t f = index(face);
   const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);

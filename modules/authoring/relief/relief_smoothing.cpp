@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <mutex>
 #include <stdexcept>
@@ -259,17 +259,22 @@ struct ReliefSmoother::Impl {
       const float* source = relief.tile(index);
       const float* held = result.tile(index);
       float* own = nullptr;
-      for (int j = part.j0; j < part.j1; ++j)
-        for (int i = part.i0; i < part.i1; ++i) {
-          const std::size_t at = relief.offsetOf(i, j);
-          float value = made[at];
-          if (std::abs(value) < kLeastValue) value = 0;
-          if (texels->ownerAt(i, j) < 0) value = source ? source[at] : 0;
-          const float old = held ? held[at] : 0.0F;
-          if (std::bit_cast<std::uint32_t>(value) == std::bit_cast<std::uint32_t>(old)) continue;
-          if (!own) held = own = result.writable(index);
-          own[at] = value;
-        }
+      const auto count = static_cast<std::size_t>(width(part));
+      std::array<float, kTileSide> row, old{};
+      for (int j = part.j0; j < part.j1; ++j) {
+        const std::size_t at = relief.offsetOf(part.i0, j);
+        const std::int32_t* owner =
+            &texels->owner[static_cast<std::size_t>(j) * static_cast<std::size_t>(texels->width) +
+                           static_cast<std::size_t>(part.i0)];
+        for (std::size_t n = 0; n < count; ++n)
+          row[n] = std::abs(made[at + n]) < kLeastValue ? 0 : made[at + n];
+        for (std::size_t n = 0; n < count; ++n)
+          if (owner[n] < 0) row[n] = source ? source[at + n] : 0;
+        if (held) std::copy_n(held + at, count, old.begin());
+        if (std::memcmp(row.data(), old.data(), count * sizeof(float)) == 0) continue;
+        if (!own) held = own = result.writable(index);
+        std::copy_n(row.begin(), count, own + at);
+      }
     });
   }
 };

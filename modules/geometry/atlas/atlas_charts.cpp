@@ -13,14 +13,9 @@
 namespace patina {
 namespace {
 
-constexpr std::int32_t kNone = -1;
 constexpr double kNeedle = 1e-10; // height over length, below which a face is taken for a line
 constexpr float kSmallCosine = static_cast<float>(kLeastCosine) + 1e-4f;
 constexpr float kLargeCosine = 0.8f;
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Planes that are tried while charts grow: every direction is within 28 degrees of one.
 constexpr std::size_t kPlanes = 26;

@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::size_t kCarefully = 400; // charts that are tried from the bottom and in every turn
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
-
 // Counter-clockwise.
 std::vector<Vec2> hullOf(const ChartOutline& outline) {
   std::vector<Vec2> points;

@@ -6,7 +6,6 @@
 namespace patina {
 namespace {
 
-constexpr std::int32_t kNone = -1;
 constexpr int kReach = 4;              // cells in the clearance
 constexpr double kMostCells = 1 << 24; // beyond, cells grow: the border is far longer than wide
 

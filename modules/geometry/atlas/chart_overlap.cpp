@@ -9,16 +9,6 @@
 namespace patina {
 namespace {
 
-constexpr std::int32_t kNone = -1;
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
-
 // A chart's faces by their places in its list.
 struct FlatFace {
   std::array<Vec2, 3> corners;

@@ -15,15 +15,9 @@ namespace patina {
 namespace {
 
 constexpr int kBandRows = 32; // one task each; small enough that 512 rows feed several threads
-constexpr double kReach = kGutter;
+constexpr double kBorder = kGutter;
 constexpr double kMostTexels = 1 << 20; // beyond any image: the exact comparison needs a bound
-constexpr std::int32_t kNone = -1;
-
-using Corners = std::array<Vec2, 3>; // in texels
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
+using Corners = std::array<Vec2, 3>;    // in texels
 
 // On a grid of 2^-32 texels, so that differences are exact and their products can be compared
 // exactly: the rule that two faces at an edge share no centre and miss none has no tolerance.
@@ -85,7 +79,7 @@ Span coveredIn(const Corners& corners, int j) {
 
 // Texels of row j that can be within reach of the face.
 Span reachedIn(const Corners& corners, int j) {
-  const double low = j + 0.5 - kReach, high = j + 0.5 + kReach;
+  const double low = j + 0.5 - kBorder, high = j + 0.5 + kBorder;
   double from = std::numeric_limits<double>::infinity(), to = -from;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 &a = corners[k], &b = corners[(k + 1) % 3];
@@ -100,8 +94,8 @@ Span reachedIn(const Corners& corners, int j) {
   }
   if (!(from <= to)) return {};
   constexpr double kSlack = 1e-6;
-  return {static_cast<int>(std::ceil(from - kReach - 0.5 - kSlack)),
-          static_cast<int>(std::floor(to + kReach - 0.5 + kSlack)) + 1};
+  return {static_cast<int>(std::ceil(from - kBorder - 0.5 - kSlack)),
+          static_cast<int>(std::floor(to + kBorder - 0.5 + kSlack)) + 1};
 }
 
 double squaredDistanceToBorder(const Corners& corners, const Vec2& p) {
@@ -133,12 +127,12 @@ Bands bandsOf(const CornerUvs& uvs, int width, int height) {
     ranges[f] = {0, -1};
     if (!usable(corners)) return;
     const auto [low, high] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
-    if (high + kReach < 0 || low - kReach > height) return;
+    if (high + kBorder < 0 || low - kBorder > height) return;
     const auto band = [&](double y) {
       return static_cast<std::int16_t>(
           std::clamp(static_cast<int>(std::floor(y / kBandRows)), 0, count - 1));
     };
-    ranges[f] = {band(low - kReach - 1), band(high + kReach + 1)};
+    ranges[f] = {band(low - kBorder - 1), band(high + kBorder + 1)};
   });
   Bands bands;
   bands.offsets.assign(static_cast<std::size_t>(count) + 1, 0);
@@ -178,15 +172,15 @@ class BandPainter {
 
   void reachOut(std::int32_t face) {
     const Corners corners = inTexels(uvs_[index(face)], map_.width, map_.height);
-    const double penalty = hasArea(uvs_[index(face)]) ? 0 : 4 * kReach * kReach;
-    forRows(corners, kReach + 1, [&](int j) {
+    const double penalty = hasArea(uvs_[index(face)]) ? 0 : 4 * kBorder * kBorder;
+    forRows(corners, kBorder + 1, [&](int j) {
       const auto [first, last] = clipped(reachedIn(corners, j));
       std::int32_t* owner = map_.owner.data() + index(j) * index(map_.width);
       float* best = distance2_.data() + index(j - first_row_) * index(map_.width);
       for (int i = first; i < last; ++i) {
         if (best[i] < 0) continue;
         const double distance2 = squaredDistanceToBorder(corners, {i + 0.5, j + 0.5});
-        if (!(distance2 <= kReach * kReach)) continue;
+        if (!(distance2 <= kBorder * kBorder)) continue;
         const auto rank = static_cast<float>(distance2 + penalty);
         if (!(rank < best[i])) continue;
         best[i] = rank;
@@ -265,11 +259,11 @@ TexelBox texelsNear(const std::array<Vec3, 3>& corners, const std::array<Vec2, 3
   if (!(low[0] <= high[0] && low[1] <= high[1])) return {};
   const auto first = [](double at, int size) {
     return static_cast<int>(
-        std::clamp(std::ceil(at * size - 0.5 - kReach - 1e-6), 0.0, 1.0 * size));
+        std::clamp(std::ceil(at * size - 0.5 - kBorder - 1e-6), 0.0, 1.0 * size));
   };
   const auto last = [](double at, int size) {
     return static_cast<int>(
-        std::clamp(std::floor(at * size - 0.5 + kReach + 1e-6) + 1, 0.0, 1.0 * size));
+        std::clamp(std::floor(at * size - 0.5 + kBorder + 1e-6) + 1, 0.0, 1.0 * size));
   };
   return {first(low[0], width), first(low[1], height), last(high[0], width), last(high[1], height)};
 }

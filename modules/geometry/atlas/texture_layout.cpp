@@ -16,7 +16,6 @@
 namespace patina {
 namespace {
 
-constexpr std::int32_t kNone = -1;
 constexpr int kGap = 2 * kGutter; // texels between charts
 // Charts with less than this many texels are joined to neighbours even at the price of stretch:
 // their gaps would cost more than they show.
@@ -24,10 +23,6 @@ constexpr double kSmallChart = 256;
 constexpr double kLeastShare = 0.4; // of the image that charts fill, as is hoped for
 // Sides of the image, about: longer charts would make the others small.
 constexpr double kLongest = 0.95;
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::vector<Chart> chartsOf(const AtlasSurface& surface, int image_size) {
   const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);

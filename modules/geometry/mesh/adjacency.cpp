@@ -6,17 +6,13 @@
 #include <OpenMesh/Core/Mesh/TriConnectivity.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 
+#include "geometry/mesh/edge_uses.h"
+
 namespace patina {
 namespace {
 
-constexpr std::int32_t kNone = -1;
-
 bool repeatsVertex(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
 }
 
 void fillVertexFaces(const TriangleMesh& mesh, Adjacency& result) {
@@ -92,11 +88,6 @@ class HalfEdges {
   std::vector<std::int32_t> left_over_;
 };
 
-struct EdgeUse {
-  std::int32_t low, high, face, side;
-  auto operator<=>(const EdgeUse&) const = default;
-};
-
 // All uses of the edges that a left-over face has: whatever the half-edges say there lacks it.
 void resolveLeftOver(const TriangleMesh& mesh, const std::vector<std::int32_t>& left_over,
                      Adjacency& result) {
@@ -124,7 +115,7 @@ void resolveLeftOver(const TriangleMesh& mesh, const std::vector<std::int32_t>& 
     if (std::any_of(first, last, [&](const EdgeUse& u) { return is_left_over[index(u.face)]; })) {
       const bool manifold = last - first == 2;
       for (auto use = first; use != last; ++use)
-        result.face_neighbours[index(use->face)][index(use->side)] =
+        result.face_neighbours[index(use->face)][index(use->edge)] =
             manifold ? (use == first ? first[1] : first[0]).face : kNone;
     }
     first = last;

@@ -7,14 +7,6 @@
 #include "geometry/tree/triangle_tree.h"
 
 namespace patina {
-namespace {
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
-} // namespace
-
 FrontSide::FrontSide(const TriangleMesh& mesh, const std::vector<std::uint8_t>& open)
     : mesh_(mesh), vertices_(weldedTriangles(mesh)), twin_(firstTwins(vertices_)),
       corners_(mesh.positions.size()), edge_of_(vertices_.size()) {

@@ -92,30 +92,30 @@ void markDuplicates(const TriangleMesh& mesh, std::vector<Fault>& faults) {
   });
 }
 
-struct EdgeUse {
+struct DirectedUse {
   std::int32_t high;
   bool upwards; // the face runs from the lower vertex to the higher
-  auto operator<=>(const EdgeUse&) const = default;
+  auto operator<=>(const DirectedUse&) const = default;
 };
 
 void countEdges(const TriangleMesh& mesh, const std::vector<Fault>& faults, MeshReport& report) {
-  ByVertex<EdgeUse> by_lower(mesh.positions.size(), 3 * mesh.triangles.size());
+  ByVertex<DirectedUse> by_lower(mesh.positions.size(), 3 * mesh.triangles.size());
   const auto forEach = [&](auto visit) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       if (faults[t] != Fault::none) continue;
       const Triangle& v = mesh.triangles[t];
       for (std::size_t k = 0; k < 3; ++k) {
         const std::int32_t from = v[k], to = v[k == 2 ? 0 : k + 1];
-        visit(std::min(from, to), EdgeUse{std::max(from, to), from < to});
+        visit(std::min(from, to), DirectedUse{std::max(from, to), from < to});
       }
     }
   };
-  forEach([&](std::int32_t low, const EdgeUse&) { by_lower.count(low); });
+  forEach([&](std::int32_t low, const DirectedUse&) { by_lower.count(low); });
   by_lower.startFilling();
-  forEach([&](std::int32_t low, const EdgeUse& use) { by_lower.file(low, use); });
-  by_lower.forEachSortedRun([&](const EdgeUse* first, const EdgeUse* last) {
+  forEach([&](std::int32_t low, const DirectedUse& use) { by_lower.file(low, use); });
+  by_lower.forEachSortedRun([&](const DirectedUse* first, const DirectedUse* last) {
     while (first < last) {
-      const EdgeUse* next = first + 1;
+      const DirectedUse* next = first + 1;
       while (next < last && next->high == first->high) ++next;
       const auto uses = next - first;
       if (uses == 1)

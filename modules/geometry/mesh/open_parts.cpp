@@ -17,10 +17,6 @@ constexpr double kTells = 0.35;           // how far from 1/2 a winding number m
 constexpr std::size_t kMostSamples = 256; // faces of a part that are asked
 constexpr std::size_t kFewestFaces = 4;   // that can have an inside of their own
 
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 // Every edge runs as often one way as the other: no rim. By sums of the edges' hashes, so that a
 // sound mesh costs next to nothing.
 bool isBalanced(const std::vector<Triangle>& triangles) {
@@ -206,7 +202,7 @@ std::vector<SideCount> sideCounts(std::size_t triangles, std::size_t open_triang
   return counts;
 }
 
-std::string text(const std::vector<SideCount>& counts) {
+std::string describeSides(const std::vector<SideCount>& counts) {
   if (counts.size() == 1) return counts[0].sides;
   std::string line;
   for (const SideCount& count : counts)

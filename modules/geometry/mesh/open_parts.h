@@ -41,6 +41,6 @@ struct SideCount {
 // What a mesh consists of, for people; kinds that it has none of are left out.
 std::vector<SideCount> sideCounts(std::size_t triangles, std::size_t open_triangles,
                                   OpenSides sides);
-std::string text(const std::vector<SideCount>& counts);
+std::string describeSides(const std::vector<SideCount>& counts);
 
 } // namespace patina

@@ -8,10 +8,6 @@
 namespace patina {
 namespace {
 
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 // Faces joined over edges, each with whether it must be turned to agree with the lowest of them.
 class Parts {
  public:
@@ -95,7 +91,7 @@ Parts connectedParts(const std::vector<Triangle>& triangles, std::size_t vertice
   return parts;
 }
 
-struct Part {
+struct TurnedPart {
   double area = 0, turned_area = 0; // of all faces, and of those that find() calls turned
   double volume = 0;                // as the part is to be turned
   Box3 box;
@@ -104,23 +100,23 @@ struct Part {
 };
 
 // Marks closed parts that face against the others.
-void compareClosed(std::vector<Part*> closed) {
+void compareClosed(std::vector<TurnedPart*> closed) {
   constexpr std::size_t kMostParts = 1U << 14; // their comparison is quadratic
   if (closed.size() < 2 || closed.size() > kMostParts) return;
-  const auto size = [](const Part* p) { return p->box.volume(); };
+  const auto size = [](const TurnedPart* p) { return p->box.volume(); };
   std::stable_sort(closed.begin(), closed.end(),
-                   [&](const Part* a, const Part* b) { return size(a) > size(b); });
-  std::vector<Part*> outer;
-  std::vector<Part*> holder(closed.size());
+                   [&](const TurnedPart* a, const TurnedPart* b) { return size(a) > size(b); });
+  std::vector<TurnedPart*> outer;
+  std::vector<TurnedPart*> holder(closed.size());
   double volume = 0;
   for (std::size_t i = 0; i < closed.size(); ++i) {
-    for (Part* other : outer) // the last that holds it is the smallest
+    for (TurnedPart* other : outer) // the last that holds it is the smallest
       if (size(other) > size(closed[i]) && other->box.contains(closed[i]->box)) holder[i] = other;
     if (holder[i]) continue;
     outer.push_back(closed[i]);
     volume += closed[i]->volume;
   }
-  for (Part* part : outer) part->turn_all = part->volume * (volume < 0 ? -1 : 1) < 0;
+  for (TurnedPart* part : outer) part->turn_all = part->volume * (volume < 0 ? -1 : 1) < 0;
   for (std::size_t i = 0; i < closed.size(); ++i)
     if (holder[i]) closed[i]->turn_all = holder[i]->turn_all;
 }
@@ -132,14 +128,14 @@ std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh) {
   const std::size_t faces = mesh.triangles.size();
   std::vector<Parts::Link> link(faces);
   std::vector<std::int32_t> part_of(faces, -1); // by root
-  std::vector<Part> parts;
+  std::vector<TurnedPart> parts;
   for (std::size_t f = 0; f < faces; ++f) {
     link[f] = links.find(static_cast<std::int32_t>(f));
     if (index(link[f].root) != f) continue; // a root is its part's lowest face
     part_of[f] = static_cast<std::int32_t>(parts.size());
     parts.emplace_back();
   }
-  const auto partOf = [&](std::size_t f) -> Part& {
+  const auto partOf = [&](std::size_t f) -> TurnedPart& {
     return parts[index(part_of[index(link[f].root)])];
   };
   const Vec3 origin = mesh.positions.empty() ? Vec3(Vec3::Zero()) : mesh.positions.front();
@@ -148,16 +144,16 @@ std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh) {
                c = mesh.corner(f, 2) - origin;
     const Vec3 normal = (b - a).cross(c - a);
     const double area = normal.norm();
-    Part& part = partOf(f);
+    TurnedPart& part = partOf(f);
     part.area += area;
     if (link[f].turned) part.turned_area += area;
     part.volume += (link[f].turned ? -1 : 1) * a.dot(normal);
     for (const Vec3& p : {a, b, c}) part.box.extend(p);
   }
-  std::vector<Part*> closed;
+  std::vector<TurnedPart*> closed;
   for (std::size_t f = 0; f < faces; ++f) {
     if (index(link[f].root) != f) continue;
-    Part& part = partOf(f);
+    TurnedPart& part = partOf(f);
     part.turn_others = 2 * part.turned_area > part.area;
     if (part.turn_others) part.volume = -part.volume;
     const auto root = static_cast<std::int32_t>(f);
@@ -167,7 +163,7 @@ std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh) {
   std::vector<std::int32_t> result;
   for (std::size_t f = 0; f < faces; ++f) {
     if (links.oneSided(link[f].root)) continue;
-    const Part& part = partOf(f);
+    const TurnedPart& part = partOf(f);
     if ((link[f].turned != part.turn_others) != part.turn_all)
       result.push_back(static_cast<std::int32_t>(f));
   }

@@ -13,7 +13,7 @@ namespace patina {
 namespace {
 
 constexpr int kBins = 16;
-constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kFar = std::numeric_limits<float>::infinity();
 // Binned splits may peel off one box at a time on adversarial input; from this depth on, halves.
 constexpr int kBalancedDepth = 48;
 constexpr std::size_t kParallelSize = 20000;
@@ -22,7 +22,7 @@ using Row = Eigen::Array4f;
 using RowMap = Eigen::Map<const Row, Eigen::Aligned16>;
 
 struct Bounds {
-  Row lo = Row::Constant(kInf), hi = Row::Constant(-kInf);
+  Row lo = Row::Constant(kFar), hi = Row::Constant(-kFar);
 
   void add(const Row& l, const Row& h) {
     lo = lo.min(l);
@@ -90,12 +90,12 @@ class Builder {
     nodes.emplace_back();
     for (int a = 0; a < 3; ++a) {
       std::fill_n(nodes[at].centre[a], kWide, 0.0f);
-      std::fill_n(nodes[at].half[a], kWide, -kInf);
+      std::fill_n(nodes[at].half[a], kWide, -kFar);
       std::fill_n(nodes[at].normal[a], kWide, 0.0f);
     }
     std::fill_n(nodes[at].low, kWide, 0.0f);
     std::fill_n(nodes[at].high, kWide, 0.0f);
-    std::fill_n(nodes[at].radius, kWide, kInf);
+    std::fill_n(nodes[at].radius, kWide, kFar);
     std::fill_n(nodes[at].child, kWide, 0);
     if (piece.size() <= kWide) {
       for (std::size_t i = 0; i < piece.size(); ++i) {
@@ -201,7 +201,7 @@ class Builder {
       swept += counts[b];
       right_cost[b] = swept ? sweep.halfArea() * static_cast<float>(swept) : 0;
     }
-    float best = kInf;
+    float best = kFar;
     std::size_t cut = 0; // first bin of the right side
     sweep = {};
     swept = 0;
@@ -268,7 +268,7 @@ void fitCylinder(WideNode& node, std::size_t place, const Range& range,
   const float length = sum.norm();
   const Vec3f axis = length > 1e-20f ? Vec3f(sum / length) : first;
   const Vec3f centre(node.centre[0][place], node.centre[1][place], node.centre[2][place]);
-  float low = kInf, high = -kInf, radius2 = 0;
+  float low = kFar, high = -kFar, radius2 = 0;
   const auto add = [&](const Vec3f& r) {
     const float along = r.dot(axis);
     low = std::min(low, along);

@@ -45,7 +45,7 @@ using LocalVertices = std::vector<Float4>;
 
 std::vector<Item> sortedItems(const TriangleMesh& mesh, const LocalVertices& vertices) {
   std::vector<Item> items(mesh.triangles.size());
-  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  constexpr std::uint32_t kUnusable = std::numeric_limits<std::uint32_t>::max();
   parallel(items.size(), [&](std::size_t t) {
     const auto corner = [&](std::size_t k) {
       return vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
@@ -61,9 +61,9 @@ std::vector<Item> sortedItems(const TriangleMesh& mesh, const LocalVertices& ver
     for (int k = 0; k < 3; ++k)
       code |= spread(static_cast<std::uint32_t>(std::clamp(cell[k], 0.0F, 1023.0F))) << k;
     const bool finite = std::isfinite(all[0] + all[1] + all[2]);
-    items[t] = {finite ? code : kNone, static_cast<std::uint32_t>(t) & 0x7FFFFFFFU, 0U};
+    items[t] = {finite ? code : kUnusable, static_cast<std::uint32_t>(t) & 0x7FFFFFFFU, 0U};
   });
-  std::erase_if(items, [](const Item& item) { return item.code == kNone; });
+  std::erase_if(items, [](const Item& item) { return item.code == kUnusable; });
   sortByCode(items);
   return items;
 }
