@@ -111,7 +111,6 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   if (open.any()) winding = WindingNumber(closedPart(oriented, open));
   report.open_parts = open.parts;
   report.open_triangles = open.triangles;
-  progress.throwIfCancelled();
 
   const bool plates = open.any() && sides == OpenSides::one;
   if (plates) grid = withRoomForPlates(grid, band);

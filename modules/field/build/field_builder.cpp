@@ -16,8 +16,6 @@ SurfaceField frozen(FieldBuilder&& builder) {
     field.face[slot] = std::make_shared<const FaceBlock>(*builder.face[slot]);
     builder.face[slot].reset();
   });
-  builder.distance.clear();
-  builder.face.clear();
   return field;
 }
 

@@ -210,18 +210,15 @@ double phiOfPart(const FieldPart& part, const NodeReader& nodes, const Vec3& q) 
     cell[a] = std::min(static_cast<int>(x), field.grid.nodes[a] - 2);
     corner[a] = static_cast<int>(std::lround(x / kBlockSide));
   }
-  double sum = 0, nearest = std::numeric_limits<double>::infinity(), sign = 1;
+  double sum = 0, sign = 1; // of any node: a surface between two would be in the band
   bool complete = true;
   for (int c = 0; c < 8; ++c) {
     const Vec3 node(cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2));
     const auto phi = static_cast<double>(nodes.phiAt(
         static_cast<int>(node[0]), static_cast<int>(node[1]), static_cast<int>(node[2])));
-    const Vec3 away = (in - node).cwiseAbs();
     complete = complete && std::abs(phi) < static_cast<double>(kBeyondBand);
-    sum += phi * (Vec3::Ones() - away).prod();
-    if (away.squaredNorm() >= nearest) continue;
-    nearest = away.squaredNorm();
-    sign = phi < 0 ? -1 : 1;
+    sum += phi * (Vec3::Ones() - (in - node).cwiseAbs()).prod();
+    sign = std::copysign(1, phi);
   }
   if (complete) return sum;
   if (field.coarse.empty()) return sign * least;

@@ -71,11 +71,9 @@ class Redistancer {
     merged_.distance[slot]->unpack(distance);
     FaceNodes faces;
     std::size_t count = 0;
-    bool any = false;
     std::int32_t warm = -1;
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
-      const std::int32_t face = old_faces.at(n);
-      any = any || face >= 0;
+      const std::int32_t face = faces.face[n] = old_faces.at(n);
       if (face < 0 || !(distance.phi[n] < 0)) continue;
       const Index3 at = BlockNode{merged_.block_at[slot], n}.at();
       const Vec3 p = merged_.grid.toWorld(Vec3(at[0], at[1], at[2]));
@@ -93,8 +91,7 @@ class Redistancer {
       // its rounding where nothing hides it.
       const auto known = static_cast<double>(distance.phi[n]);
       if (!(static_cast<double>(phi) < known - (at_cap ? kSame : 0))) continue;
-      if (count++ == 0)
-        for (std::size_t k = 0; k < kBlockNodes; ++k) faces.face[k] = old_faces.at(k);
+      ++count;
       distance.phi[n] = phi;
       faces.face[n] = -1;
       if (found) {
@@ -102,10 +99,11 @@ class Redistancer {
         faces.face[n] = surface_.face[static_cast<std::size_t>(warm)];
       }
     }
-    if (count == 0) return any;
-    changed_ += count;
-    result_.field.distance[slot] = std::make_shared<const DistanceBlock>(distance);
-    result_.field.face[slot] = std::make_shared<const FaceBlock>(faces);
+    if (count > 0) {
+      changed_ += count;
+      result_.field.distance[slot] = std::make_shared<const DistanceBlock>(distance);
+      result_.field.face[slot] = std::make_shared<const FaceBlock>(faces);
+    }
     return std::any_of(faces.face.begin(), faces.face.end(), [](std::int32_t f) { return f >= 0; });
   }
 

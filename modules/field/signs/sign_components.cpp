@@ -9,7 +9,7 @@ namespace patina::signs {
 namespace {
 
 constexpr std::array<std::size_t, 3> kStride{1, kBlockSide, kBlockSide* kBlockSide};
-constexpr std::uint16_t kNone = 0xFFFF;
+constexpr std::uint16_t kUnlabelled = 0xFFFF;
 
 bool safe(float d1, float d2) {
   return d1 + d2 > 1 + kMargin;
@@ -28,18 +28,18 @@ void labelNodes(const float* d, Labels& label, std::vector<Part>& parts) {
   for (std::size_t z = 0; z < kBlockSide; ++z) {
     for (std::size_t y = 0; y < kBlockSide; ++y) {
       for (std::size_t x = 0; x < kBlockSide; ++x, ++i) {
-        std::uint16_t mine = kNone;
+        std::uint16_t mine = kUnlabelled;
         const auto meet = [&](std::size_t before) {
           if (!safe(d[i], d[before])) return;
           const std::uint16_t other = rootOf(parent, label[before]);
           if (mine == other) return;
-          if (mine != kNone) parent[std::max(mine, other)] = std::min(mine, other);
+          if (mine != kUnlabelled) parent[std::max(mine, other)] = std::min(mine, other);
           mine = std::min(mine, other);
         };
         if (x > 0) meet(i - kStride[0]);
         if (y > 0) meet(i - kStride[1]);
         if (z > 0) meet(i - kStride[2]);
-        if (mine == kNone) {
+        if (mine == kUnlabelled) {
           mine = count++;
           parent[mine] = mine;
         }

@@ -41,7 +41,6 @@ class Signer {
 
   std::size_t run() {
     parts_ = signs::connectedComponents(builder_);
-    progress_.throwIfCancelled();
     sign_.assign(parts_.parts.size(), 0);
     vote_.assign(parts_.parts.size(), kNoVote);
     depth_.assign(parts_.parts.size(), 0);
@@ -298,13 +297,8 @@ class Signer {
     auto& phi = builder_.distance[slot]->phi;
     const std::uint32_t first = parts_.first[slot];
     const signs::Labels* labels = parts_.labels[slot].get();
-    bool any = false;
-    for (std::uint32_t part = first; part < parts_.first[slot + 1]; ++part)
-      any = any || sign_[part] == kInside;
-    if (any) {
-      for (std::size_t n = 0; n < phi.size(); ++n)
-        if (sign_[first + (labels ? (*labels)[n] : 0U)] == kInside) phi[n] = -phi[n];
-    }
+    for (std::size_t n = 0; n < phi.size(); ++n)
+      if (sign_[first + (labels ? (*labels)[n] : 0U)] == kInside) phi[n] = -phi[n];
     for (float& value : phi)
       if (std::abs(value) <= kOnSurface) value = std::abs(value);
   }

@@ -11,8 +11,8 @@ namespace {
 
 template <class Block>
 std::size_t layerSize(const std::vector<std::shared_ptr<const Block>>& layer) {
-  std::size_t sum = layer.size() * sizeof(layer[0]);
-  for (const auto& block : layer) sum += block->bytes();
+  std::size_t sum = 0;
+  for (const auto& block : layer) sum += sizeof(block) + block->bytes();
   return sum;
 }
 

@@ -208,7 +208,6 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     proxy.c = c;
     proxy.walls[0] = ahead;
     move.touching = move.smooth = true;
-    move.held.count = 1;
     move.held.load[0] = load;
     return true;
   }
@@ -310,7 +309,6 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
         converged = true;
       } else {
         walls.remove(stale);
-        trust = kStaleTrust;
         aim = aimAt(x, walls, start, ball, anchor, trust);
         continue;
       }
@@ -332,16 +330,12 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
              d0 > kOnSurface && d1 > kOnSurface) {
     lend(proxy, 0.25 * (d0 + d1) * (1 / d0 * (start - from) + 1 / d1 * (c - x)).dot(c - start));
   }
-  bool held = !aim.by_ball && !aim.by_trust;
   for (int i = walls.count - 1; i >= 0; --i)
-    if ((walls[i].seen - c).squaredNorm() > kForget * kForget) {
-      walls.remove(i);
-      held = false;
-    }
+    if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);
   proxy.c = c;
   move.touching = true;
   move.snap = aim.by_ball;
-  move.held = held ? aim.to : projectOntoWalls(walls, x);
+  move.held = projectOntoWalls(walls, x);
   return move;
 }
 

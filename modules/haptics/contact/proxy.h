@@ -23,7 +23,7 @@ struct ProxyMove {
   int samples = 0;
   double clearance = 0; // phi - iso at x, out of contact
   bool smooth = false;  // held by one wall, from which c is perpendicular to the tip
-  WallProjection held;  // by which of the proxy's walls, and how hard
+  WallProjection held;  // by which of the proxy's walls, and how hard; if smooth, load[0] alone
 };
 
 // c(t) = local argmin |y - x|^2 subject to phi(y) >= iso, continued from where it was. Only the

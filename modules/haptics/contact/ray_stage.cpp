@@ -50,7 +50,7 @@ RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n, doubl
     }
     // The reciprocal of the slope: the one division of this loop.
     const double per_slope = (s - s_last) / (f - f_last);
-    double next = per_slope > 0 && per_slope < 20 ? s - f * per_slope : s - f;
+    double next = s - f * per_slope;
     const double variation = std::max(std::abs(per_slope - 1), kLeastVariation);
     if (root.samples > 1 && std::abs(f) * variation < kStepTolerance && next > inside) {
       root.s = next;
