@@ -1,7 +1,8 @@
 #include "core/work_precision.h"
 
 #include <cmath>
-#include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "core/file.h"
 
@@ -34,37 +35,6 @@ TEST(FittedOrder, RefusesWhatHasNoSlope) {
   EXPECT_THROW(fittedOrder({0.1, 0.1}, {1, 2}), std::invalid_argument);
   EXPECT_THROW(fittedOrder({0.1, 0.2}, {0, 2}), std::invalid_argument);
   EXPECT_THROW(fittedOrder({0.1, 0.2}, {NAN, 2}), std::invalid_argument);
-}
-
-TEST(WorkPrecision, TextAlignsItsColumns) {
-  std::istringstream text(toText(example()));
-  std::string title, header, first, second;
-  std::getline(text, title);
-  std::getline(text, header);
-  std::getline(text, first);
-  std::getline(text, second);
-  EXPECT_EQ(title, "Distance on a sphere");
-  // Right-aligned: every value ends where its header ends.
-  for (const auto& [name, value] :
-       std::vector<std::pair<std::string, std::string>>{{"sampler", "high"},
-                                                        {"resolution", "150"},
-                                                        {"error [m]", "1e-07"},
-                                                        {"error_max [m]", "3"},
-                                                        {"ns", "48"},
-                                                        {"bytes", "2.5e+07"},
-                                                        {"cold [ns]", "210"}}) {
-    const std::size_t end = header.find(name) + name.size();
-    ASSERT_LE(end, second.size()) << name;
-    EXPECT_EQ(second.substr(end - value.size(), value.size()), value) << name;
-  }
-  EXPECT_EQ(header.size(), second.size());
-}
-
-TEST(WorkPrecision, TextShowsTheFittedOrder) {
-  WorkPrecisionTable table = example();
-  table.order_fitted = 2.96;
-  table.order_expected = 3;
-  EXPECT_NE(toText(table).find("order fitted 2.96, expected 3\n"), std::string::npos);
 }
 
 TEST(WorkPrecision, JsonHasTheContractsKeys) {

@@ -38,9 +38,11 @@ TEST(FaceBlock, HoldsFacesThatLieInLayersSmallWhateverTheirAxis) {
     for (std::size_t n = 0; n < nodes.face.size(); ++n) ASSERT_EQ(block.at(n), nodes.face[n]);
     EXPECT_LE(block.bytes(), sizeof(FaceBlock) + 8 * 2 + 4); // 8 runs of 3 bits
   }
-  FaceNodes one;
-  one.face.fill(12);
-  EXPECT_EQ(FaceBlock(one).bytes(), sizeof(FaceBlock) + 2);
+  for (const std::int32_t face : {12, 1'000'000}) {
+    FaceNodes one;
+    one.face.fill(face);
+    EXPECT_EQ(FaceBlock(one).bytes(), sizeof(FaceBlock) + 2) << face;
+  }
   EXPECT_LE(sizeof(FaceBlock), 80U);
 }
 

@@ -171,5 +171,14 @@ TEST(Dinosaur, IsOneClosedBodyAHundredMillimetresLong) {
   EXPECT_GT(volume(mesh), 1e-5);
 }
 
+// What is at the iso value itself is outside: a tip there does not touch.
+TEST(IsoSurface, OfAFieldThatIsNowhereBelowTheValueIsEmpty) {
+  const FieldGrid grid{Vec3::Zero(), 1, {17, 17, 17}};
+  const SurfaceField field =
+      sampleFunction([](const Vec3& p) { return (p - Vec3(8, 8, 8)).norm(); }, grid, 8);
+  EXPECT_TRUE(isoSurface(field, 0).triangles.empty());
+  EXPECT_FALSE(isoSurface(field, 0.1).triangles.empty());
+}
+
 } // namespace
 } // namespace patina

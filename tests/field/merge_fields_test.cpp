@@ -181,5 +181,20 @@ TEST(MergeFields, PartsThatDoNotFitTogetherAreRefused) {
   EXPECT_THROW((void)mergeFields(apart, m.lattice), Error);
 }
 
+// Deeper than the band too, which is the parts' own.
+TEST(MergeFields, OfOnePartIsThatPart) {
+  for (const double band : {4.0, 6.0}) {
+    const MergedShapes m = mergedShapes({icosphere(0.03, 6)}, 0x1p-9, false, band);
+    const auto alone = withSamples(m.parts[0].field);
+    const FieldSampler part(*alone, Sampler::high), merged(*m.field, Sampler::high);
+    for (double z = 0; z < 0.04; z += 1e-4) {
+      const GridSample a = part.at(Vec3(1e-3, 2e-3, z)), b = merged.at(Vec3(1e-3, 2e-3, z));
+      EXPECT_EQ(a.phi, b.phi) << z;
+      EXPECT_EQ(a.gradient, b.gradient) << z;
+      EXPECT_EQ(a.region, b.region) << z;
+    }
+  }
+}
+
 } // namespace
 } // namespace patina

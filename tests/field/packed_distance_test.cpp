@@ -135,5 +135,20 @@ TEST(DistanceBlock, IsAtMostAnEleventhLargerThanItsNodes) {
   EXPECT_LE(11 * most, 12 * sizeof(DistanceNodes));
 }
 
+// It fills in the commoner of the two ends, wherever in a row its nodes stand.
+TEST(DistanceBlock, ItsSizeDoesNotDependOnWhereTheNodesBeyondTheBandStand) {
+  for (const float beyond : {kBeyondBand, -kBeyondBand})
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      std::mt19937 random(9);
+      DistanceNodes nodes;
+      nodes.phi.fill(1);
+      for (std::size_t n = lane; n < kBlockNodes; n += 4)
+        if (random() % 2) nodes.phi[n] = beyond;
+      nodes.phi[lane ^ 1] = -beyond;
+      EXPECT_LE(DistanceBlock(nodes).bytes(), 300U) << beyond << ' ' << lane;
+      expectKept(nodes);
+    }
+}
+
 } // namespace
 } // namespace patina

@@ -173,5 +173,53 @@ TEST(Plate, ItsCapsStopWhenCancelled) {
                Cancelled);
 }
 
+// Its back is a surface like any other.
+TEST(Plate, ReachesItsBandPastItsBackAndItsSides) {
+  const double side = 20, band = 4; // [voxel]
+  FieldSpec spec;
+  spec.voxel = 1;
+  spec.band = band;
+  Progress progress;
+  const BuiltField made = buildField(sheet(side, side, 2), spec, progress);
+  for (std::size_t slot = 0; slot < made.field->blockCount(); ++slot) {
+    const auto& at = made.field->block_at[slot];
+    EXPECT_EQ(made.field->slotOf(at[0], at[1], at[2]), static_cast<std::int32_t>(slot));
+  }
+  NodeReader nodes(*made.field);
+  const auto phiNear = [&](const Vec3& p) {
+    const Vec3 q = made.field->grid.toGrid(p).array().round();
+    const Vec3 off = made.field->grid.toWorld(q) - p;
+    EXPECT_LT(off.norm(), 1);
+    return nodes.phiAt(static_cast<int>(q[0]), static_cast<int>(q[1]), static_cast<int>(q[2]));
+  };
+  for (const double out : {1.0, 2.0, 3.0}) {
+    EXPECT_NEAR(phiNear(Vec3(0, 0, -band - out)), out, 0.9);
+    for (const double way : {-1.0, 1.0}) {
+      EXPECT_NEAR(phiNear(Vec3(way * (side / 2 + out), 0, -2)), out, 0.9);
+      EXPECT_NEAR(phiNear(Vec3(0, way * (side / 2 + out), -2)), out, 0.9);
+    }
+  }
+}
+
+// A back as large as the front, and the sides but for a voxel beneath the rim.
+TEST(Plate, ItsCapsCloseIt) {
+  const double side = 40, band = 6; // [voxel]
+  FieldSpec spec;
+  spec.voxel = 1;
+  spec.band = band;
+  Progress progress;
+  for (int axis = 0; axis < 3; ++axis) {
+    TriangleMesh front = sheet(side, side, 2);
+    for (Vec3& p : front.positions)
+      p = axis == 0 ? Vec3(p.z(), p.x(), p.y()) : axis == 1 ? Vec3(p.y(), p.z(), p.x()) : p;
+    const BuiltField made = buildField(front, spec, progress);
+    ASSERT_TRUE(made.caps);
+    const double most = side * side + 4 * side * band, least = most - 4 * side;
+    const double caps = area(made.caps->mesh);
+    EXPECT_GT(caps, 0.97 * least) << axis;
+    EXPECT_LT(caps, 1.03 * most) << axis;
+  }
+}
+
 } // namespace
 } // namespace patina

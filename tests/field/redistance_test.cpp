@@ -148,6 +148,10 @@ TEST(Redistance, ObjectsThatDoNotMeetOrCoincideChangeNothing) {
   const MergedShapes twice =
       mergedShapes({icosphere(0.02, 12), icosphere(0.02, 12)}, 0x1p-11, true);
   EXPECT_EQ(twice.redistanced, 0u);
+  const std::vector<TriangleMesh> boxes{box(Vec3(0.05, 0.06, 0.04)), box(Vec3(0.05, 0.06, 0.04))};
+  const MergedShapes before = mergedShapes(boxes, 0x1p-10),
+                     after = mergedShapes(boxes, 0x1p-10, true);
+  EXPECT_EQ(after.field->top, before.field->top); // also blocks that know one face alone
 }
 
 // A sheet whose front is `front` voxels high and a cube that it runs through: the depth under the
@@ -224,6 +228,17 @@ TEST(DeepFeet, FindTheCreaseFromTheCentreOfTwoSpheres) {
   EXPECT_FALSE(aside->opposed);
   EXPECT_FALSE(sampler.deepFeet(Vec3(-100, 0, 0)));
   EXPECT_FALSE(sampler.deepFeet(Vec3::Constant(std::nan(""))));
+}
+
+// A bar across the end of a longer one, whose fields are longer than they are high.
+TEST(Redistance, UnionSurfaceLeavesOutWhatLiesAtTheEndOfALongPart) {
+  const TriangleMesh post = box(Vec3(0.02, 0.06, 0.02), 2);
+  const TriangleMesh bar = movedBy(box(Vec3(0.04, 0.01, 0.01), 4), Vec3(0, 0.022, 0));
+  const MergedShapes m = mergedShapes({post, bar}, 0x1p-10);
+  Progress progress;
+  const double own = area(post) + area(bar), hidden = 4 * 0.02 * 0.01 + 2 * 0.01 * 0.01;
+  EXPECT_NEAR(area(unionSurface(m.parts, m.lattice, m.joint, progress).mesh), own - hidden,
+              0.02 * hidden);
 }
 
 } // namespace

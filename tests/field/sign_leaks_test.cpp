@@ -9,19 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "geometry/mesh/shapes.h"
+#include "support/soup.h"
 
 namespace patina::signs {
 namespace {
-
-TriangleMesh soup(const TriangleMesh& mesh) { // no vertex is shared
-  TriangleMesh result;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto first = static_cast<std::int32_t>(result.positions.size());
-    for (int k = 0; k < 3; ++k) result.positions.push_back(mesh.corner(t, k));
-    result.triangles.push_back({first, first + 1, first + 2});
-  }
-  return result;
-}
 
 TriangleMesh doubled(TriangleMesh mesh) {
   const std::vector<Triangle> once = mesh.triangles;

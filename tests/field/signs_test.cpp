@@ -11,6 +11,7 @@
 #include "field/sampling/field_sampler.h"
 #include "geometry/mesh/shapes.h"
 #include "support/node_values.h"
+#include "support/soup.h"
 
 namespace patina {
 namespace {
@@ -25,16 +26,6 @@ TriangleMesh inverted(TriangleMesh mesh) {
 TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
   for (Vec3& p : mesh.positions) p += by;
   return mesh;
-}
-
-TriangleMesh soup(const TriangleMesh& mesh) { // no vertex is shared
-  TriangleMesh result;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto first = static_cast<std::int32_t>(result.positions.size());
-    for (int k = 0; k < 3; ++k) result.positions.push_back(mesh.corner(t, k));
-    result.triangles.push_back({first, first + 1, first + 2});
-  }
-  return result;
 }
 
 TriangleMesh withMovedCorners(const TriangleMesh& mesh, double by, unsigned seed) {

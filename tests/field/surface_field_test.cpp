@@ -197,5 +197,24 @@ TEST(LayerBytes, CountOnlyTheLayersThatExist) {
   EXPECT_EQ(field->bytes(), sum);
 }
 
+// Past the last block of the band there is its mark, not a surface.
+TEST(SampleLayer, HoldsWhatEachNodeHolds) {
+  FieldGrid grid;
+  grid.voxel = 1;
+  grid.nodes = {17, 17, 33};
+  const auto field = sampledField([](const Vec3& p) { return p.z() - 11.5; }, grid, 3);
+  for (std::size_t slot = 0; slot < field->blockCount(); ++slot)
+    for (int n = 0; n < kSampleSide * kSampleSide * kSampleSide; ++n) {
+      const auto& at = field->block_at[slot];
+      const int i = 8 * at[0] + n % 9, j = 8 * at[1] + n / 9 % 9, k = 8 * at[2] + n / 81;
+      if (i > 16 || j > 16 || k > 32) continue;
+      const SampleNode& node = field->sample[slot]->node[static_cast<std::size_t>(n)];
+      ASSERT_EQ(node.phi, test::phiAt(*field, i, j, k)) << i << ' ' << j << ' ' << k;
+      if (std::abs(node.phi) < kBeyondBand) {
+        ASSERT_EQ(Vec3(node.gx, node.gy, node.gz), Vec3(0, 0, 1)) << i << ' ' << j << ' ' << k;
+      }
+    }
+}
+
 } // namespace
 } // namespace patina

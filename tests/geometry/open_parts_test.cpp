@@ -88,9 +88,10 @@ TEST(OpenParts, AreToldApartInOneMesh) {
 }
 
 TEST(OpenParts, AreNamed) {
-  EXPECT_EQ(text(sideCounts(12, 0, OpenSides::one)), "closed");
-  EXPECT_EQ(text(sideCounts(12, 12, OpenSides::two)), "two-sided");
-  EXPECT_EQ(text(sideCounts(12, 2, OpenSides::one)), "10 triangles closed, 2 triangles one-sided");
+  EXPECT_EQ(describeSides(sideCounts(12, 0, OpenSides::one)), "closed");
+  EXPECT_EQ(describeSides(sideCounts(12, 12, OpenSides::two)), "two-sided");
+  EXPECT_EQ(describeSides(sideCounts(12, 2, OpenSides::one)),
+            "10 triangles closed, 2 triangles one-sided");
 }
 
 TEST(OpenParts, ScanWithHolesStaysClosed) {

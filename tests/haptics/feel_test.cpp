@@ -69,5 +69,19 @@ TEST(Feel, StopsWhenCancelled) {
   EXPECT_THROW(feel(*snapshot, press(), progress), Cancelled);
 }
 
+// A wall that damps gives K d + b v, at whatever time the path begins.
+TEST(Feel, TakesTheSpeedFromTheTimeBetweenTwoRows) {
+  Scene scene = sceneOf(500);
+  scene.haptics.damping = 2;
+  const auto snapshot = compileStages(scene, planeField());
+  Progress progress;
+  for (const double start : {0.0, 7.5}) {
+    std::vector<TimedTip> path;
+    for (int i = 0; i < 40; ++i) path.push_back({start + 2e-3 * i, Vec3(0, 0, 1e-3 - 1e-4 * i)});
+    const double last = feel(*snapshot, path, progress).back().force.z();
+    EXPECT_NEAR(last, 500 * 2.9e-3 + 2 * 0.05, 1e-3) << start;
+  }
+}
+
 } // namespace
 } // namespace patina

@@ -73,7 +73,7 @@ TEST(RunQueueWait, DoesNotCountSleep) {
   EXPECT_LE(waited, monotonicNs() - start - 99'000'000);
 }
 
-TEST(MeasureLatency, CountsOneWakeUpAPeriod) {
+TEST(Latency, CountsOneWakeUpAPeriod) {
   const Latency latency = measureLatency(0.2, 1000);
   EXPECT_EQ(latency.wakeups, 200u);
   EXPECT_FALSE(latency.policy.empty());
@@ -85,7 +85,7 @@ TEST(MeasureLatency, CountsOneWakeUpAPeriod) {
   EXPECT_EQ(latency.timer_us.has_value(), latency.wait_us.has_value());
 }
 
-TEST(MeasureLatency, RefusesTimesAndRatesOutOfRange) {
+TEST(Latency, RefusesTimesAndRatesOutOfRange) {
   EXPECT_THROW(measureLatency(0), std::invalid_argument);
   EXPECT_THROW(measureLatency(3601), std::invalid_argument);
   EXPECT_THROW(measureLatency(1, 50), std::invalid_argument);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/contact_fixture.h"
+#include "haptics/painted_fixture.h"
 
 namespace patina {
 namespace {
@@ -121,6 +121,39 @@ TEST(LocalStiffness, TimeAndPathLeaveNoTrace) {
   EXPECT_EQ(at.matrix, pressed(sceneOf(kStiffness), sphereField(), point, 2e-3).matrix);
   EXPECT_NEAR(at.force, 1, 1e-4);
   EXPECT_NEAR(pressed(scene, sphereField(), point).force, 0.5, 1e-4);
+}
+
+// Whatever is painted, it is pressed by 1 N and felt beneath the relief.
+TEST(LocalStiffness, PaintedStiffnessIsPressedByTheSameForce) {
+  const double voxel = 0x1p-11;
+  for (const double painted : {250.0, 2000.0}) {
+    const Scene scene = sceneOf(kStiffness);
+    const FeltObject object =
+        feltMaterial(*coveredMap(voxel, cube(4e-3), MaterialChannel::stiffness,
+                                 [=](const Vec3&) { return painted; }),
+                     scene);
+    const auto at =
+        StiffnessProbe(scene, planeField(voxel, 32), std::span(&object, 1)).at(Vec3(1e-3, 5e-4, 0));
+    ASSERT_TRUE(at);
+    EXPECT_NEAR(at->depth, 1 / painted, 1e-9);
+    EXPECT_NEAR(at->force, 1, 1e-4);
+    EXPECT_NEAR(at->lambda_max, painted, 1e-3 * painted);
+  }
+}
+
+TEST(LocalStiffness, OnARampOfReliefTheDepthIsBeneathTheRamp) {
+  const double slope = 0.5, x = 1.3e-3, depth = 0.5e-3;
+  const FeltObject ramp =
+      feltRelief(fineSlab().faces, reliefImage(64, [](double u, double) { return u - 0.5; }),
+                 slope * Slab::kSide, 0.1);
+  Scene scene = sceneOf(kStiffness);
+  scene.relief.form = ForceForm::conservative;
+  const auto at =
+      StiffnessProbe(scene, fineSlab().field, std::span(&ramp, 1)).at(Vec3(x, 7e-4, 0), depth);
+  ASSERT_TRUE(at);
+  EXPECT_LT((at->tip - Vec3(x, 7e-4, slope * x - depth)).norm(), 1e-6);
+  // 1/2 K d^2, d the depth along z.
+  EXPECT_NEAR(at->force, kStiffness * depth * std::sqrt(1 + slope * slope), 1e-3);
 }
 
 } // namespace

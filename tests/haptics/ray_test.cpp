@@ -121,5 +121,46 @@ TEST(Ray, TurnsRoundPastTheMiddleOfAPlate) {
   EXPECT_FALSE(turned.fault);
 }
 
+TEST(Ray, AContactThatBeginsAnewIsDrawnByNothing) {
+  const auto snapshot = compileStages(rayScene(500), plateField(0.8e-3));
+  ContactMemory memory;
+  glide(*snapshot, memory, Vec3(0, 0, 0.6e-3));
+  glide(*snapshot, memory, Vec3(0, 0, 0.3e-3));
+  for (const Vec3& free : {Vec3(0, 0, 1e-3), Vec3(4e-3, 0, 1e-3), Vec3(4e-3, 0, -1e-3)})
+    EXPECT_FALSE(tick(*snapshot, memory, free, 1e-3).touching);
+  const Contact anew = tick(*snapshot, memory, Vec3(2e-3, 0, -0.3e-3), 1e-3);
+  ASSERT_TRUE(anew.touching);
+  EXPECT_EQ(anew.drawn, Vec3::Zero());
+  EXPECT_FALSE(anew.snap); // from the other side, but not by itself
+}
+
+// K06: brute force along the ray, from deep inside a cube without one octant, where the slope of
+// the blend may be anything.
+TEST(Ray, FindsTheFirstCrossingWhereThereIsOne) {
+  const Field corner = cubeField(
+      [](const Vec3& p) {
+        const Vec3 half = Vec3::Constant(8);
+        return std::max(boxDistance(p, half), -boxDistance(p - half, half));
+      },
+      1, 40);
+  const auto snapshot = compileStages(rayScene(1, Sampler::kim), corner);
+  const FieldSampler surface(*corner, Sampler::kim);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-8, 8);
+  int crossings = 0, missed = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 tip(coordinate(random), coordinate(random), coordinate(random));
+    const Contact contact = touchOnce(*snapshot, tip);
+    if (!contact.touching || contact.normal.isZero()) continue;
+    double first = 0;
+    while (first < 8 && surface.at(tip + first * contact.normal).phi < 0) first += 1.0 / 64;
+    if (first >= 8) continue;
+    ++crossings;
+    missed += std::abs(contact.depth - first) > 1.0 / 32;
+  }
+  EXPECT_GT(crossings, 1000);
+  EXPECT_LE(missed, crossings / 1000); // 2 % once, by steps that took no slope of theirs
+}
+
 } // namespace
 } // namespace patina

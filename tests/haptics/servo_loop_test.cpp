@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "core/percentiles.h"
 #include "core/timing_window.h"
 #include "haptics/servo/realtime.h"
 #include "support/simulated_device.h"
@@ -111,6 +112,25 @@ TEST(ServoLoop, ReportsEveryTickThroughTheRing) {
   EXPECT_FALSE(timing.policy.empty());
   // Between them, ticks and missed deadlines account for the whole time.
   EXPECT_NEAR(static_cast<double>(timing.ticks + timing.missed), 300, 60);
+}
+
+// On any machine: the samples tell when each tick was and how late.
+TEST(ServoLoop, TellsTheRateAndTheLatenessOfItsOwnTicks) {
+  ServoLoop loop(std::make_unique<StillDevice>(Vec3(0.049, 0, 0)), 4000);
+  loop.start();
+  for (int i = 0; i < 5000 && loop.timing().ticks < 900; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  loop.stop();
+  std::vector<ToolSample> samples;
+  for (ToolSample sample; loop.samples().pop(sample);) samples.push_back(sample);
+  const ServoTiming timing = loop.timing();
+  ASSERT_EQ(samples.size(), timing.ticks);
+  ASSERT_GT(samples.size(), 500U);
+  const std::size_t mark = samples.size() / 250 * 250 - 1; // it measures every 250 ticks
+  EXPECT_NEAR(timing.rate_hz * (samples[mark].t - samples[mark - 250].t), 250, 1e-3);
+  std::vector<double> late;
+  for (const ToolSample& sample : samples) late.push_back(1e-3 * sample.late_ns);
+  EXPECT_NEAR(timing.late_p99, percentiles(std::move(late)).p99, 1e-6);
 }
 
 // Rests in the sphere until the test gives it another status, or lets it age.

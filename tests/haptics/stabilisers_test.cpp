@@ -229,5 +229,41 @@ TEST(Plane, IsTheSampledPlaneToTheSearchsTolerance) {
   EXPECT_THROW(planeSnapshot(scene.haptics, {}), std::invalid_argument);
 }
 
+// sqrt(2 b B) over the mean age of what is applied, between a tenth of k_c and all of it.
+TEST(Stabilisers, LateralCouplingIsAsStiffAsTheDampingHolds) {
+  bool within = false;
+  for (const double rate : {1000., 4000.})
+    for (const int delay : {0, 1, 3, 6})
+      for (const double damping : {0., 0.2, 2.}) {
+        const DeviceModel device{.1, damping, 0, 0, rate, delay};
+        const CouplingPlan coupling = planCoupling({}, device);
+        const double age = 0.5 / rate + delay / rate;
+        const double held = std::sqrt(2 * damping * coupling.damping) / age;
+        const double stiffness = planLateral({}, device).stiffness;
+        EXPECT_NEAR(stiffness,
+                    std::min(std::max(held, 0.1 * coupling.stiffness), coupling.stiffness),
+                    1e-9 * coupling.stiffness)
+            << rate << " " << delay << " " << damping;
+        within = within || stiffness == held;
+      }
+  EXPECT_TRUE(within);
+}
+
+// Of painted damping the least is the scene's own; the most may buzz by itself.
+TEST(Stabilisers, PredictTheWorseOfTheLeastAndTheMostDamping) {
+  HapticProperties haptics;
+  const DeviceModel device;
+  for (const double most : {1., 20., 150., 1000.}) {
+    HapticProperties damped = haptics;
+    damped.damping = most;
+    const auto limit = [&](const HapticProperties& of) {
+      return planStabilisers(of, device, std::nullopt).predicted_limit.value();
+    };
+    EXPECT_EQ(planStabilisers(haptics, device, std::nullopt, most).predicted_limit.value(),
+              std::min(limit(haptics), limit(damped)))
+        << most;
+  }
+}
+
 } // namespace
 } // namespace patina

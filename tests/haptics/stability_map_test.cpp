@@ -326,5 +326,22 @@ TEST(StabilityMap, AVertexThatIsNoNumberIsUnknownAndNotTheWorst) {
   EXPECT_GT(map.worst_ratio, 0);
 }
 
+// What ties the texture of another object does not damp a smooth one.
+TEST(StabilityRatio, WithoutACouplingOfItsOwnTheDeviceAloneDampsAlongTheSurface) {
+  LocalStiffness hollow;
+  hollow.normal = Vec3::UnitZ();
+  hollow.material.stiffness = 500;
+  hollow.matrix = Vec3(400, 100, 500).asDiagonal();
+  LoopLimits limits;
+  limits.plain = limits.damped = 1000;
+  for (const double tied : {1000.0, 3000.0}) {
+    limits.tied = tied;
+    limits.damped = 3000;
+    EXPECT_NEAR(stabilityRatio(hollow, bare(500), limits), 1000.0 / 400, 1e-9) << tied;
+  }
+  hollow.lateral = 400; // all of it is the spring's
+  EXPECT_NEAR(stabilityRatio(hollow, bare(500), limits), 3000.0 / 500, 1e-9);
+}
+
 } // namespace
 } // namespace patina

@@ -85,5 +85,24 @@ TEST(TipServo, AnotherThreadPublishesWhileLoopsComeAndGo) { // T-K20; for the th
   EXPECT_GT(published, 10);
 }
 
+TEST(TipServo, DrainingFreesWhatTheServoHasLeft) {
+  TipServo servo;
+  openAt(servo, Vec3(0.03, 0, 0));
+  const auto field = ball();
+  std::weak_ptr<const HapticSnapshot> first;
+  {
+    const auto snapshot = ofStiffness(500, field);
+    first = snapshot;
+    servo.publish(snapshot);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(20)); // it is felt
+  servo.publish(ofStiffness(600, field));
+  for (int i = 0; i < 1000 && !first.expired(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    servo.drain();
+  }
+  EXPECT_TRUE(first.expired());
+}
+
 } // namespace
 } // namespace patina

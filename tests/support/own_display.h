@@ -25,7 +25,7 @@ class XServer {
     if (pipe2(said, O_CLOEXEC) != 0) return;
     said_ = said[0];
     std::vector<std::string> words = {"Xvfb",     "-displayfd", std::to_string(said[1]),
-                                      "-screen",  "0",          "1280x800x24",
+                                      "-screen",  "0",          "2560x1600x24",
                                       "-noreset", "-nolisten",  "tcp"};
     if (number) words.push_back(":" + std::to_string(*number));
     std::vector<char*> arguments;
