@@ -1,5 +1,8 @@
 #include "app/studies/study.h"
 
+#ifdef PATINA_HAS_ACQUISITION
+#include "app/studies/acquisition/filter_study.h"
+#endif
 #include "app/studies/field/field_study.h"
 #include "app/studies/field/surfaces_study.h"
 #include "app/studies/haptics/contact_study.h"
@@ -22,6 +25,10 @@ const std::vector<Study>& studies() {
       {"material", "painted stiffness: its value, and work round closed loops", materialStudy},
       {"stability", "the closed loop against eigenvalues and closed forms; what quietens it",
        stabilityStudy},
+#ifdef PATINA_HAS_ACQUISITION
+      {"filter", "paths of a probe from camera and accelerometers; heights; stiffness",
+       filterStudy},
+#endif
   };
   return all;
 }

@@ -44,7 +44,7 @@ class Reports : public testing::Test {
 };
 
 TEST_F(Reports, HaveNoKeyThatTheHelpOfTheirCommandLacks) {
-  const std::vector<std::vector<std::string>> calls = {
+  std::vector<std::vector<std::string>> calls = {
       {"model", "box", "-o", folder / "b.ply"},
       {"scene", "-o", scene},
       {"info", scene},
@@ -59,6 +59,11 @@ TEST_F(Reports, HaveNoKeyThatTheHelpOfTheirCommandLacks) {
       {"export", scene, "-o", folder / "out", "--stability"},
       {"devices"},
       {"latency-test", "--seconds", "0.1"}};
+#ifdef PATINA_HAS_ACQUISITION
+  const std::string scan = folder / "scan";
+  calls.push_back({"simulate-scan", box, "-o", scan, "--dropouts", "2"});
+  calls.push_back({"filter", scan, "-o", folder / "path.csv"});
+#endif
   for (const std::vector<std::string>& call : calls) {
     const Json report = runJson(call);
     const std::set<std::string> known = keysInHelp(call.front());

@@ -17,6 +17,10 @@ Command redoCommand();
 Command embossCommand();
 Command renderCommand();
 Command exportCommand();
+#ifdef PATINA_HAS_ACQUISITION
+Command simulateScanCommand();
+Command filterCommand();
+#endif
 Command studyCommand();
 Command modelCommand();
 Command latencyTestCommand();
@@ -26,10 +30,14 @@ Command manCommand();
 
 // In the order in which --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),        sceneCommand(),  fieldCommand(), sampleCommand(), feelCommand(),
-          simulateCommand(),    paintCommand(),  undoCommand(),  redoCommand(),   embossCommand(),
-          renderCommand(),      exportCommand(), studyCommand(), modelCommand(),  devicesCommand(),
-          latencyTestCommand(), guiCommand(),    manCommand()};
+  return {infoCommand(),         sceneCommand(),    fieldCommand(),   sampleCommand(),
+          feelCommand(),         simulateCommand(), paintCommand(),   undoCommand(),
+          redoCommand(),         embossCommand(),   renderCommand(),  exportCommand(),
+#ifdef PATINA_HAS_ACQUISITION
+          simulateScanCommand(), filterCommand(),
+#endif
+          studyCommand(),        modelCommand(),    devicesCommand(), latencyTestCommand(),
+          guiCommand(),          manCommand()};
 }
 
 } // namespace patina::cli

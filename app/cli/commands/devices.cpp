@@ -29,9 +29,9 @@ const Keys kDeviceKeys = {{"name", "", ""},
                           {"haptic", "", ""},
                           {"openable", "", ""},
                           {"advice", "", ""}};
-const Keys kKeys = {{"devices", "", "devices", "", Shown::never, kDeviceKeys},
-                    {"policy", "", "servo", "its scheduling, with --diagnose"},
-                    {"realtime", "", "real time", "with --diagnose", Shown::never}};
+const Keys kDevicesKeys = {{"devices", "", "devices", "", Shown::never, kDeviceKeys},
+                           {"policy", "", "servo", "its scheduling, with --diagnose"},
+                           {"realtime", "", "real time", "with --diagnose", Shown::never}};
 
 Json known(const std::optional<double>& limit) {
   return limit ? Json(*limit) : Json();
@@ -104,7 +104,7 @@ void addUsb(bool diagnose, Json& list, Report& report) {
 
 int runDevices(const DevicesOptions& options, Console& console) {
   Json list = Json::array();
-  Report report(kKeys);
+  Report report(kDevicesKeys);
   addBuiltIn(list, report);
   addUsb(options.diagnose, list, report);
   report.set("devices", list);
@@ -130,7 +130,7 @@ Command devicesCommand() {
                          "--diagnose lists everything on the bus, with what keeps it from being "
                          "opened, and tries the servo's scheduling policy.",
           .examples = {"patina devices --diagnose"},
-          .keys = kKeys,
+          .keys = kDevicesKeys,
           .arguments = {{"--diagnose", "", "", "", "Say what is wrong and what to do.",
                          into(options->diagnose)}},
           .run = [options](Console& console) { return runDevices(*options, console); }};

@@ -19,14 +19,14 @@ struct EmbossOptions {
   MeshUnit unit = MeshUnit::mm;
 };
 
-const Keys kKeys = {{"triangles", "", "triangles"},
-                    {"vertices", "", "vertices", "", Shown::never},
-                    {"watertight", "", "watertight"},
-                    {"unit", "", "written in"},
-                    {"voxel", "m", "voxel"},
-                    {"highest", "m", "relief", "at most", Shown::if_any},
-                    {"deviation_rms", "m", "deviation, rms", "", Shown::if_any},
-                    {"deviation_max", "m", "deviation, at most", "", Shown::if_any}};
+const Keys kEmbossKeys = {{"triangles", "", "triangles"},
+                          {"vertices", "", "vertices", "", Shown::never},
+                          {"watertight", "", "watertight"},
+                          {"unit", "", "written in"},
+                          {"voxel", "m", "voxel"},
+                          {"highest", "m", "relief", "at most", Shown::if_any},
+                          {"deviation_rms", "m", "deviation, rms", "", Shown::if_any},
+                          {"deviation_max", "m", "deviation, at most", "", Shown::if_any}};
 
 int runEmboss(const EmbossOptions& options, Console& console) {
   requireMeshOutput(options.output, options.unit, {options.input});
@@ -47,7 +47,7 @@ int runEmboss(const EmbossOptions& options, Console& console) {
   if (deviation.rms > kToldShare * deviation.highest)
     console.warn("the mesh misses the painted relief by " + formatLength(deviation.rms) +
                  " rms: a smaller --voxel keeps more of it");
-  Report report(kKeys);
+  Report report(kEmbossKeys);
   report.set("triangles", counts.triangles).set("vertices", counts.vertices);
   report.set("watertight", counts.watertight);
   report.set("unit", std::string(name(options.unit))).set("voxel", voxel);
@@ -71,7 +71,7 @@ Command embossCommand() {
           "deviation is measured, from the painted texels, displaced along the normals, to the new "
           "mesh.",
       .examples = {"patina emboss cup -o cup.ply", "patina emboss cup -o cup.stl --voxel 0.2mm"},
-      .keys = kKeys,
+      .keys = kEmbossKeys,
       .arguments = {input("WORKSPACE", "Painted workspace.", into(options->input)),
                     outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
       .run = [options](Console& console) { return runEmboss(*options, console); }};

@@ -22,9 +22,9 @@ struct ExportOptions {
   SceneOptions scene;
 };
 
-const Keys kKeys = {{"folder", "", "folder", "", Shown::never},
-                    {"files", "", "files", "in the folder", Shown::never},
-                    {"stability", "", "as patina render"}};
+const Keys kExportKeys = {{"folder", "", "folder", "", Shown::never},
+                          {"files", "", "files", "in the folder", Shown::never},
+                          {"stability", "", "as patina render"}};
 
 // The field at the mesh's own vertices: how far the sampled surface is from the given one.
 CsvTable vertexTable(const CompiledScene& compiled) {
@@ -97,7 +97,7 @@ int runExport(const ExportOptions& options, Console& console) {
 
   const std::vector<std::string> images = writePaintImages(compiled->scene, folder, console);
 
-  Report report(kKeys);
+  Report report(kExportKeys);
   Json files = Json::array();
   const auto wrote = [&](const std::string& what, const std::string& file) {
     files.push(file);
@@ -132,7 +132,7 @@ Command exportCommand() {
           "would buzz, and the least stiffness of any direction, below 0 where the tip slips off.",
       .examples = {"patina export workspace -o paraview",
                    "patina export bunny.ply -o paraview --path tip.csv"},
-      .keys = kKeys,
+      .keys = kExportKeys,
       .arguments = {sceneInput(options->input),
                     outputTo(options->output, "FOLDER", "Where to; made if it is missing."),
                     {"--path", "TIP.csv", "", "", "A tip path to feel and write too.",

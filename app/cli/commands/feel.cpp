@@ -28,17 +28,18 @@ Keys stepParts() {
   return parts;
 }
 
-const Keys kKeys = {{"ticks", "", "ticks"},
-                    {"stages", "", "stages"},
-                    {"step_ns", "ns", "step", "time of a tick", Shown::always, stepParts()},
-                    {"contact_ticks", "", "in contact", "ticks", Shown::never},
-                    {"deep_ticks", "", "deep",
-                     "ticks that found contact from inside, not by the way in", Shown::if_any},
-                    {"fault_ticks", "", "faults", "ticks faded by a force jump", Shown::if_any},
-                    {"bad_tips", "", "bad tips", "NaN or infinite: no force there", Shown::if_any},
-                    {"max_force", "N", "largest force"},
-                    {"max_depth", "m", "largest depth"},
-                    {"field", "", "as patina field"}};
+const Keys kFeelKeys = {
+    {"ticks", "", "ticks"},
+    {"stages", "", "stages"},
+    {"step_ns", "ns", "step", "time of a tick", Shown::always, stepParts()},
+    {"contact_ticks", "", "in contact", "ticks", Shown::never},
+    {"deep_ticks", "", "deep", "ticks that found contact from inside, not by the way in",
+     Shown::if_any},
+    {"fault_ticks", "", "faults", "ticks faded by a force jump", Shown::if_any},
+    {"bad_tips", "", "bad tips", "NaN or infinite: no force there", Shown::if_any},
+    {"max_force", "N", "largest force"},
+    {"max_depth", "m", "largest depth"},
+    {"field", "", "as patina field"}};
 
 int runFeel(const FeelOptions& options, Console& console) {
   requireWritable(options.output, {options.input, options.path});
@@ -75,7 +76,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   const double timer = timerNs();
 
   const std::vector<std::string> stages = namesIn(compiled->snapshot->why, &StageInfo::name);
-  Report report(kKeys);
+  Report report(kFeelKeys);
   report.set("ticks", ticks, formatCount(ticks) + ", in contact " + formatCount(contact_ticks));
   report.set("contact_ticks", contact_ticks).set("stages", jsonOf(stages));
   report.set("step_ns", toJson(step).set("timer", timer),
@@ -109,7 +110,7 @@ Command feelCommand() {
           "times increasing; the time between two rows is the tick.",
       .examples = {"patina feel bunny.ply --path tip.csv -o forces.csv --stiffness 800",
                    "patina feel workspace --path tip.csv -o forces.csv --tip-radius 1mm --json"},
-      .keys = kKeys,
+      .keys = kFeelKeys,
       .arguments = {sceneInput(options->input, "MESH"),
                     {"--path", "TIP.csv", "", "", "The tip's path.", into(options->path),
                      Times::once},

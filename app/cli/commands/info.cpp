@@ -35,7 +35,7 @@ const Keys kLayerKeys = {{"name", "", ""},
                          {"bytes", "B", ""}};
 const Keys kStageKeys = {{"name", "", ""}, {"why", "", ""}, {"bytes", "B", ""}, {"ns", "ns", ""}};
 const Keys kHistoryKeys = {{"undo", "", ""}, {"redo", "", ""}};
-const Keys kKeys = {
+const Keys kInfoKeys = {
     {"file", "", "file"},
     {"kind", "", "kind", "workspace, field or mesh"},
     {"values", "", "the values of a workspace", "by their keys", Shown::never},
@@ -91,7 +91,7 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, std::size_
     list.push(Json::object().set("sides", side.sides).set("triangles", side.triangles));
   const bool plates = open_triangles > 0 && scene.field.sides == OpenSides::one;
   report.set("components_sides", list,
-             text(sides) + (plates ? ": the front of a plate as thick as the band" : ""));
+             describeSides(sides) + (plates ? ": the front of a plate as thick as the band" : ""));
 }
 
 void describeMesh(const Scene& scene, Report& report) {
@@ -195,7 +195,7 @@ int runInfo(const InfoOptions& options, Console& console) {
   Scene& scene = opened.scene;
   const bool is_folder = std::filesystem::is_directory(inputPath(options.input));
   const bool is_field = !is_folder && isFieldFile(options.input);
-  Report report(kKeys);
+  Report report(kInfoKeys);
   report.set("file", options.input.string());
   report.set("kind", is_folder ? "workspace" : is_field ? "field" : "mesh");
   if (is_folder) {
@@ -240,7 +240,7 @@ Command infoCommand() {
           "bears, and the edits that can be undone.",
       .examples = {"patina info bunny.ply", "patina info workspace --json",
                    "patina info huge.stl --unit m --no-field"},
-      .keys = kKeys,
+      .keys = kInfoKeys,
       .arguments = {sceneInput(options->input, "FILE"),
                     {"--no-field", "", "", "", "Only the mesh: layers and stages stay empty.",
                      into(options->no_field)}},

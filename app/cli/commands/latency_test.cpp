@@ -13,15 +13,16 @@ struct LatencyOptions {
   double seconds = 5, rate = 1000;
 };
 
-const Keys kKeys = {{"policy", "", "policy", "what the system granted"},
-                    {"realtime", "", "real time", "", Shown::never},
-                    {"wakeups", "", "wake-ups"},
-                    {"rate_hz", "Hz", "rate", "", Shown::never},
-                    {"late_us", "us", "late", "", Shown::never, percentileParts()},
-                    {"wait_us", "us", "of it waiting for a processor",
-                     "absent where the kernel does not count it", Shown::never, percentileParts()},
-                    {"missed", "", "missed", "wake-ups more than a period late"},
-                    {"load", "", "load", "1-minute average at the start"}};
+const Keys kLatencyTestKeys = {{"policy", "", "policy", "what the system granted"},
+                               {"realtime", "", "real time", "", Shown::never},
+                               {"wakeups", "", "wake-ups"},
+                               {"rate_hz", "Hz", "rate", "", Shown::never},
+                               {"late_us", "us", "late", "", Shown::never, percentileParts()},
+                               {"wait_us", "us", "of it waiting for a processor",
+                                "absent where the kernel does not count it", Shown::never,
+                                percentileParts()},
+                               {"missed", "", "missed", "wake-ups more than a period late"},
+                               {"load", "", "load", "1-minute average at the start"}};
 
 void setSpread(const char* key, const std::string& caption, const Percentiles& us, Report& report) {
   report.set(key, toJson(us));
@@ -36,7 +37,7 @@ int runLatencyTest(const LatencyOptions& options, Console& console) {
   console.endOnInterrupt();
   const Latency latency = measureLatency(options.seconds, options.rate);
 
-  Report report(kKeys);
+  Report report(kLatencyTestKeys);
   report.set("policy", latency.policy).set("realtime", latency.realtime);
   report.set("wakeups", static_cast<std::int64_t>(latency.wakeups),
              formatCount(latency.wakeups) + " at " + formatNumber(options.rate) + " Hz");
@@ -63,7 +64,7 @@ Command latencyTestCommand() {
               "had; the rest is the timer's or, in a virtual machine, the host's, and no priority "
               "helps against it.",
           .examples = {"patina latency-test --seconds 60"},
-          .keys = kKeys,
+          .keys = kLatencyTestKeys,
           .arguments = {{"--seconds", "T", "s", "5", "How long, up to 3600.",
                          inRange(1e-3, 3600, [options](double s) { options->seconds = s; })},
                         {"--rate", "HZ", "Hz", "1000", "Wake-ups a second, 100 to 10000.",

@@ -95,12 +95,12 @@ const Model& modelNamed(const std::string& name) {
               " There are: " + joined(known));
 }
 
-const Keys kKeys = {{"model", "", "model"},
-                    {"triangles", "", "triangles"},
-                    {"vertices", "", "vertices", "", Shown::never},
-                    {"bounds", "m", "bounds", "lowest and highest corner", Shown::never},
-                    {"watertight", "", "watertight"},
-                    {"unit", "", "written in"}};
+const Keys kModelKeys = {{"model", "", "model"},
+                         {"triangles", "", "triangles"},
+                         {"vertices", "", "vertices", "", Shown::never},
+                         {"bounds", "m", "bounds", "lowest and highest corner", Shown::never},
+                         {"watertight", "", "watertight"},
+                         {"unit", "", "written in"}};
 
 int runModel(const ModelOptions& options, Console& console) {
   const Model& model = modelNamed(options.name);
@@ -118,7 +118,7 @@ int runModel(const ModelOptions& options, Console& console) {
   const MeshReport counts = inspect(mesh);
   writeMeshIn(options.output, mesh, options.unit);
 
-  Report report(kKeys);
+  Report report(kModelKeys);
   report.set("model", model.name);
   report.set("triangles", counts.triangles).set("vertices", counts.vertices);
   report.set("bounds", Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
@@ -157,7 +157,7 @@ Command modelCommand() {
                                  "words give the same mesh.",
                   .examples = {"patina model vase -o vase.ply --height 120mm --wall 2mm",
                                "patina model sphere -o sphere.obj --radius 30mm --frequency 71"},
-                  .keys = kKeys,
+                  .keys = kModelKeys,
                   .arguments = {input("NAME", "Which model.",
                                       [options](const std::string& text) {
                                         options->name = modelNamed(text).name;

@@ -130,7 +130,7 @@ void requireHeight(const Scene& scene, const std::vector<ScriptStroke>& script) 
       throw Error(one.where + ": relief.height is 0: no relief can be painted");
 }
 
-const Keys kKeys = {
+const Keys kPaintKeys = {
     {"workspace", "", "workspace"},
     {"strokes", "", "strokes"},
     {"edits", "", "edits", "strokes that painted something", Shown::never},
@@ -148,7 +148,7 @@ int report(const PaintOptions& options, const Editor& editor, std::size_t stroke
   Percentiles dab = percentiles(run.dab_seconds);
   for (double* value : {&dab.p50, &dab.p99, &dab.p999, &dab.max}) *value *= 1e3;
   const PaintReport& sum = run.sum;
-  Report report(kKeys);
+  Report report(kPaintKeys);
   report.set("workspace", options.output.string());
   report.set("strokes", strokes,
              formatCount(strokes) + ", painted something " + formatCount(run.edits));
@@ -226,7 +226,7 @@ Command paintCommand() {
       .examples = {"patina paint cup --strokes glaze.json -o painted",
                    "patina paint cup --strokes painted/journal-1.jsonl -o cup",
                    "patina paint cup.ply --strokes glaze.json --strokes grip.json -o painted"},
-      .keys = kKeys,
+      .keys = kPaintKeys,
       .arguments = {sceneInput(options->input, "WORKSPACE"),
                     {"--strokes", "STROKES.json", "", "", "What to paint.", into(options->strokes),
                      Times::at_least_once},

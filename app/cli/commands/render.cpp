@@ -28,13 +28,14 @@ struct RenderOptions {
   SceneOptions scene;
 };
 
-const Keys kKeys = {{"picture", "", "picture"},
-                    {"layers", "", "layers"},
-                    {"width", "", "width", "", Shown::never},
-                    {"height", "", "height", "", Shown::never},
-                    {"view", "", "view", "", Shown::never},
-                    {"stability", "", "K*/K where it is shown", "", Shown::always, stabilityKeys()},
-                    {"range", "", "range", "ends of the scale of what was painted"}};
+const Keys kRenderKeys = {
+    {"picture", "", "picture"},
+    {"layers", "", "layers"},
+    {"width", "", "width", "", Shown::never},
+    {"height", "", "height", "", Shown::never},
+    {"view", "", "view", "", Shown::never},
+    {"stability", "", "K*/K where it is shown", "", Shown::always, stabilityKeys()},
+    {"range", "", "range", "ends of the scale of what was painted"}};
 
 PictureSize parseSize(const std::string& text) {
   PictureSize size;
@@ -137,7 +138,7 @@ int runRender(const RenderOptions& options, Console& console) {
   SceneView view;
   if (quantity) view.lockPaintRange(*quantity, options.range);
   const std::vector<std::string> layers = wordsFor(options.layers);
-  Report report(kKeys);
+  Report report(kRenderKeys);
   report.set("picture", options.output.string());
   report.set("layers", jsonOf(layers), joined(layers, " "));
   if (only_mesh) {
@@ -202,7 +203,7 @@ Command renderCommand() {
       .examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
                    "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm",
                    "patina render workspace -o stiffness.png --show stiffness --range 0,2000"},
-      .keys = kKeys,
+      .keys = kRenderKeys,
       .arguments = {sceneInput(options->input),
                     outputTo(options->output, "PICTURE.png", "The picture."),
                     {"--show", "LAYERS", "", "mesh,color", "Layers, with commas between.",

@@ -25,15 +25,15 @@ struct SampleOptions {
   SceneOptions scene;
 };
 
-const std::vector<std::string> kColumns = {
+const std::vector<std::string> kSampleColumns = {
     "x [m]",  "y [m]",  "z [m]",   "phi [m]",         "nx",      "ny", "nz", "face", "cx [m]",
     "cy [m]", "cz [m]", "in_band", "stiffness [N/m]", "friction"};
 
-const Keys kKeys = {{"points", "", "points"},
-                    {"in_band", "", "in the band", "points", Shown::never},
-                    {"bad_points", "", "bad points", "NaN or infinite", Shown::if_any},
-                    {"sampler", "", "sampler"},
-                    {"voxel", "m", "voxel"}};
+const Keys kSampleKeys = {{"points", "", "points"},
+                          {"in_band", "", "in the band", "points", Shown::never},
+                          {"bad_points", "", "bad points", "NaN or infinite", Shown::if_any},
+                          {"sampler", "", "sampler"},
+                          {"voxel", "m", "voxel"}};
 
 // Exact closest points on what can be felt, under the indices of the mesh as given.
 class SurfaceOracle {
@@ -140,7 +140,7 @@ int runSample(const SampleOptions& options, Console& console) {
   std::optional<Vec3> p = points.next(); // one that is wrong from the start is refused now
   const SampledSurface surface = open(options, console);
   const FieldSampler sampler(*surface.field, surface.sampler);
-  CsvWriter samples(options.output, kColumns);
+  CsvWriter samples(options.output, kSampleColumns);
   std::size_t count = 0, in_band = 0, bad_points = 0;
   for (; p; p = points.next()) {
     if (count++ % 1024 == 0) console.progress().throwIfCancelled();
@@ -155,7 +155,7 @@ int runSample(const SampleOptions& options, Console& console) {
   if (bad_points)
     console.warn(options.points.string() + ": " + formatCount(bad_points) +
                  (bad_points == 1 ? " point is" : " points are") + " NaN or infinite");
-  Report report(kKeys);
+  Report report(kSampleKeys);
   report.set("points", count, formatCount(count) + ", in the band " + formatCount(in_band));
   report.set("in_band", in_band).set("bad_points", bad_points);
   report.set("sampler", std::string(name(surface.sampler)));
@@ -185,7 +185,7 @@ Command sampleCommand() {
           "inside; trust neither where in_band is 0.",
       .examples = {"patina sample bunny.ply --points points.csv -o samples.csv",
                    "patina sample bunny.vti --points tip.csv -o samples.csv --sampler kim"},
-      .keys = kKeys,
+      .keys = kSampleKeys,
       .arguments = {sceneInput(options->input),
                     {"--points", "POINTS.csv", "", "", "The points.", into(options->points),
                      Times::once},

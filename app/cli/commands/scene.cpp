@@ -28,18 +28,18 @@ Json poseJson(const Pose& pose) {
   return rows;
 }
 
-const Keys kKeys = {{"workspace", "", "workspace", "", Shown::never},
-                    {"saved", "", "saved", "whether this command wrote it", Shown::never},
-                    {"objects",
-                     "",
-                     "objects",
-                     "",
-                     Shown::never,
-                     {{"name", "", ""}, {"triangles", "", ""}, {"world_from_object", "", ""}}},
-                    {"values", "", "values", "by their keys", Shown::never}};
+const Keys kSceneKeys = {{"workspace", "", "workspace", "", Shown::never},
+                         {"saved", "", "saved", "whether this command wrote it", Shown::never},
+                         {"objects",
+                          "",
+                          "objects",
+                          "",
+                          Shown::never,
+                          {{"name", "", ""}, {"triangles", "", ""}, {"world_from_object", "", ""}}},
+                         {"values", "", "values", "by their keys", Shown::never}};
 
 int report(const std::filesystem::path& folder, const Scene& scene, bool saved, Console& console) {
-  Report report(kKeys);
+  Report report(kSceneKeys);
   Json objects = Json::array();
   for (const SceneObject& object : scene.objects) {
     const std::size_t triangles = object.mesh->triangles.size();
@@ -163,7 +163,7 @@ Command sceneCommand() {
                    "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3",
                    "patina scene -o cup --image cup=weave.png,relief,z",
                    "patina scene -o mended --recover cup"},
-      .keys = kKeys,
+      .keys = kSceneKeys,
       .arguments =
           {outputTo(options->workspace, "WORKSPACE", "The folder."),
            {"--recover", "DAMAGED", "", "", "Read a damaged workspace as far as it can be read.",

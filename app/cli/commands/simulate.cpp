@@ -134,7 +134,7 @@ Json orNull(const std::optional<double>& value) {
   return value ? Json(*value) : Json();
 }
 
-const Keys kKeys = {
+const Keys kSimulateKeys = {
     {"verdict", "", "verdict", "at rest, calming down, does not settle, left the surface"},
     {"stable", "", "stable",
      "the rms velocity of the last second is below 0.9 times that of the second second, or below "
@@ -180,7 +180,7 @@ Report reportOf(const Felt& felt, const SimulationSpec& spec, const SimulationRe
   const StabiliserPlan& plan = felt.snapshot->stabilisers;
   const double stiffness = felt.scene.haptics.stiffness;
   const auto& displayed = run.stiffness_displayed;
-  Report report(kKeys);
+  Report report(kSimulateKeys);
   report.set("verdict", name(run.verdict),
              std::string(name(run.verdict)) + ": rms velocity " + inScience(run.rms_velocity) +
                  " m/s in the last second, " + inScience(run.rms_early) + " in the second one");
@@ -344,7 +344,7 @@ Command simulateCommand() {
            "patina simulate --plane --stiffness 3000 --stabiliser none --start-speed 0.2 -o "
            "run.csv",
            "patina simulate workspace --mass 0.2 --device-damping 1 --json"},
-      .keys = kKeys,
+      .keys = kSimulateKeys,
       .arguments = {sceneInput(options->input),
                     {"--plane", "", "", "", "The exact plane z = 0 in place of a model.",
                      into(options->plane)},

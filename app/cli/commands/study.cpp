@@ -21,7 +21,7 @@ struct StudyCommandOptions {
   StudyOptions study;
 };
 
-const Keys kKeys = {
+const Keys kStudyKeys = {
     {"rows", "", "rows", "of all tables: the settings, error, error_max, ns, bytes", Shown::never},
     {"order_fitted", "", "order fitted", "of the first table that has a theory", Shown::never},
     {"order_expected", "", "order expected", "", Shown::never},
@@ -104,7 +104,7 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
               (draws && hasTimes(table) ? " .png\n\n" : "\n\n");
     }
   }
-  Report report(kKeys);
+  Report report(kStudyKeys);
   report.set("rows", rows).set("order_fitted", order_fitted).set("order_expected", order_expected);
   report.set("tables", tables).set("files", files);
   console.report(report, text);
@@ -127,7 +127,7 @@ Command studyCommand() {
           .summary = "error against run time: tables and plots",
           .description = description,
           .examples = {"patina study field -o studies", "patina study all -o studies --quick"},
-          .keys = kKeys,
+          .keys = kStudyKeys,
           .arguments = {input("NAME", "Which study.",
                               [options](const std::string& text) {
                                 (void)chosen(text);

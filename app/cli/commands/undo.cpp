@@ -20,27 +20,27 @@ struct HistoryOptions {
 
 enum class Way { back, forth };
 
-const Keys kKeys = {{"edits",
-                     "",
-                     "edits",
-                     "oldest first, with --list",
-                     Shown::never,
-                     {{"what", "", ""}, {"done", "", ""}}},
-                    {"undone", "", "undone", "by this command", Shown::if_any},
-                    {"redone", "", "redone", "by this command", Shown::if_any},
-                    {"history", "", "history", "edits that can be undone"},
-                    {"redo", "", "redo", "edits that can be redone", Shown::never}};
+const Keys kUndoKeys = {{"edits",
+                         "",
+                         "edits",
+                         "oldest first, with --list",
+                         Shown::never,
+                         {{"what", "", ""}, {"done", "", ""}}},
+                        {"undone", "", "undone", "by this command", Shown::if_any},
+                        {"redone", "", "redone", "by this command", Shown::if_any},
+                        {"history", "", "history", "edits that can be undone"},
+                        {"redo", "", "redo", "edits that can be redone", Shown::never}};
 
-std::string describe(const JournalEvent& event) {
-  if (const auto* stroke = std::get_if<Stroke>(&event)) return patina::describe(*stroke);
-  if (const auto* values = std::get_if<ValueEdit>(&event)) return patina::describe(*values);
+std::string describeEvent(const JournalEvent& event) {
+  if (const auto* stroke = std::get_if<Stroke>(&event)) return describe(*stroke);
+  if (const auto* values = std::get_if<ValueEdit>(&event)) return describe(*values);
   return std::get<StoredSceneEdit>(event).what;
 }
 
 void listEdits(const FoldedJournal& fold, Report& report) {
   Json edits = Json::array();
   for (std::size_t i = 0; i < fold.steps.size(); ++i) {
-    const std::string what = describe(*fold.steps[i].event);
+    const std::string what = describeEvent(*fold.steps[i].event);
     const bool done = i < fold.position;
     edits.push(Json::object().set("what", what).set("done", done));
     report.tell(std::to_string(i + 1), what + (done ? "" : "  (undone)"));
@@ -75,7 +75,7 @@ Counts move(const std::filesystem::path& folder, std::size_t steps, Way way, Con
 int runHistory(const HistoryOptions& options, Way way, Console& console) {
   const std::filesystem::path folder = workspaceFolder(options.workspace);
   Counts counts;
-  Report report(kKeys);
+  Report report(kUndoKeys);
   {
     const OpenedWorkspace found = openHistory(folder);
     for (const std::string& note : found.notes) console.warn(note);
@@ -113,7 +113,7 @@ Command historyCommand(Way way) {
           "code is 0.",
       .examples = {"patina " + name + " cup", "patina " + name + " cup --steps 3",
                    "patina " + name + " cup --list"},
-      .keys = kKeys,
+      .keys = kUndoKeys,
       .arguments = {input("WORKSPACE", "The folder.", into(options->workspace)),
                     {"--steps", "N", "", "1", "How many edits.",
                      inRange(

@@ -25,8 +25,8 @@ std::size_t editsBetween(const std::string& a, const std::string& b) {
   return edits.back();
 }
 
-} // namespace
-
+// The known word that takes the fewest letters put in, left out, changed or swapped with the next
+// one, at most a third of the word and two; empty if none is so near.
 std::string nearestWord(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
   std::size_t least = std::min<std::size_t>(word.size() / 3, 2) + 1;
@@ -37,6 +37,8 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
     }
   return nearest;
 }
+
+} // namespace
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known,
                        const std::string& otherwise) {

@@ -44,7 +44,6 @@ class Report {
   Report& tell(const std::string& caption, const std::string& text);
 
   const Json& json() const { return json_; }
-  const TextRows& rows() const { return rows_; }
   std::string text() const; // "caption   value" lines, the values aligned
 
  private:

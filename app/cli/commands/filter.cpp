@@ -1,0 +1,257 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "acquisition/files/scan_files.h"
+#include "acquisition/filtering/filtered_scan.h"
+#include "acquisition/simulation/path_error.h"
+#include "app/cli/commands/commands.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct FilterOptions {
+  std::filesystem::path input, probe, rig, truth, output;
+  std::optional<PathModel> model;
+  bool forward = false, lifted = false;
+  PoseSigmas sigmas;
+};
+
+const Keys kGapParts = {{"stream", "", ""}, {"from", "s", ""}, {"to", "s", ""}};
+const Keys kFilterKeys = {
+    {"samples", "", "samples", "of the path"},
+    {"model", "", "model"},
+    {"poses", "", "poses", "", Shown::never},
+    {"rejected", "", "rejected", "poses", Shown::if_any},
+    {"restarts", "", "begun anew", "jumps of the poses", Shown::if_any},
+    {"nis_mean", "", "NIS",
+     "squared innovations of the poses over their variance, 1 if sigmas hold"},
+    {"rms_innovation", "m", "innovation", "of the tip, rms of an axis"},
+    {"sigma",
+     "m",
+     "sigma",
+     "of the path's samples: median and largest",
+     Shown::always,
+     {{"median", "", ""}, {"max", "", ""}}},
+    {"gaps", "", "gaps", "without a pose or a sample of the probe", Shown::if_any, kGapParts},
+    {"clock_offset", "s", "clock",
+     "by how much the probe's is ahead at its first sample; corrected"},
+    {"clock_skew", "", "clock skew", "by how much it runs faster", Shown::never},
+    {"bias", "m/s^2", "biases", "of the accelerometers, a1u a1v a2u a2v", Shown::if_any},
+    {"error",
+     "",
+     "error",
+     "against the truth",
+     Shown::always,
+     {{"rms", "m", ""}, {"max", "m", ""}, {"nees", "", "1 if sigmas hold"}, {"samples", "", ""}}},
+    {"seconds", "s", "filtered in"}};
+
+PathModel parseModel(const std::string& word) {
+  if (word == "fused") return PathModel::fused;
+  if (word == "acceleration") return PathModel::acceleration;
+  if (word == "velocity") return PathModel::velocity;
+  throw Error("'" + word + "' is none of fused, acceleration, velocity");
+}
+
+std::string nameOf(PathModel model) {
+  return model == PathModel::fused          ? "fused"
+         : model == PathModel::acceleration ? "acceleration"
+                                            : "velocity";
+}
+
+// In a scan folder each file has its name; one that was named takes its place.
+void findFiles(FilterOptions& options) {
+  const bool folder = std::filesystem::is_directory(options.input);
+  const std::filesystem::path place = folder ? options.input : options.input.parent_path();
+  const auto use = [&](std::filesystem::path& path, const char* name) {
+    if (path.empty() && std::filesystem::exists(place / name)) path = place / name;
+  };
+  use(options.rig, "rig.json");
+  if (!folder) return;
+  use(options.probe, "probe.csv");
+  use(options.truth, "truth.csv");
+  options.input /= "poses.tum";
+}
+
+struct Inputs {
+  OnFile<CameraPose> poses;
+  OnFile<ProbeSample> samples;
+  Rig rig;
+  std::vector<PathSample> truth;
+};
+
+Inputs read(const FilterOptions& options, Console& console) {
+  Inputs in;
+  in.poses = readPoses(options.input, options.sigmas);
+  if (!options.probe.empty()) in.samples = readProbeStream(options.probe);
+  if (!options.truth.empty()) in.truth = readPath(options.truth);
+  in.rig.probe.tip = Vec3::Zero();
+  if (!options.rig.empty())
+    in.rig = readRig(options.rig);
+  else
+    console.warn(options.input.string() +
+                 ": no rig.json beside it and no --rig: the path is that of the poses' origin, "
+                 "not of a tip");
+  return in;
+}
+
+PathModel chosenModel(const FilterOptions& options, const Inputs& in) {
+  const bool able = in.rig.accelerometers && !in.samples.values.empty();
+  const PathModel model =
+      options.model.value_or(able && !options.forward ? PathModel::fused : PathModel::acceleration);
+  if (model != PathModel::fused) return model;
+  if (options.forward) throw Error("--forward: the fused path is smoothed; choose another --model");
+  if (in.samples.values.empty()) throw Error("--model: fused needs the probe's stream, --probe");
+  if (!able) throw Error("--model: fused needs 'accelerometers' and 'gravity' in the rig, --rig");
+  return model;
+}
+
+// What came after it tells where a gap is.
+template <class Value>
+std::string placeOf(const std::filesystem::path& path, const OnFile<Value>& file, const Gap& gap) {
+  const auto after = std::find_if(file.values.begin(), file.values.end(),
+                                  [&](const Value& value) { return value.t >= gap.to; });
+  return path.string() + ":" +
+         std::to_string(file.lines[static_cast<std::size_t>(after - file.values.begin())]);
+}
+
+template <class Value>
+void warnOf(const std::vector<Gap>& gaps, const std::filesystem::path& path,
+            const OnFile<Value>& file, const std::string& what, Console& console) {
+  if (gaps.empty()) return;
+  const Gap& longest = *std::max_element(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) {
+    return a.to - a.from < b.to - b.from;
+  });
+  console.warn(placeOf(path, file, longest) + ": before this line " +
+               rounded(longest.to - longest.from) + " s without " + what +
+               (gaps.size() > 1 ? ", the longest of " + formatCount(gaps.size()) + " gaps" : ""));
+}
+
+Json gapsJson(const FilteredScan& scan) {
+  Json list = Json::array();
+  for (const auto& [stream, gaps] :
+       {std::pair("poses", &scan.without_pose), {"probe", &scan.without_sample}})
+    for (const Gap& gap : *gaps)
+      list.push(Json::object().set("stream", stream).set("from", gap.from).set("to", gap.to));
+  return list;
+}
+
+void reportSigma(const std::vector<PathSample>& path, Report& report) {
+  std::vector<double> sigmas;
+  for (const PathSample& sample : path) sigmas.push_back(sample.sigma);
+  std::sort(sigmas.begin(), sigmas.end());
+  const double median = sigmas[sigmas.size() / 2], most = sigmas.back();
+  report.set("sigma", Json::object().set("median", median).set("max", most),
+             formatLength(median) + " (median), " + formatLength(most) + " (max)");
+}
+
+int runFilter(FilterOptions options, Console& console) {
+  findFiles(options);
+  requireWritable(options.output, {options.input, options.probe, options.rig, options.truth});
+  const Inputs in = read(options, console);
+  ScanFilter filter;
+  filter.model = chosenModel(options, in);
+  filter.smooth = !options.forward;
+  filter.touching_only = !options.lifted;
+  filter.gravity = in.rig.gravity;
+  const auto begin = std::chrono::steady_clock::now();
+  const FilteredScan scan =
+      filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  if (scan.path.empty())
+    throw FileError(options.probe.string(), 0,
+                    "the probe never touches, its largest force is " + rounded(scan.largest_force) +
+                        " N; --lifted keeps what is in the air");
+  console.progress().throwIfCancelled();
+  writePath(options.output, scan.path);
+
+  const std::size_t rejected = in.poses.values.size() - scan.track.used();
+  Report report(kFilterKeys);
+  report.set("samples", scan.path.size()).set("model", nameOf(filter.model));
+  report.set("poses", in.poses.values.size());
+  report.set("rejected", rejected,
+             formatCount(rejected) + " of " + formatCount(in.poses.values.size()) + " poses");
+  report.set("restarts", scan.track.restarts);
+  report.set("nis_mean", scan.track.nis_mean, rounded(scan.track.nis_mean));
+  report.set("rms_innovation", scan.track.rms_innovation);
+  reportSigma(scan.path, report);
+  const Json gaps = gapsJson(scan);
+  report.set("gaps", gaps, formatCount(gaps.asArray().size()) + "; sigma grows in them");
+  if (filter.model == PathModel::fused)
+    report.set("bias", Json(Json::Array(scan.bias.begin(), scan.bias.end())));
+  if (scan.clock) {
+    const ProbeClock clock = scan.clock->differs ? *scan.clock : ProbeClock();
+    report.set("clock_offset", clock.offset,
+               scan.clock->differs
+                   ? "the probe's is " + rounded(1e3 * clock.offset) + " ms ahead and " +
+                         rounded(1e6 * clock.skew) + " us a second faster; corrected"
+                   : "as the camera's, within " + rounded(1e3 * scan.clock->offset_deviation) +
+                         " ms");
+    report.set("clock_skew", clock.skew);
+  }
+  if (!in.truth.empty()) {
+    const PathError error = errorOf(scan.path, in.truth);
+    Json json = Json::object();
+    json.set("rms", error.rms).set("max", error.most).set("nees", error.nees);
+    report.set("error", json.set("samples", error.samples),
+               formatLength(error.rms) + " (rms), " + formatLength(error.most) + " (max); NEES " +
+                   rounded(error.nees));
+  }
+  report.set("seconds", taken.count());
+  warnOf(scan.without_pose, options.input, in.poses, "a pose", console);
+  warnOf(scan.without_sample, options.probe, in.samples, "a sample", console);
+  console.report(report);
+  return kDone;
+}
+
+} // namespace
+
+Command filterCommand() {
+  auto options = std::make_shared<FilterOptions>();
+  const auto degrees = [options](double angle) {
+    options->sigmas.angle = angle * std::numbers::pi / 180;
+  };
+  return {
+      .name = "filter",
+      .summary = "poses and the probe's stream become a path with error bars",
+      .description =
+          "SCAN is a scan folder (poses.tum, probe.csv, rig.json; truth.csv where it was "
+          "simulated) or a file of poses, beside which rig.json is looked for.\n"
+          "fused: camera and accelerometers together, a sample of the path for each of the "
+          "probe. acceleration, velocity: poses alone, whose motion is taken to have a steady "
+          "acceleration or velocity. Poses that do not fit are rejected and counted.\n"
+          "With a probe only samples that touch, by their force, become path. Gaps are bridged, "
+          "reported, and sigma grows in them. Where there is a truth, the error against it is "
+          "reported.",
+      .examples = {"patina filter scan -o path.csv",
+                   "patina filter poses.tum --probe probe.csv -o path.csv --json"},
+      .keys = kFilterKeys,
+      .arguments =
+          {input("SCAN", "Scan folder, or poses as TUM.", into(options->input)),
+           outputTo(options->output, "PATH.csv", "The path, with sigma."),
+           {"--probe", "PROBE.csv", "", "", "The probe's stream.", into(options->probe)},
+           {"--rig", "RIG.json", "", "", "Tip, accelerometers, gravity.", into(options->rig)},
+           {"--truth", "TRUTH.csv", "", "", "A path to compare with.", into(options->truth)},
+           {"--model", "fused|acceleration|velocity", "", "what the files allow",
+            "How motion is modelled.",
+            [options](const std::string& word) { options->model = parseModel(word); }},
+           {"--smooth", "", "", "", "Each sample knows the poses after it too: the default.",
+            [options](const std::string&) { options->forward = false; }},
+           {"--forward", "", "", "", "Each sample knows the poses before it only.",
+            into(options->forward)},
+           {"--lifted", "", "", "", "Keep what the probe did in the air.", into(options->lifted)},
+           {"--sigma", "LENGTH", "m", "0.2mm", "Deviation of poses that do not tell their own.",
+            inRange(
+                1e-9, 1, [options](double s) { options->sigmas.position = s; },
+                NumberKind::length)},
+           {"--sigma-angle", "DEG", "deg", "0.27", "The same of their angles.",
+            inRange(1e-6, 90, degrees)}},
+      .run = [options](Console& console) { return runFilter(*options, console); }};
+}
+
+} // namespace patina::cli

@@ -1,0 +1,189 @@
+#include "acquisition/files/scan_files.h"
+#include "acquisition/simulation/mesh_strokes.h"
+#include "acquisition/simulation/simulated_streams.h"
+#include "acquisition/simulation/simulated_surface.h"
+#include "app/cli/commands/commands.h"
+#include "app/cli/output/mesh_output.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/numbers.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_report.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct ScanOptions {
+  std::filesystem::path mesh, output;
+  MeshUnit unit = MeshUnit::mm;
+  Vec3 from = Vec3::UnitZ();
+  double seconds = 20, speed = 0.05, roughness = 25e-6;
+  std::uint32_t seed = 1;
+  int dropouts = 0;
+  SimulatedCamera camera;
+  SimulatedProbe probe;
+};
+
+const Keys kSimulateScanKeys = {{"poses", "", "poses"},
+                                {"samples", "", "samples", "of the probe"},
+                                {"seconds", "s", "lasts"},
+                                {"touching", "", "touching", "the part of its time", Shown::never},
+                                {"files", "", "files", "in the folder"}};
+
+// It looks at the middle from above and from the side, 0.4 m away.
+Pose cameraOver(const Box3& box) {
+  const Vec3 middle = box.center(), eye = middle + 0.4 * Vec3(0, -0.5, 0.8).normalized();
+  Eigen::Matrix3d axes; // of the camera: x right, y down, z forward
+  axes.col(2) = (middle - eye).normalized();
+  axes.col(0) = axes.col(2).cross(Vec3::UnitZ()).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  Pose world_from_camera = Pose::Identity();
+  world_from_camera.linear() = axes;
+  world_from_camera.translation() = eye;
+  return world_from_camera.inverse();
+}
+
+Vec3 parseAxis(const std::string& word) {
+  if (word.size() == 2 && (word[0] == '+' || word[0] == '-') && word[1] >= 'x' && word[1] <= 'z')
+    return (word[0] == '-' ? -1 : 1) * Vec3::Unit(word[1] - 'x');
+  throw Error("'" + word + "' is none of +x, -x, +y, -y, +z, -z");
+}
+
+// `mesh` stands as the hand has it: what is scanned looks up.
+SimulatedHand handOver(const TriangleMesh& mesh, const ScanOptions& options) try {
+  SimulatedHand hand = strokesOver(mesh, options.seed, options.seconds, options.speed);
+  if (options.roughness > 0)
+    hand.relief = [shape = hand.relief, rough = roughSurface(options.seed, options.roughness)](
+                      const Vec2& place) { return shape(place) + rough(place); };
+  return hand;
+} catch (const Error& error) {
+  throw Error(options.mesh.string() + ": " + error.what() + "; choose another --from");
+}
+
+// Short times without a pose, evenly spread.
+std::vector<Gap> dropouts(int count, double seconds) {
+  std::vector<Gap> gaps;
+  for (int i = 0; i < count; ++i) {
+    const double from = seconds * (i + 0.7) / count;
+    gaps.push_back({from, from + 0.3});
+  }
+  return gaps;
+}
+
+std::string truthText(const ScanOptions& options, const Pose& camera_from_mesh) {
+  const Eigen::Matrix4d pose = camera_from_mesh.inverse().matrix();
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i)
+    rows.push(Json(Json::Array{pose(i, 0), pose(i, 1), pose(i, 2), pose(i, 3)}));
+  Json bias(Json::Array(options.probe.bias.begin(), options.probe.bias.end()));
+  Json json = Json::object();
+  json.set("mesh_from_camera", rows).set("roughness", options.roughness);
+  json.set("compliance", SimulatedHand().compliance).set("bias", bias);
+  json.set("clock_offset", options.probe.clock_offset).set("clock_skew", options.probe.clock_skew);
+  json.set("seed", static_cast<std::int64_t>(options.seed));
+  return json.dump() + "\n";
+}
+
+int runSimulateScan(ScanOptions options, Console& console) {
+  const std::filesystem::path& folder = options.output;
+  if (std::filesystem::is_directory(folder)) requireWritable(folder / "mesh.obj", {options.mesh});
+  ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
+  if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
+  const TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
+  const Pose hand_from_mesh(Eigen::Quaterniond::FromTwoVectors(options.from, Vec3::UnitZ()));
+  const TriangleMesh turned = transformed(mesh, Eigen::Affine3d(hand_from_mesh.matrix()));
+  const SimulatedHand hand = handOver(turned, options);
+  const Pose camera_from_hand = cameraOver(bounds(turned));
+  options.camera.camera_from_world = camera_from_hand;
+  options.camera.gaps = dropouts(options.dropouts, hand.seconds());
+  Rig rig;
+  rig.gravity = camera_from_hand.linear() * kGravity;
+  console.progress().report(0.1, "poses");
+  const std::vector<CameraPose> poses =
+      simulateCamera(hand, rig.probe, options.camera, options.seed);
+  console.progress().throwIfCancelled();
+  console.progress().report(0.2, "probe");
+  const std::vector<ProbeSample> samples =
+      simulateProbe(hand, rig.probe, options.probe, options.seed + 1);
+  console.progress().throwIfCancelled();
+  console.progress().report(0.8, "truth");
+  std::vector<double> times;
+  for (double i = 0; i < hand.seconds() * options.probe.rate; ++i)
+    times.push_back(i / options.probe.rate);
+  const std::vector<PathSample> truth = truthAt(hand, camera_from_hand, times);
+  console.progress().throwIfCancelled();
+
+  requireFolder(folder);
+  writeMeshIn(folder / "mesh.obj", mesh,
+              options.unit == MeshUnit::fit ? MeshUnit::mm : options.unit);
+  writePoses(folder / "poses.tum", poses);
+  writeProbeStream(folder / "probe.csv", samples);
+  writeFileAtomically(folder / "rig.json", rigText(rig));
+  writePath(folder / "truth.csv", truth);
+  writeFileAtomically(folder / "truth.json", truthText(options, camera_from_hand * hand_from_mesh));
+
+  double touching = 0;
+  for (const PathSample& sample : truth) touching += sample.touching;
+  touching /= static_cast<double>(truth.size());
+  Report report(kSimulateScanKeys);
+  report.set("poses", poses.size()).set("samples", samples.size());
+  report.set("seconds", hand.seconds(),
+             rounded(hand.seconds()) + " s, touching for " + rounded(100 * touching) + " % of it");
+  report.set("touching", touching);
+  report.set("files",
+             jsonOf({"mesh.obj", "poses.tum", "probe.csv", "rig.json", "truth.csv", "truth.json"}));
+  console.report(report);
+  return kDone;
+}
+
+} // namespace
+
+Command simulateScanCommand() {
+  auto options = std::make_shared<ScanOptions>();
+  const auto number = [options](double ScanOptions::*member) {
+    return [options, member](double value) { (*options).*member = value; };
+  };
+  return {
+      .name = "simulate-scan",
+      .summary = "a scan of a mesh with known truth: poses, the probe's stream",
+      .description =
+          "A hand scans what of the mesh is seen along an axis and no steeper than 45 degrees: "
+          "strokes, presses, pauses, ways back and lift-offs. FOLDER becomes a scan folder with "
+          "the poses that a camera would find, the probe's stream, its rig and the truth. The "
+          "same words give the same scan.",
+      .examples = {"patina simulate-scan dinosaur.ply -o scan --from -y",
+                   "patina simulate-scan sphere.ply -o scan --dropouts 4 --outliers 0.03"},
+      .keys = kSimulateScanKeys,
+      .arguments =
+          {input("MESH", "Mesh (.obj .ply .stl).", into(options->mesh)),
+           outputTo(options->output, "FOLDER", "The scan folder; made if it is missing."),
+           {"--from", "AXIS", "", "+z", "From where: +x, -x, +y, -y, +z or -z.",
+            parsedInto(options->from, parseAxis)},
+           {"--seconds", "T", "s", "20", "How long, at least, up to 3600.",
+            inRange(1, 3600, number(&ScanOptions::seconds))},
+           {"--speed", "V", "m/s", "0.05", "Of the strokes, about.",
+            inRange(1e-3, 0.5, number(&ScanOptions::speed))},
+           {"--roughness", "LENGTH", "m", "0.025mm", "Texture laid onto the mesh, rms.",
+            inRange(0, 1e-3, number(&ScanOptions::roughness), NumberKind::length)},
+           {"--dropouts", "N", "", "0", "Times of 0.3 s without a pose.",
+            inRange(
+                0, 1000, [options](double n) { options->dropouts = static_cast<int>(n); },
+                NumberKind::whole)},
+           {"--outliers", "PART", "", "0", "Of the poses, wrong by centimetres; up to 0.5.",
+            inRange(0, 0.5, [options](double part) { options->camera.outliers = part; })},
+           {"--clock-offset", "T", "s", "0", "By how much the probe's clock is ahead.",
+            inRange(-0.5, 0.5, [options](double t) { options->probe.clock_offset = t; })},
+           {"--clock-skew", "PART", "", "0", "By how much it runs faster.",
+            inRange(-0.01, 0.01, [options](double part) { options->probe.clock_skew = part; })},
+           {"--seed", "N", "", "1", "Another hand, another noise.",
+            inRange(
+                0, 1e9, [options](double n) { options->seed = static_cast<std::uint32_t>(n); },
+                NumberKind::whole)},
+           {"--unit", "mm|cm|m|in|fit", "", "mm", "Unit of the mesh's numbers.",
+            parsedInto(options->unit, parseMeshUnit)}},
+      .run = [options](Console& console) { return runSimulateScan(*options, console); }};
+}
+
+} // namespace patina::cli

@@ -1,0 +1,74 @@
+#include <cmath>
+#include <sstream>
+
+#include "acquisition/files/scan_files.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+constexpr double kUnit = 0.01; // by how much a quaternion's length may differ from 1
+
+double finiteIn(const std::string& word, const std::string& name, std::size_t line) {
+  if (word.find(',') != std::string::npos)
+    throw FileError(name, line, "decimal commas: write numbers with a point, spaces between them");
+  const std::optional<double> value = parseNumber(word);
+  if (!value || !std::isfinite(*value))
+    throw FileError(name, line, "'" + word.substr(0, 40) + "' is not a finite number");
+  return *value;
+}
+
+} // namespace
+
+OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid) {
+  const std::string name = path.string();
+  std::istringstream text(readFile(path));
+  OnFile<CameraPose> file;
+  std::size_t number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::vector<double> values;
+    for (std::string word; words >> word;) values.push_back(finiteIn(word, name, number));
+    if (values.empty()) continue;
+    if (values.size() != 8 && values.size() != 10)
+      throw FileError(name, number,
+                      std::to_string(values.size()) +
+                          " numbers where t tx ty tz qx qy qz qw are due, or two more");
+    CameraPose pose;
+    pose.t = values[0];
+    pose.position = {values[1], values[2], values[3]};
+    pose.orientation = Eigen::Quaterniond(values[7], values[4], values[5], values[6]);
+    pose.sigma_position = values.size() > 8 ? values[8] : unsaid.position;
+    pose.sigma_angle = values.size() > 8 ? values[9] : unsaid.angle;
+    if (!(std::abs(pose.orientation.norm() - 1) < kUnit))
+      throw FileError(name, number,
+                      "the quaternion's length is " + formatNumber(pose.orientation.norm()) +
+                          ", not 1");
+    pose.orientation.normalize();
+    if (!(pose.sigma_position > 0 && pose.sigma_angle > 0))
+      throw FileError(name, number, "deviations must be above 0");
+    if (!file.values.empty() && !(pose.t > file.values.back().t))
+      throw FileError(name, number,
+                      pose.t == file.values.back().t ? "time repeats" : "time runs backwards");
+    file.values.push_back(pose);
+    file.lines.push_back(number);
+  }
+  if (file.values.empty()) throw FileError(name, 0, "there is no pose in it");
+  return file;
+}
+
+void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses) {
+  std::string text = "# t [s] tx ty tz [m] qx qy qz qw\n";
+  for (const CameraPose& pose : poses) {
+    text += formatNumber(pose.t);
+    for (const double value : pose.position) text += " " + formatNumber(value);
+    for (const double value : pose.orientation.coeffs()) text += " " + formatNumber(value);
+    text += "\n";
+  }
+  writeFileAtomically(path, text);
+}
+
+} // namespace patina

@@ -1,0 +1,144 @@
+#include "acquisition/filtering/error_state.h"
+
+#include <limits>
+
+namespace patina {
+namespace {
+
+using State = ErrorState;
+
+// P F^T, by columns: position takes from velocity and acceleration, velocity from acceleration.
+void stepColumns(State::Square& P, double dt) {
+  const double half = 0.5 * dt * dt;
+  for (const int at : {State::kTip, State::kAngle}) {
+    P.middleCols<3>(at) += dt * P.middleCols<3>(at + 3) + half * P.middleCols<3>(at + 6);
+    P.middleCols<3>(at + 3) += dt * P.middleCols<3>(at + 6);
+  }
+}
+
+// F P, a column at a time.
+void stepRows(State::Square& P, double dt) {
+  const double half = 0.5 * dt * dt;
+  for (double* column = P.data(); column != P.data() + P.size(); column += State::kSize)
+    for (const int at : {State::kTip, State::kAngle})
+      for (int i = at; i < at + 3; ++i) {
+        column[i] += dt * column[i + 3] + half * column[i + 6];
+        column[i + 3] += dt * column[i + 6];
+      }
+}
+
+// P F and F^T P: the other way round.
+void stepRowsBack(State::Square& P, double dt) {
+  const double half = 0.5 * dt * dt;
+  for (double* column = P.data(); column != P.data() + P.size(); column += State::kSize)
+    for (const int at : {State::kTip, State::kAngle})
+      for (int i = at; i < at + 3; ++i) {
+        column[i + 6] += dt * column[i + 3] + half * column[i];
+        column[i + 3] += dt * column[i];
+      }
+}
+void stepColumnsBack(State::Square& P, double dt) {
+  const double half = 0.5 * dt * dt;
+  for (const int at : {State::kTip, State::kAngle}) {
+    P.middleCols<3>(at + 6) += dt * P.middleCols<3>(at + 3) + half * P.middleCols<3>(at);
+    P.middleCols<3>(at + 3) += dt * P.middleCols<3>(at);
+  }
+}
+
+// Rounding is not symmetric, and what it leaves apart nothing draws together again.
+void makeEven(State::Square& P) {
+  for (int i = 0; i < State::kSize; ++i)
+    for (int k = 0; k < i; ++k) P(i, k) = P(k, i) = 0.5 * (P(i, k) + P(k, i));
+}
+
+void addNoise(State::Square& P, int at, double dt, const Eigen::Matrix3d& density) {
+  const double d2 = dt * dt, d3 = d2 * dt;
+  const double parts[3][3] = {
+      {d2 * d3 / 20, d2 * d2 / 8, d3 / 6}, {d2 * d2 / 8, d3 / 3, d2 / 2}, {d3 / 6, d2 / 2, dt}};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) P.block<3, 3>(at + 3 * i, at + 3 * j) += parts[i][j] * density;
+}
+
+} // namespace
+
+State::Vector MeasuredRow::columns(const State::Square& P) const {
+  State::Vector sum = value[0] * P.col(index[0]);
+  for (std::size_t i = 1; i < static_cast<std::size_t>(count); ++i)
+    sum += value[i] * P.col(index[i]);
+  return sum;
+}
+
+double MeasuredRow::dot(const State::Vector& x) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) sum += value[i] * x[index[i]];
+  return sum;
+}
+
+void predict(State& state, double dt, const Eigen::Matrix3d& jerk,
+             const Eigen::Matrix3d& angular_jerk) {
+  for (const int at : {State::kTip, State::kAngle}) {
+    state.x.segment<3>(at) +=
+        dt * state.x.segment<3>(at + 3) + 0.5 * dt * dt * state.x.segment<3>(at + 6);
+    state.x.segment<3>(at + 3) += dt * state.x.segment<3>(at + 6);
+  }
+  stepColumns(state.P, dt);
+  stepRows(state.P, dt);
+  addNoise(state.P, State::kTip, dt, jerk);
+  addNoise(state.P, State::kAngle, dt, angular_jerk);
+  makeEven(state.P);
+}
+
+UsedRow update(State& state, const MeasuredRow& row, double residual, double variance) {
+  UsedRow used;
+  used.row = row;
+  const State::Vector Ph = row.columns(state.P);
+  used.residual = residual;
+  used.variance = row.dot(Ph) + variance;
+  if (!(used.variance > 0)) { // known exactly, and measured exactly again
+    used.gain.setZero();
+    used.residual = 0;
+    used.variance = std::numeric_limits<double>::infinity();
+    return used;
+  }
+  used.gain = Ph / used.variance;
+  state.x += used.gain * residual;
+  // (I - K h) P (I - K h)^T + K R K^T, as two outer products.
+  const State::Vector rest = Ph - used.variance * used.gain;
+  for (int i = 0; i < State::kSize; ++i) state.P.col(i) -= Ph[i] * used.gain + used.gain[i] * rest;
+  return used;
+}
+
+void Adjoint::backThrough(const UsedRow& used) {
+  // (I - K h)^T L (I - K h) + h h^T / S: only rows and columns of h change.
+  const State::Vector LK = L.lazyProduct(used.gain);
+  const double KLK = used.gain.dot(LK), lK = l.dot(used.gain);
+  const MeasuredRow& row = used.row;
+  const auto count = static_cast<std::size_t>(row.count);
+  for (std::size_t i = 0; i < count; ++i) {
+    L.col(row.index[i]) -= row.value[i] * LK;
+    l[row.index[i]] -= row.value[i] * (lK + used.residual / used.variance);
+  }
+  for (std::size_t i = 0; i < count; ++i) L.row(row.index[i]) -= row.value[i] * LK.transpose();
+  const double both = KLK + 1 / used.variance;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      L(row.index[i], row.index[j]) += both * row.value[i] * row.value[j];
+}
+
+void Adjoint::backThroughStep(double dt) {
+  for (const int at : {State::kTip, State::kAngle}) {
+    l.segment<3>(at + 6) += dt * l.segment<3>(at + 3) + 0.5 * dt * dt * l.segment<3>(at);
+    l.segment<3>(at + 3) += dt * l.segment<3>(at);
+  }
+  stepColumnsBack(L, dt);
+  stepRowsBack(L, dt);
+  makeEven(L);
+}
+
+void Adjoint::forget() {
+  l.head<State::kBias>().setZero();
+  L.topRows<State::kBias>().setZero();
+  L.leftCols<State::kBias>().setZero();
+}
+
+} // namespace patina

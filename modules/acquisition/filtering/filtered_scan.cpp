@@ -1,0 +1,89 @@
+#include "acquisition/filtering/filtered_scan.h"
+
+#include <algorithm>
+
+#include "acquisition/filtering/contact.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+std::vector<Gap> gapsIn(const std::vector<double>& times, double longest) {
+  std::vector<Gap> gaps;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (times[i] - times[i - 1] > longest) gaps.push_back({times[i - 1], times[i]});
+  return gaps;
+}
+
+std::vector<double> timesOfUsed(const std::vector<CameraPose>& poses, const CameraTrack& track) {
+  std::vector<double> times;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (track.verdicts[i] == PoseVerdict::used) times.push_back(poses[i].t);
+  return times;
+}
+
+std::vector<PathSample> pathWithForce(const CameraTrack& track,
+                                      const std::vector<ProbeSample>& samples) {
+  std::vector<double> times;
+  for (const ProbeSample& sample : samples) times.push_back(sample.t);
+  std::vector<PathSample> path = pathAt(track, times);
+  for (std::size_t i = 0; i < path.size(); ++i) path[i].force = samples[i].force;
+  return path;
+}
+
+} // namespace
+
+FilteredScan filterScan(const std::vector<CameraPose>& poses,
+                        const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+                        const ScanFilter& filter, Progress& progress) {
+  FilteredScan scan;
+  if (filter.model == PathModel::fused) {
+    FusedOptions options;
+    options.gravity = filter.gravity;
+    CameraTrack track = firstPass(poses, probe, options);
+    scan.clock = fitClock(track, samples, probe, filter.gravity);
+    std::vector<ProbeSample> corrected;
+    if (scan.clock && scan.clock->differs) {
+      corrected = samples;
+      for (ProbeSample& sample : corrected) sample.t = scan.clock->onCamera(sample.t);
+    }
+    FusedPath fused = fuseWith(std::move(track), poses, corrected.empty() ? samples : corrected,
+                               probe, options, progress);
+    scan.path = std::move(fused.path);
+    scan.track = std::move(fused.track);
+    scan.bias = fused.bias;
+  } else {
+    CameraTrackOptions options;
+    options.acceleration = filter.model == PathModel::acceleration;
+    options.smooth = filter.smooth;
+    scan.track = trackTip(poses, probe.tip, options);
+    if (!scan.track.empty()) scan.path = pathWithForce(scan.track, samples);
+  }
+  if (scan.track.empty()) return scan;
+  const std::vector<double> seen = timesOfUsed(poses, scan.track);
+  const double longest = scan.track.options.longest_gap;
+  scan.without_pose = gapsIn(seen, longest);
+  if (samples.empty()) {
+    scan.path = pathAt(scan.track, seen);
+    return scan;
+  }
+  std::erase_if(scan.path, [&](const PathSample& sample) {
+    return sample.t < seen.front() - longest || sample.t > seen.back() + longest;
+  });
+  if (scan.path.empty())
+    throw Error("poses and probe have no time in common: from " + formatNumber(seen.front()) +
+                " to " + formatNumber(seen.back()) + " s and from " +
+                formatNumber(samples.front().t) + " to " + formatNumber(samples.back().t) + " s");
+  std::vector<double> sampled;
+  for (const PathSample& sample : scan.path) {
+    sampled.push_back(sample.t);
+    scan.largest_force = std::max(scan.largest_force, sample.force);
+  }
+  scan.without_sample = gapsIn(sampled, filter.longest_pause);
+  markContact(scan.path);
+  if (filter.touching_only)
+    std::erase_if(scan.path, [](const PathSample& sample) { return !sample.touching; });
+  return scan;
+}
+
+} // namespace patina

@@ -1,0 +1,122 @@
+#include "acquisition/profile/compliance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+namespace {
+
+constexpr std::size_t kSmooth = 7; // samples to either side
+
+struct Loading {
+  std::size_t begin, end;
+};
+
+std::vector<double> smoothedForces(const std::vector<PressSample>& samples) {
+  std::vector<double> sums{0};
+  for (const PressSample& sample : samples) sums.push_back(sums.back() + sample.force);
+  std::vector<double> smooth(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t reach = std::min({kSmooth, i, samples.size() - 1 - i});
+    smooth[i] = (sums[i + reach + 1] - sums[i - reach]) / static_cast<double>(2 * reach + 1);
+  }
+  return smooth;
+}
+
+// Rises of the force from a low to the next high, chosen by force alone: a choice by displacement
+// would favour its noise.
+std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double least_rise) {
+  std::vector<Loading> loadings;
+  if (samples.empty()) return loadings;
+  const std::vector<double> force = smoothedForces(samples);
+  const double back = 0.1 * least_rise; // less than this is noise
+  std::size_t low = 0, high = 0;
+  const auto close = [&] {
+    if (force[high] - force[low] < least_rise) return;
+    // Where it has begun and not yet ended.
+    const double rise = force[high] - force[low];
+    std::size_t begin = low, end = high;
+    while (begin < end && force[begin] < force[low] + 0.02 * rise) ++begin;
+    while (end > begin && force[end] > force[high] - 0.02 * rise) --end;
+    loadings.push_back({begin, end + 1});
+  };
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (force[i] >= force[high]) high = i;
+    const bool falls = force[i] < force[high] - back;
+    if (falls && high > low) {
+      close();
+      low = high = i;
+    } else if (force[i] < force[low]) {
+      low = high = i;
+    }
+  }
+  close();
+  return loadings;
+}
+
+struct Moments {
+  double forces = 0, mixed = 0, displacements = 0, freedom = 0;
+};
+
+} // namespace
+
+std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
+                                                     double force_sigma, double least_rise) {
+  const std::vector<Loading> loadings = loadingsOf(samples, least_rise);
+  if (loadings.empty()) return std::nullopt;
+  ComplianceEstimate estimate;
+  Moments m;
+  std::vector<double> f, x; // from the mean of their loading
+  std::vector<bool> first;
+  for (const Loading& loading : loadings) {
+    const double n = static_cast<double>(loading.end - loading.begin);
+    double mean_f = 0, mean_x = 0;
+    for (std::size_t i = loading.begin; i < loading.end; ++i) {
+      mean_f += samples[i].force / n;
+      mean_x += samples[i].displacement / n;
+    }
+    for (std::size_t i = loading.begin; i < loading.end; ++i) {
+      f.push_back(samples[i].force - mean_f);
+      x.push_back(samples[i].displacement - mean_x);
+      first.push_back(i == loading.begin);
+      m.forces += f.back() * f.back();
+      m.mixed += f.back() * x.back();
+      m.displacements += x.back() * x.back();
+    }
+    m.freedom += n - 1;
+  }
+  // What force varies by beside its own noise.
+  const double force_variance = force_sigma * force_sigma;
+  const double true_forces = m.forces - m.freedom * force_variance;
+  if (!(true_forces > 0) || !(m.mixed > 0) || m.freedom < 3) return std::nullopt;
+  const double C = m.mixed / true_forces;
+  double squares = 0, lagged = 0, pairs = 0;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const double residual = x[i] - C * f[i];
+    squares += residual * residual;
+    if (first[i]) continue;
+    lagged += residual * (x[i - 1] - C * f[i - 1]);
+    pairs += 1;
+  }
+  const double residual_variance = squares / (m.freedom - 1);
+  // Neighbours that err alike count for fewer; as an autoregressive noise of first order would.
+  const double n = static_cast<double>(f.size());
+  const double alike = std::clamp(lagged / pairs / (squares / n) + 1 / n, -0.95, 0.995);
+  const double fewer = std::max((1 + alike) / (1 - alike), 1e-3);
+  estimate.compliance = C;
+  // The second term is the force's noise, also as it enters its own variance.
+  estimate.compliance_deviation =
+      std::sqrt(fewer * residual_variance / true_forces +
+                m.freedom * force_variance * (residual_variance + C * C * force_variance) /
+                    (true_forces * true_forces));
+  // 1 / C is too large on the mean by the square of C's relative deviation.
+  const double relative = estimate.compliance_deviation / C;
+  estimate.stiffness = 1 / (C * (1 + relative * relative));
+  estimate.stiffness_deviation = estimate.stiffness * relative;
+  estimate.displacement_noise = std::sqrt(std::max(residual_variance - C * C * force_variance, 0.));
+  estimate.samples = f.size();
+  estimate.loadings = loadings.size();
+  return estimate;
+}
+
+} // namespace patina

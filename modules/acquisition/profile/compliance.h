@@ -1,0 +1,31 @@
+// How far a surface yields, from presses (A08).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace patina {
+
+struct PressSample {
+  double t = 0;            // [s]
+  double displacement = 0; // into the surface, from anywhere [m]
+  double force = 0;        // [N]
+};
+
+struct ComplianceEstimate {
+  double compliance = 0, compliance_deviation = 0; // [m/N], and its standard deviation
+  double stiffness = 0, stiffness_deviation = 0;   // [N/m]
+  double displacement_noise = 0;                   // standard deviation that the samples show [m]
+  std::size_t samples = 0, loadings = 0;
+};
+
+// Slope of displacement against force over the loading parts of presses, each with a zero of its
+// own: unloading would mix in what the material keeps. Both have errors: force that of
+// `force_sigma` [N], displacement what the samples show. Plain regression of force on displacement
+// takes the noise of the displacement for yielding, and is 42 % too soft at 3000 N/m with 0.3 mm.
+// The deviation counts the noise as correlated from sample to sample as the residuals are.
+// nullopt without a loading of at least `least_rise` [N].
+std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
+                                                     double force_sigma, double least_rise = 0.3);
+
+} // namespace patina

@@ -1,0 +1,70 @@
+// A surface's height along the probe's path, from acceleration (A07): a smoother in arc length, so
+// that standing still teaches nothing, a slow stretch little, and no speed is divided by.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "acquisition/filtering/contact.h"
+#include "acquisition/filtering/fused_path.h"
+
+namespace patina {
+
+// The tip at one time, in contact.
+struct TracedSample {
+  double t = 0;            // [s]
+  double along = 0;        // way since the beginning, never less than before [m]
+  double speed = 0;        // along the path, 0 or more [m/s]
+  double speeding = 0;     // its change [m/s^2]
+  double turn = 1;         // cosine between the path's direction before and here
+  double acceleration = 0; // along the surface's normal, gravity taken off [m/s^2]
+  double yielding = 0;     // how far the surface is pressed in: compliance times force [m]
+  // What the camera says of the tip's height, where a frame was; its standard deviation [m].
+  std::optional<double> height;
+  double height_sigma = 0;
+};
+
+struct HeightOptions {
+  double acceleration_variance = 0.0022; // of each sample, white (ProbeModel) [m^2/s^4]
+  double bias = 0.02;                    // of the acceleration, standard deviation [m/s^2]
+  double bias_change = 0.005;            // by how much it wanders in a second [m/s^2/s^.5]
+  // Of the roughness: rms [m] and the length at which it changes [m]. Absent: as is likeliest.
+  std::optional<double> rms, length;
+};
+
+struct ProfilePoint {
+  double along = 0;  // [m]
+  double height = 0; // of the surface, along its normal [m]
+  double sigma = 0;  // standard deviation [m]
+};
+
+struct HeightProfile {
+  std::vector<ProfilePoint> points; // one a sample
+  double rms = 0, length = 0;       // of the roughness that was assumed or found [m]
+};
+
+// One stretch of contact. Without any camera height the profile floats: its mean and slope are
+// those of the assumption that roughness has none.
+HeightProfile heightAlong(const std::vector<TracedSample>& samples, const HeightOptions& options);
+
+// The roughness under which the accelerations of all stretches together are likeliest. Only what
+// heights are made of counts, below a sixth of the sampling rate unless the tip moves fast: two
+// integrations make the rest vanish, and sensors shape it.
+struct Roughness {
+  double rms, length; // [m]
+};
+Roughness likeliestRoughness(const std::vector<std::vector<TracedSample>>& stretches,
+                             const HeightOptions& options);
+
+// Samples of a stretch of a fused path (its samples are `probe`'s by time). `normal` is the
+// surface's, outwards; `compliance` [m/N].
+std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
+                                 const std::vector<CameraPose>& poses,
+                                 const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+                                 const Vec3& gravity, const Vec3& normal, double compliance);
+
+// On places `step` apart [m]; the mean of the points about each place, by their sigmas. Where the
+// probe stood there are many points and one place.
+std::vector<ProfilePoint> resampled(const std::vector<ProfilePoint>& points, double step);
+
+} // namespace patina

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/LU>
+
+#include "acquisition/profile/height_profile.h"
+
+namespace patina {
+namespace {
+
+constexpr double kStands = 2e-3; // slower than this a direction means nothing [m/s]
+
+// The tip's acceleration [m/s^2] from what the axes show, where they span space.
+class TipAcceleration {
+ public:
+  TipAcceleration(const ProbeModel& probe, const std::array<double, 4>& bias)
+      : probe_(probe), bias_(bias) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    for (const AccelerometerAxis& axis : probe.axes)
+      normal += axis.direction * axis.direction.transpose();
+    bool spans = false;
+    normal.computeInverseWithCheck(inverse_, spans, 1e-6);
+    if (!spans) throw std::invalid_argument("traced: the accelerometers' axes lie in one plane");
+  }
+
+  Vec3 operator()(const ProbeSample& sample, const TipMotion& motion,
+                  const Eigen::Quaterniond& orientation, const Vec3& gravity) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < probe_.axes.size(); ++k) {
+      const Vec3& axis = probe_.axes[k].direction;
+      const Vec3 arm = probe_.axes[k].position - probe_.tip;
+      const Vec3 turning =
+          motion.rate_of_rate.cross(arm) + motion.rate.cross(motion.rate.cross(arm));
+      sum += axis * (sample.acceleration[k] - bias_[k] - axis.dot(turning));
+    }
+    return orientation * (inverse_ * sum) + gravity;
+  }
+
+ private:
+  const ProbeModel& probe_;
+  std::array<double, 4> bias_;
+  Eigen::Matrix3d inverse_;
+};
+
+} // namespace
+
+std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
+                                 const std::vector<CameraPose>& poses,
+                                 const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+                                 const Vec3& gravity, const Vec3& normal, double compliance) {
+  const TipAcceleration accelerationOf(probe, fused.bias);
+  std::vector<TracedSample> trace;
+  trace.reserve(stretch.end - stretch.begin);
+  double along = 0;
+  Vec3 direction = Vec3::Zero(); // where it last moved
+  bool stood = false;
+  std::size_t next = 0;
+  while (next < poses.size() && !(poses[next].t > fused.path[stretch.begin].t &&
+                                  fused.track.verdicts[next] == PoseVerdict::used))
+    ++next;
+  auto reading = samples.begin();
+  for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+    const PathSample& point = fused.path[i];
+    while (reading != samples.end() && reading->t != point.t) ++reading;
+    if (reading == samples.end())
+      throw std::invalid_argument("traced: the path was not made from these samples");
+    const TipMotion motion = motionAt(fused.track, point.t);
+    const Vec3 velocity = motion.velocity - normal * normal.dot(motion.velocity);
+    TracedSample sample;
+    sample.t = point.t;
+    sample.speed = velocity.norm();
+    if (!trace.empty())
+      along += 0.5 * (sample.speed + trace.back().speed) * (sample.t - trace.back().t);
+    sample.along = along;
+    const Vec3 heading = velocity / std::max(sample.speed, 1e-12);
+    sample.speeding = heading.dot(motion.acceleration);
+    if (sample.speed > kStands) {
+      if (stood && direction.squaredNorm() > 0) sample.turn = std::min(direction.dot(heading), 1.);
+      direction = heading;
+      stood = false;
+    } else {
+      stood = true;
+    }
+    sample.acceleration = normal.dot(accelerationOf(*reading, motion, point.orientation, gravity));
+    sample.yielding = compliance * point.force;
+    if (next < poses.size() && poses[next].t <= point.t) {
+      const CameraPose& pose = poses[next];
+      const Vec3 lever = point.orientation * probe.tip;
+      sample.height = normal.dot(pose.position + pose.orientation.normalized() * probe.tip);
+      sample.height_sigma =
+          std::hypot(pose.sigma_position, pose.sigma_angle * lever.cross(normal).norm());
+      do ++next;
+      while (next < poses.size() && fused.track.verdicts[next] != PoseVerdict::used);
+    }
+    trace.push_back(sample);
+  }
+  return trace;
+}
+
+} // namespace patina

@@ -1,0 +1,148 @@
+#include "acquisition/simulation/simulated_hand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// From 0 to 1 with no speed and no acceleration at either end.
+double eased(double x) {
+  x = std::clamp(x, 0., 1.);
+  return x * x * x * (10 - 15 * x + 6 * x * x);
+}
+
+// A steady sum of sines of rms 1/sqrt(2), another one for each `number`.
+double wave(std::uint32_t seed, std::uint32_t number, double low, double high, double t) {
+  std::minstd_rand random(1 + seed * 7919 + number * 104729);
+  random.discard(10);
+  const auto drawn = [&] { return static_cast<double>(random()) / 2147483647.; };
+  constexpr int kSines = 3;
+  double sum = 0;
+  for (int i = 0; i < kSines; ++i) {
+    const double frequency = low + (high - low) * drawn(), phase = kTurn * drawn();
+    sum += std::sin(kTurn * frequency * t + phase);
+  }
+  return sum / std::sqrt(kSines);
+}
+
+Eigen::Quaterniond turned(double angle, const Vec3& axis) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
+}
+
+struct Way {
+  Vec2 from, to;
+  double bow;
+};
+
+Vec2 placeOn(const Way& way, double x) {
+  const Vec2 along = way.to - way.from;
+  const double sine = std::sin(std::numbers::pi * x);
+  const Vec2 aside = along.norm() > 0 ? Vec2(-along.y(), along.x()).normalized() : Vec2(0, 0);
+  return way.from + x * along + way.bow * sine * sine * aside;
+}
+
+} // namespace
+
+double SimulatedHand::seconds() const {
+  double sum = 0;
+  for (const HandMove& move : moves) sum += move.seconds;
+  return sum;
+}
+
+HandState handAt(const SimulatedHand& hand, double t) {
+  Vec2 place = hand.from;
+  double force = 0, lift = 1, begin = 0;
+  for (const HandMove& move : hand.moves) {
+    if (t < begin) break;
+    const double x = eased((t - begin) / move.seconds);
+    place = placeOn({place, move.to, move.bow}, x);
+    force += x * (move.force - force);
+    lift += x * (move.lift - lift);
+    begin += move.seconds;
+  }
+  HandState state;
+  place.x() += hand.tremor * wave(hand.seed, 1, 8, 11, t);
+  place.y() += hand.tremor * wave(hand.seed, 2, 8, 11, t);
+  state.force = force * (1 + hand.unsteadiness * wave(hand.seed, 3, 0.3, 3, t));
+  state.touching = state.force > 0;
+  state.surface = hand.relief(place);
+  // In the air the tip does not follow the relief.
+  const double height = state.surface + lift * (hand.air - state.surface);
+  state.tip = Vec3(place.x(), place.y(), height - hand.compliance * state.force);
+  const auto angle = [&](std::uint32_t number) {
+    return hand.tilt * wave(hand.seed, number, 0.2, 0.8, t) +
+           hand.tremor_tilt * wave(hand.seed, number + 3, 8, 11, t);
+  };
+  state.orientation = turned(angle(10), Vec3::UnitX()) * turned(angle(11), Vec3::UnitY()) *
+                      turned(0.5 * angle(12), Vec3::UnitZ());
+  return state;
+}
+
+SimulatedHand strokes(std::uint32_t seed, double seconds, double speed, const StrokeArea& area) {
+  SimulatedHand hand;
+  hand.seed = seed;
+  std::mt19937 random(seed);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967295.;
+  };
+  const double side = (area.high - area.low).minCoeff();
+  const auto reachable = [&](const Way& way) {
+    constexpr int kLooks = 100;
+    for (int i = 0; i <= kLooks; ++i)
+      if (!area.reachable(placeOn(way, static_cast<double>(i) / kLooks))) return false;
+    return true;
+  };
+  const auto anyWay = [&] {
+    constexpr int kTries = 3000;
+    for (const double parts : {3., 6., 12.})
+      for (int i = 0; i < kTries; ++i) {
+        const double x = between(area.low.x(), area.high.x());
+        const double y = between(area.low.y(), area.high.y());
+        Way way{{x, y}, {x, y}, 0};
+        way.to.x() = between(area.low.x(), area.high.x());
+        way.to.y() = between(area.low.y(), area.high.y());
+        const double length = (way.to - way.from).norm();
+        way.bow = between(-0.05, 0.05) * length;
+        if (length > side / parts && reachable(way)) return way;
+      }
+    throw Error("no way of " + formatLength(side / 12) +
+                " over the surface is found that could be scanned from above");
+  };
+  double left = seconds;
+  const auto move = [&](const Vec2& to, double lasting, double bow, double force, double lift) {
+    hand.moves.push_back({to, lasting, bow, force, lift});
+    left -= lasting;
+  };
+  Vec2 place(0, 0);
+  for (int stroke = 0; left > 0; ++stroke) {
+    const Way way = anyWay();
+    const double pace = speed * between(0.7, 1.3), force = between(0.6, 1.4);
+    const double lasting = (way.to - way.from).norm() / pace;
+    if (stroke == 0)
+      hand.from = way.from;
+    else
+      move(way.from, 0.3 + (way.from - place).norm() / 0.25, 0, 0, 1);
+    move(way.from, 0.4, 0, 0, 0);
+    move(way.from, 0.3, 0, force, 0);
+    move(way.to, lasting, way.bow, force, 0);
+    place = way.to;
+    if (stroke % 2 == 1) move(place, 0.3, 0, force, 0);
+    if (stroke % 3 == 2) {
+      place = way.from;
+      move(place, lasting, -way.bow, force, 0);
+    }
+    move(place, 0.2, 0, 0, 0);
+    move(place, 0.3, 0, 0, 1);
+  }
+  return hand;
+}
+
+} // namespace patina

@@ -1,0 +1,114 @@
+#include "acquisition/profile/compliance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace patina {
+namespace {
+
+constexpr double kForceStep = 0.02, kForceNoise = 0.005;
+const double kForceSigma = std::hypot(kForceNoise, kForceStep / std::sqrt(12.));
+
+// Presses of 0.5 s to 3.4 N, 0.1 s apart, at 500 Hz; `alike` correlates the noise of neighbours.
+std::vector<PressSample> presses(double stiffness, double noise, std::uint32_t seed,
+                                 double alike = 0, bool exact = false) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<PressSample> samples;
+  double error = normal(random);
+  for (int i = 0; i < 900; ++i) {
+    const double t = i / 500., in = std::fmod(t, 0.6);
+    const double force = in < 0.5 ? 3.4 * std::sin(std::numbers::pi * in / 0.5) : 0;
+    error = alike * error + std::sqrt(1 - alike * alike) * normal(random);
+    const double shown =
+        exact ? force
+              : kForceStep * std::round((force + kForceNoise * normal(random)) / kForceStep);
+    samples.push_back({t, force / stiffness + noise * error, shown});
+  }
+  return samples;
+}
+
+double plainRegression(const std::vector<PressSample>& samples) {
+  double n = 0, x = 0, f = 0, xx = 0, xf = 0;
+  for (const PressSample& s : samples) {
+    if (s.force < 0.05) continue;
+    n += 1, x += s.displacement, f += s.force;
+    xx += s.displacement * s.displacement, xf += s.displacement * s.force;
+  }
+  return (xf - x * f / n) / (xx - x * x / n);
+}
+
+// A08: a spring without noise.
+TEST(Compliance, OfALinearSpringIsExact) {
+  const auto estimate = estimateCompliance(presses(800, 0, 1, 0, true), 0);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(estimate->compliance, 1 / 800., 1e-12);
+  EXPECT_NEAR(estimate->stiffness, 800, 1e-6);
+  EXPECT_EQ(estimate->loadings, 3u);
+  EXPECT_LT(estimate->displacement_noise, 1e-9);
+}
+
+struct Seeds {
+  double mean = 0, deviation = 0, stated = 0, plain = 0;
+};
+
+Seeds over(int seeds, double stiffness, double noise, double alike) {
+  Seeds result;
+  double squares = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const std::vector<PressSample> samples =
+        presses(stiffness, noise, static_cast<std::uint32_t>(seed), alike);
+    const auto estimate = estimateCompliance(samples, kForceSigma);
+    if (!estimate) continue;
+    result.mean += estimate->stiffness / seeds;
+    squares += estimate->stiffness * estimate->stiffness / seeds;
+    result.stated += estimate->stiffness_deviation / seeds;
+    result.plain += plainRegression(samples) / seeds;
+  }
+  result.deviation = std::sqrt(squares - result.mean * result.mean);
+  return result;
+}
+
+TEST(Compliance, IsNotBiasedByNoiseAndKnowsItsDeviation) {
+  for (const double stiffness : {300., 1000., 3000.}) {
+    const Seeds found = over(1000, stiffness, 0.3e-3, 0);
+    std::printf(
+        "%6.0f N/m: bias %+.3f %%, stated / true deviation %.3f, plain regression %+.1f %%\n",
+        stiffness, 100 * (found.mean / stiffness - 1), found.stated / found.deviation,
+        100 * (found.plain / stiffness - 1));
+    EXPECT_NEAR(found.mean / stiffness, 1, 0.005);
+    EXPECT_NEAR(found.stated / found.deviation, 1, 0.1);
+  }
+  EXPECT_LT(over(100, 3000, 0.3e-3, 0).plain, 0.65 * 3000) << "presses too hard to tell";
+}
+
+// A smoothed path errs alike from sample to sample.
+TEST(Compliance, KnowsItsDeviationWhereNeighboursErrAlike) {
+  const Seeds found = over(1000, 1000, 0.3e-3, 0.8);
+  EXPECT_NEAR(found.mean / 1000, 1, 0.005);
+  EXPECT_NEAR(found.stated / found.deviation, 1, 0.1);
+}
+
+TEST(Compliance, IsAbsentWithoutALoading) {
+  EXPECT_FALSE(estimateCompliance({}, kForceSigma));
+  std::vector<PressSample> resting(500);
+  for (std::size_t i = 0; i < resting.size(); ++i)
+    resting[i] = {static_cast<double>(i) / 500, 0.001, 1.};
+  EXPECT_FALSE(estimateCompliance(resting, kForceSigma));
+  // Falls alone: what is let go says nothing of loading.
+  for (std::size_t i = 0; i < resting.size(); ++i)
+    resting[i].force = 3 - 0.005 * static_cast<double>(i);
+  EXPECT_FALSE(estimateCompliance(resting, kForceSigma));
+}
+
+TEST(Compliance, EachPressHasAZeroOfItsOwn) {
+  std::vector<PressSample> samples = presses(1000, 0, 1, 0, true);
+  for (PressSample& sample : samples) sample.displacement += 0.01 * std::floor(sample.t / 0.6);
+  EXPECT_NEAR(estimateCompliance(samples, 0)->stiffness, 1000, 1e-6);
+}
+
+} // namespace
+} // namespace patina

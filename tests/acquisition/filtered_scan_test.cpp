@@ -1,0 +1,223 @@
+#include "acquisition/filtering/filtered_scan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/simulation/mesh_strokes.h"
+#include "acquisition/simulation/path_error.h"
+#include "acquisition/simulation/simulated_streams.h"
+#include "acquisition/simulation/simulated_surface.h"
+#include "geometry/mesh/shapes.h"
+
+namespace patina {
+namespace {
+
+struct Scan {
+  SimulatedHand hand;
+  ProbeModel probe;
+  std::vector<CameraPose> poses;
+  std::vector<ProbeSample> samples;
+  std::vector<PathSample> truth;
+};
+
+Scan scanOf(std::uint32_t seed, const SimulatedProbe& stream = {}) {
+  Scan scan;
+  scan.hand = strokes(seed);
+  scan.hand.relief = roughSurface(seed, 25e-6);
+  scan.poses = simulateCamera(scan.hand, scan.probe, {}, seed);
+  scan.samples = simulateProbe(scan.hand, scan.probe, stream, seed + 100);
+  std::vector<double> times;
+  for (double i = 0; i < scan.hand.seconds() * 500; ++i) times.push_back(i / 500);
+  scan.truth = truthAt(scan.hand, Pose::Identity(), times);
+  return scan;
+}
+
+FilteredScan filtered(const Scan& scan, const ScanFilter& filter = {}) {
+  Progress progress;
+  return filterScan(scan.poses, scan.samples, scan.probe, filter, progress);
+}
+
+TEST(FilteredScan, KeepsWhatTouches) {
+  const Scan scan = scanOf(1);
+  const FilteredScan kept = filtered(scan);
+  ScanFilter all;
+  all.touching_only = false;
+  EXPECT_EQ(filtered(scan, all).path.size(), scan.samples.size());
+  std::size_t wrong = 0, touching = 0;
+  for (const PathSample& sample : scan.truth) touching += sample.force > 0.1;
+  for (const PathSample& sample : kept.path) wrong += handAt(scan.hand, sample.t).force < 0.02;
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_NEAR(static_cast<double>(kept.path.size()), static_cast<double>(touching),
+              0.03 * static_cast<double>(touching));
+  EXPECT_GT(kept.largest_force, 0.6);
+}
+
+TEST(FilteredScan, EachModelIsBetterThanTheOneBefore) {
+  const Scan scan = scanOf(2);
+  double last = INFINITY;
+  for (const PathModel model : {PathModel::velocity, PathModel::acceleration, PathModel::fused}) {
+    ScanFilter filter;
+    filter.model = model;
+    const PathError error = errorOf(filtered(scan, filter).path, scan.truth);
+    EXPECT_LT(error.rms, last);
+    EXPECT_NEAR(error.nees, 1, 0.5);
+    last = error.rms;
+  }
+}
+
+TEST(FilteredScan, WithoutAProbeThePathIsAtThePoses) {
+  Scan scan = scanOf(3);
+  scan.samples.clear();
+  ScanFilter filter;
+  filter.model = PathModel::acceleration;
+  const FilteredScan found = filtered(scan, filter);
+  EXPECT_EQ(found.path.size(), found.track.used());
+  EXPECT_LT(errorOf(found.path, scan.truth).rms, 0.6e-3);
+}
+
+TEST(FilteredScan, TellsItsGapsAndEndsWithThePoses) {
+  Scan scan = scanOf(4);
+  std::erase_if(scan.poses, [](const CameraPose& pose) {
+    return pose.t < 2 || (pose.t > 5 && pose.t < 5.4) || pose.t > 15;
+  });
+  std::erase_if(scan.samples, [](const ProbeSample& s) { return s.t > 8 && s.t < 8.3; });
+  ScanFilter filter;
+  filter.touching_only = false;
+  const FilteredScan found = filtered(scan, filter);
+  EXPECT_NEAR(found.path.front().t, 1.9, 0.05);
+  EXPECT_NEAR(found.path.back().t, 15.1, 0.05);
+  ASSERT_EQ(found.without_pose.size(), 1u);
+  EXPECT_NEAR(found.without_pose[0].from, 5, 0.04);
+  EXPECT_NEAR(found.without_pose[0].to, 5.4, 0.04);
+  ASSERT_EQ(found.without_sample.size(), 1u);
+  EXPECT_NEAR(found.without_sample[0].to, 8.3, 0.01);
+  for (const PathSample& sample : found.path)
+    if (sample.t > 5.11 && sample.t < 5.29) {
+      EXPECT_TRUE(sample.gap) << sample.t;
+    }
+}
+
+TEST(FilteredScan, RefusesStreamsWithoutATimeInCommon) {
+  Scan scan = scanOf(5);
+  for (CameraPose& pose : scan.poses) pose.t += 1000;
+  EXPECT_THROW(filtered(scan), Error);
+}
+
+TEST(FilteredScan, IsCancelled) {
+  const Scan scan = scanOf(5);
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(filterScan(scan.poses, scan.samples, scan.probe, {}, progress), Cancelled);
+}
+
+// --- Two clocks.
+
+TEST(ProbeClock, IsFoundToAMillisecond) {
+  for (const auto& [offset, skew] : {std::pair(0.12, 1e-4), {-0.4, -5e-4}, {5e-3, 0.}}) {
+    SimulatedProbe stream;
+    stream.clock_offset = offset;
+    stream.clock_skew = skew;
+    const Scan scan = scanOf(6, stream);
+    FusedOptions options;
+    const auto clock = fitClock(firstPass(scan.poses, scan.probe, options), scan.samples,
+                                scan.probe, options.gravity);
+    ASSERT_TRUE(clock);
+    EXPECT_TRUE(clock->differs);
+    EXPECT_NEAR(clock->offset, offset, 2e-3);
+    EXPECT_NEAR(clock->skew, skew, 3e-4);
+    EXPECT_NEAR(clock->onCamera(10 * (1 + skew) + offset), 10, 2e-3);
+    EXPECT_LT(std::abs(clock->offset - offset), 4 * clock->offset_deviation);
+  }
+}
+
+TEST(ProbeClock, ThatAgreesIsLeftAlone) {
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    const FilteredScan found = filtered(scanOf(seed));
+    ASSERT_TRUE(found.clock);
+    EXPECT_FALSE(found.clock->differs) << found.clock->offset;
+  }
+}
+
+TEST(ProbeClock, IsNotGuessedFromAProbeAtRest) {
+  Scan scan;
+  scan.hand.tilt = scan.hand.tremor = scan.hand.tremor_tilt = 0;
+  scan.hand.moves = {{Vec2(0, 0), 10, 0, 0, 1}};
+  scan.poses = simulateCamera(scan.hand, scan.probe, {}, 1);
+  scan.samples = simulateProbe(scan.hand, scan.probe, {}, 2);
+  const FusedOptions options;
+  const auto clock = fitClock(firstPass(scan.poses, scan.probe, options), scan.samples, scan.probe,
+                              options.gravity);
+  EXPECT_TRUE(!clock || !clock->differs);
+}
+
+TEST(ProbeClock, OnceCorrectedCostsNothing) {
+  SimulatedProbe stream;
+  stream.clock_offset = 0.08;
+  stream.clock_skew = 2e-4;
+  const Scan agreeing = scanOf(7), apart = scanOf(7, stream);
+  const double with_one = errorOf(filtered(agreeing).path, agreeing.truth).rms;
+  EXPECT_LT(errorOf(filtered(apart).path, apart.truth).rms, 1.05 * with_one);
+}
+
+// --- The simulation itself.
+
+TEST(MeshStrokes, TouchTheMeshWhereTheyPress) {
+  const TriangleMesh mesh = icosphere(0.05, 12);
+  const SimulatedHand hand = strokesOver(mesh, 3, 20, 0.05);
+  std::vector<double> times;
+  for (double t = 0; t < hand.seconds(); t += 0.01) times.push_back(t);
+  double touching = 0, last_height = 1;
+  for (const PathSample& sample : truthAt(hand, Pose::Identity(), times)) {
+    EXPECT_LT(std::abs(sample.position.z() - last_height) / 0.01, last_height < 1 ? 0.6 : 1e9)
+        << sample.t;
+    last_height = sample.position.z();
+    if (!sample.touching) continue;
+    touching += 1;
+    const double radius = sample.position.norm() + sample.force * hand.compliance;
+    EXPECT_NEAR(radius, 0.05, 0.6e-3) << sample.t; // facets; the yielding is along z
+    EXPECT_GT(sample.position.z() / 0.05, 0.6) << "too steep";
+  }
+  EXPECT_GT(touching, 0.4 * static_cast<double>(times.size()));
+}
+
+TEST(MeshStrokes, AreRefusedWhereNothingCanBeScanned) {
+  TriangleMesh wall;
+  wall.positions = {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 1e-4, 0.1)};
+  wall.triangles = {{0, 1, 2}};
+  EXPECT_THROW(strokesOver(wall, 1, 20, 0.05), Error);
+}
+
+TEST(SimulatedStreams, AreSeenFromTheCamera) {
+  const SimulatedHand hand = strokes(8, 5);
+  const ProbeModel probe;
+  SimulatedCamera camera;
+  camera.sigma_position = camera.sigma_angle = 0;
+  camera.camera_from_world = Pose(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized()));
+  camera.camera_from_world.translation() = Vec3(0.1, 0.2, 0.4);
+  for (const CameraPose& pose : simulateCamera(hand, probe, camera, 1)) {
+    const PathSample truth = truthAt(hand, camera.camera_from_world, {pose.t}).at(0);
+    EXPECT_LT((pose.position + pose.orientation * probe.tip - truth.position).norm(), 1e-12);
+    EXPECT_LT(pose.orientation.angularDistance(truth.orientation), 1e-7);
+  }
+}
+
+TEST(PathError, IsAgainstTheStraightWayBetweenSamples) {
+  std::vector<PathSample> truth(2), path(3);
+  truth[1].t = 1;
+  truth[1].position = Vec3(1, 0, 0);
+  path[0].t = 0.25;
+  path[0].position = Vec3(0.25, 0.003, 0.004);
+  path[0].sigma = 0.005;
+  path[1].t = -1; // before and after it
+  path[2].t = 2;
+  const PathError error = errorOf(path, truth);
+  EXPECT_EQ(error.samples, 1u);
+  EXPECT_NEAR(error.rms, 0.005, 1e-15);
+  EXPECT_NEAR(error.most, 0.005, 1e-15);
+  EXPECT_NEAR(error.nees, 1. / 3, 1e-12);
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,153 @@
+#include "acquisition/files/scan_files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "core/file.h"
+
+namespace patina {
+namespace {
+
+class ScanFiles : public testing::Test {
+ protected:
+  ScanFiles()
+      : folder(std::filesystem::path(testing::TempDir()) /
+               ("patina_scan_files_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder);
+  }
+  ~ScanFiles() override { std::filesystem::remove_all(folder); }
+
+  std::filesystem::path written(const std::string& text) const {
+    std::ofstream(folder / "file") << text;
+    return folder / "file";
+  }
+  // What a reader says of a text: "file:LINE: cause" without the folder.
+  template <class Read> std::string refusal(const Read& read, const std::string& text) const {
+    try {
+      (void)read(written(text));
+    } catch (const FileError& error) {
+      const std::string what = error.what();
+      EXPECT_EQ(what.find('\n'), std::string::npos);
+      return what.substr(folder.string().size() + 1);
+    }
+    return "taken";
+  }
+
+  std::filesystem::path folder;
+};
+
+TEST_F(ScanFiles, PosesReadBackBitForBit) {
+  std::vector<CameraPose> poses(3);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].t = 1e9 + 0.1 * static_cast<double>(i);
+    poses[i].position = Vec3(0.1, -1. / 3, 1e-9);
+    poses[i].orientation = Eigen::AngleAxisd(0.3 * static_cast<double>(i), Vec3::UnitX());
+  }
+  writePoses(folder / "poses.tum", poses);
+  const OnFile<CameraPose> back = readPoses(folder / "poses.tum");
+  ASSERT_EQ(back.values.size(), 3u);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(back.values[i].t, poses[i].t);
+    EXPECT_EQ(back.values[i].position, poses[i].position);
+    EXPECT_TRUE(back.values[i].orientation.isApprox(poses[i].orientation, 1e-15));
+    EXPECT_EQ(back.lines[i], i + 2) << "after the comment";
+  }
+}
+
+TEST_F(ScanFiles, PosesMayTellTheirDeviations) {
+  const auto file = readPoses(written("0 1 2 3 0 0 0 1 # one\n\n0.1 1 2 3 0 0 0 -1 1e-4 0.002\n"),
+                              {0.5e-3, 0.01});
+  ASSERT_EQ(file.values.size(), 2u);
+  EXPECT_EQ(file.values[0].sigma_position, 0.5e-3);
+  EXPECT_EQ(file.values[0].sigma_angle, 0.01);
+  EXPECT_EQ(file.values[1].sigma_position, 1e-4);
+  EXPECT_EQ(file.values[1].sigma_angle, 0.002);
+  EXPECT_EQ(file.lines[1], 3u);
+}
+
+TEST_F(ScanFiles, PosesThatAreNoneAreRefusedWithTheirLine) {
+  const auto read = [](const std::filesystem::path& path) { return readPoses(path); };
+  const std::string good = "0 1 2 3 0 0 0 1\n";
+  EXPECT_EQ(refusal(read, ""), "file: there is no pose in it");
+  EXPECT_EQ(refusal(read, "# t x y z\n"), "file: there is no pose in it");
+  EXPECT_TRUE(refusal(read, good + "0,1 1 2 3 0 0 0 1\n").starts_with("file:2: decimal commas"));
+  EXPECT_TRUE(refusal(read, good + "1 1 nan 3 0 0 0 1\n").starts_with("file:2: 'nan' is not"));
+  EXPECT_TRUE(refusal(read, good + "1 1 x 3 0 0 0 1\n").starts_with("file:2: 'x' is not"));
+  EXPECT_TRUE(refusal(read, good + "1 1 2 3 0 0 1\n").starts_with("file:2: 7 numbers where"));
+  EXPECT_TRUE(refusal(read, good + "1 1 2 3 0 0 0 1 1\n").starts_with("file:2: 9 numbers where"));
+  EXPECT_EQ(refusal(read, good + "-1 1 2 3 0 0 0 1\n"), "file:2: time runs backwards");
+  EXPECT_EQ(refusal(read, good + "\n" + good), "file:3: time repeats");
+  EXPECT_TRUE(refusal(read, good + "1 1 2 3 0 0 0 0\n").starts_with("file:2: the quaternion's"));
+  EXPECT_EQ(refusal(read, "0 1 2 3 0 0 0 1 0 0.1\n"), "file:1: deviations must be above 0");
+}
+
+TEST_F(ScanFiles, TablesReadBackBitForBit) {
+  const std::vector<ProbeSample> samples = {{0, 0.1, {1, 2, 3, 4}}, {0.002, -1. / 3, {5, 6, 7, 8}}};
+  writeProbeStream(folder / "probe.csv", samples);
+  const OnFile<ProbeSample> back = readProbeStream(folder / "probe.csv");
+  ASSERT_EQ(back.values.size(), 2u);
+  EXPECT_EQ(back.values[1].t, 0.002);
+  EXPECT_EQ(back.values[1].force, -1. / 3);
+  EXPECT_EQ(back.values[1].acceleration, samples[1].acceleration);
+  EXPECT_EQ(back.lines[1], 3u);
+
+  PathSample sample;
+  sample.position = Vec3(1. / 3, 2, 3);
+  sample.orientation = Eigen::AngleAxisd(1, Vec3::UnitZ());
+  sample.sigma = 1e-4;
+  sample.force = 0.7;
+  writePath(folder / "path.csv", {sample});
+  EXPECT_TRUE(
+      readFile(folder / "path.csv")
+          .starts_with("t [s],x [m],y [m],z [m],qx,qy,qz,qw,sigma [m],force [N]\n0,0.33333"));
+  const PathSample same = readPath(folder / "path.csv").at(0);
+  EXPECT_EQ(same.position, sample.position);
+  EXPECT_EQ(same.sigma, 1e-4);
+  EXPECT_EQ(same.force, 0.7);
+  EXPECT_TRUE(same.orientation.isApprox(sample.orientation, 1e-15));
+}
+
+TEST_F(ScanFiles, TablesThatAreNoneAreRefusedWithTheirLine) {
+  const auto read = [](const std::filesystem::path& path) { return readProbeStream(path); };
+  const std::string head = "t [s],force [N],a1u [m/s^2],a1v [m/s^2],a2u [m/s^2],a2v [m/s^2]\n";
+  EXPECT_TRUE(refusal(read, "").starts_with("file: is empty"));
+  EXPECT_EQ(refusal(read, head), "file: there is no sample in it");
+  EXPECT_TRUE(refusal(read, head + "0,0,0,1,0,2,0,3,0,4,0,5\n").starts_with("file:2: decimal"));
+  EXPECT_EQ(refusal(read, head + "0,nan,1,2,3,4\n"), "file:2: force [N] is not a finite number");
+  EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n0.5,0,1,2,3,4\n"), "file:3: time runs backwards");
+  EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n1,0,1,2,3,4\n"), "file:3: time repeats");
+}
+
+TEST_F(ScanFiles, ARigReadsBackAndNeedsNoAccelerometers) {
+  Rig rig;
+  rig.probe.tip = Vec3(0.001, 0.002, -0.1);
+  rig.probe.axes[2].direction = Vec3(0.6, 0.8, 0);
+  rig.gravity = Vec3(1, 9, 2);
+  rig.probe.force_noise = 0.5;
+  const Rig back = readRig(written(rigText(rig)));
+  EXPECT_TRUE(back.accelerometers);
+  EXPECT_EQ(back.probe.tip, rig.probe.tip);
+  EXPECT_TRUE(back.probe.axes[2].direction.isApprox(rig.probe.axes[2].direction, 1e-15));
+  EXPECT_EQ(back.gravity, rig.gravity);
+  EXPECT_EQ(back.probe.force_noise, 0.5);
+
+  const Rig bare = readRig(written("{\"tip\": [0, 0, -0.1], \"markers\": [{\"id\": 3}]}"));
+  EXPECT_FALSE(bare.accelerometers);
+  EXPECT_EQ(bare.probe.tip, Vec3(0, 0, -0.1));
+
+  const auto read = [](const std::filesystem::path& path) { return readRig(path); };
+  EXPECT_NE(refusal(read, "{}").find("tip"), std::string::npos);
+  EXPECT_NE(refusal(read, "{\"tip\": [0, 1]}").find("three numbers"), std::string::npos);
+  EXPECT_TRUE(refusal(read, "{\n\"tip\": oops}").starts_with("file:2:"));
+  EXPECT_NE(refusal(read, "{\"tip\": [0, 1, 2], \"accelerometers\": {}}").find("a1u"),
+            std::string::npos);
+  EXPECT_NE(refusal(read, "{\"tip\": [0, 1, 2], \"force_noise\": -1}").find("force_noise"),
+            std::string::npos);
+}
+
+} // namespace
+} // namespace patina
