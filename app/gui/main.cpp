@@ -106,7 +106,10 @@ int run(const Arguments& arguments, int argc, char** argv) {
   patina::DocumentController& documents = window.controllers().documents;
   patina::FeelController& feel = window.controllers().feel;
   documents.setAsks(!arguments.tour && !arguments.log && !arguments.first_picture_time);
-  window.resize(1280, 800);
+  if (documents.asks())
+    window.restorePlace();
+  else
+    window.resize(1280, 800);
   window.show();
   if (arguments.tour) {
     patina::runTour(window, arguments.request, *arguments.tour);

@@ -30,6 +30,7 @@ class TouchPanels : public WindowTest {
     send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
     turnWheel(notches);
     wait(400);
+    waitUntil([&] { return (feel().sample().tip - view().target()).norm() < 1e-6; }, 5000);
   }
   double goldShare() {
     return share([](int r, int g, int b) { return r > b + 60 && g > b + 45; });
@@ -48,12 +49,13 @@ TEST_F(TouchPanels, OffsetAndMagnetExcludeEachOther) {
   EXPECT_EQ(find<ValueRow>("offset"), nullptr);
   setRow("magnet_strength", 450);
   find<QCheckBox>("magnet_fades")->setChecked(false);
-  wait(150);
+  ASSERT_TRUE(waitUntil([&] { return !scene().haptics.magnet->fades; }, 10000));
   EXPECT_EQ(scene().haptics.magnet->strength, 450);
   EXPECT_FALSE(scene().haptics.magnet->fades);
   click("mode_contact");
-  EXPECT_FALSE(scene().haptics.magnet.has_value());
+  ASSERT_TRUE(waitUntil([&] { return !scene().haptics.magnet.has_value(); }, 10000));
   click("mode_magnetic"); // comes back as it was left
+  ASSERT_TRUE(waitUntil([&] { return scene().haptics.magnet.has_value(); }, 10000));
   EXPECT_EQ(scene().haptics.magnet->strength, 450);
 }
 
@@ -61,13 +63,14 @@ TEST_F(TouchPanels, AnOffsetIsFeltOutsideAndContactIsSeenOnTheSurface) { // K12
   click("mode_offset");
   setRow("offset", 1.0);
   wait(150);
-  pressMiddle(0);
+  pressMiddle(2);
   const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
-  EXPECT_NEAR(sample.tip.norm(), kRadius, 2e-4);
+  const double depth = kRadius + 1e-3 - sample.tip.norm();
+  EXPECT_GT(depth, 3e-4);
   EXPECT_NEAR(sample.vcp.norm(), kRadius + 1e-3, 1e-4);
   EXPECT_NEAR(sample.surface.norm(), kRadius, 1e-4);
-  EXPECT_NEAR(sample.force.norm(), 500 * 1e-3, 0.05);
+  EXPECT_NEAR(sample.force.norm(), 500 * depth, 0.05);
 }
 
 TEST_F(TouchPanels, TheBandIsThereOnlyWithAnOffsetOrAMagnet) {
@@ -168,6 +171,7 @@ TEST_F(TouchPanels, TheStabilityMapComesWhenItIsAskedFor) {
   wait(150);
   const double sage = surfaceShare();
   ASSERT_GT(sage, 0.1);
+  openTab("show");
   show(Layer::stability, true);
   auto* words = find<QLabel>("stability_words");
   EXPECT_TRUE(words->isVisible());

@@ -20,11 +20,14 @@ class ValueFields : public WindowTest {
     if (IsSkipped()) return;
     ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
     show(Layer::slice, true);
-    window_->resize(1100, 500); // or there is nothing to scroll
+    show(Layer::iso, true);
+    window_->resize(1100, 440); // or there is nothing to scroll
+    addProperty("Friction");
+    addProperty("Damping");
     window_->activateWindow();
     wait(100);
     view().setFocus();
-    scroll_ = find<QScrollArea>();
+    scroll_ = find<QScrollArea>("cards");
   }
   QDoubleSpinBox* stiffness() { return find<ValueRow>("stiffness")->findChild<QDoubleSpinBox*>(); }
   static void wheel(QWidget& over, int notches) {
@@ -57,11 +60,15 @@ TEST_F(ValueFields, TheWheelScrollsThePanelAndChangesNoValue) {
     EXPECT_EQ(value(), before) << widget->metaObject()->className();
     EXPECT_GT(scroll_->verticalScrollBar()->value(), 0) << widget->metaObject()->className();
   };
-  ASSERT_GT(scroll_->verticalScrollBar()->maximum(), 0) << window_->height();
+  ASSERT_TRUE(waitUntil([&] { return scroll_->verticalScrollBar()->maximum() > 0; }, 5000));
   auto* slider = find<HapticsPanel>()->findChild<QSlider*>();
   auto* choice = find<DisplayPanel>()->findChild<QComboBox*>();
   tried(stiffness(), [this] { return stiffness()->value(); });
   tried(slider, [=] { return slider->value(); });
+  openTab("show");
+  ASSERT_TRUE(waitUntil([&] { return choice->isVisible(); }, 5000));
+  find<DisplayPanel>()->setStabilityNote(QStringLiteral("one\ntwo\nthree\nfour\nfive"));
+  wait(100);
   tried(choice, [=] { return choice->currentIndex(); });
 }
 

@@ -49,9 +49,10 @@ class WindowTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,
                        QString::fromStdString(folder_.string()));
+    application();
+    QSettings().clear();
     // Scenes that a window keeps against a crash are this test's, too.
     setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 0);
-    application();
     window_ = std::make_unique<MainWindow>();
     window_->resize(1100, 760);
     window_->show();
@@ -111,6 +112,7 @@ class WindowTest : public ::testing::Test {
   void show(Layer layer, bool on) {
     find<QCheckBox>(QString::fromStdString(std::string(name(layer))))->setChecked(on);
   }
+  void openTab(const QString& name) { find<QToolButton>("tab_" + name)->click(); }
   void setRow(const QString& name, double value) { // in the unit of the row
     find<ValueRow>(name)->findChild<QDoubleSpinBox*>()->setValue(value);
   }

@@ -1,6 +1,7 @@
 // What is seen and allowed follows from the window's state alone.
 #include "app/gui/window/window_state.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -8,11 +9,19 @@
 namespace patina {
 namespace {
 
-const std::vector<Panel> kPanels{Panel::recovery, Panel::warnings, Panel::brush,  Panel::relief,
-                                 Panel::touch,    Panel::display,  Panel::paint,  Panel::device,
-                                 Panel::objects,  Panel::mesh,     Panel::history};
+const std::vector<Panel> kPanels{Panel::recovery, Panel::tool,    Panel::brush,  Panel::relief,
+                                 Panel::touch,    Panel::objects, Panel::mesh,   Panel::device,
+                                 Panel::display,  Panel::paint,   Panel::forces, Panel::energy,
+                                 Panel::history,  Panel::messages};
 const std::vector<Command> kCommands{Command::save, Command::save_as, Command::record,
                                      Command::undo, Command::redo,    Command::paint};
+
+std::vector<Panel> thereIn(const WindowState& state) {
+  std::vector<Panel> there;
+  for (const Panel panel : kPanels)
+    if (isThere(panel, state)) there.push_back(panel);
+  return there;
+}
 
 std::vector<Panel> shownIn(const WindowState& state) {
   std::vector<Panel> shown;
@@ -36,7 +45,7 @@ WindowState withScene() {
 }
 
 TEST(WindowState, AnEmptyWindowShowsAndAllowsNothing) {
-  EXPECT_TRUE(shownIn({}).empty());
+  EXPECT_EQ(thereIn({}), std::vector{Panel::messages});
   EXPECT_TRUE(enabledIn({}).empty());
   EXPECT_EQ(titleOf({}), QStringLiteral("Patina[*]"));
 }
@@ -46,7 +55,8 @@ TEST(WindowState, APreviewShowsTheMeshAlone) {
   state.content = Content::preview;
   state.tool = {Handling::paint, Tool::relief};
   state.relief = true;
-  EXPECT_EQ(shownIn(state), (std::vector{Panel::display, Panel::mesh}));
+  EXPECT_EQ(thereIn(state), (std::vector{Panel::mesh, Panel::display, Panel::messages}));
+  EXPECT_EQ(tabsThere(state), (std::vector{Tab::object, Tab::show}));
   EXPECT_TRUE(enabledIn(state).empty());
 }
 
@@ -56,56 +66,99 @@ TEST(WindowState, WhatStandsBehindAPreviewCanBeSavedAndIsNotPaintedOn) {
   state.undoable = 1;
   EXPECT_EQ(enabledIn(state),
             (std::vector{Command::save, Command::save_as, Command::record, Command::undo}));
-  EXPECT_FALSE(isShown(Panel::history, state));
+  EXPECT_FALSE(isThere(Panel::history, state));
 }
 
 TEST(WindowState, ASceneShowsWhatEveryOneHas) {
-  EXPECT_EQ(shownIn(withScene()), (std::vector{Panel::touch, Panel::display, Panel::device,
-                                               Panel::objects, Panel::mesh}));
+  EXPECT_EQ(thereIn(withScene()),
+            (std::vector{Panel::tool, Panel::touch, Panel::objects, Panel::mesh, Panel::device,
+                         Panel::display, Panel::forces, Panel::energy, Panel::messages}));
+  EXPECT_EQ(shownIn(withScene()), (std::vector{Panel::touch, Panel::forces}));
   EXPECT_EQ(enabledIn(withScene()),
             (std::vector{Command::save, Command::save_as, Command::record, Command::paint}));
 }
 
 TEST(WindowState, TheBrushIsThereForToolsThatPaint) {
   WindowState state = withScene();
+  state.desk = Desk::paint;
   for (const Handling handling : {Handling::navigate, Handling::feel, Handling::pick}) {
     state.tool = {handling, Tool::relief};
-    EXPECT_FALSE(isShown(Panel::brush, state));
-    EXPECT_FALSE(isShown(Panel::relief, state));
+    EXPECT_FALSE(isThere(Panel::brush, state));
+    EXPECT_FALSE(isThere(Panel::relief, state));
   }
   state.tool = {Handling::paint, Tool::color};
-  EXPECT_TRUE(isShown(Panel::brush, state));
-  EXPECT_FALSE(isShown(Panel::relief, state));
+  EXPECT_TRUE(isThere(Panel::brush, state));
+  EXPECT_FALSE(isThere(Panel::relief, state));
   state.tool.tool = Tool::relief;
-  EXPECT_TRUE(isShown(Panel::relief, state));
+  EXPECT_TRUE(isThere(Panel::relief, state));
 }
 
 TEST(WindowState, WhatTheSceneHasIsShownWhateverTheTool) {
   WindowState state = withScene();
   state.relief = state.paint = true;
-  EXPECT_TRUE(isShown(Panel::relief, state));
-  EXPECT_TRUE(isShown(Panel::paint, state));
+  EXPECT_TRUE(isThere(Panel::relief, state));
+  EXPECT_TRUE(isThere(Panel::paint, state));
 }
 
 TEST(WindowState, AHistoryIsThereWithItsFirstEditUndoneOrNot) {
   WindowState state = withScene();
   state.undoable = 1;
-  EXPECT_TRUE(isShown(Panel::history, state));
+  EXPECT_TRUE(isThere(Panel::history, state));
   EXPECT_TRUE(isEnabled(Command::undo, state));
   EXPECT_FALSE(isEnabled(Command::redo, state));
   std::swap(state.undoable, state.redoable);
-  EXPECT_TRUE(isShown(Panel::history, state));
+  EXPECT_TRUE(isThere(Panel::history, state));
   EXPECT_FALSE(isEnabled(Command::undo, state));
   EXPECT_TRUE(isEnabled(Command::redo, state));
 }
 
-TEST(WindowState, BarsAboveThePictureAreThereWhileTheyHaveSomethingToSay) {
+TEST(WindowState, WhatACrashLeftIsOfferedOnEveryDesk) {
   WindowState state;
-  state.warnings << QStringLiteral("the mesh is open");
-  EXPECT_EQ(shownIn(state), std::vector{Panel::warnings});
-  state.warnings.clear();
-  state.left_behind = "/some/where";
-  EXPECT_EQ(shownIn(state), std::vector{Panel::recovery});
+  for (const DeskRow& row : deskRows()) {
+    state.desk = row.desk;
+    state.left_behind.reset();
+    EXPECT_FALSE(isShown(Panel::recovery, state));
+    state.left_behind = "/some/where";
+    EXPECT_TRUE(isShown(Panel::recovery, state));
+  }
+}
+
+TEST(WindowState, ATabWithNothingToShowLeavesItsPlaceToTheFirst) {
+  WindowState state = withScene();
+  state.desk = Desk::paint;
+  state.tool = {Handling::paint, Tool::color};
+  state.tab = Tab::device; // which Paint does not have
+  EXPECT_EQ(tabInFront(state), Tab::tool);
+  EXPECT_TRUE(isShown(Panel::brush, state));
+  state.page = Panel::history;
+  EXPECT_EQ(pageInFront(state), Panel::forces);
+  state.undoable = 1;
+  EXPECT_EQ(pageInFront(state), Panel::history);
+}
+
+TEST(WindowState, EveryToolIsAtHandOnSomeDeskAndStaysWhereItCan) {
+  const ToolChoice feel{Handling::feel, {}}, color{Handling::paint, Tool::color};
+  for (const DeskRow& row : deskRows()) {
+    EXPECT_TRUE(hasTool(row.desk, row.tool));
+    EXPECT_EQ(deskFor(feel, row.desk), row.desk);
+    EXPECT_EQ(deskFor(color, row.desk), Desk::paint);
+  }
+}
+
+TEST(WindowState, EveryDeskShowsOnlyPanelsOfItsRow) {
+  WindowState state = withScene();
+  state.relief = state.paint = true;
+  state.undoable = 1;
+  for (const DeskRow& row : deskRows()) {
+    state.desk = row.desk;
+    for (const Tab tab : tabsThere(state)) {
+      state.tab = tab;
+      for (const Panel panel : shownIn(state)) {
+        EXPECT_NE(std::find(row.panels.begin(), row.panels.end(), panel), row.panels.end());
+        EXPECT_TRUE(inDrawer(panel) || tabOf(panel) == tab);
+      }
+    }
+  }
 }
 
 TEST(WindowState, TheTitleBeginsWithWhatIsOpen) {

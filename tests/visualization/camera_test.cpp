@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 
 #include "core/error.h"
@@ -62,6 +63,35 @@ TEST(Camera, APointInTheViewPlaneProjectsBackToItsPlaceInThePicture) {
   const Vec3 point = pointInViewPlane(*camera, 0.21, -0.34, through);
   EXPECT_NEAR((projected(*camera, point) - Vec2(0.21, -0.34)).norm(), 0, 1e-12);
   EXPECT_NEAR((point - through).dot(viewDirection(*camera)), 0, 1e-12);
+}
+
+// Against VTK's own projection.
+TEST(Camera, WithoutPerspectiveRaysAreParallelAndMeetWhatIsSeenThere) {
+  const vtkNew<vtkCamera> camera;
+  turnCamera(*camera, ViewPreset::iso);
+  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  setParallel(*camera, true);
+  zoom(*camera, 1.7);
+  pan(*camera, 0.1, -0.05);
+  auto* to_picture = camera->GetCompositeProjectionTransformMatrix(1.5, -1, 1);
+  for (const Vec3& point : cloud()) {
+    double seen[4] = {point[0], point[1], point[2], 1};
+    to_picture->MultiplyPoint(seen, seen);
+    const Ray ray = rayThrough(*camera, 0.5 * 1.5 * seen[0], 0.5 * seen[1]);
+    const Vec3 off = point - ray.origin;
+    EXPECT_NEAR((off - off.dot(ray.direction) * ray.direction).norm(), 0, 1e-9);
+    EXPECT_NEAR((ray.direction - viewDirection(*camera)).norm(), 0, 1e-12);
+  }
+}
+
+TEST(Camera, WhatIsLookedAtKeepsItsSizeWithoutPerspective) {
+  const vtkNew<vtkCamera> camera;
+  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  zoom(*camera, 1.3);
+  const Vec3 at(camera->GetFocalPoint());
+  const Vec3 edge = pointInViewPlane(*camera, 0.3, 0.4, at);
+  setParallel(*camera, true);
+  EXPECT_NEAR((pointInViewPlane(*camera, 0.3, 0.4, at) - edge).norm(), 0, 1e-12);
 }
 
 TEST(Camera, OrbitKeepsTheDistanceAndPanMovesWithThePointer) {

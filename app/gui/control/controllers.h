@@ -8,6 +8,7 @@ class EditController;
 class FeelController;
 class PaintController;
 class ViewController;
+class DeskController;
 
 struct Controllers {
   DocumentController& documents;
@@ -15,6 +16,7 @@ struct Controllers {
   FeelController& feel;
   PaintController& paint;
   ViewController& view;
+  DeskController& desks;
 };
 
 } // namespace patina

@@ -1,10 +1,10 @@
 #include "app/gui/control/document_controller.h"
 
 #include <QDragEnterEvent>
-#include <QFileDialog>
 #include <QMessageBox>
 #include <QMimeData>
 
+#include "app/gui/loading/file_question.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "core/error.h"
 #include "session/store/autosave.h"
@@ -115,6 +115,13 @@ QString DocumentController::name() const {
   return folder ? fileNameOf(*folder) : name_;
 }
 
+QString DocumentController::nameUnderWay() const {
+  const LoadRequest& request = loader_.request();
+  return !request.place.empty() ? tr("Recovered scene")
+         : request.path.empty() ? tr("Toy dinosaur")
+                                : fileNameOf(request.path);
+}
+
 void DocumentController::open(const LoadRequest& request) {
   std::error_code code;
   const auto& folder = at_.edits.status().folder;
@@ -135,19 +142,17 @@ void DocumentController::openAsked(const LoadRequest& request) {
 }
 
 void DocumentController::openDialog(bool adds) {
-  auto* dialog =
-      new QFileDialog(&at_.window, adds ? tr("Add a mesh, volume or workspace to the scene")
-                                        : tr("Open a mesh, volume or workspace"));
+  auto* dialog = new FileQuestion(&at_.window,
+                                  adds ? tr("Add a mesh, volume or workspace to the scene")
+                                       : tr("Open a mesh, volume or workspace"),
+                                  FileQuestion::For::opening);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setFileMode(QFileDialog::ExistingFile);
   dialog->setNameFilters({tr("Meshes, volumes and workspaces (*.obj *.ply *.stl *.vti *.OBJ *.PLY "
-                             "*.STL *.VTI workspace.json)"),
+                             "*.STL *.VTI)"),
                           tr("All files (*)")});
-  connect(dialog, &QFileDialog::fileSelected, this, [this, adds](const QString& path) {
+  connect(dialog, &FileQuestion::chosen, this, [this, adds](const QString& path) {
     LoadRequest request = requestFor(path);
     request.adds = adds && at_.edits.scene() != nullptr;
-    // Of a workspace, which is a folder, people see the file in it.
-    if (request.path.filename() == "workspace.json") request.path = request.path.parent_path();
     request.adds ? open(request) : openAsked(request);
   });
   dialog->open();
@@ -155,25 +160,23 @@ void DocumentController::openDialog(bool adds) {
 
 void DocumentController::take(OpenedEditor& opened) {
   const LoadRequest& request = loader_.request();
-  name_ = !request.place.empty() ? tr("Recovered scene") : fileNameOf(request.path);
+  name_ = nameUnderWay();
   if (!request.path.empty()) recent_.add(QString::fromStdString(request.path.string()));
-  warnings_ = opened.warnings;
   work_.reset();
   at_.edits.thread().adopt(std::move(opened.editor), std::move(opened.autosave));
+  for (const QString& line : opened.warnings) emit said({line, true});
   emit changed();
 }
 
 void DocumentController::add(const OpenedScene& opened) {
-  QStringList lines;
-  for (const std::string& line : opened.warnings) lines << QString::fromStdString(line);
   work_.reset();
-  at_.edits.addObjects(opened.scene.objects, [this, lines](const std::string& problem) {
-    if (problem == Cancelled().what()) return emit cancelled();
-    if (!problem.empty()) return fail(QString::fromStdString(problem));
-    if (lines.isEmpty()) return;
-    warnings_ = lines;
-    emit changed();
-  });
+  at_.edits.addObjects(opened.scene.objects,
+                       [this, lines = opened.warnings](const std::string& problem) {
+                         if (problem == Cancelled().what()) return emit cancelled();
+                         if (!problem.empty()) return fail(QString::fromStdString(problem));
+                         for (const std::string& line : lines)
+                           emit said({QString::fromStdString(line), true});
+                       });
 }
 
 void DocumentController::abandon() {
@@ -207,7 +210,7 @@ bool DocumentController::trySaving(const std::function<void()>& save, const QStr
                                    const QString& advice) {
   try {
     save();
-    emit said(tr("Saved %1").arg(where), 4000);
+    emit said({tr("Saved %1").arg(where)});
     return true;
   } catch (const std::exception& error) {
     showProblem(&at_.window, tr("The workspace cannot be saved"),
@@ -236,10 +239,21 @@ bool DocumentController::save() {
 }
 
 bool DocumentController::saveDialog() {
-  const QString folder = QFileDialog::getSaveFileName(
-      &at_.window, tr("Save the workspace as a folder"), QStringLiteral("scene.patina"), {},
-      nullptr, QFileDialog::DontConfirmOverwrite | QFileDialog::HideNameFilterDetails);
+  FileQuestion dialog(&at_.window, tr("Save the workspace as a folder"), FileQuestion::For::saving);
+  // Beside the workspace that is open, never in it.
+  if (const auto& own = at_.edits.status().folder)
+    dialog.setDirectory(QString::fromStdString(std::filesystem::absolute(*own).parent_path()));
+  dialog.selectFile(freeName(dialog.directory().path().toStdString(), name()));
+  QString folder;
+  connect(&dialog, &FileQuestion::chosen, this, [&](const QString& path) { folder = path; });
+  dialog.exec();
   if (folder.isEmpty()) return false;
+  if (const auto around = workspaceAround(folder.toStdString()); !around.empty()) {
+    showProblem(&at_.window, tr("The workspace cannot be saved there"),
+                tr("%1 is a workspace itself.").arg(QString::fromStdString(around.string())),
+                tr("Choose a place beside it."));
+    return false;
+  }
   return trySaving([&] { saveTo(folder); }, folder, tr("Choose a folder that you may write to."));
 }
 

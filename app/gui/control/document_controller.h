@@ -13,6 +13,7 @@
 #include "app/gui/loading/recent_files.h"
 #include "app/gui/loading/recover_bar.h"
 #include "app/gui/loading/scene_loader.h"
+#include "app/gui/panels/message_panel.h"
 #include "app/gui/window/window_state.h"
 
 namespace patina {
@@ -42,8 +43,8 @@ class DocumentController : public QObject {
   void offerRecovery();               // of what a crash has left behind, if anything
   bool close();                       // false: a file is still being read, and rested() follows
 
-  QString name() const; // of what is open; empty: the toy
-  const QStringList& warnings() const { return warnings_; }
+  QString name() const;         // of what is open; empty: nothing is
+  QString nameUnderWay() const; // of what is being opened
   const std::optional<Work>& work() const { return work_; }
   std::optional<std::filesystem::path> leftBehind() const;
 
@@ -54,7 +55,7 @@ class DocumentController : public QObject {
   void failed(const QString& message);
   void cancelled();
   void changed();
-  void said(const QString& words, int milliseconds);
+  void said(const patina::Message& message);
   void rested();
 
  protected:
@@ -74,7 +75,6 @@ class DocumentController : public QObject {
   SceneLoader loader_;
   RecentFiles recent_;
   QString name_;
-  QStringList warnings_;
   std::optional<Work> work_;
   std::vector<std::filesystem::path> left_behind_; // what is offered comes first
   bool asks_ = true, closing_ = false;

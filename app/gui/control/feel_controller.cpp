@@ -21,6 +21,10 @@ void FeelController::open(const Scene& scene, const Vec3& start) {
   sample_ = {};
   at_.force.clear();
   at_.energy.restart();
+  place(scene, start);
+}
+
+void FeelController::place(const Scene& scene, const Vec3& start) {
   const DeviceEntry& entry = deviceNamed(scene.device);
   const auto target = std::make_shared<TipTarget>(start);
   const DeviceModel model =
@@ -105,7 +109,7 @@ bool FeelController::saveRecording() {
   }
   QString words = tr("Saved %1 ticks to %2").arg(count).arg(path);
   if (lost > 0) words += tr("; %1 ticks came too fast to be kept").arg(lost);
-  emit said(words, lost > 0 ? 0 : 4000);
+  emit said({words, lost > 0});
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include <QObject>
 
+#include "app/gui/panels/message_panel.h"
 #include "app/gui/servo/live_plots.h"
 #include "app/gui/servo/recording.h"
 #include "app/gui/servo/stability_job.h"
@@ -29,7 +30,8 @@ class FeelController : public QObject {
   StabilityJob& stability() { return stability_; }
   const ToolSample& sample() const { return sample_; } // the last one
   void open(const Scene& scene, const Vec3& start);
-  void close();   // and nothing that the servo said is lost
+  void place(const Scene& scene, const Vec3& tip); // there, as if it had never been elsewhere
+  void close();                                    // and nothing that the servo said is lost
   void collect(); // what it has said since the last time; of every window tick
 
   bool recording() const { return recording_.on(); }
@@ -42,7 +44,7 @@ class FeelController : public QObject {
   void collected(const std::vector<patina::ToolSample>& samples); // also none
   void failed(const QString& problem);                            // of the device
   void changed();
-  void said(const QString& words, int milliseconds); // 0: until something else is
+  void said(const patina::Message& message);
 
  private:
   bool saveRecording(); // false: not written, the samples are kept

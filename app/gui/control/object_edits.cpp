@@ -1,7 +1,10 @@
 #include "app/gui/control/object_edits.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "core/numbers.h"
 
 namespace patina {
 namespace {
@@ -9,6 +12,19 @@ namespace {
 auto find(const std::vector<SceneObject>& list, const std::string& name) {
   return std::find_if(list.begin(), list.end(),
                       [&](const SceneObject& object) { return object.name == name; });
+}
+
+// "turn cup by 30° about z", "move cup by 12 mm"; both at once are a move.
+std::string wordsFor(const SceneObject& object, const Pose& now) {
+  const Pose& before = object.world_from_object;
+  const double way = (now.translation() - before.translation()).norm();
+  if (way > 0) return "move " + object.name + " by " + formatLength(way);
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(now.linear() * before.linear().transpose()));
+  std::string words = "turn " + object.name + " by " +
+                      formatNumber(std::round(turn.angle() * 1800 / M_PI) / 10) + "°";
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(turn.axis()[axis]) > 0.9999) words += std::string(" about ") + "xyz"[axis];
+  return words;
 }
 
 } // namespace
@@ -40,7 +56,7 @@ std::string wordsFor(const std::vector<SceneObject>& before,
     const auto now = find(edited, object.name);
     if (now == edited.end()) return "remove " + object.name;
     if (now->world_from_object.matrix() != object.world_from_object.matrix())
-      return "move " + object.name;
+      return wordsFor(object, now->world_from_object);
   }
   return {};
 }

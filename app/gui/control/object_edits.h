@@ -17,7 +17,7 @@ std::vector<SceneObject> withEdits(const std::vector<SceneObject>& now,
                                    const std::vector<SceneObject>& before,
                                    const std::vector<SceneObject>& edited);
 
-// "move cup", for the history; empty: neither moved nor removed.
+// "move cup by 12 mm", for the history; empty: neither moved nor removed.
 std::string wordsFor(const std::vector<SceneObject>& before,
                      const std::vector<SceneObject>& edited);
 

@@ -7,14 +7,15 @@
 namespace patina {
 
 LoadBar::LoadBar(QWidget* parent)
-    : QWidget(parent), words_(new QLabel(this)), bar_(new QProgressBar(this)),
+    : QWidget(parent), words_(new ElidedLabel(this)), bar_(new QProgressBar(this)),
       cancel_(new QPushButton(tr("Cancel"), this)) {
   auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(10, 5, 10, 5);
-  layout->addWidget(words_);
+  layout->setContentsMargins(6, 0, 4, 0);
+  layout->addWidget(words_, 2);
   layout->addWidget(bar_, 1);
   layout->addWidget(cancel_);
   cancel_->setObjectName(QStringLiteral("cancel_load"));
+  cancel_->setToolTip(tr("Leave it; what was open stays"));
   connect(cancel_, &QPushButton::clicked, this, [this] {
     words_->setText(tr("Cancelling…"));
     cancel_->setEnabled(false);

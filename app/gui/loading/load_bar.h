@@ -3,12 +3,12 @@
 
 #include <optional>
 
-#include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QTimer>
 #include <QWidget>
 
+#include "app/gui/window/elided_label.h"
 #include "app/gui/window/window_state.h"
 
 namespace patina {
@@ -23,7 +23,7 @@ class LoadBar : public QWidget {
   void cancelled();
 
  private:
-  QLabel* words_;
+  ElidedLabel* words_;
   QProgressBar* bar_;
   QPushButton* cancel_;
   QString title_; // of the work that is seen, or will be

@@ -32,7 +32,6 @@ void RecentFiles::rebuild() {
   for (const QString& path : paths()) {
     QAction* action = menu_.addAction(QFileInfo(path).fileName());
     action->setToolTip(path);
-    action->setStatusTip(path);
     connect(action, &QAction::triggered, this, [this, path] { emit chosen(path); });
   }
   menu_.setToolTipsVisible(true);

@@ -8,13 +8,12 @@
 
 namespace patina {
 
-RecoverBar::RecoverBar(QWidget* parent) : QWidget(parent), words_(new QLabel(this)) {
+RecoverBar::RecoverBar(QWidget* parent) : QWidget(parent), words_(new ElidedLabel(this)) {
   setAttribute(Qt::WA_StyledBackground);
   setObjectName(QStringLiteral("recover_bar"));
   setStyleSheet(QStringLiteral("#recover_bar { background: #e3eefa; }"));
   auto* line = new QHBoxLayout(this);
-  line->setContentsMargins(10, 5, 10, 5);
-  words_->setWordWrap(true);
+  line->setContentsMargins(6, 0, 4, 0);
   line->addWidget(words_, 1);
   const auto button = [&](const char* name, const QString& words, const QString& tip, auto asked) {
     auto* made = new QPushButton(words, this);

@@ -1,10 +1,11 @@
-// A scene that a crash left behind: offered above the picture, and nothing waits for the answer.
+// A scene that a crash left behind: offered below the picture, and nothing waits for the answer.
 #pragma once
 
 #include <filesystem>
 
-#include <QLabel>
 #include <QWidget>
+
+#include "app/gui/window/elided_label.h"
 
 namespace patina {
 
@@ -20,7 +21,7 @@ class RecoverBar : public QWidget {
   void laterAsked();
 
  private:
-  QLabel* words_;
+  ElidedLabel* words_;
 };
 
 } // namespace patina

@@ -27,6 +27,11 @@ QColor qColor(const std::array<double, 3>& color) {
   return QColor::fromRgbF(color[0], color[1], color[2]);
 }
 
+QString swatchStyle(const std::array<double, 3>& color, const QString& border) {
+  return QStringLiteral("QToolButton { background: %1; border: %2; border-radius: 3px; }")
+      .arg(qColor(color).name(), border);
+}
+
 QString wordsOf(std::string_view utf8) {
   return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
 }
@@ -72,30 +77,35 @@ void BrushPanel::rebuild(const BrushPresets& presets) {
 void BrushPanel::addColor() {
   auto* line = new QHBoxLayout;
   line->setSpacing(3);
-  const auto swatch = [&](const QColor& color, int wide, bool now) {
+  const auto swatch = [&](int wide) {
     auto* button = new QToolButton(form_);
     button->setFixedSize(wide, 22);
-    button->setStyleSheet(QStringLiteral("QToolButton { background: %1; border: %2; "
-                                         "border-radius: 3px; }")
-                              .arg(color.name(), now ? QStringLiteral("2px solid #2b6cb0")
-                                                     : QStringLiteral("1px solid #9aa3b0")));
     line->addWidget(button);
     return button;
   };
-  QToolButton* now = swatch(qColor(brush_.color), 44, true);
+  QToolButton* now = swatch(40);
   now->setObjectName(QStringLiteral("brush_color"));
-  now->setToolTip(tr("Choose another colour…"));
-  connect(now, &QToolButton::clicked, this, [this] {
+  now->setToolTip(tr("What is painted with; choose another colour…"));
+  const auto take = [this, now](const std::array<double, 3>& color) {
+    brush_.color = color;
+    now->setStyleSheet(swatchStyle(color, QStringLiteral("2px solid #2b6cb0")));
+  };
+  take(brush_.color);
+  connect(now, &QToolButton::clicked, this, [this, take] {
     const QColor color = QColorDialog::getColor(qColor(brush_.color), this, tr("Brush colour"));
     if (!color.isValid()) return;
-    brush_.color = {color.redF(), color.greenF(), color.blueF()};
+    take({color.redF(), color.greenF(), color.blueF()});
     change();
   });
-  for (const auto& color : kSwatches)
-    connect(swatch(qColor(color), 22, false), &QToolButton::clicked, this, [this, color] {
-      brush_.color = color;
+  for (const auto& color : kSwatches) {
+    QToolButton* button = swatch(21);
+    button->setStyleSheet(swatchStyle(color, QStringLiteral("1px solid #9aa3b0")));
+    button->setToolTip(tr("Paint with %1").arg(qColor(color).name()));
+    connect(button, &QToolButton::clicked, this, [this, color, take] {
+      take(color);
       change();
     });
+  }
   line->addStretch(1);
   form_->addLine(line);
 }
@@ -115,7 +125,8 @@ void BrushPanel::addValue(double extent) {
     range = {dial.least, dial.most, dial.step, dial.decimals, dial.logarithmic};
     per_si = row.reading.per_si;
   }
-  form_->addRow({"brush_value", caption, unit, range, per_si}, brush_.value);
+  form_->addRow({"brush_value", caption, unit, range, per_si, tr("What the brush paints")},
+                brush_.value);
 }
 
 // Which of the channels that share a tool.
@@ -131,9 +142,12 @@ void BrushPanel::addChannels(MaterialChannel channel) {
   }
   if (shared.size() == 1) return;
   const std::string name = "which_" + std::string(rowOf(channel).tool);
-  form_->addChoice(name.c_str(), tr("Paints"), words, now, [this, shared](int index) {
-    emit toolAsked(Tool::material(shared[static_cast<std::size_t>(index)]));
-  });
+  form_->addChoice(
+      name.c_str(), tr("Paints"), words, now,
+      [this, shared](int index) {
+        emit toolAsked(Tool::material(shared[static_cast<std::size_t>(index)]));
+      },
+      tr("Which of the values that share this tool"));
 }
 
 void BrushPanel::addErased() {
@@ -145,9 +159,10 @@ void BrushPanel::addErased() {
     names.emplace_back(name(tool));
   }
   const auto now = std::find(names.begin(), names.end(), brush_.erases) - names.begin();
-  form_->addChoice("erases", tr("Erases"), words, static_cast<int>(now), [this, names](int index) {
-    brush_.erases = names[static_cast<std::size_t>(index)];
-  });
+  form_->addChoice(
+      "erases", tr("Erases"), words, static_cast<int>(now),
+      [this, names](int index) { brush_.erases = names[static_cast<std::size_t>(index)]; },
+      tr("All that was painted, or one kind of it"));
 }
 
 void BrushPanel::addLayers(const BrushPresets& presets) {
@@ -243,17 +258,19 @@ void BrushPanel::addChoices() {
     const auto now = std::find(modes.begin(), modes.end(), brush_.mode) - modes.begin();
     form_->addChoice(
         "brush_mode", tr("Lays on"), words, static_cast<int>(now),
-        [this, modes](int index) { brush_.mode = modes[static_cast<std::size_t>(index)]; });
+        [this, modes](int index) { brush_.mode = modes[static_cast<std::size_t>(index)]; },
+        tr("Once a stroke, again with every moment, added to what is there, or made even"));
   }
   form_->addChoice(
       "brush_seed", tr("Starts"), {tr("at the nearest point"), tr("under the tip")},
       static_cast<int>(brush_.seed), [this](int index) { brush_.seed = static_cast<Seed>(index); },
       tr("Under the tip: where the way from the tip goes through the surface, as in "
          "the paper; on thin parts it is the side that is touched"));
-  form_->addChoice("brush_symmetry", tr("Mirrored"),
-                   {tr("not"), tr("across x"), tr("across y"), tr("across z")},
-                   static_cast<int>(brush_.symmetry),
-                   [this](int index) { brush_.symmetry = static_cast<Symmetry>(index); });
+  form_->addChoice(
+      "brush_symmetry", tr("Mirrored"), {tr("not"), tr("across x"), tr("across y"), tr("across z")},
+      static_cast<int>(brush_.symmetry),
+      [this](int index) { brush_.symmetry = static_cast<Symmetry>(index); },
+      tr("The same across the middle of the object's box"));
   form_->addCheck("front_only", tr("Front faces only"),
                   tr("Leave out what looks away from the place that is touched, such as the far "
                      "side of a thin part"),

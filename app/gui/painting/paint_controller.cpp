@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/gui/control/touching.h"
 #include "authoring/brush/painter.h"
 #include "core/numbers.h"
-#include "field/sampling/field_sampler.h"
 #include "haptics/devices/device_catalog.h"
 #include "scene/surface_pick.h"
 #include "visualization/values/palette.h"
@@ -38,7 +38,11 @@ PaintController::PaintController(const Parts& parts, QObject* parent)
   connect(&at_.view, &SceneWidget::pickAsked, this, &PaintController::pickAt);
   connect(&at_.panel, &BrushPanel::edited, this,
           [this](const Brush& brush) { presets_.set(brush); });
-  connect(&at_.panel, &BrushPanel::pressed, this, [this](double force) { presets_.press = force; });
+  connect(&at_.panel, &BrushPanel::pressed, this, &PaintController::setForce);
+  connect(&at_.tool, &ToolPanel::forceEdited, this, &PaintController::setForce);
+  connect(&at_.view, &SceneWidget::forceTurned, this,
+          [this](double notches) { setForce(presets_.press + 0.1 * notches); });
+  connect(&at_.view, &SceneWidget::escaped, this, &PaintController::escape);
   connect(&at_.panel, &BrushPanel::toolAsked, this, [this](Tool tool) {
     at_.bar.choose({Handling::paint, tool});
   });
@@ -47,6 +51,7 @@ PaintController::PaintController(const Parts& parts, QObject* parent)
 void PaintController::take(const ToolChoice& choice) {
   down_ = lingers_ = false;
   send(tracker_.feed({}, {}));
+  presses_ = choice.handling == Handling::press;
   if (choice.handling == Handling::paint) {
     tool_ = choice.tool;
     at_.panel.show(brush(), presets_);
@@ -64,6 +69,7 @@ void PaintController::setScene(std::shared_ptr<const CompiledScene> scene, bool 
   const Box3 box = bounds(*scene_->mesh);
   presets_.suit(box.isEmpty() ? 0.1 : box.sizes().maxCoeff(), scene_->scene.haptics);
   at_.panel.show(brush(), presets_);
+  at_.tool.setForce(presets_.press);
   if (at_.bar.choice().handling == Handling::paint) at_.edits.prepare(tool_);
 }
 
@@ -87,11 +93,17 @@ void PaintController::softenBrush(double factor) {
   setBrush(changed);
 }
 
-Vec3 PaintController::normalAt(const Vec3& surface) const {
-  const Vec3 gradient =
-      FieldSampler(*scene_->built.field, scene_->scene.sampler).at(surface).gradient;
-  const double size = gradient.norm();
-  return size > 1e-9 ? Vec3(gradient / size) : Vec3::UnitZ();
+void PaintController::setForce(double newtons) {
+  presets_.press = std::clamp(newtons, 0.1, 3.0);
+  at_.tool.setForce(presets_.press);
+  if (newtons_ > 0) newtons_ = presets_.press; // felt with the next tick of the window
+}
+
+void PaintController::escape() {
+  down_ = lingers_ = false;
+  if (tracker_.painting()) at_.edits.cancelStroke();
+  tracker_ = {};
+  if (scene_) lift();
 }
 
 std::optional<SurfaceValues> PaintController::valuesAt(const Vec3& surface, QString* object) const {
@@ -117,20 +129,19 @@ void PaintController::press(const Vec3& surface, double newtons) {
   depth += newtons * deviceNamed(scene_->scene.device).hand_compliance;
   const SurfaceField& field = *scene_->built.field;
   depth = std::min(depth, 0.5 * field.band * field.grid.voxel);
-  const double skin = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
   aim_ = surface;
   newtons_ = newtons;
-  moveTip(surface + (skin + (values ? values->height : 0) - depth) * normalAt(surface));
+  moveTip(surface +
+          (skinOf(haptics) + (values ? values->height : 0) - depth) * normalAt(*scene_, surface));
 }
 
 void PaintController::lift() {
   newtons_ = 0;
   const HapticProperties& haptics = scene_->scene.haptics;
-  const double skin = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0) +
-                      (haptics.magnet ? haptics.magnet->range : 0);
+  const double skin = skinOf(haptics) + (haptics.magnet ? haptics.magnet->range : 0);
   const auto values = valuesAt(aim_);
   const double raised = values ? std::max(0.0, values->height) : 0;
-  moveTip(aim_ + (skin + raised + 0.02 * presets_.extent()) * normalAt(aim_));
+  moveTip(aim_ + (skin + raised + 0.02 * presets_.extent()) * normalAt(*scene_, aim_));
 }
 
 void PaintController::follow(const Pointed& where) {
@@ -144,6 +155,7 @@ void PaintController::follow(const Pointed& where) {
       lift(); // beside the object: the stroke ends with its contact
   } else if (down_) {
     down_ = false;
+    if (presses_) return lift();
     lingers_ = true;
     released_.start();
     lingered_ = 0;
@@ -167,6 +179,7 @@ void PaintController::feed(const std::vector<ToolSample>& ticks) {
   if (!ticks.empty()) last_ = ticks.back();
   if (!scene_) return;
   if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
+  if (presses_) return;
   const double near = std::max(brush().radius, 0.02 * presets_.extent());
   send(tracker_.feed(ticks, {down_ || lingers_, aim_, near}));
   const bool over = lingered_ > kLingerTicks && released_.elapsed() > kLinger;
@@ -180,7 +193,8 @@ void PaintController::feed(const std::vector<ToolSample>& ticks) {
 void PaintController::refresh() {
   const bool paints = scene_ && at_.bar.choice().handling == Handling::paint;
   const auto surface = scene_ ? at_.view.underPointer() : std::nullopt;
-  if (paints && surface && !down_ && !lingers_) { // the tool hovers where it would paint
+  if ((paints || (scene_ && presses_)) && surface && !down_ &&
+      !lingers_) { // the tool hovers where it would paint
     aim_ = *surface;
     lift();
   }
@@ -192,7 +206,8 @@ void PaintController::showCursor(const std::optional<Vec3>& surface) {
   if (!surface) return at_.view.view().setBrush(std::nullopt);
   const Brush now = brush();
   const double radius = brushRadius(now, last_.contact ? last_.force.norm() : presets_.press);
-  BrushPlace place{*surface, normalAt(*surface), radius, halfRadius(now, radius), {1, 1, 1}};
+  BrushPlace place{
+      *surface, normalAt(*scene_, *surface), radius, halfRadius(now, radius), {1, 1, 1}};
   if (now.tool == Tool::color) place.color = now.color;
   at_.view.view().setBrush(place);
 }

@@ -10,6 +10,7 @@
 #include "app/gui/painting/brush_panel.h"
 #include "app/gui/painting/brush_presets.h"
 #include "app/gui/painting/stroke_tracker.h"
+#include "app/gui/panels/tool_panel.h"
 #include "app/gui/window/scene_widget.h"
 #include "app/gui/window/tool_bar.h"
 #include "haptics/servo/tip_servo.h"
@@ -25,6 +26,7 @@ class PaintController : public QObject {
   struct Parts {
     ToolBar& bar;
     BrushPanel& panel;
+    ToolPanel& tool;
     SceneWidget& view;
     TipServo& feel;
     EditThread& edits;
@@ -49,8 +51,9 @@ class PaintController : public QObject {
   void follow(const Pointed& where);
   void press(const Vec3& surface, double newtons);
   void lift();
+  void setForce(double newtons);
+  void escape(); // the stroke is taken back
   void moveTip(const Vec3& target);
-  Vec3 normalAt(const Vec3& surface) const;
   std::optional<SurfaceValues> valuesAt(const Vec3& surface, QString* object = nullptr) const;
   bool arrived(const std::vector<ToolSample>& ticks) const;
   void send(const std::vector<StrokePiece>& pieces);
@@ -65,6 +68,7 @@ class PaintController : public QObject {
   Vec3 aim_ = Vec3::Zero(); // on the surface
   double newtons_ = 0;      // with which it is pressed there; 0: it is not
   bool down_ = false, lingers_ = false;
+  bool presses_ = false; // and paints nothing
   QElapsedTimer released_;
   std::size_t lingered_ = 0; // ticks since then
   ToolSample last_;

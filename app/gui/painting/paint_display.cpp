@@ -38,6 +38,7 @@ PaintDisplay::PaintDisplay(QWidget* parent)
   label->setProperty("quiet", true);
   grid->addWidget(label, 0, 0);
   combo_->setObjectName(QStringLiteral("paint_shown"));
+  combo_->setToolTip(tr("What of the paint is seen"));
   grid->addWidget(combo_, 0, 1);
   grid->setColumnStretch(1, 1);
   auto* line = new QHBoxLayout(range_row_);
@@ -46,6 +47,7 @@ PaintDisplay::PaintDisplay(QWidget* parent)
   lock_->setToolTip(tr("Keep the colours' range as it is while painting goes on"));
   for (QDoubleSpinBox* number : {low_, high_}) {
     number->setKeyboardTracking(false);
+    number->setToolTip(tr("Where the colours of the scale begin and end, while they are locked"));
     number->setRange(-1e6, 1e6);
     number->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
     connect(number, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this] { sendLock(); });

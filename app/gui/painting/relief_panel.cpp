@@ -86,7 +86,7 @@ void ReliefPanel::rebuild() {
                  tr("Scales all of it: painted heights are shares of this one")},
                 height,
                 [this](double now) { relief_.height = std::copysign(now, relief_.height); });
-  form_->addCheck("relief_inverted", tr("Inverted: what was raised is engraved"), {},
+  form_->addCheck("relief_inverted", tr("Inverted"), tr("What was raised is engraved"),
                   std::signbit(relief_.height), [this](bool on) {
                     relief_.height = std::copysign(relief_.height, on ? -1.0 : 1.0);
                   });
@@ -96,8 +96,8 @@ void ReliefPanel::rebuild() {
         name, caption, words, value == second ? 1 : 0,
         [&value, first, second](int index) { value = index == 0 ? first : second; }, tip);
   };
-  add("relief_source", tr("Taken from"), {tr("what is painted as relief"), tr("the colour")},
-      relief_.source, ReliefFrom::color, ReliefFrom::painted,
+  add("relief_source", tr("Taken from"), {tr("what is painted"), tr("the colour")}, relief_.source,
+      ReliefFrom::color, ReliefFrom::painted,
       tr("The colour: its grey value is felt as height, bright is high, and what is not painted "
          "or black stays as it is."));
   add("relief_mode", tr("Felt"), {tr("from the image"), tr("baked into the field")}, relief_.mode,

@@ -6,7 +6,8 @@
 #include <QCoreApplication>
 #include <QPainter>
 #include <QPainterPath>
-#include <QPixmap>
+
+#include "app/gui/window/drawn_icon.h"
 
 namespace patina {
 namespace {
@@ -36,6 +37,17 @@ void drawFeel(QPainter& p) {
   p.drawLine(QPointF(10, 13), QPointF(10, 3.5));
   p.drawLine(QPointF(10, 3), QPointF(7.2, 6.2));
   p.drawLine(QPointF(10, 3), QPointF(12.8, 6.2));
+}
+
+void drawPress(QPainter& p) {
+  QPainterPath ground(QPointF(2, 14));
+  ground.cubicTo(6, 14, 7, 17.5, 10, 17.5);
+  ground.cubicTo(13, 17.5, 14, 14, 18, 14);
+  p.drawPath(ground);
+  p.setPen(QPen(kAccent, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(10, 3), QPointF(10, 13));
+  p.drawLine(QPointF(10, 14), QPointF(7.2, 10.8));
+  p.drawLine(QPointF(10, 14), QPointF(12.8, 10.8));
 }
 
 void drawBrush(QPainter& p) {
@@ -147,6 +159,8 @@ Draw drawerOf(const ToolChoice& choice) {
     return drawNavigate;
   case Handling::feel:
     return drawFeel;
+  case Handling::press:
+    return drawPress;
   case Handling::pick:
     return drawPick;
   case Handling::paint:
@@ -178,6 +192,12 @@ std::vector<ToolCard> makeCards() {
                                   tr("Feel"),
                                   tr("Left drag moves the tip, the wheel moves it in depth"),
                                   Qt::Key_V},
+                                 {{Handling::press, {}},
+                                  "tool_press",
+                                  tr("Press"),
+                                  tr("Press on the surface under the pointer with one force, "
+                                     "which the wheel sets"),
+                                  Qt::Key_Q},
                                  {paint(Tool::color), "tool_color", tr("Paint"),
                                   tr("Paint colour onto the surface"), Qt::Key_P},
                                  {paint(Tool::relief), "tool_relief", tr("Relief"),
@@ -207,19 +227,7 @@ const std::vector<ToolCard>& toolCards() {
 }
 
 QIcon iconOf(const ToolChoice& choice) {
-  QIcon icon;
-  for (const int scale : {1, 2, 3}) {
-    QPixmap pixmap(20 * scale, 20 * scale);
-    pixmap.fill(Qt::transparent);
-    QPainter painter(&pixmap);
-    painter.setRenderHint(QPainter::Antialiasing);
-    painter.scale(scale, scale);
-    painter.setPen(QPen(kInk, 1.4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-    drawerOf(choice)(painter);
-    painter.end();
-    icon.addPixmap(pixmap);
-  }
-  return icon;
+  return drawnIcon(drawerOf(choice));
 }
 
 QString captionOf(const Tool& tool) {

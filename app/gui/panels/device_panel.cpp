@@ -19,7 +19,7 @@ const std::optional<Stabilisers> kStabilisers[] = {
 
 struct Number {
   const char* name;
-  QString caption, unit;
+  QString caption, tip, unit;
   double per_unit; // SI
   double low, high, step;
   int decimals;
@@ -29,23 +29,26 @@ struct Number {
 
 std::vector<Number> numbers() {
   const auto tr = [](const char* words) { return DevicePanel::tr(words); };
-  return {
-      {"device_mass", tr("Mass"), QStringLiteral("g"), 1e-3, 1, 5000, 10, 0,
-       [](const DeviceModel& m) { return m.mass; }, [](DeviceModel& m, double v) { m.mass = v; }},
-      {"device_damping", tr("Damping"), QStringLiteral("N s/m"), 1, 0, 100, 0.1, 2,
-       [](const DeviceModel& m) { return m.damping; },
-       [](DeviceModel& m, double v) { m.damping = v; }},
-      {"device_coulomb", tr("Dry friction"), QStringLiteral("N"), 1, 0, 10, 0.05, 2,
-       [](const DeviceModel& m) { return m.coulomb; },
-       [](DeviceModel& m, double v) { m.coulomb = v; }},
-      {"device_encoder", tr("Encoder step"), QStringLiteral("µm"), 1e-6, 0, 1000, 5, 1,
-       [](const DeviceModel& m) { return m.encoder_step; },
-       [](DeviceModel& m, double v) { m.encoder_step = v; }},
-      {"device_rate", tr("Rate"), QStringLiteral("Hz"), 1, 100, 10000, 100, 0,
-       [](const DeviceModel& m) { return m.rate; }, [](DeviceModel& m, double v) { m.rate = v; }},
-      {"device_delay", tr("Delay"), tr("samples"), 1, 0, 20, 1, 0,
-       [](const DeviceModel& m) { return static_cast<double>(m.delay); },
-       [](DeviceModel& m, double v) { m.delay = static_cast<int>(std::lround(v)); }}};
+  return {{"device_mass", tr("Mass"), tr("Of the part that a hand moves"), QStringLiteral("g"),
+           1e-3, 1, 5000, 10, 0, [](const DeviceModel& m) { return m.mass; },
+           [](DeviceModel& m, double v) { m.mass = v; }},
+          {"device_damping", tr("Damping"), tr("Of the device itself, against its speed"),
+           QStringLiteral("N s/m"), 1, 0, 100, 0.1, 2,
+           [](const DeviceModel& m) { return m.damping; },
+           [](DeviceModel& m, double v) { m.damping = v; }},
+          {"device_coulomb", tr("Dry friction"), tr("Of the device itself, whatever its speed"),
+           QStringLiteral("N"), 1, 0, 10, 0.05, 2, [](const DeviceModel& m) { return m.coulomb; },
+           [](DeviceModel& m, double v) { m.coulomb = v; }},
+          {"device_encoder", tr("Encoder step"), tr("The smallest step that it reports"),
+           QStringLiteral("µm"), 1e-6, 0, 1000, 5, 1,
+           [](const DeviceModel& m) { return m.encoder_step; },
+           [](DeviceModel& m, double v) { m.encoder_step = v; }},
+          {"device_rate", tr("Rate"), tr("How often a second it is served"), QStringLiteral("Hz"),
+           1, 100, 10000, 100, 0, [](const DeviceModel& m) { return m.rate; },
+           [](DeviceModel& m, double v) { m.rate = v; }},
+          {"device_delay", tr("Delay"), tr("How many samples late a force acts"), tr("samples"), 1,
+           0, 20, 1, 0, [](const DeviceModel& m) { return static_cast<double>(m.delay); },
+           [](DeviceModel& m, double v) { m.delay = static_cast<int>(std::lround(v)); }}};
 }
 
 QString newtonsPerMetre(double value) {
@@ -172,6 +175,7 @@ void DevicePanel::addNumbers(QVBoxLayout* column) {
     auto* box = new QDoubleSpinBox(numbers_);
     box->setObjectName(QString::fromUtf8(number.name));
     box->setAccessibleName(number.caption);
+    box->setToolTip(number.tip);
     box->setDecimals(number.decimals);
     box->setRange(number.low, number.high);
     box->setSingleStep(number.step);

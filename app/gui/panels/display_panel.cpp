@@ -9,24 +9,26 @@ namespace {
 
 struct Box {
   Layer layer;
-  const char* words;
+  const char *words, *key, *tip;
   bool needs_field = true, shown = false;
-  const char* tip = "";
 };
 // In the order of the panel.
 constexpr Box kBoxes[] = {
-    {Layer::mesh, "Mesh", false, true},
-    {Layer::tip, "Tool and force", true, true},
-    {Layer::slice, "Slice"},
-    {Layer::iso, "Iso-surface"},
-    {Layer::wireframe, "Wireframe", false},
-    {Layer::nodes, "Nodes at the tip"},
-    {Layer::extent, "Field extent"},
-    {Layer::stability, "Stability", true, false,
+    {Layer::mesh, "Mesh", "M", "The triangles of what is open", false, true},
+    {Layer::tip, "Tool and force", "T",
+     "The tool where the surface holds it, the hand as a ghost, and the force on it", true, true},
+    {Layer::slice, "Slice", "S",
+     "A plane through the field, coloured by distance; what stands before it is cut away"},
+    {Layer::iso, "Iso-surface", "I", "The surface at a distance: 0 is the object"},
+    {Layer::wireframe, "Wireframe", "W", "The edges of the triangles", false},
+    {Layer::nodes, "Nodes at the tip", "N",
+     "What contact computes with: warm inside, cool outside"},
+    {Layer::extent, "Field extent", "E", "The box of the grid"},
+    {Layer::stability, "Stability", "K",
      "Where the surface would buzz: K*(x)/K, what the loop bears over what this place asks of it. "
      "Below 1, warm, a held tip swings up by itself."},
-    {Layer::band, "Band", true, true,
-     "Where the offset or the magnet acts: a shell, and a tint of the slice"}};
+    {Layer::band, "Band", "B",
+     "Where the offset or the magnet acts: a shell, and a tint of the slice", true, true}};
 
 } // namespace
 
@@ -45,7 +47,8 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   for (const Box& row : kBoxes) {
     const Layer layer = row.layer;
     auto* box = new QCheckBox(tr(row.words), this);
-    box->setToolTip(tr(row.tip));
+    box->setToolTip(QStringLiteral("<b>%1</b> (%2)<br>%3")
+                        .arg(tr(row.words), QString::fromUtf8(row.key), tr(row.tip)));
     box->setObjectName(QString::fromUtf8(name(layer).data(), static_cast<int>(name(layer).size())));
     box->setChecked(row.shown);
     connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
@@ -70,6 +73,8 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   slice_layout->addWidget(label, 0, 0);
   axis_->addItems({QStringLiteral("x"), QStringLiteral("y"), QStringLiteral("z")});
   axis_->setCurrentIndex(slice_.axis);
+  axis_->setToolTip(tr("The axis that the slice is across"));
+  position_->setToolTip(tr("Where the slice is, from one end of the field to the other"));
   slice_layout->addWidget(axis_, 0, 1);
   slice_layout->addWidget(position_, 1, 0, 1, 2);
   position_->setObjectName(QStringLiteral("slice_position"));
@@ -99,6 +104,7 @@ void DisplayPanel::setField(const SurfaceField* field) {
                         {-reach, reach, reach / 20, reach < 1 ? 3 : 2}, iso_card_);
     iso_->setObjectName(QStringLiteral("iso_value"));
     iso_->setValue(kept);
+    iso_->setToolTip(tr("Its distance from the surface; above 0 it lies outside"));
     iso_card_->layout()->addWidget(iso_);
     connect(iso_, &ValueRow::edited, this, [this](double mm) { emit isoMoved(mm / 1000); });
   }

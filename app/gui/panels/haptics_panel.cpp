@@ -43,26 +43,37 @@ void HapticsPanel::rebuild() {
   form_ = new Form(this);
   connect(form_, &Form::edited, this, [this] { emit edited(haptics_); });
   addModeRows();
-  form_->addRow({"stiffness", tr("Stiffness"), QStringLiteral("N/m"), {10, 10000, 10, 0, true}},
+  form_->addRow({"stiffness",
+                 tr("Stiffness"),
+                 QStringLiteral("N/m"),
+                 {10, 10000, 10, 0, true},
+                 1,
+                 tr("Force for each metre of depth")},
                 haptics_.stiffness);
   if (haptics_.friction) addFrictionRows();
   if (haptics_.damping) addDampingRows();
   if (haptics_.tip_radius) {
     const RowRange range{0.05, std::min(10.0, mostMillimetres()), 0.1, 2};
-    makeRemovable(form_->addRow({"tip_radius", tr("Tip radius"), QStringLiteral("mm"), range, 1000},
+    makeRemovable(form_->addRow({"tip_radius", tr("Tip radius"), QStringLiteral("mm"), range, 1000,
+                                 tr("The tip is a ball; without one it is a point")},
                                 *haptics_.tip_radius),
                   tr("Feel with a point again"), [this] { haptics_.tip_radius.reset(); });
   }
-  form_->addRow({"force_limit", tr("Force limit"), QStringLiteral("N"), {0.1, 20, 0.1, 1}},
+  form_->addRow({"force_limit",
+                 tr("Force limit"),
+                 QStringLiteral("N"),
+                 {0.1, 20, 0.1, 1},
+                 1,
+                 tr("No force is larger, whatever is pressed")},
                 haptics_.force_limit);
-  using Contact = HapticProperties::Contact;
+  using Method = HapticProperties::Contact;
   form_->addCheck("contact_proxy", tr("Stays on the side it entered"),
                   tr("The contact point is followed over the surface, round corners and edges, "
                      "and stays on the side where the tip came in. Without, it is found from the "
                      "tip alone, as in the paper: past the middle of a part the force turns "
                      "round."),
-                  haptics_.contact == Contact::proxy,
-                  [this](bool on) { haptics_.contact = on ? Contact::proxy : Contact::ray; });
+                  haptics_.contact == Method::proxy,
+                  [this](bool on) { haptics_.contact = on ? Method::proxy : Method::ray; });
   addMenu();
   layout_->insertWidget(0, form_);
 }
@@ -108,9 +119,13 @@ void HapticsPanel::addModeRows() {
   if (!haptics_.magnet) return;
   form_->addRow({"magnet_range", tr("Magnet range"), QStringLiteral("mm"), lengths, 1000, limited},
                 haptics_.magnet->range);
-  form_->addRow(
-      {"magnet_strength", tr("Magnet strength"), QStringLiteral("N/m"), {10, 3000, 10, 0, true}},
-      haptics_.magnet->strength);
+  form_->addRow({"magnet_strength",
+                 tr("Magnet strength"),
+                 QStringLiteral("N/m"),
+                 {10, 3000, 10, 0, true},
+                 1,
+                 tr("The pull for each metre from the surface")},
+                haptics_.magnet->strength);
   form_->addCheck("magnet_fades", tr("Pull fades at the edge"),
                   tr("Over the last quarter of the range the pull falls to zero; without this "
                      "it steps there by strength × range"),
@@ -122,8 +137,14 @@ void HapticsPanel::addFrictionRows() {
   const auto addRow = [this](const char* name, const QString& caption, double& value,
                              const char* other_name, double& other, bool upwards) {
     return form_->addRow(
-        {name, caption, {}, {0, 2, 0.05, 2}}, value,
-        [this, &value, &other, other_name, upwards](double now) {
+        {name,
+         caption,
+         {},
+         {0, 2, 0.05, 2},
+         1,
+         upwards ? tr("Coulomb's coefficient that holds; never below the dynamic one")
+                 : tr("Coulomb's coefficient that slides; never above the static one")},
+        value, [this, &value, &other, other_name, upwards](double now) {
           value = now;
           if (upwards ? other <= now : other >= now) return;
           other = now;
@@ -139,7 +160,12 @@ void HapticsPanel::addFrictionRows() {
 }
 
 void HapticsPanel::addDampingRows() {
-  const RowSpec damping{"damping", tr("Damping"), QStringLiteral("N s/m"), {0, 20, 0.1, 2}};
+  const RowSpec damping{"damping",
+                        tr("Damping"),
+                        QStringLiteral("N s/m"),
+                        {0, 20, 0.1, 2},
+                        1,
+                        tr("Against the speed along the normal; it never pulls")};
   makeRemovable(form_->addRow(damping, *haptics_.damping), tr("Remove damping from the scene"),
                 [this] {
                   haptics_.damping.reset();

@@ -1,10 +1,13 @@
 #include "app/gui/panels/history_panel.h"
 
+#include "app/gui/panels/history_words.h"
+
 namespace patina {
 
 HistoryPanel::HistoryPanel(QWidget* parent) : QListWidget(parent) {
   setObjectName(QStringLiteral("history"));
   setUniformItemSizes(true);
+  setToolTip(tr("Every edit, the oldest first; a click goes there"));
   setFocusPolicy(Qt::NoFocus); // keys are the view's
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setTextElideMode(Qt::ElideRight);
@@ -23,8 +26,7 @@ void HistoryPanel::show(const EditStatus& status) {
     ++kept;
   if (count() == 0) addItem(tr("As it was opened"));
   while (count() > static_cast<int>(kept) + 1) delete takeItem(count() - 1);
-  for (std::size_t i = kept; i < status.edits.size(); ++i)
-    addItem(QString::fromStdString(status.edits[i]));
+  for (std::size_t i = kept; i < status.edits.size(); ++i) addItem(wordsOfEdit(status.edits[i]));
   edits_ = status.edits;
   for (int i = 0; i < count(); ++i) {
     const bool done = i <= static_cast<int>(status.done);

@@ -18,6 +18,7 @@ ObjectList::ObjectList(QWidget* parent)
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(6);
   list_->setObjectName(QStringLiteral("objects"));
+  list_->setToolTip(tr("What is felt as one surface; the chosen one is moved below"));
   list_->setStyleSheet(QStringLiteral("QListWidget { border: 1px solid #d5dae2; }"));
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   column->addWidget(list_);
@@ -62,28 +63,25 @@ ObjectList::ObjectList(QWidget* parent)
 void ObjectList::addPoseRows(QGridLayout* grid) {
   const QString axes[] = {QStringLiteral("x"), QStringLiteral("y"), QStringLiteral("z")};
   const QString names[] = {tr("Place [mm]"), tr("Turn [°]")};
-  for (int row = 0; row < 2; ++row) {
-    auto* label = new QLabel(names[row], pose_);
+  for (int column = 0; column < 2; ++column) {
+    auto* label = new QLabel(names[column], pose_);
     label->setProperty("quiet", true);
-    grid->addWidget(label, 2 * row, 0, 1, 3);
+    grid->addWidget(label, 0, column);
+    grid->setColumnStretch(column, 1);
     for (int axis = 0; axis < 3; ++axis) {
       auto* number = new QDoubleSpinBox(pose_);
-      number->setObjectName((row == 0 ? QStringLiteral("place_") : QStringLiteral("turn_")) +
+      number->setObjectName((column == 0 ? QStringLiteral("place_") : QStringLiteral("turn_")) +
                             axes[axis]);
-      number->setAccessibleName(names[row] + QStringLiteral(" ") + axes[axis]);
+      number->setAccessibleName(names[column] + QStringLiteral(" ") + axes[axis]);
       number->setPrefix(axes[axis] + QStringLiteral(" "));
-      number->setDecimals(row == 0 ? 2 : 1);
-      number->setRange(row == 0 ? -1e5 : -180, row == 0 ? 1e5 : 180);
-      number->setSingleStep(row == 0 ? 1 : 5);
+      number->setDecimals(column == 0 ? 2 : 1);
+      number->setRange(column == 0 ? -1e5 : -180, column == 0 ? 1e5 : 180);
+      number->setSingleStep(column == 0 ? 1 : 5);
       number->setKeyboardTracking(false);
-      number->setMinimumWidth(60);
-      // Its own size would be that of -100000.00.
-      number->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
-      grid->addWidget(number, 2 * row + 1, axis);
-      grid->setColumnStretch(axis, 1);
-      numbers_[static_cast<std::size_t>(3 * row + axis)] = number;
+      grid->addWidget(number, axis + 1, column);
+      numbers_[static_cast<std::size_t>(3 * column + axis)] = number;
       connect(number, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
-              [this, index = static_cast<std::size_t>(3 * row + axis)] { readPose(index); });
+              [this, index = static_cast<std::size_t>(3 * column + axis)] { readPose(index); });
     }
   }
   pose_->setToolTip(tr("Turned about the object's own origin, first about x, then y, then z"));
@@ -101,6 +99,7 @@ void ObjectList::setValues(const Scene& scene) {
   int row = 0;
   for (const SceneObject& object : scene.objects) {
     list_->addItem(QString::fromStdString(object.name));
+    list_->item(list_->count() - 1)->setToolTip(list_->item(list_->count() - 1)->text());
     if (list_->item(list_->count() - 1)->text() == before) row = list_->count() - 1;
   }
   list_->setCurrentRow(row);

@@ -4,6 +4,7 @@
 #include <QVBoxLayout>
 #include <QVariant>
 
+#include "app/gui/window/elided_label.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -56,17 +57,21 @@ void ObjectPanel::clear() {
 void ObjectPanel::row(const QString& caption, const QString& value, const QString& tip, bool bad) {
   auto* left = new QLabel(caption, body_);
   left->setProperty("quiet", true);
-  auto* right = new QLabel(value, body_);
+  auto* right = new ElidedLabel(body_);
+  right->setText(value);
   right->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-  right->setTextInteractionFlags(Qt::TextSelectableByMouse);
   right->setProperty("bad", bad);
-  for (QLabel* label : {left, right}) label->setToolTip(tip);
+  for (QLabel* label : std::initializer_list<QLabel*>{left, right}) label->setToolTip(tip);
   grid_->addWidget(left, rows_, 0);
   grid_->addWidget(right, rows_++, 1);
 }
 
 void ObjectPanel::heading(const QString& words) {
-  auto* label = new QLabel(QStringLiteral("<b>%1</b>").arg(words.toHtmlEscaped()), body_);
+  auto* label = new ElidedLabel(body_);
+  label->setText(words);
+  QFont bold = font();
+  bold.setBold(true);
+  label->setFont(bold);
   label->setContentsMargins(0, rows_ > 0 ? 6 : 0, 0, 0);
   grid_->addWidget(label, rows_++, 0, 1, 2);
 }
@@ -94,8 +99,8 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
       tr("Every edge has two faces. Contact works either way; inside and outside are then told by "
          "the winding number."));
   row(tr("Sides"),
-      text(patina::text(sideCounts(report.triangles - report.non_finite - report.degenerate,
-                                   scene.built.report.open_triangles, scene.scene.field.sides))),
+      text(describeSides(sideCounts(report.triangles - report.non_finite - report.degenerate,
+                                    scene.built.report.open_triangles, scene.scene.field.sides))),
       tr("Closed parts have an inside. Open ones, such as a terrain, are the front of a plate as "
          "thick as the band, or felt from both sides with surface.sides = two and a tip radius."));
   const auto defect = [&](const QString& caption, std::size_t count, const QString& tip) {

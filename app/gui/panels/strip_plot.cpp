@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <QLayout>
 #include <QPainter>
 
 namespace patina {
@@ -106,6 +107,18 @@ void StripPlot::paintAxes(QPainter& painter, const QRectF& area) const {
   }
 }
 
+// Room for a longer number than there is, so that the next name does not dance.
+int StripPlot::legendWidth(std::size_t curve) const {
+  return 29 + QFontMetrics(font()).horizontalAdvance(
+                  QStringLiteral("%1 −00.00 %2").arg(curves_[curve].name, unit_));
+}
+
+QSize StripPlot::minimumSizeHint() const {
+  int wide = 58 + 16 + (layout() != nullptr ? layout()->minimumSize().width() : 0);
+  for (std::size_t c = 0; c < curves_.size(); ++c) wide += legendWidth(c);
+  return {wide, 110};
+}
+
 void StripPlot::paintLegend(QPainter& painter, const QRectF& area) const {
   const QFontMetrics metrics(font());
   const double middle = 4 + metrics.height() / 2.0;
@@ -118,9 +131,7 @@ void StripPlot::paintLegend(QPainter& painter, const QRectF& area) const {
     painter.drawLine(QPointF(x, middle), QPointF(x + 12, middle));
     painter.setPen(QColor(0x22, 0x28, 0x32));
     painter.drawText(QPointF(x + 17, 4 + metrics.ascent()), words);
-    // Room for a longer number, so that the next name does not dance.
-    x += 17 + 12 +
-         metrics.horizontalAdvance(QStringLiteral("%1 −00.00 %2").arg(curves_[c].name, unit_));
+    x += legendWidth(c);
   }
 }
 

@@ -33,6 +33,7 @@ class StripPlot : public QWidget {
   // Repaints if there is something new to see.
   void refresh();
   QSize sizeHint() const override { return {400, 150}; }
+  QSize minimumSizeHint() const override; // with its legend
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -45,6 +46,7 @@ class StripPlot : public QWidget {
   float size(const Point& point) const; // of its largest value
   double top() const;
   void paintAxes(QPainter& painter, const QRectF& area) const;
+  int legendWidth(std::size_t curve) const;
   void paintLegend(QPainter& painter, const QRectF& area) const;
   double toX(const QRectF& area, double t) const;
   double toY(const QRectF& area, double value) const;

@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include <QGridLayout>
-#include <QLabel>
 #include <QSignalBlocker>
+
+#include "app/gui/window/elided_label.h"
 
 namespace patina {
 namespace {
@@ -20,14 +21,17 @@ ValueRow::ValueRow(const QString& caption, const QString& unit, const RowRange& 
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setHorizontalSpacing(6);
   layout->setVerticalSpacing(1);
-  auto* label = new QLabel(caption, this);
+  auto* label = new ElidedLabel(this);
+  label->setText(caption);
   label->setProperty("quiet", true);
-  layout->addWidget(label, 0, 0, 1, 2);
+  auto* top = new QHBoxLayout;
+  top->addWidget(label, 1);
+  layout->addLayout(top, 0, 0, 1, 2);
   cross_->setText(QStringLiteral("✕"));
   cross_->setAutoRaise(true);
   cross_->setVisible(false);
   cross_->setFixedSize(18, 18);
-  layout->addWidget(cross_, 0, 1, Qt::AlignRight);
+  top->addWidget(cross_);
   layout->addWidget(slider_, 1, 0);
   layout->addWidget(number_, 1, 1);
   layout->setColumnStretch(0, 1);

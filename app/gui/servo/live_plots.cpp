@@ -8,12 +8,13 @@
 namespace patina {
 
 ForcePlot::ForcePlot(QWidget* parent)
-    : StripPlot(QStringLiteral("N"),
-                {{QStringLiteral("|F|"), toQColor(palette::kForce), 2.0, true},
-                 {QStringLiteral("x"), QColor(0xb5, 0x4a, 0x40)},
-                 {QStringLiteral("y"), QColor(0x3f, 0x8c, 0x45)},
-                 {QStringLiteral("z"), QColor(0x35, 0x62, 0xb5)}},
-                0.5, parent) {
+    : StripPlot(
+          QStringLiteral("N"),
+          {{QStringLiteral("|F|"), toQColor(palette::kText), 2.0, true}, // told apart by any eye
+           {QStringLiteral("x"), QColor(0xd5, 0x5e, 0x00)},
+           {QStringLiteral("y"), QColor(0x00, 0x9e, 0x73)},
+           {QStringLiteral("z"), QColor(0x00, 0x72, 0xb2)}},
+          0.5, parent) {
   setToolTip(tr("Force on the hand over the last five seconds"));
 }
 
@@ -49,6 +50,7 @@ EnergyPlot::EnergyPlot(QWidget* parent)
   column->setContentsMargins(0, 1, 12, 0);
   column->addLayout(corner);
   column->addStretch(1);
+  column->setSizeConstraint(QLayout::SetNoConstraint);
 }
 
 void EnergyPlot::addSamples(const std::vector<ToolSample>& samples, std::size_t dropped) {

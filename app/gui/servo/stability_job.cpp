@@ -1,5 +1,6 @@
 #include "app/gui/servo/stability_job.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,6 +19,16 @@ QString summary(const SurfaceStability& stability, bool device_given) {
           : StabilityJob::tr("%1 % of the surface would buzz; least K*/K = %2")
                 .arg(share, 0, 'f', share < 10 ? 1 : 0)
                 .arg(map.worst_ratio, 0, 'g', 3);
+  const auto add = [&](std::size_t count, const QString& what) {
+    const double part = 100.0 * static_cast<double>(count) / static_cast<double>(map.ratio.size());
+    if (count > 0)
+      words += StabilityJob::tr("; %1 % %2").arg(part, 0, 'f', part < 10 ? 1 : 0).arg(what);
+  };
+  const auto grey = static_cast<std::size_t>(
+      std::count_if(map.ratio.begin(), map.ratio.end(), [](float r) { return std::isnan(r); }));
+  add(map.slipping, StabilityJob::tr("lets the tip slip off and is judged as a plane"));
+  add(map.jumping, StabilityJob::tr("jumps (grey)"));
+  add(grey - std::min(grey, map.jumping), StabilityJob::tr("is not touched (grey)"));
   if (!device_given)
     words += StabilityJob::tr(". For a device of 100 g and 0.5 N s/m at 1 kHz: the scene has no "
                               "device numbers.");

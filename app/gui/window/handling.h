@@ -3,6 +3,6 @@
 
 namespace patina {
 
-enum class Handling { navigate, feel, paint, pick };
+enum class Handling { navigate, feel, press, paint, pick };
 
 } // namespace patina

@@ -4,10 +4,14 @@
 
 #include <QCloseEvent>
 
+#include "app/gui/control/touching.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/window/window_menus.h"
 
 namespace patina {
+namespace {
+constexpr int kNarrow = 1100; // without room for the column
+}
 
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), parts_(layOut(*this)),
@@ -17,8 +21,11 @@ MainWindow::MainWindow(QWidget* parent)
           {*parts_.haptics, *parts_.device, *parts_.objects, *parts_.relief, *parts_.history},
           [this](const CompiledScene& compiled) { feel_.servo().publish(compiled.snapshot); },
           this),
-      paint_({*parts_.tools, *parts_.brush, *parts_.view, feel_.servo(), edits_.thread()}, this),
-      documents_({*this, *parts_.recover, *parts_.recent, edits_}, this) {
+      paint_({*parts_.tools, *parts_.brush, *parts_.tool, *parts_.view, feel_.servo(),
+              edits_.thread()},
+             this),
+      documents_({*this, *parts_.recover, *parts_.recent, edits_}, this),
+      desks_({*parts_.tools, *parts_.across, *parts_.down, *parts_.column, *parts_.drawer}, this) {
   addMenus(*this, parts_, controllers());
   connectFiles();
   connectScene();
@@ -31,15 +38,13 @@ MainWindow::MainWindow(QWidget* parent)
 }
 
 void MainWindow::connectFiles() {
-  const auto say = [this](const QString& words, int milliseconds) {
-    statusBar()->showMessage(words, milliseconds);
-  };
   connect(&documents_, &DocumentController::changed, this, &MainWindow::refresh);
   connect(&documents_, &DocumentController::previewed, this, &MainWindow::showPreview);
   connect(&documents_, &DocumentController::abandoned, this, &MainWindow::showAgain);
   connect(&documents_, &DocumentController::openAlready, this, &MainWindow::sceneReady);
-  connect(&documents_, &DocumentController::said, this, say);
-  connect(&feel_, &FeelController::said, this, say);
+  connect(&documents_, &DocumentController::said, this, &MainWindow::say);
+  connect(&feel_, &FeelController::said, this, &MainWindow::say);
+  connect(parts_.notice, &NoticeLine::opened, &desks_, [this] { desks_.open(Panel::messages); });
   connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
   connect(parts_.objects, &ObjectList::addAsked, &documents_,
           [this] { documents_.openDialog(true); });
@@ -59,14 +64,21 @@ void MainWindow::connectScene() {
 }
 
 void MainWindow::connectTools() {
+  connect(&desks_, &DeskController::changed, this, &MainWindow::refresh);
   connect(&paint_, &PaintController::chosen, this, [this](const ToolChoice& choice) {
     parts_.paint->setTool(choice);
+    parts_.tool->setTool(choice);
     edits_.setTool(choice);
     refresh();
   });
   connect(&paint_, &PaintController::underPointer, parts_.status, &StatusLine::showPicked);
   connect(parts_.view, &SceneWidget::tipMoved, &feel_,
           [this](const Vec3& target) { feel_.servo().setTarget(target); });
+  connect(parts_.view, &SceneWidget::placeAsked, &feel_, [this](const Vec3& surface) {
+    const Vec3 tip = touching(*edits_.scene(), surface);
+    parts_.view->setTarget(tip);
+    feel_.place(edits_.scene()->scene, tip);
+  });
   connect(parts_.display, &DisplayPanel::layerToggled, this, [this](Layer layer) {
     if (layer == Layer::stability) askStability();
   });
@@ -76,6 +88,9 @@ WindowState MainWindow::state() const {
   WindowState state;
   state.content = view_.content();
   state.open = edits_.scene() != nullptr;
+  state.desk = desks_.desk();
+  state.tab = desks_.tab();
+  state.page = desks_.page();
   state.tool = parts_.tools->choice();
   state.relief = edits_.hasRelief();
   state.paint = view_.hasPaint();
@@ -83,17 +98,19 @@ WindowState MainWindow::state() const {
   state.redoable = edits_.status().edits.size() - edits_.status().done;
   state.unsaved = edits_.unsaved();
   state.recording = feel_.recording();
-  state.name = documents_.name();
-  state.warnings = documents_.warnings();
+  state.name = state.content == Content::preview ? documents_.nameUnderWay() : documents_.name();
   state.work = documents_.work() ? documents_.work() : edits_.work();
   state.left_behind = documents_.leftBehind();
   return state;
 }
 
 void MainWindow::refresh() {
-  const WindowState now = state();
-  showState(now, shown_, parts_, *this);
-  shown_ = now;
+  showState(state(), parts_, *this);
+}
+
+void MainWindow::say(const Message& message) {
+  parts_.messages->add(message);
+  parts_.notice->show(message);
 }
 
 void MainWindow::tick() {
@@ -155,6 +172,7 @@ void MainWindow::showScene(const SceneChange& change) {
 
 void MainWindow::askStability() {
   const bool wanted = view_.content() == Content::scene && parts_.display->shown(Layer::stability);
+  view_.showStability(nullptr); // of what was
   feel_.stability().request(wanted ? edits_.scene() : nullptr);
 }
 
@@ -163,11 +181,29 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     return event->ignore();
   closing_ = true;
   timer_.stop();
+  desks_.remember(*this);
   parts_.relief->cancel();
   feel_.close();
   if (documents_.close()) return event->accept();
   connect(&documents_, &DocumentController::rested, this, &QWidget::close, Qt::UniqueConnection);
   event->ignore();
+}
+
+void MainWindow::restorePlace() {
+  const WindowPlace place = rememberedPlace();
+  resize(place.size);
+  if (place.maximized) setWindowState(Qt::WindowMaximized);
+  desks_.restore();
+}
+
+void MainWindow::resizeEvent(QResizeEvent* event) {
+  QMainWindow::resizeEvent(event);
+  desks_.setNarrow(width() < kNarrow);
+}
+
+void MainWindow::showEvent(QShowEvent* event) {
+  QMainWindow::showEvent(event);
+  desks_.arrange();
 }
 
 } // namespace patina

@@ -6,6 +6,7 @@
 #include <QTimer>
 
 #include "app/gui/control/controllers.h"
+#include "app/gui/control/desk_controller.h"
 #include "app/gui/control/document_controller.h"
 #include "app/gui/control/edit_controller.h"
 #include "app/gui/control/feel_controller.h"
@@ -20,19 +21,23 @@ class MainWindow : public QMainWindow {
  public:
   explicit MainWindow(QWidget* parent = nullptr);
 
-  Controllers controllers() { return {documents_, edits_, feel_, paint_, view_}; }
+  Controllers controllers() { return {documents_, edits_, feel_, paint_, view_, desks_}; }
+  void restorePlace(); // size and desks as they were left, and again at the next start
 
  signals:
   void sceneReady(); // a scene, or another surface of it, is seen and felt
 
  protected:
   void closeEvent(QCloseEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
 
  private:
   void connectFiles();
   void connectScene();
   void connectTools();
   void tick();
+  void say(const Message& message);
   WindowState state() const;
   void refresh(); // shows the state
   void clear();
@@ -48,8 +53,8 @@ class MainWindow : public QMainWindow {
   EditController edits_;
   PaintController paint_;
   DocumentController documents_;
+  DeskController desks_;
   QTimer timer_;
-  std::optional<WindowState> shown_;
   bool stages_shown_ = true;
   bool closing_ = false;
   int ticks_ = 0;

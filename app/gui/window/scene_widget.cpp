@@ -178,8 +178,15 @@ void SceneWidget::drag(QMouseEvent& event) {
 
 void SceneWidget::doubleClick(QMouseEvent& event) {
   if (!feels() || event.button() != Qt::LeftButton) return press(event);
-  if (const auto hit = surfaceAt(event.pos())) moveTip(*hit);
+  if (const auto hit = surfaceAt(event.pos())) emit placeAsked(*hit);
   drag_ = Drag::none;
+}
+
+bool SceneWidget::escape(const QKeyEvent& event) {
+  if (event.key() != Qt::Key_Escape || drag_ != Drag::brush) return false;
+  drag_ = Drag::none;
+  emit escaped();
+  return true;
 }
 
 void SceneWidget::wheel(QWheelEvent& event) {
@@ -188,6 +195,9 @@ void SceneWidget::wheel(QWheelEvent& event) {
   if (feels() && !event.modifiers().testFlag(Qt::ControlModifier)) {
     const double step = 0.004 * view_.extent().diagonal().norm();
     moveTip(target_ + notches * step * viewDirection(camera));
+  } else if (paints() && handling_ == Handling::press &&
+             !event.modifiers().testFlag(Qt::ControlModifier)) {
+    emit forceTurned(notches);
   } else {
     zoom(camera, std::pow(1.12, notches));
   }
@@ -221,6 +231,8 @@ bool SceneWidget::event(QEvent* event) {
     return true;
   // VTK's own key bindings (e quits, w wireframes) are not ours: keys go to the window's menus.
   case QEvent::KeyPress:
+    if (escape(*static_cast<QKeyEvent*>(event))) return true;
+    return QOpenGLWidget::event(event);
   case QEvent::KeyRelease:
     return QOpenGLWidget::event(event);
   default:

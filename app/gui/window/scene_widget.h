@@ -22,10 +22,11 @@ struct Pointed {
 };
 
 // Feeling, the left button moves the tip in the plane that faces the viewer, the wheel moves it in
-// depth and a double click sets it onto the surface; Shift + left, middle, right and Ctrl + wheel
-// move the camera. Navigating, the left button and the wheel move the camera too. Painting, the
-// left button, or a pen, is on the surface under it, and the wheel zooms; picking, and with Alt
-// when feeling or painting, it asks what is there.
+// depth and a double click asks to set it onto the surface; Shift + left, middle, right and Ctrl +
+// wheel move the camera. Navigating, the left button and the wheel move the camera too. Painting,
+// the left button, or a pen, is on the surface under it, and the wheel zooms; pressing is the same,
+// and the wheel is the force's; picking, and with Alt when feeling or painting, it asks what is
+// there.
 class SceneWidget : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
@@ -54,7 +55,10 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
 
  signals:
   void tipMoved(const patina::Vec3& target);
-  // When painting, while the button is down and when it goes.
+  void placeAsked(const patina::Vec3& surface);
+  void forceTurned(double notches);
+  void escaped(); // while something was painted
+  // When painting or pressing, while the button is down and when it goes.
   void pointed(const patina::Pointed& where);
   void pickAsked(const patina::Vec3& surface);
 
@@ -63,7 +67,9 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
 
  private:
   bool feels() const { return handling_ == Handling::feel && field_ != nullptr; }
-  bool paints() const { return handling_ == Handling::paint && field_ != nullptr; }
+  bool paints() const {
+    return (handling_ == Handling::paint || handling_ == Handling::press) && field_ != nullptr;
+  }
   std::optional<Vec3> surfaceAt(const QPoint& pixel);
   void brush(const QPoint& pixel, bool down, double pressure);
   bool pick(const QMouseEvent& event); // false: it is no picking
@@ -73,6 +79,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   void press(QMouseEvent& event);
   void drag(QMouseEvent& event);
   void doubleClick(QMouseEvent& event);
+  bool escape(const QKeyEvent& event); // false: there is nothing to leave
   void wheel(QWheelEvent& event);
   void moveTip(const Vec3& target);
 

@@ -7,14 +7,14 @@ namespace patina {
 
 StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   bar->setSizeGripEnabled(false);
-  bar->setStyleSheet(QStringLiteral("QStatusBar::item { border: none; }"
-                                    "QStatusBar QLabel { padding: 1px 7px; }"));
-  const auto label = [&](const char* name) {
-    auto* made = new QLabel(bar);
+  bar->setStyleSheet(QStringLiteral("QStatusBar::item { border: none; }"));
+  const auto add = [&](auto* made, const char* name, int stretch = 0) {
     made->setObjectName(QString::fromUtf8(name));
-    bar->addWidget(made);
+    made->setContentsMargins(7, 1, 7, 1);
+    bar->addWidget(made, stretch);
     return made;
   };
+  const auto label = [&](const char* name) { return add(new QLabel(bar), name); };
   fault_ = label("fault");
   fault_->setText(tr("force faded: it comes back by itself"));
   fault_->setStyleSheet(QStringLiteral("background: #a12a1a; color: white;"));
@@ -27,13 +27,12 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   policy_ = label("policy");
   stabilisers_ = label("stabilisers");
   stabilisers_->setStyleSheet(QStringLiteral("color: #14568c; font-weight: bold;"));
-  stages_ = label("stages");
   bytes_ = label("bytes");
-  picked_ = new QLabel(bar);
-  picked_->setObjectName(QStringLiteral("picked"));
+  stages_ = add(new ElidedLabel(bar), "stages", 2);
+  picked_ = add(new ElidedLabel(bar), "picked", 3);
+  picked_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   picked_->setStyleSheet(QStringLiteral("color: #14568c;"));
   picked_->setToolTip(tr("What is felt and painted under the pointer"));
-  bar->addPermanentWidget(picked_);
   late_->setToolTip(
       tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
   missed_->setToolTip(tr("Ticks that came more than a period late since the servo began"));
@@ -47,7 +46,6 @@ void StatusLine::showFault(bool on) {
 
 void StatusLine::showPicked(const QString& words) {
   picked_->setText(words);
-  picked_->setVisible(!words.isEmpty());
 }
 
 void StatusLine::showTiming(const ServoTiming& timing, bool running) {

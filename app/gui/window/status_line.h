@@ -1,9 +1,9 @@
 // The servo and the scene in one line: what runs, how well, and what it costs.
 #pragma once
 
-#include <QLabel>
 #include <QStatusBar>
 
+#include "app/gui/window/elided_label.h"
 #include "haptics/servo/servo_loop.h"
 #include "session/build/session.h"
 
@@ -26,10 +26,10 @@ class StatusLine : public QObject {
   QLabel* late_;
   QLabel* missed_;
   QLabel* policy_;
-  QLabel* stages_;
+  ElidedLabel* stages_;
   QLabel* stabilisers_;
   QLabel* bytes_;
-  QLabel* picked_;
+  ElidedLabel* picked_;
 };
 
 } // namespace patina

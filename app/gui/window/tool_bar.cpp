@@ -39,35 +39,37 @@ ToolBar::ToolBar(QWidget* parent)
       "QToolButton:checked { background: #cfe0f3; border-color: #2b6cb0; }"
       "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
   auto* menu = new QMenu(more_);
-  bool has_more = false;
   for (const ToolCard& card : toolCards()) {
     QAction* action = group_->addAction(iconOf(card.choice), card.words);
     action->setObjectName(QString::fromStdString(card.name));
     action->setCheckable(true);
     if (card.key != 0) action->setShortcut(card.key);
-    action->setToolTip(
-        QStringLiteral("<b>%1</b> (%2)<br>%3")
-            .arg(card.words, QKeySequence(card.key).toString(QKeySequence::NativeText), card.tip));
+    action->setToolTip(card.tip);
     const ToolChoice choice = card.choice;
     connect(action, &QAction::triggered, this, [this, choice] { choose(choice); });
-    if (!card.seldom) {
-      if (choice.handling == Handling::pick ||
-          (choice.handling == Handling::paint && choice.tool == Tool::color))
-        addSeparator();
-      addAction(action);
-      continue;
-    }
-    menu->addAction(action);
-    if (!has_more) {
-      more_->setObjectName(QStringLiteral("more_tools"));
-      more_->setMenu(menu);
-      more_->setPopupMode(QToolButton::InstantPopup);
-      more_->setDefaultAction(action);
-      addWidget(more_);
-      has_more = true;
-    }
+    if (card.seldom) menu->addAction(action);
   }
+  more_->setObjectName(QStringLiteral("more_tools"));
+  more_->setMenu(menu);
+  more_->setPopupMode(QToolButton::InstantPopup);
+  more_->setDefaultAction(menu->actions().front());
+  more_action_ = addWidget(more_);
+  setDesk(Desk::feel);
   actionOf(choice_)->setChecked(true);
+}
+
+void ToolBar::setDesk(Desk desk) {
+  for (QAction* action : actions()) {
+    removeAction(action);
+    if (action->isSeparator()) delete action;
+  }
+  for (const ToolCard& card : toolCards()) {
+    if (!hasTool(desk, card.choice)) continue;
+    if (card.choice.handling == Handling::pick || card.choice == ToolChoice{Handling::paint, {}})
+      addSeparator();
+    if (!card.seldom) addAction(actionOf(card.choice));
+    if (card.seldom && !actions().contains(more_action_)) addAction(more_action_);
+  }
 }
 
 QAction* ToolBar::actionOf(const ToolChoice& choice) const {

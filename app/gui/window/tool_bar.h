@@ -6,7 +6,7 @@
 #include <QToolBar>
 #include <QToolButton>
 
-#include "app/gui/painting/tool_choice.h"
+#include "app/gui/window/desk.h"
 
 namespace patina {
 
@@ -18,6 +18,7 @@ class ToolBar : public QToolBar {
   const ToolChoice& choice() const { return choice_; }
   void choose(const ToolChoice& choice); // sends chosen() if it changes
   void toggleNavigation();               // to the camera, and back to the tool
+  void setDesk(Desk desk);               // whose tools are seen; keys choose the others, too
   void setPaints(bool can);              // without a scene there is nothing to paint on
   QList<QAction*> actionsOfTools() const { return group_->actions(); }
 
@@ -29,6 +30,7 @@ class ToolBar : public QToolBar {
 
   QActionGroup* group_;
   QToolButton* more_; // shows the tool of its menu that was used last
+  QAction* more_action_;
   ToolChoice choice_, before_navigating_;
 };
 

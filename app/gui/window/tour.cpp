@@ -5,6 +5,7 @@
 
 #include <QImage>
 
+#include "app/gui/control/desk_controller.h"
 #include "app/gui/window/tour_hand.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -127,6 +128,7 @@ void showStability(MainWindow& window, const std::filesystem::path& folder) {
   panel.setValues(choice);
   emit panel.edited();
   edit(window, [](HapticProperties& haptics) { haptics.stiffness = 1500; });
+  window.controllers().desks.choose(Desk::analyse);
   show(window, {Layer::mesh, Layer::tip, Layer::stability});
   if (!waitUntil([&] { return !window.controllers().feel.stability().busy(); }, 120000))
     throw Error("the stability map was not ready after two minutes");
@@ -137,6 +139,7 @@ void showStability(MainWindow& window, const std::filesystem::path& folder) {
 // The same file once more, beside what is open.
 void showObjects(MainWindow& window, const LoadRequest& request,
                  const std::filesystem::path& folder) {
+  window.controllers().desks.open(Panel::objects);
   const double wide = 0.8 * find<SceneWidget>(window).view().extent().sizes()[0];
   LoadRequest more = request;
   more.adds = true;
@@ -199,6 +202,7 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
   std::filesystem::create_directories(folder, code);
   if (code) throw FileError(folder.string(), 0, "cannot be made: " + code.message());
   openAndWait(window, request);
+  window.controllers().desks.open(Panel::forces);
   wait(300);
   FeelController& feel = window.controllers().feel;
   feel.startLog();
@@ -224,11 +228,13 @@ void runTour(MainWindow& window, const LoadRequest& request, const std::filesyst
 
   play(window, {find<SceneWidget>(window).restingPlace()});
   wait(300);
+  window.controllers().desks.choose(Desk::analyse);
   show(window, {Layer::mesh, Layer::slice, Layer::iso, Layer::extent});
   setRow(window, "iso_value", 1500 * window.controllers().edits.scene()->built.field->grid.voxel);
   find<SceneWidget>(window).view().setView(ViewPreset::iso);
   grab(window, folder / "slice.png");
   show(window, {Layer::mesh, Layer::band, Layer::tip});
+  window.controllers().desks.choose(Desk::feel);
 
   const std::vector<ToolSample> samples = feel.log().samples();
   feel.log().clear();

@@ -1,5 +1,6 @@
 #include "app/gui/window/value_focus.h"
 
+#include <QAbstractButton>
 #include <QAbstractSpinBox>
 #include <QApplication>
 #include <QComboBox>
@@ -31,13 +32,20 @@ void settleText(QWidget& widget, bool keeps) {
 // Panels make rows while the window lives, so that a filter on each widget would be many.
 ValueFocus::ValueFocus(QWidget& panel, QWidget& view)
     : QObject(&panel), panel_(panel), view_(view) {
+  for (QWidget* widget : panel.findChildren<QWidget*>()) // polished before
+    if (holdsValue(*widget)) widget->setFocusPolicy(Qt::StrongFocus);
   QApplication::instance()->installEventFilter(this);
 }
 
 bool ValueFocus::eventFilter(QObject* receiver, QEvent* event) {
   const QEvent::Type type = event->type();
-  if (type != QEvent::Polish && type != QEvent::Wheel && type != QEvent::KeyPress) return false;
   auto* widget = qobject_cast<QWidget*>(receiver);
+  if (type == QEvent::ShortcutOverride && qobject_cast<QAbstractButton*>(receiver) != nullptr &&
+      panel_.isAncestorOf(widget) && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Space) {
+    event->accept(); // it is the button's
+    return true;
+  }
+  if (type != QEvent::Polish && type != QEvent::Wheel && type != QEvent::KeyPress) return false;
   if (widget == nullptr || !holdsValue(*widget) || !panel_.isAncestorOf(widget)) return false;
   if (type == QEvent::Polish) {
     widget->setFocusPolicy(Qt::StrongFocus); // the wheel would give itself the focus

@@ -1,6 +1,7 @@
 // How the number fields, sliders and choices of a panel take wheel and keys: the wheel scrolls the
 // panel unless it is over what is being edited, and Enter (takes what was typed) or Escape (drops
-// it) hands the keys back to the 3D view, whose shortcuts are single letters.
+// it) hands the keys back to the 3D view, whose shortcuts are single letters. Space on a button is
+// the button's.
 #pragma once
 
 #include <QObject>

@@ -1,52 +1,77 @@
 #include "app/gui/window/window_layout.h"
 
-#include <QDockWidget>
+#include <algorithm>
+
 #include <QScrollArea>
 #include <QVBoxLayout>
 
+#include "app/gui/window/drawn_icon.h"
 #include "app/gui/window/value_focus.h"
 #include "app/gui/window/window_style.h"
 
 namespace patina {
 namespace {
 
-QWidget* makeCentre(const WindowParts& parts) {
-  auto* centre = new QWidget;
-  auto* column = new QVBoxLayout(centre);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
-  parts.warnings->setObjectName(QStringLiteral("warnings"));
-  parts.warnings->setWordWrap(true);
-  parts.warnings->setContentsMargins(10, 5, 10, 5);
-  parts.warnings->setStyleSheet(QStringLiteral("background: #fff4d6; color: #6b4e00;"));
-  for (QWidget* bar : {static_cast<QWidget*>(parts.load_bar), static_cast<QWidget*>(parts.recover),
-                       static_cast<QWidget*>(parts.warnings)})
-    column->addWidget(bar);
-  column->addWidget(parts.view, 1);
-  return centre;
+struct Page {
+  Panel panel;
+  const char* name;
+  QString words, tip;
+};
+
+std::vector<Page> pages() {
+  const auto tr = [](const char* words) { return QMainWindow::tr(words); };
+  return {{Panel::forces, "page_forces", tr("Forces"), tr("Force on the hand, the last 5 s")},
+          {Panel::energy, "page_energy", tr("Energy"), tr("Energy taken by the surface")},
+          {Panel::history, "page_history", tr("History"), tr("Every edit; a click goes there")},
+          {Panel::messages, "page_messages", tr("Messages"), tr("What the window has said")}};
 }
 
-QWidget* makeSide(const WindowParts& parts) {
+FoldingTabs* makeColumn(const WindowParts& parts) {
   auto* side = new QWidget;
-  side->setStyleSheet(cardStyle());
   auto* stack = new QVBoxLayout(side);
-  stack->setContentsMargins(8, 0, 8, 8);
+  stack->setContentsMargins(8, 0, 4, 8);
   stack->setSpacing(4);
-  for (const Panel card : {Panel::brush, Panel::relief, Panel::touch, Panel::display, Panel::device,
-                           Panel::objects, Panel::mesh})
+  for (const Panel card : {Panel::tool, Panel::brush, Panel::relief, Panel::touch, Panel::display,
+                           Panel::device, Panel::objects, Panel::mesh})
     stack->addWidget(parts.panels.at(card));
   stack->addStretch(1);
   parts.display->layout()->addWidget(parts.paint);
-  new ValueFocus(*side, *parts.view);
   auto* scroll = new QScrollArea;
+  scroll->setObjectName(QStringLiteral("cards"));
+  scroll->setStyleSheet(cardStyle());
   scroll->setWidget(side);
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   // Room for the scroll bar from the start, or it would cover the cards when it comes.
   scroll->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
-  scroll->setFixedWidth(318);
-  return scroll;
+  auto* column = new FoldingTabs(FoldingTabs::Folds::aside, scroll);
+  column->setObjectName(QStringLiteral("column"));
+  for (const TabRow& row : tabRows())
+    column->add(static_cast<int>(row.tab), QStringLiteral("tab_") + QString::fromUtf8(row.name),
+                iconOf(row.tab), row.words, row.tip);
+  return column;
+}
+
+FoldingTabs* makeDrawer(const WindowParts& parts) {
+  auto* body = new QWidget;
+  body->setMinimumHeight(110);
+  auto* stack = new QVBoxLayout(body);
+  stack->setContentsMargins(0, 0, 0, 0);
+  auto* drawer = new FoldingTabs(FoldingTabs::Folds::down, body);
+  drawer->setObjectName(QStringLiteral("drawer"));
+  for (const Page& page : pages()) {
+    stack->addWidget(parts.panels.at(page.panel));
+    drawer->add(static_cast<int>(page.panel), QString::fromUtf8(page.name), {}, page.words,
+                page.tip);
+  }
+  auto* said = new QWidget;
+  auto* line = new QHBoxLayout(said);
+  line->setContentsMargins(0, 0, 0, 0);
+  for (QWidget* each : std::initializer_list<QWidget*>{parts.load_bar, parts.recover, parts.notice})
+    line->addWidget(each, 1);
+  drawer->addToStrip(said);
+  return drawer;
 }
 
 } // namespace
@@ -55,47 +80,50 @@ WindowParts layOut(QMainWindow& window) {
   WindowParts parts;
   parts.status = new StatusLine(window.statusBar());
   parts.recent = new QMenu(QMainWindow::tr("Open &recent"), &window);
-  parts.panels = {{Panel::recovery, parts.recover}, {Panel::warnings, parts.warnings},
+  parts.panels = {{Panel::recovery, parts.recover}, {Panel::tool, parts.tool},
                   {Panel::brush, parts.brush},      {Panel::relief, parts.relief},
                   {Panel::touch, parts.haptics},    {Panel::display, parts.display},
                   {Panel::paint, parts.paint},      {Panel::device, parts.device},
-                  {Panel::objects, parts.objects},  {Panel::mesh, parts.mesh}};
-  const auto dock = [&](const QString& title, const char* name, QWidget* widget,
-                        Qt::DockWidgetArea area) {
-    auto* made = new QDockWidget(title, &window);
-    made->setObjectName(QString::fromUtf8(name));
-    made->setWidget(widget);
-    made->setFeatures(QDockWidget::DockWidgetClosable | QDockWidget::DockWidgetMovable);
-    window.addDockWidget(area, made);
-    return made;
-  };
-  window.setCentralWidget(makeCentre(parts));
+                  {Panel::objects, parts.objects},  {Panel::mesh, parts.mesh},
+                  {Panel::forces, parts.force},     {Panel::energy, parts.energy},
+                  {Panel::history, parts.history},  {Panel::messages, parts.messages}};
+  parts.column = makeColumn(parts);
+  parts.drawer = makeDrawer(parts);
+  parts.down->addWidget(parts.view);
+  parts.down->addWidget(parts.drawer);
+  parts.across->addWidget(parts.down);
+  parts.across->addWidget(parts.column);
+  for (QSplitter* splitter : {parts.down, parts.across}) {
+    splitter->setChildrenCollapsible(false);
+    splitter->setStretchFactor(0, 1);
+    splitter->setStretchFactor(1, 0);
+    splitter->setHandleWidth(4);
+  }
+  parts.down->setObjectName(QStringLiteral("down"));
+  parts.across->setObjectName(QStringLiteral("across"));
+  new ValueFocus(*parts.across, *parts.view);
+  window.setCentralWidget(parts.across);
   window.addToolBar(Qt::LeftToolBarArea, parts.tools);
-  dock(QMainWindow::tr("Scene"), "scene_dock", makeSide(parts), Qt::RightDockWidgetArea);
-  QDockWidget* force = dock(QMainWindow::tr("Force on the hand"), "force_dock", parts.force,
-                            Qt::BottomDockWidgetArea);
-  QDockWidget* energy = dock(QMainWindow::tr("Energy taken by the surface"), "energy_dock",
-                             parts.energy, Qt::BottomDockWidgetArea);
-  window.splitDockWidget(force, energy, Qt::Horizontal);
-  window.resizeDocks({force, energy}, {1, 1}, Qt::Horizontal);
-  window.setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-  QDockWidget* history =
-      dock(QMainWindow::tr("History"), "history_dock", parts.history, Qt::RightDockWidgetArea);
-  parts.history->setMinimumHeight(60);
-  window.resizeDocks({history}, {170}, Qt::Vertical);
-  parts.panels[Panel::history] = history;
   return parts;
 }
 
-void showState(const WindowState& state, const std::optional<WindowState>& before,
-               const WindowParts& parts, QMainWindow& window) {
+void showState(const WindowState& state, const WindowParts& parts, QMainWindow& window) {
   parts.load_bar->setWork(state.work);
-  parts.warnings->setText(state.warnings.join(QStringLiteral("\n")));
   if (state.left_behind) parts.recover->setPlace(*state.left_behind);
   for (const auto& [panel, widget] : parts.panels) {
     const bool shown = isShown(panel, state);
-    if (!before || isShown(panel, *before) != shown) widget->setVisible(shown);
+    if (widget->isHidden() == shown) widget->setVisible(shown);
   }
+  const auto tabs = tabsThere(state);
+  for (const TabRow& row : tabRows())
+    parts.column->setThere(static_cast<int>(row.tab),
+                           std::find(tabs.begin(), tabs.end(), row.tab) != tabs.end());
+  const auto there = pagesThere(state);
+  for (const Page& page : pages())
+    parts.drawer->setThere(static_cast<int>(page.panel),
+                           std::find(there.begin(), there.end(), page.panel) != there.end());
+  parts.column->setInFront(static_cast<int>(tabInFront(state)));
+  parts.drawer->setInFront(static_cast<int>(pageInFront(state)));
   for (const auto& [command, action] : parts.commands)
     action->setEnabled(isEnabled(command, state));
   parts.commands.at(Command::record)->setChecked(state.recording);

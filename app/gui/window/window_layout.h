@@ -5,9 +5,9 @@
 #include <optional>
 
 #include <QAction>
-#include <QLabel>
 #include <QMainWindow>
 #include <QMenu>
+#include <QSplitter>
 
 #include "app/gui/loading/load_bar.h"
 #include "app/gui/loading/recover_bar.h"
@@ -18,9 +18,12 @@
 #include "app/gui/panels/display_panel.h"
 #include "app/gui/panels/haptics_panel.h"
 #include "app/gui/panels/history_panel.h"
+#include "app/gui/panels/message_panel.h"
 #include "app/gui/panels/object_list.h"
 #include "app/gui/panels/object_panel.h"
+#include "app/gui/panels/tool_panel.h"
 #include "app/gui/servo/live_plots.h"
+#include "app/gui/window/folding_tabs.h"
 #include "app/gui/window/scene_widget.h"
 #include "app/gui/window/status_line.h"
 #include "app/gui/window/tool_bar.h"
@@ -33,8 +36,9 @@ struct WindowParts {
   SceneWidget* view = new SceneWidget;
   LoadBar* load_bar = new LoadBar;
   RecoverBar* recover = new RecoverBar;
-  QLabel* warnings = new QLabel;
+  NoticeLine* notice = new NoticeLine;
   ToolBar* tools = new ToolBar;
+  ToolPanel* tool = new ToolPanel;
   BrushPanel* brush = new BrushPanel;
   ReliefPanel* relief = new ReliefPanel;
   HapticsPanel* haptics = new HapticsPanel;
@@ -44,8 +48,13 @@ struct WindowParts {
   ObjectList* objects = new ObjectList;
   ObjectPanel* mesh = new ObjectPanel;
   HistoryPanel* history = new HistoryPanel;
+  MessagePanel* messages = new MessagePanel;
   ForcePlot* force = new ForcePlot;
   EnergyPlot* energy = new EnergyPlot;
+  QSplitter* across = new QSplitter(Qt::Horizontal);
+  QSplitter* down = new QSplitter(Qt::Vertical);
+  FoldingTabs* column = nullptr;
+  FoldingTabs* drawer = nullptr;
   QMenu* recent = nullptr;
   StatusLine* status = nullptr;
   std::map<Panel, QWidget*> panels;
@@ -53,9 +62,7 @@ struct WindowParts {
 };
 WindowParts layOut(QMainWindow& window);
 
-// The one place where panels are shown and hidden and commands allowed. A panel is touched only
-// where it differs from `before`: a dock that a person has closed stays closed.
-void showState(const WindowState& state, const std::optional<WindowState>& before,
-               const WindowParts& parts, QMainWindow& window);
+// The one place where panels are shown and hidden and commands allowed.
+void showState(const WindowState& state, const WindowParts& parts, QMainWindow& window);
 
 } // namespace patina

@@ -1,15 +1,17 @@
 #include "app/gui/window/window_menus.h"
 
-#include <QDockWidget>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QToolBar>
+#include <QToolButton>
 
+#include "app/gui/control/desk_controller.h"
 #include "app/gui/control/document_controller.h"
 #include "app/gui/control/edit_controller.h"
 #include "app/gui/control/feel_controller.h"
 #include "app/gui/control/view_controller.h"
 #include "app/gui/painting/paint_controller.h"
+#include "visualization/view/camera.h"
 
 namespace patina {
 namespace {
@@ -20,17 +22,23 @@ QString shortcutsText() {
       "<tr><td><b>Left drag</b></td><td>move the tip in the plane you look at</td></tr>"
       "<tr><td><b>Wheel</b></td><td>move the tip away from you, and back</td></tr>"
       "<tr><td><b>Double click</b></td><td>set the tip onto the surface there</td></tr>"
+      "<tr><td><b>Q</b></td><td>press on the surface under the pointer; the wheel sets the "
+      "force</td></tr>"
       "<tr><td><b>Shift + left drag</b></td><td>turn the camera</td></tr>"
       "<tr><td><b>Middle drag</b></td><td>shift the camera</td></tr>"
       "<tr><td><b>Right drag, Ctrl + wheel</b></td><td>zoom</td></tr>"
       "<tr><td><b>Space</b></td><td>navigate with the left button, and back to the tool</td></tr>"
       "<tr><td><b>F</b></td><td>fit the scene into the view</td></tr>"
       "<tr><td><b>1 … 7</b></td><td>camera from +x, −x, +y, −y, +z, −z, at an angle</td></tr>"
+      "<tr><td><b>O</b></td><td>without perspective, and with it</td></tr>"
       "<tr><td><b>M T S I W N B E K</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
       "band, field extent, stability</td></tr>"
       "<tr><td><b>V P H D G X</b></td><td>feel, paint, relief, stiffness, friction, erase</td></tr>"
+      "<tr><td><b>Ctrl + 1, 2, 3</b></td><td>the desks Feel, Paint, Analyse</td></tr>"
+      "<tr><td><b>F8, F9</b></td><td>fold the column, the drawer</td></tr>"
       "<tr><td><b>[ ]</b></td><td>brush smaller, larger; with Shift its fall-off</td></tr>"
       "<tr><td><b>C, Alt + click</b></td><td>take what is painted there into the brush</td></tr>"
+      "<tr><td><b>Esc</b></td><td>take back the stroke that is being painted</td></tr>"
       "<tr><td><b>Ctrl + Z, Ctrl + Shift + Z</b></td><td>undo, redo</td></tr>"
       "<tr><td><b>R</b></td><td>record the forces, and save them</td></tr></table>");
 }
@@ -45,11 +53,23 @@ QString tr(const char* words) {
   return QMainWindow::tr(words);
 }
 
+// What it is called, its key, and what there is to say.
+void describe(QAction& action) {
+  const QString plain = action.text().remove('&').remove(QStringLiteral("…"));
+  const QString key = action.shortcut().toString(QKeySequence::NativeText);
+  QString words = QStringLiteral("<b>%1</b>").arg(plain);
+  if (!key.isEmpty()) words += QStringLiteral(" (%1)").arg(key);
+  if (action.toolTip() != plain) words += QStringLiteral("<br>") + action.toolTip();
+  if (!plain.isEmpty()) action.setToolTip(words);
+}
+
 void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
   QMenu* file = window.menuBar()->addMenu(tr("&File"));
   DocumentController* documents = &at.documents;
-  bar.addAction(file->addAction(
-      tr("&Open…"), documents, [=] { documents->openDialog(false); }, QKeySequence::Open));
+  QAction* open = file->addAction(
+      tr("&Open…"), documents, [=] { documents->openDialog(false); }, QKeySequence::Open);
+  open->setToolTip(tr("A mesh, a volume or a workspace"));
+  bar.addAction(open);
   QAction* add = file->addAction(
       tr("&Add object…"), documents, [=] { documents->openDialog(true); },
       Qt::CTRL | Qt::SHIFT | Qt::Key_O);
@@ -137,13 +157,33 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   QMenu* camera = menu->addMenu(tr("&Camera"));
   int digit = Qt::Key_1;
   for (const ViewPreset preset : allViews())
-    bar.addAction(camera->addAction(
-        signed_(preset), view, [=] { view->view().setView(preset); }, digit++));
+    camera->addAction(
+        signed_(preset), view, [=] { view->view().setView(preset); }, digit++);
+  camera->addSeparator();
+  QAction* parallel = camera->addAction(tr("Orthographic"));
+  parallel->setObjectName(QStringLiteral("orthographic"));
+  parallel->setCheckable(true);
+  parallel->setShortcut(Qt::Key_O);
+  parallel->setToolTip(tr("Without perspective: what is far is as large as what is near"));
+  QObject::connect(parallel, &QAction::toggled, view, [view](bool on) {
+    setParallel(*view->view().renderer().GetActiveCamera(), on);
+  });
+  camera->menuAction()->setToolTip(tr("Look from a side: keys 1 to 7"));
+  bar.addAction(camera->menuAction());
+  auto* from = qobject_cast<QToolButton*>(bar.widgetForAction(camera->menuAction()));
+  from->setPopupMode(QToolButton::InstantPopup);
   menu->addSeparator();
   addLayers(*menu, parts.display);
   menu->addSeparator();
-  for (QDockWidget* dock : window.findChildren<QDockWidget*>())
-    menu->addAction(dock->toggleViewAction());
+  menu->addActions(at.desks.actions());
+  DeskController* desks = &at.desks;
+  FoldingTabs *column = parts.column, *drawer = parts.drawer;
+  menu->addAction(
+      tr("Fold the column, or open it"), desks, [=] { desks->foldColumn(!column->folded()); },
+      Qt::Key_F8);
+  menu->addAction(
+      tr("Fold the drawer, or open it"), desks, [=] { desks->foldDrawer(!drawer->folded()); },
+      Qt::Key_F9);
   bar.addSeparator();
   bar.addAction(parts.commands[Command::record]);
 }
@@ -174,14 +214,18 @@ void addMenus(QMainWindow& window, WindowParts& parts, const Controllers& contro
   bar->setMovable(false);
   bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
   bar->setStyleSheet(QStringLiteral(
-      "QToolBar { border: none; border-bottom: 1px solid #d5dae2; padding: 3px 6px; spacing: 3px; }"
+      "QToolBar { border: none; border-bottom: 1px solid #d5dae2; padding: 1px 6px; spacing: 2px; }"
       "QToolButton { padding: 3px 8px; border: 1px solid transparent; border-radius: 4px; }"
       "QToolButton:hover { background: #e0e6ee; }"
-      "QToolButton:checked { background: #2b6cb0; color: white; }"));
+      "QToolButton:checked { background: #2b6cb0; color: white; }"
+      "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
+  bar->addActions(controllers.desks.actions());
+  bar->addSeparator();
   addFileMenu(window, parts, controllers, *bar);
   addEditMenu(window, parts, controllers, *bar);
   addViewMenu(window, parts, controllers, *bar);
   addHelpMenu(&window);
+  for (QAction* action : window.findChildren<QAction*>()) describe(*action);
 }
 
 } // namespace patina

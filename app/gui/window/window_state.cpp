@@ -1,34 +1,75 @@
 #include "app/gui/window/window_state.h"
 
-#include <QCoreApplication>
+#include <algorithm>
 
 namespace patina {
+namespace {
 
-bool isShown(Panel panel, const WindowState& state) {
+template <typename List, typename Value> bool has(const List& list, const Value& value) {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+template <typename Value> Value orFirst(const Value& wanted, const std::vector<Value>& there) {
+  return there.empty() || has(there, wanted) ? wanted : there.front();
+}
+
+} // namespace
+
+bool isThere(Panel panel, const WindowState& state) {
+  if (panel == Panel::recovery) return state.left_behind.has_value();
+  if (!has(rowOf(state.desk).panels, panel)) return false;
   const bool scene = state.content == Content::scene;
   const bool paints = state.tool.handling == Handling::paint;
   switch (panel) {
-  case Panel::recovery:
-    return state.left_behind.has_value();
-  case Panel::warnings:
-    return !state.warnings.isEmpty();
+  case Panel::messages:
+    return true;
+  case Panel::display:
+  case Panel::mesh:
+    return state.content != Content::nothing;
+  case Panel::tool:
+    return scene && !paints;
   case Panel::brush:
     return scene && paints;
   case Panel::relief:
     return scene && (state.relief || (paints && state.tool.tool == Tool::relief));
-  case Panel::display:
-  case Panel::mesh:
-    return state.content != Content::nothing;
   case Panel::paint:
     return state.paint;
   case Panel::history:
     return scene && state.undoable + state.redoable > 0;
-  case Panel::touch:
-  case Panel::device:
-  case Panel::objects:
+  default:
     return scene;
   }
-  return false;
+}
+
+std::vector<Tab> tabsThere(const WindowState& state) {
+  std::vector<Tab> tabs;
+  for (const TabRow& row : tabRows())
+    for (const Panel panel : rowOf(state.desk).panels)
+      if (tabOf(panel) == row.tab && !has(tabs, row.tab) && isThere(panel, state))
+        tabs.push_back(row.tab);
+  return tabs;
+}
+
+std::vector<Panel> pagesThere(const WindowState& state) {
+  std::vector<Panel> pages;
+  for (const Panel panel : rowOf(state.desk).panels)
+    if (inDrawer(panel) && isThere(panel, state)) pages.push_back(panel);
+  return pages;
+}
+
+Tab tabInFront(const WindowState& state) {
+  return orFirst(state.tab, tabsThere(state));
+}
+
+Panel pageInFront(const WindowState& state) {
+  return orFirst(state.page, pagesThere(state));
+}
+
+bool isShown(Panel panel, const WindowState& state) {
+  if (!isThere(panel, state)) return false;
+  if (inDrawer(panel)) return panel == pageInFront(state);
+  const auto tab = tabOf(panel);
+  return !tab || *tab == tabInFront(state);
 }
 
 bool isEnabled(Command command, const WindowState& state) {

@@ -5,9 +5,8 @@
 #include <optional>
 
 #include <QString>
-#include <QStringList>
 
-#include "app/gui/painting/tool_choice.h"
+#include "app/gui/window/desk.h"
 
 namespace patina {
 
@@ -26,31 +25,25 @@ struct Work {
 struct WindowState {
   Content content = Content::nothing;
   bool open = false; // a scene is, though a preview may stand before it
+  Desk desk = Desk::feel;
+  Tab tab = Tab::surface;     // of the column; another is in front where it has nothing to show
+  Panel page = Panel::forces; // of the drawer; the same
   ToolChoice tool;
   bool relief = false, paint = false; // the scene has some
   std::size_t undoable = 0, redoable = 0;
   bool unsaved = false;
   bool recording = false;
-  QString name; // of what is open; empty: the toy
-  QStringList warnings;
+  QString name; // of what is seen; empty: nothing is
   std::optional<Work> work;
   std::optional<std::filesystem::path> left_behind; // by a crash, and offered
 };
 
-enum class Panel {
-  recovery, // bars above the picture
-  warnings,
-  brush, // cards at its side
-  relief,
-  touch,
-  display,
-  paint,
-  device,
-  objects,
-  mesh,
-  history // a dock
-};
-bool isShown(Panel panel, const WindowState& state);
+bool isThere(Panel panel, const WindowState& state); // the desk has it, and a use for it
+bool isShown(Panel panel, const WindowState& state); // it is in front as well
+Tab tabInFront(const WindowState& state);
+Panel pageInFront(const WindowState& state);
+std::vector<Tab> tabsThere(const WindowState& state);
+std::vector<Panel> pagesThere(const WindowState& state);
 
 enum class Command { save, save_as, record, undo, redo, paint };
 bool isEnabled(Command command, const WindowState& state);

@@ -11,12 +11,18 @@ QColor toQColor(const palette::Color& color) {
 }
 
 QString cardStyle() {
-  return QStringLiteral("QGroupBox { background: #ffffff; border: 1px solid #d5dae2;"
-                        " border-radius: 6px; margin-top: 22px; padding: 6px 8px 6px 8px; }"
-                        "QGroupBox::title { subcontrol-origin: margin; left: 2px; top: 2px;"
-                        " color: #2a3240; font-weight: bold; }"
-                        "QLabel[quiet=\"true\"] { color: #5b6575; }"
-                        "QLabel[bad=\"true\"] { color: #a12a1a; }");
+  return QStringLiteral(
+      "QGroupBox { background: #ffffff; border: 1px solid #d5dae2;"
+      " border-radius: 6px; margin-top: 22px; padding: 6px 8px 6px 8px; }"
+      "QGroupBox::title { subcontrol-origin: margin; left: 2px; top: 2px;"
+      " color: #2a3240; font-weight: bold; }"
+      "QScrollBar:vertical { width: 10px; border: none; background: transparent; }"
+      "QScrollBar::handle:vertical { background: #c3cad5; border-radius: 4px;"
+      " min-height: 24px; margin: 1px; }"
+      "QScrollBar::handle:vertical:disabled { background: transparent; }"
+      "QScrollBar::add-line:vertical, QScrollBar::sub-line:vertical { height: 0; }"
+      "QLabel[quiet=\"true\"] { color: #5b6575; }"
+      "QLabel[bad=\"true\"] { color: #a12a1a; }");
 }
 
 void applyStyle(QApplication& application) {

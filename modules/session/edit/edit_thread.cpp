@@ -186,6 +186,12 @@ void EditThread::endStroke() {
   impl_->push({"Painting", [](EditWorker& worker, Progress&) { worker.endStroke(); }});
 }
 
+void EditThread::cancelStroke() {
+  Impl::Task task{"Painting", [](EditWorker& worker, Progress&) { worker.cancelStroke(); }};
+  task.of_stroke = true; // it is not to be ended first
+  impl_->push(std::move(task));
+}
+
 void EditThread::tryValues(std::function<void(Scene&)> set, Done done) {
   Impl::Task task{"Values",
                   [set = std::move(set)](EditWorker& worker, Progress&) { worker.tryValues(set); },

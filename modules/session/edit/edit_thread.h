@@ -40,6 +40,7 @@ class EditThread {
   void beginStroke(const Brush& brush);
   void dabs(std::vector<StrokeSample> samples);
   void endStroke();
+  void cancelStroke(); // nothing of it stays, and it is no edit
 
   using Done = std::function<void(const std::string& problem)>; // empty: it was done
 

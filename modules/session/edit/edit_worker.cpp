@@ -85,6 +85,10 @@ void EditWorker::endStroke() {
   if (editor_->endStroke()) appended(before);
 }
 
+void EditWorker::cancelStroke() {
+  if (editor_ && editor_->inStroke()) editor_->cancelStroke();
+}
+
 void EditWorker::tryValues(const std::function<void(Scene&)>& set) {
   Scene wanted = editor().scene();
   if (tried_) setValues(wanted, tried_->values);

@@ -27,6 +27,7 @@ class EditWorker {
   void beginStroke(const Brush& brush, Progress& progress);
   void dabs(const std::vector<StrokeSample>& samples); // nothing outside a stroke
   void endStroke();                                    // nothing outside a stroke
+  void cancelStroke();                                 // the same
 
   void tryValues(const std::function<void(Scene&)>& set); // felt, and no edit before settleValues()
   void settleValues(Progress& progress);

@@ -25,7 +25,7 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kMostTriangles = 500'000;
+constexpr std::size_t kMostExported = 500'000;
 
 vtkSmartPointer<vtkDoubleArray> values(PaintQuantity quantity, vtkIdType count) {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
@@ -47,7 +47,7 @@ RefinedSurface fineSurface(const SceneObject& object) {
   for (const auto& image : {paint.color, paint.relief})
     if (image && paint.layout.uvs) edge = std::min(edge, texelSide(mesh, *image));
   if (paint.material) edge = std::min(edge, paint.material->voxel());
-  return refined(mesh, edge > 0 ? edge : 1, kMostTriangles);
+  return refined(mesh, edge > 0 ? edge : 1, kMostExported);
 }
 
 // A vertex of the surface, once for each place that it has in the image.

@@ -22,7 +22,7 @@ vtkPolyDataMapper& mapperOf(vtkActor& actor) {
 // A brush reaches over several voxels, and linear pieces of this size follow what it leaves; finer
 // ones would be seen in the time of a frame where OpenGL is software.
 constexpr double kEdgeVoxels = 2;
-constexpr std::size_t kMostTriangles = 150'000;
+constexpr std::size_t kMostShown = 150'000;
 
 // A node's value reaches one voxel to either side of it.
 Box3 reachOf(const MaterialMap& map, const MaterialMap::Index& block) {
@@ -75,7 +75,7 @@ ValueRange MaterialSurface::prepare(MaterialChannel channel) {
   const double base = valueOf(base_, channel);
   if (fineness_ != map_->voxel()) {
     fineness_ = map_->voxel();
-    const RefinedSurface fine = refined(*mesh_, kEdgeVoxels * fineness_, kMostTriangles);
+    const RefinedSurface fine = refined(*mesh_, kEdgeVoxels * fineness_, kMostShown);
     std::vector<std::int32_t> vertex;
     const auto data = surfaceData(fine.mesh, fine.normals, vertex);
     points_.clear();

@@ -47,6 +47,7 @@ class SliceLayer {
   void setTextSize(int pixels);
   // The plane itself, to cut the surfaces with; its normal is the slice's axis.
   vtkPlane& plane() { return *plane_; }
+  vtkScalarBarActor& bar() { return *bar_; }
   double position() const { return position_; } // along the axis [m]
 
  private:

@@ -49,7 +49,7 @@ vtkSmartPointer<vtkLookupTable> stabilityColors() {
 }
 
 StabilityLayer::StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay)
-    : actor_(surfaceActor(palette::kSurface)), bar_(scalarBar("K*/K")) {
+    : actor_(surfaceActor(palette::kSurface)), bar_(scalarBar("K*/K\ngrey: jumps")) {
   const auto colors = stabilityColors();
   auto* mapper = vtkPolyDataMapper::SafeDownCast(actor_->GetMapper());
   mapper->SetLookupTable(colors);
@@ -61,6 +61,8 @@ StabilityLayer::StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay)
   scene.AddActor(actor_);
   bar_->SetLookupTable(colors);
   bar_->SetLabelFormat("%.3g");
+  bar_->DrawNanAnnotationOn();
+  bar_->SetNanAnnotation("");
   overlay.AddActor2D(bar_);
   setVisible(false);
 }

@@ -1,5 +1,8 @@
 #include "visualization/values/scalar_bar.h"
 
+#include <algorithm>
+
+#include <vtkProperty2D.h>
 #include <vtkTextProperty.h>
 
 #include "visualization/values/palette.h"
@@ -20,15 +23,23 @@ vtkSmartPointer<vtkScalarBarActor> scalarBar(const std::string& title) {
   }
   bar->GetTitleTextProperty()->BoldOn();
   bar->SetBarRatio(0.22);
+  // Its own plate: what lies behind never mixes with the colours that are read.
+  bar->DrawBackgroundOn();
+  bar->GetBackgroundProperty()->SetColor(palette::forVtk(palette::kBackgroundHigh));
+  bar->SetTextPad(6);
   bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  bar->SetWidth(0.10);
-  bar->SetHeight(0.46);
-  placeScalarBar(*bar, 0);
+  bar->SetHeight(0.5);
+  placeScalarBar(*bar, 0, 0.12);
   return bar;
 }
 
-void placeScalarBar(vtkScalarBarActor& bar, int place) {
-  bar.SetPosition(0.885 - 0.12 * place, 0.28);
+double scalarBarShare(int wide, int text_size) {
+  return wide > 0 ? std::clamp(8.8 * text_size / wide, 0.12, 0.3) : 0.12;
+}
+
+void placeScalarBar(vtkScalarBarActor& bar, int place, double share) {
+  bar.SetWidth(share - 0.01);
+  bar.SetPosition(1 - share * (place + 1), 0.26);
 }
 
 void setTextSize(vtkScalarBarActor& bar, int pixels) {

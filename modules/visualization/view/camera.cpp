@@ -21,6 +21,11 @@ double halfHeight(vtkCamera& camera) {
   return camera.GetDistance() * std::tan(0.5 * camera.GetViewAngle() * M_PI / 180);
 }
 
+// Perspective or not, the same height of the scene is in the picture.
+void keepScale(vtkCamera& camera) {
+  camera.SetParallelScale(halfHeight(camera));
+}
+
 void look(vtkCamera& camera, const Vec3& eye, const Vec3& at, const Vec3& up) {
   camera.SetPosition(eye[0], eye[1], eye[2]);
   camera.SetFocalPoint(at[0], at[1], at[2]);
@@ -39,11 +44,14 @@ void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& p
     const Vec3 corner = point - centre;
     const double across = std::abs(corner.dot(frame.right)) / aspect;
     const double high = std::abs(corner.dot(frame.up));
-    distance =
-        std::max(distance, kMargin * std::max(across, high) / tangent + corner.dot(frame.back));
+    const double nearer = corner.dot(frame.back);
+    // Without perspective what is far is no smaller.
+    const double by_depth = camera.GetParallelProjection() != 0 ? std::max(0.0, nearer) : nearer;
+    distance = std::max(distance, kMargin * std::max(across, high) / tangent + by_depth);
   }
   camera.SetViewAngle(2 * kHalfView * 180 / M_PI);
   look(camera, centre + frame.back * distance, centre, frame.up);
+  keepScale(camera);
 }
 
 void turnCamera(vtkCamera& camera, ViewPreset view) {
@@ -91,11 +99,21 @@ void pan(vtkCamera& camera, double dx, double dy) {
 
 void zoom(vtkCamera& camera, double factor) {
   if (factor > 0) camera.Dolly(factor);
+  keepScale(camera);
+}
+
+void setParallel(vtkCamera& camera, bool on) {
+  camera.SetParallelProjection(on);
+  keepScale(camera);
 }
 
 Ray rayThrough(vtkCamera& camera, double x, double y) {
   const Frame frame = frameOf(camera);
   const double tangent = 2 * std::tan(0.5 * camera.GetViewAngle() * M_PI / 180);
+  if (camera.GetParallelProjection() != 0) {
+    const double high = 2 * camera.GetParallelScale();
+    return {Vec3(camera.GetPosition()) + high * (x * frame.right + y * frame.up), -frame.back};
+  }
   return {Vec3(camera.GetPosition()),
           (x * tangent * frame.right + y * tangent * frame.up - frame.back).normalized()};
 }

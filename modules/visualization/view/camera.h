@@ -22,6 +22,8 @@ void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& p
 void orbit(vtkCamera& camera, double dx, double dy);
 void pan(vtkCamera& camera, double dx, double dy);
 void zoom(vtkCamera& camera, double factor); // > 1 comes nearer
+// Without perspective; what it looks at keeps its size.
+void setParallel(vtkCamera& camera, bool on);
 
 // The point under the mouse in the plane through `through` that faces the camera.
 // x, y in fractions of the picture's height from its centre, to the right and up.

@@ -13,10 +13,6 @@
 #include "visualization/view/scene_view_parts.h"
 
 namespace patina {
-namespace {
-constexpr double kBarWidth = 0.12; // of the picture
-}
-
 SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   Impl& my = *impl_;
   my.scene->SetBackground(palette::forVtk(palette::kBackgroundLow));
@@ -210,7 +206,7 @@ void SceneView::fit() {
   const Box3 box = my.box();
   vtkCamera& camera = *my.scene->GetActiveCamera();
   // Scalar bars stand at the right edge: what is fitted goes to their left.
-  const double taken = kBarWidth * my.bars();
+  const double taken = my.barShare() * my.bars();
   const double aspect = my.aspect() * (1 - taken);
   std::vector<Vec3> points = my.outermost(box);
   fitCamera(camera, box.center(), points, aspect);

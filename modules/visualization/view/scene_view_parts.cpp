@@ -35,6 +35,11 @@ int SceneView::Impl::bars() const {
   return (distance_bar ? 1 : 0) + (mapShown() ? 1 : 0) + (paint_bar ? 1 : 0);
 }
 
+double SceneView::Impl::barShare() const {
+  auto* window = scene->GetRenderWindow();
+  return window != nullptr ? scalarBarShare(window->GetSize()[0], textSize(window)) : 0.12;
+}
+
 void SceneView::Impl::choosePaint() {
   const auto before = slicedMaterial();
   paint.set(painted, texels);
@@ -71,8 +76,9 @@ void SceneView::Impl::applyVisibility() {
   const bool map = mapShown();
   stability.setVisible(map);
   const int places = bars();
-  placeScalarBar(stability.bar(), places - 1);
-  placeScalarBar(paint.bar(), places - 1);
+  placeScalarBar(slice.bar(), 0, barShare());
+  placeScalarBar(stability.bar(), places - 1, barShare());
+  placeScalarBar(paint.bar(), places - 1, barShare());
   paint.setVisible(shownPaint().has_value());
   paint.setWireframe(on(Layer::wireframe));
   mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr && !map);

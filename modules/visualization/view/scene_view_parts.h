@@ -105,6 +105,7 @@ struct SceneView::Impl {
   std::optional<PaintQuantity> shownPaint() const;
   std::optional<MaterialChannel> slicedMaterial() const; // on the slice, in place of distance
   int bars() const;                                      // scalar bars at the right edge
+  double barShare() const;                               // of the picture's width, each
 
   void applyVisibility();
   void choosePaint();

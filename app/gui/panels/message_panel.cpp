@@ -1,0 +1,62 @@
+#include "app/gui/panels/message_panel.h"
+
+#include <QHBoxLayout>
+#include <QTime>
+
+namespace patina {
+namespace {
+constexpr int kPatience = 8000; // [ms]
+const QColor kWarning(0x7a, 0x4f, 0x00);
+} // namespace
+
+MessagePanel::MessagePanel(QWidget* parent) : QListWidget(parent) {
+  setObjectName(QStringLiteral("messages"));
+  setFocusPolicy(Qt::NoFocus); // keys are the view's
+  setWordWrap(true);
+  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  setSelectionMode(QAbstractItemView::NoSelection);
+  setStyleSheet(QStringLiteral("QListWidget { border: none; background: #ffffff; }"
+                               "QListWidget::item { padding: 2px 6px; }"));
+  setToolTip(tr("What the window has said since it was opened"));
+}
+
+void MessagePanel::add(const Message& message) {
+  auto* item = new QListWidgetItem(
+      QTime::currentTime().toString(QStringLiteral("hh:mm  ")) + message.words, this);
+  if (message.warns) item->setForeground(kWarning);
+  scrollToBottom();
+}
+
+NoticeLine::NoticeLine(QWidget* parent) : QWidget(parent), words_(new ElidedLabel(this)) {
+  auto* line = new QHBoxLayout(this);
+  line->setContentsMargins(6, 0, 0, 0);
+  line->setSpacing(2);
+  words_->setObjectName(QStringLiteral("notice"));
+  line->addWidget(words_, 1);
+  auto* away = new QToolButton(this);
+  away->setObjectName(QStringLiteral("dismiss"));
+  away->setText(QStringLiteral("✕"));
+  away->setAutoRaise(true);
+  away->setToolTip(tr("Put this line away; it stays under Messages"));
+  line->addWidget(away);
+  connect(away, &QToolButton::clicked, this, &QWidget::hide);
+  patience_.setSingleShot(true);
+  patience_.setInterval(kPatience);
+  connect(&patience_, &QTimer::timeout, this, &QWidget::hide);
+  hide();
+}
+
+void NoticeLine::show(const Message& message) {
+  QPalette colors = palette();
+  colors.setColor(QPalette::WindowText, message.warns ? kWarning : QColor(0x22, 0x28, 0x32));
+  words_->setPalette(colors);
+  words_->setText(message.words);
+  message.warns ? patience_.stop() : patience_.start();
+  setVisible(true);
+}
+
+void NoticeLine::mousePressEvent(QMouseEvent*) {
+  emit opened();
+}
+
+} // namespace patina

@@ -1,0 +1,63 @@
+// Desks: what the window is set up for. Each is a row of one table: the panels at hand, and how it
+// begins.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <QString>
+
+#include "app/gui/painting/tool_choice.h"
+
+namespace patina {
+
+enum class Desk { feel, paint, analyse };
+
+enum class Panel {
+  recovery, // in the line below the picture
+  tool,     // cards of the column at its side
+  brush,
+  relief,
+  touch,
+  objects,
+  mesh,
+  device,
+  display,
+  paint,
+  forces, // pages of the drawer below it
+  energy,
+  history,
+  messages
+};
+
+// The cards of the column, a few at a time.
+enum class Tab { tool, surface, object, device, show };
+std::optional<Tab> tabOf(Panel panel); // nullopt: no card
+bool inDrawer(Panel panel);
+
+struct DeskRow {
+  Desk desk;
+  const char* name; // of its button and of what is remembered
+  QString words, tip;
+  std::vector<Panel> panels;
+  // As it is before a person has changed it.
+  ToolChoice tool;
+  Tab tab;
+  Panel page;
+  bool drawer_open;
+};
+const std::vector<DeskRow>& deskRows(); // in the order of the bar
+const DeskRow& rowOf(Desk desk);
+
+struct TabRow {
+  Tab tab;
+  const char* name;
+  QString words, tip;
+};
+const std::vector<TabRow>& tabRows(); // in the order of the column
+
+bool hasTool(Desk desk, const ToolChoice& tool);
+// Where a tool is at hand: here if it can be.
+Desk deskFor(const ToolChoice& tool, Desk here);
+
+} // namespace patina

@@ -1,0 +1,74 @@
+#include "app/gui/window/drawn_icon.h"
+
+#include <QPainterPath>
+#include <QPixmap>
+
+namespace patina {
+namespace {
+
+const QColor kAccent(0x2b, 0x6c, 0xb0), kWarm(0xcc, 0x4a, 0x2c);
+
+void drawTool(QPainter& p) {
+  p.setPen(QPen(kWarm, 2.4, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(4, 16), QPointF(9, 11));
+  p.setPen(QPen(QColor(0x2a, 0x32, 0x40), 2.4, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(10, 10), QPointF(16, 4));
+}
+
+void drawSurface(QPainter& p) {
+  QPainterPath ground(QPointF(2, 13));
+  ground.cubicTo(6, 4, 9, 8, 11, 11);
+  ground.cubicTo(13, 14, 16, 12, 18, 8);
+  p.setPen(QPen(kAccent, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.drawPath(ground);
+  p.setPen(QPen(QColor(0x2a, 0x32, 0x40), 1.2));
+  for (int i = 0; i < 4; ++i) p.drawLine(QPointF(4 + 4 * i, 17), QPointF(6 + 4 * i, 15));
+}
+
+void drawObject(QPainter& p) {
+  p.drawPolygon(QPolygonF() << QPointF(10, 2) << QPointF(17, 6) << QPointF(17, 14)
+                            << QPointF(10, 18) << QPointF(3, 14) << QPointF(3, 6));
+  p.drawPolyline(QPolygonF() << QPointF(3, 6) << QPointF(10, 10) << QPointF(17, 6));
+  p.drawLine(QPointF(10, 10), QPointF(10, 18));
+}
+
+void drawDevice(QPainter& p) {
+  p.drawRoundedRect(QRectF(5, 3, 10, 14), 5, 5);
+  p.drawLine(QPointF(10, 3), QPointF(10, 9));
+  p.setPen(QPen(kWarm, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.drawLine(QPointF(10, 6), QPointF(10, 7));
+}
+
+void drawEye(QPainter& p) {
+  QPainterPath lids(QPointF(2, 10));
+  lids.cubicTo(6, 3.5, 14, 3.5, 18, 10);
+  lids.cubicTo(14, 16.5, 6, 16.5, 2, 10);
+  p.drawPath(lids);
+  p.setBrush(kAccent);
+  p.drawEllipse(QPointF(10, 10), 2.6, 2.6);
+}
+
+} // namespace
+
+QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
+  QIcon icon;
+  for (const int scale : {1, 2, 3}) {
+    QPixmap pixmap(20 * scale, 20 * scale);
+    pixmap.fill(Qt::transparent);
+    QPainter painter(&pixmap);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.scale(scale, scale);
+    painter.setPen(QPen(QColor(0x2a, 0x32, 0x40), 1.4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+    draw(painter);
+    painter.end();
+    icon.addPixmap(pixmap);
+  }
+  return icon;
+}
+
+QIcon iconOf(Tab tab) {
+  constexpr void (*kDraw[])(QPainter&) = {drawTool, drawSurface, drawObject, drawDevice, drawEye};
+  return drawnIcon(kDraw[static_cast<std::size_t>(tab)]);
+}
+
+} // namespace patina

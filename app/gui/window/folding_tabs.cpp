@@ -1,0 +1,91 @@
+#include "app/gui/window/folding_tabs.h"
+
+namespace patina {
+namespace {
+constexpr int kNarrowest = 300, kWidest = 480; // of what stands aside
+}
+
+FoldingTabs::FoldingTabs(Folds folds, QWidget* body, QWidget* parent)
+    : QWidget(parent), folds_(folds), strip_(new QWidget(this)),
+      row_(new QBoxLayout(QBoxLayout::LeftToRight, strip_)), buttons_(new QButtonGroup(this)),
+      body_(body) {
+  setAttribute(Qt::WA_StyledBackground);
+  strip_->setStyleSheet(QStringLiteral(
+      "QToolButton { padding: 3px 4px; border: none; border-bottom: 2px solid transparent; }"
+      "QToolButton:hover { background: #e0e6ee; }"
+      "QToolButton:checked { border-bottom-color: #2b6cb0; color: #14568c; }"));
+  row_->setContentsMargins(2, 0, 2, 0);
+  row_->setSpacing(0);
+  auto* all = new QVBoxLayout(this);
+  all->setContentsMargins(0, 0, 0, 0);
+  all->setSpacing(0);
+  all->addWidget(strip_);
+  all->addWidget(body_, 1);
+  connect(buttons_, &QButtonGroup::idClicked, this, &FoldingTabs::click);
+  buttons_->setExclusive(false);
+}
+
+void FoldingTabs::add(int id, const QString& name, const QIcon& icon, const QString& words,
+                      const QString& tip) {
+  auto* button = new QToolButton(strip_);
+  button->setObjectName(name);
+  button->setIcon(icon);
+  button->setIconSize({20, 20});
+  button->setText(words);
+  button->setToolTip(QStringLiteral("<b>%1</b><br>%2").arg(words, tip));
+  button->setCheckable(true);
+  button->setFocusPolicy(Qt::TabFocus);
+  buttons_->addButton(button, id);
+  row_->insertWidget(buttons_->buttons().size() - 1, button);
+  if (buttons_->buttons().size() == 1) row_->addStretch(1);
+}
+
+void FoldingTabs::addToStrip(QWidget* widget) {
+  row_->addWidget(widget, 1000);
+}
+
+void FoldingTabs::setThere(int id, bool there) {
+  buttons_->button(id)->setVisible(there);
+}
+
+void FoldingTabs::setInFront(int id) {
+  in_front_ = id;
+  arrange();
+}
+
+void FoldingTabs::setFolded(bool folded) {
+  folded_ = folded;
+  arrange();
+}
+
+void FoldingTabs::click(int id) {
+  if (!folded_ && id == in_front_) {
+    emit foldAsked(true);
+  } else {
+    in_front_ = id;
+    if (folded_) emit foldAsked(false);
+    emit chosen(id);
+  }
+  arrange();
+}
+
+void FoldingTabs::arrange() {
+  const bool icons = folds_ == Folds::aside && folded_;
+  for (QAbstractButton* button : buttons_->buttons()) {
+    button->setChecked(!folded_ && buttons_->id(button) == in_front_);
+    qobject_cast<QToolButton*>(button)->setToolButtonStyle(icons ? Qt::ToolButtonIconOnly
+                                                                 : Qt::ToolButtonTextOnly);
+  }
+  row_->setDirection(icons ? QBoxLayout::TopToBottom : QBoxLayout::LeftToRight);
+  body_->setVisible(!folded_);
+  auto* all = static_cast<QVBoxLayout*>(layout());
+  all->setStretch(0, icons ? 1 : 0);
+  if (folds_ == Folds::aside) {
+    setMinimumWidth(icons ? 0 : kNarrowest);
+    setMaximumWidth(icons ? strip_->sizeHint().width() : kWidest);
+  } else {
+    setMaximumHeight(folded_ ? strip_->sizeHint().height() : QWIDGETSIZE_MAX);
+  }
+}
+
+} // namespace patina

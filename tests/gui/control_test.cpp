@@ -1,0 +1,180 @@
+// Small things that a hand stumbles over, done with pointer and keys.
+#include <QCheckBox>
+#include <QListWidget>
+
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+
+namespace patina {
+namespace {
+
+class Controls : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+  }
+  QToolButton* crossOf(const QString& row) {
+    for (auto* button : find<ValueRow>(row)->findChildren<QToolButton*>())
+      if (button->isVisible()) return button;
+    return nullptr;
+  }
+  void addFriction() {
+    addProperty("Friction");
+    ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.haptics.friction.has_value(); }));
+    wait(100);
+  }
+  bool frictionGoes() {
+    return waitUntil([&] { return !edits().scene()->scene.haptics.friction.has_value(); }, 5000) &&
+           find<ValueRow>("friction_static") == nullptr;
+  }
+  void paintAcross() {
+    type(QStringLiteral("p"));
+    wait(200);
+    drag(inView({-60, 0}), inView({60, 0}));
+  }
+  bool editsAre(std::size_t count) {
+    return waitUntil([&] { return edits().status().edits.size() == count; }, 60000);
+  }
+};
+
+TEST_F(Controls, TheCrossOfARowTakesItAwayByPointer) {
+  addFriction();
+  click(*crossOf("friction_static"));
+  EXPECT_TRUE(frictionGoes());
+}
+
+TEST_F(Controls, TheCrossOfARowTakesItAwayByKey) {
+  addFriction();
+  crossOf("friction_static")->setFocus(Qt::TabFocusReason);
+  type(' ');
+  EXPECT_TRUE(frictionGoes());
+  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::feel) << "Space was the button's";
+}
+
+TEST_F(Controls, SpaceOnACheckBoxTogglesItAndKeepsTheTool) {
+  openTab("show");
+  wait(50);
+  auto* slice = find<QCheckBox>("slice");
+  slice->setFocus(Qt::TabFocusReason);
+  type(' ');
+  EXPECT_TRUE(slice->isChecked());
+  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::feel);
+  click(view());
+  type(' ');
+  EXPECT_TRUE(slice->isChecked());
+  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::navigate);
+}
+
+TEST_F(Controls, TheSwatchShowsTheColourThatIsPainted) {
+  type(QStringLiteral("p"));
+  wait(100);
+  auto* now = find<QToolButton>("brush_color");
+  QToolButton* green = nullptr;
+  for (auto* button : find<BrushPanel>()->findChildren<QToolButton*>())
+    if (button->toolTip().contains(QStringLiteral("#4a9447"))) green = button;
+  ASSERT_NE(green, nullptr);
+  click(*green);
+  EXPECT_EQ(now->grab().toImage().pixelColor(now->rect().center()).name(),
+            QStringLiteral("#4a9447"));
+}
+
+TEST_F(Controls, EscapeTakesAStrokeBackAndTheNextOneIsPainted) {
+  type(QStringLiteral("p"));
+  wait(200);
+  pointAt(inView({-60, 0}));
+  wait(200);
+  press();
+  for (int i = 0; i < 20; ++i) pointAt(inView({-60 + 6 * i, 0}));
+  ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.objects[0].paint != nullptr; }, 5000));
+  type(kEscape);
+  pointAt(inView({60, 30}));
+  release();
+  ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.objects[0].paint == nullptr; }, 5000));
+  wait(500);
+  EXPECT_TRUE(edits().status().edits.empty());
+  paintAcross();
+  EXPECT_TRUE(editsAre(1));
+}
+
+TEST_F(Controls, TheHistorySpeaksInWordsAndRoundedUnits) {
+  setRow("stiffness", 250);
+  ASSERT_TRUE(editsAre(1));
+  find<QToolButton>("mode_offset")->click();
+  setRow("offset", 1.24);
+  ASSERT_TRUE(editsAre(2));
+  paintAcross();
+  ASSERT_TRUE(editsAre(3));
+  find<QDoubleSpinBox>("turn_z")->setValue(30);
+  ASSERT_TRUE(editsAre(4));
+  QStringList words;
+  for (int i = 1; i < find<HistoryPanel>()->count(); ++i)
+    words << find<HistoryPanel>()->item(i)->text();
+  EXPECT_EQ(words[0], QStringLiteral("Stiffness 250 N/m"));
+  EXPECT_EQ(words[1], QStringLiteral("Offset 1.24 mm"));
+  EXPECT_EQ(words[2], QStringLiteral("Painted colour"));
+  EXPECT_EQ(words[3], QStringLiteral("Turn sphere by 30° about z"));
+}
+
+TEST_F(Controls, TheTitleNamesTheMeshFromTheFirstSecond) {
+  const auto path = saved(torus(0.035, 0.015, 400, 200), "torus.obj");
+  QString title;
+  QObject::connect(find<SceneLoader>(), &SceneLoader::meshReady, window_.get(), [&] {
+    QTimer::singleShot(0, window_.get(), [&] { title = window_->windowTitle(); });
+  });
+  documents().open(requestFor(path));
+  ASSERT_TRUE(waitUntil([&] { return !title.isEmpty(); }));
+  EXPECT_TRUE(title.startsWith(QStringLiteral("torus.obj"))) << title.toStdString();
+}
+
+TEST_F(Controls, ADoubleClickLaysABallOnTheSurface) {
+  addProperty("Tip radius");
+  setRow("tip_radius", 2);
+  ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.haptics.tip_radius == 2e-3; }));
+  wait(300);
+  doubleClickAt(inView({30, -20}));
+  wait(400);
+  const ToolSample sample = feel().sample();
+  EXPECT_NEAR(sample.tip.norm(), 0.032, 1e-4);
+  EXPECT_LT(sample.force.norm(), 0.05);
+}
+
+TEST_F(Controls, ADoubleClickBeginsAnewOnTheSideThatIsSeen) {
+  doubleClickAt(inView({0, 0}));
+  wheelAt(inView({0, 0}), 6);
+  wait(300);
+  ASSERT_GT(feel().sample().force.norm(), 0.5);
+  type(QStringLiteral("1")); // from +x
+  wait(200);
+  doubleClickAt(inView({0, 0}));
+  wait(400);
+  const ToolSample sample = feel().sample();
+  EXPECT_NEAR((sample.vcp - Vec3(0.03, 0, 0)).norm(), 0, 1e-3) << sample.vcp.transpose();
+  EXPECT_LT(sample.force.norm(), 0.1);
+}
+
+TEST_F(Controls, APressFollowsTheSurfaceWithOneForce) {
+  trigger("tool_press");
+  wait(100);
+  setRow("press_force", 0.6);
+  drag(inView({-40, 0}), inView({40, 10}), 1, 20);
+  pointAt(inView({-40, 0}));
+  press();
+  for (int i = 0; i < 16; ++i) {
+    pointAt(inView({-40 + 5 * i, 0}));
+    wait(30);
+  }
+  wait(200);
+  EXPECT_NEAR(feel().sample().force.norm(), 0.6, 0.06);
+  wheelAt(inView({40, 0}), 3);
+  wait(300);
+  EXPECT_NEAR(feel().sample().force.norm(), 0.9, 0.09);
+  release();
+  wait(300);
+  EXPECT_EQ(feel().sample().force.norm(), 0);
+  EXPECT_TRUE(edits().status().edits.empty()) << "it paints nothing";
+}
+
+} // namespace
+} // namespace patina

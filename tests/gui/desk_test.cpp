@@ -1,0 +1,156 @@
+// Desks: what is at hand on each, and that a person's arrangement stays.
+#include <QSettings>
+#include <QSplitter>
+
+#include "app/gui/control/desk_controller.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+
+namespace patina {
+namespace {
+
+class Desks : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+    wait(300);
+  }
+  Desk desk() { return window_->controllers().desks.desk(); }
+  void go(const char* name) { clickDesk(name); }
+  // Of the bar on top.
+  void clickDesk(const QString& name) {
+    QAction* action = find<QAction>("desk_" + name);
+    for (QWidget* widget : action->associatedWidgets())
+      if (auto* bar = qobject_cast<QToolBar*>(widget)) return click(*bar->widgetForAction(action));
+    FAIL() << "the bar has no desk " << name.toStdString();
+  }
+  QWidget& column() { return *find<QWidget>("column"); }
+  QWidget& drawer() { return *find<QWidget>("drawer"); }
+  void saveScreen(const char* name) {
+    if (const char* folder = std::getenv("PATINA_PICTURES"))
+      window_->grab().save(QString::fromUtf8(folder) + "/" + name + ".png");
+  }
+};
+
+TEST_F(Desks, FeelLeavesThePictureItsRoom) {
+  saveScreen("feel");
+  EXPECT_EQ(desk(), Desk::feel);
+  EXPECT_GE(view().width(), 930);
+  EXPECT_GE(view().height(), 680);
+}
+
+TEST_F(Desks, TheBarGoesFromOneToTheOtherAndToolsGoAlong) {
+  EXPECT_FALSE(find<BrushPanel>()->isVisible());
+  go("paint");
+  saveScreen("paint");
+  EXPECT_EQ(desk(), Desk::paint);
+  EXPECT_TRUE(find<BrushPanel>()->isVisible());
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::paint, Tool::color}));
+  go("analyse");
+  wait(300);
+  saveScreen("analyse");
+  EXPECT_TRUE(find<DisplayPanel>()->isVisible());
+  EXPECT_TRUE(find<ForcePlot>()->isVisible());
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::feel, {}}));
+  type(QStringLiteral("h")); // relief, which is Paint's
+  EXPECT_EQ(desk(), Desk::paint);
+  EXPECT_TRUE(find<ReliefPanel>()->isVisible());
+  type('1', kControl);
+  EXPECT_EQ(desk(), Desk::feel);
+  EXPECT_FALSE(find<ReliefPanel>()->isVisible());
+  type('2', kControl);
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::paint, Tool::relief}));
+}
+
+TEST_F(Desks, TabsBringTheirCardsAndFoldAtASecondClick) {
+  clickOn("tab_device");
+  EXPECT_TRUE(find<DevicePanel>()->isVisible());
+  EXPECT_FALSE(find<HapticsPanel>()->isVisible());
+  const int wide = view().width();
+  clickOn("tab_device");
+  EXPECT_FALSE(find<DevicePanel>()->isVisible());
+  EXPECT_LT(column().width(), 60);
+  EXPECT_GT(view().width(), wide + 200);
+  saveScreen("folded");
+  clickOn("tab_show");
+  EXPECT_TRUE(find<DisplayPanel>()->isVisible());
+  EXPECT_EQ(view().width(), wide);
+  const int high = view().height();
+  clickOn("page_energy");
+  EXPECT_TRUE(find<EnergyPlot>()->isVisible());
+  EXPECT_LT(view().height(), high - 80);
+  clickOn("page_energy");
+  EXPECT_FALSE(find<EnergyPlot>()->isVisible());
+  EXPECT_EQ(view().height(), high);
+}
+
+TEST_F(Desks, TheColumnIsWidenedByItsEdgeAndNoFartherThanItMay) {
+  QWidget& handle = *find<QSplitter>("across")->handle(1);
+  const QPoint edge = handle.mapToGlobal(handle.rect().center());
+  drag(edge, edge - QPoint(100, 0));
+  EXPECT_NEAR(column().width(), 400, 3);
+  drag(handle.mapToGlobal(handle.rect().center()), QPoint(300, 300));
+  EXPECT_EQ(column().width(), 480);
+}
+
+TEST_F(Desks, ANarrowWindowFoldsTheColumnToIconsUntilItIsAskedFor) {
+  takeSize(1024, 700);
+  EXPECT_LT(column().width(), 60);
+  saveScreen("narrow");
+  clickOn("tab_surface");
+  EXPECT_GE(column().width(), 300);
+  EXPECT_TRUE(find<HapticsPanel>()->isVisible());
+  takeSize(1280, 800);
+  EXPECT_GE(column().width(), 300);
+}
+
+TEST_F(Desks, MessagesLeaveThePictureWhereItIs) {
+  const QRect before = view().geometry();
+  const QPoint at = view().mapToGlobal(QPoint());
+  emit documents().said({QStringLiteral("The mesh is open at 12 edges"), true});
+  wait(50);
+  EXPECT_TRUE(find<QLabel>("notice")->isVisible());
+  EXPECT_EQ(view().geometry(), before);
+  EXPECT_EQ(view().mapToGlobal(QPoint()), at);
+  clickOn("dismiss");
+  EXPECT_FALSE(find<QLabel>("notice")->isVisible());
+  clickOn("page_messages");
+  EXPECT_TRUE(find<MessagePanel>()
+                  ->item(find<MessagePanel>()->count() - 1)
+                  ->text()
+                  .contains(QStringLiteral("12 edges")));
+}
+
+TEST_F(Desks, SizesTabsAndTheDeskAreThereAtTheNextStart) {
+  window_->restorePlace(); // nothing is kept yet
+  takeSize(1340, 820);
+  go("analyse");
+  clickOn("tab_object");
+  clickOn("page_energy");
+  QWidget& handle = *find<QSplitter>("across")->handle(1);
+  const QPoint edge = handle.mapToGlobal(handle.rect().center());
+  drag(edge, edge - QPoint(60, 0));
+  const int wide = column().width();
+  go("feel");
+  clickOn("tab_device");
+  clickOn("tab_device"); // folds
+  go("analyse");
+  documents().setAsks(false);
+  ASSERT_TRUE(window_->close());
+  window_ = std::make_unique<MainWindow>();
+  window_->restorePlace();
+  window_->show();
+  ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+  EXPECT_EQ(window_->size(), QSize(1340, 820));
+  EXPECT_EQ(desk(), Desk::analyse);
+  EXPECT_NEAR(column().width(), wide, 1);
+  EXPECT_TRUE(find<ObjectPanel>()->isVisible());
+  EXPECT_TRUE(find<EnergyPlot>()->isVisible());
+  go("feel");
+  EXPECT_LT(column().width(), 60);
+}
+
+} // namespace
+} // namespace patina

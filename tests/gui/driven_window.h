@@ -1,0 +1,122 @@
+// A window that is driven as a person drives it: by pointer and keys of the window system, under a
+// window manager.
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+#include <QAbstractButton>
+#include <QWindow>
+
+#include "gui/window_fixture.h"
+#include "gui/x_hand.h"
+
+namespace patina {
+
+class DrivenWindow : public WindowTest {
+ protected:
+  void SetUp() override {
+    if (test::hasDisplay()) {
+      ASSERT_TRUE(test::hasWindowManager()) << "install openbox";
+    }
+    WindowTest::SetUp();
+    if (IsSkipped()) return;
+    hand_ = std::make_unique<test::XHand>();
+    ASSERT_TRUE(hand_->works()) << "the X server has no XTEST";
+    takeSize(1280, 800);
+  }
+  void TearDown() override {
+    hand_.reset();
+    WindowTest::TearDown();
+  }
+
+  // Its frame is drawn at the screen's corner: all of it can be reached.
+  void takeSize(int wide, int high) {
+    window_->move(0, 0);
+    window_->resize(wide, high);
+    EXPECT_TRUE(
+        waitUntil([&] { return window_->width() == wide && window_->height() == high; }, 3000))
+        << window_->width() << " x " << window_->height();
+    window_->activateWindow();
+    EXPECT_TRUE(waitUntil([&] { return window_->isActiveWindow(); }, 3000));
+    wait(100);
+  }
+
+  void pointAt(const QPoint& screen) {
+    const double scale = window_->devicePixelRatioF();
+    hand_->moveTo(qRound(scale * screen.x()), qRound(scale * screen.y()));
+    wait(10);
+  }
+  void press(int button = 1) { hand_->button(button, true), wait(10); }
+  void release(int button = 1) { hand_->button(button, false), wait(10); }
+  void click(QWidget& widget) {
+    ASSERT_TRUE(widget.isVisible()) << widget.objectName().toStdString();
+    const bool box = qobject_cast<QCheckBox*>(&widget) != nullptr; // it is its mark and words
+    pointAt(box ? widget.mapToGlobal({8, widget.height() / 2})
+                : widget.mapToGlobal(widget.rect().center()));
+    press();
+    release();
+    wait(30);
+  }
+  void clickOn(const QString& name) {
+    auto* widget = find<QAbstractButton>(name);
+    ASSERT_NE(widget, nullptr) << name.toStdString();
+    click(*widget);
+  }
+  // In the picture, from its middle.
+  QPoint inView(const QPoint& from_middle) { return view().mapToGlobal(middle() + from_middle); }
+  void doubleClickAt(const QPoint& screen) {
+    pointAt(screen);
+    wait(200); // what the pointer came over has seen it
+    // By a hand of its own: a picture drawn meanwhile would make two clicks of it.
+    std::thread hand([this] {
+      for (int i = 0; i < 4; ++i) {
+        hand_->button(1, i % 2 == 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(40));
+      }
+    });
+    wait(250);
+    hand.join();
+    wait(50);
+  }
+  void drag(const QPoint& from, const QPoint& to, int button = 1, int steps = 12) {
+    pointAt(from);
+    press(button);
+    for (int i = 1; i <= steps; ++i) pointAt(from + (to - from) * i / steps);
+    release(button);
+  }
+  void wheelAt(const QPoint& screen, int notches) {
+    pointAt(screen);
+    for (int i = 0; i < std::abs(notches); ++i)
+      press(notches > 0 ? 4 : 5), release(notches > 0 ? 4 : 5);
+  }
+  // What opens holds up who opened it: it is answered from beside.
+  template <typename Look, typename Act> void whenThere(Look look, Act act) {
+    auto* timer = new QTimer(window_.get());
+    QObject::connect(timer, &QTimer::timeout, window_.get(), [=] {
+      auto* found = look();
+      if (found == nullptr || !found->isVisible()) return;
+      timer->stop();
+      timer->deleteLater();
+      wait(300);
+      act(*found);
+    });
+    timer->start(100);
+  }
+  static constexpr std::uint32_t kEscape = 0xff1b, kEnter = 0xff0d, kTab = 0xff09, kShift = 0xffe1,
+                                 kControl = 0xffe3, kF1 = 0xffbe;
+  void type(std::uint32_t keysym, std::uint32_t with = 0) {
+    if (with != 0) hand_->key(with, true);
+    hand_->key(keysym, true);
+    hand_->key(keysym, false);
+    if (with != 0) hand_->key(with, false);
+    wait(30);
+  }
+  void type(const QString& letters) {
+    for (const QChar& letter : letters) type(letter.unicode());
+  }
+
+  std::unique_ptr<test::XHand> hand_;
+};
+
+} // namespace patina

@@ -1,0 +1,95 @@
+// Open and Save As take a workspace for a file.
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QListView>
+
+#include "app/gui/loading/file_question.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+class FileQuestions : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+    documents().saveTo(text(folder_ / "sphere.patina"));
+  }
+  static QString text(const std::filesystem::path& path) {
+    return QString::fromStdString(path.string());
+  }
+  FileQuestion* question() {
+    FileQuestion* found = nullptr;
+    waitUntil([&] { return (found = find<FileQuestion>()) != nullptr && found->isVisible(); },
+              5000);
+    wait(200);
+    return found;
+  }
+  void enter(FileQuestion& dialog, const QString& name) {
+    dialog.findChild<QLineEdit*>()->setText(name);
+    dialog.findChild<QLineEdit*>()->setFocus();
+    wait(100);
+    type(kEnter);
+  }
+};
+
+TEST_F(FileQuestions, ADoubleClickOpensAWorkspace) {
+  ASSERT_TRUE(open(folder_ / "sphere.obj"));
+  EXPECT_FALSE(edits().status().folder.has_value());
+  type('o', kControl);
+  FileQuestion* dialog = question();
+  ASSERT_NE(dialog, nullptr);
+  dialog->setDirectory(text(folder_));
+  wait(500);
+  auto* list = dialog->findChild<QListView*>("listView");
+  ASSERT_NE(list, nullptr);
+  QModelIndex row;
+  ASSERT_TRUE(waitUntil(
+      [&] {
+        for (int i = 0; i < list->model()->rowCount(list->rootIndex()); ++i) {
+          const QModelIndex index = list->model()->index(i, 0, list->rootIndex());
+          if (index.data().toString() == QStringLiteral("sphere.patina")) row = index;
+        }
+        return row.isValid();
+      },
+      5000));
+  doubleClickAt(list->viewport()->mapToGlobal(list->visualRect(row).center()));
+  EXPECT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 10000));
+}
+
+TEST_F(FileQuestions, ItsNameAndEnterOpenItToo) {
+  ASSERT_TRUE(open(folder_ / "sphere.obj"));
+  type('o', kControl);
+  FileQuestion* dialog = question();
+  ASSERT_NE(dialog, nullptr);
+  enter(*dialog, text(folder_ / "sphere.patina"));
+  EXPECT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 10000));
+}
+
+TEST_F(FileQuestions, SaveAsSuggestsAFreeNameBesideWhatIsOpen) {
+  whenThere([this] { return find<FileQuestion>(); },
+            [this](FileQuestion& dialog) {
+              EXPECT_EQ(dialog.directory().path(), text(folder_));
+              EXPECT_EQ(dialog.selectedFiles().front(), text(folder_ / "sphere-2.patina"));
+              type(kEnter);
+            });
+  EXPECT_TRUE(documents().saveDialog());
+  EXPECT_TRUE(isWorkspace(folder_ / "sphere-2.patina"));
+  EXPECT_EQ(documents().name(), QStringLiteral("sphere-2.patina"));
+}
+
+TEST_F(FileQuestions, NoWorkspaceIsPutIntoAnother) {
+  whenThere([this] { return find<FileQuestion>(); },
+            [this](FileQuestion& dialog) {
+              enter(dialog, text(folder_ / "sphere.patina" / "inner.patina"));
+            });
+  EXPECT_FALSE(documents().saveDialog());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "sphere.patina" / "inner.patina"));
+}
+
+} // namespace
+} // namespace patina
