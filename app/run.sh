@@ -45,7 +45,7 @@ fi
 
 say "Building (the first time takes some minutes)"
 [ -f "$here/build/build.ninja" ] || cmake -S "$here" -B "$here/build" -G Ninja \
-  -DCMAKE_BUILD_TYPE=Release >&2
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON >&2
 cmake --build "$here/build" --target patina patina-gui -j "$(build_jobs)" >&2
 bin=$here/build/bin
 

@@ -37,7 +37,7 @@ run_tests() {
   say "Building with warnings as errors"
   local peers=OFF
   [ -n "$(missing_packages $PATINA_PEER_PACKAGES)" ] || peers=ON
-  configure build -DPATINA_PEERS=$peers
+  configure build -DCMAKE_UNITY_BUILD=ON -DPATINA_PEERS=$peers
   build build
   say "All tests"
   ctest --test-dir build --output-on-failure -j "$(nproc)" </dev/null
