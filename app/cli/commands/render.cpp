@@ -156,7 +156,7 @@ int runRender(const RenderOptions& options, Console& console) {
     }
     if (options.layers.contains(Layer::stability)) {
       const SurfaceStability stability = requiredStability(*compiled, console.progress());
-      view.setStability(stability.surface.get(), stability.map.ratio);
+      view.setStability(stability.surface.get(), shownRatios(stability.map));
       report.set("stability", stabilityReport(stability, compiled->scene));
       report.tell("colours", "K*/K from " + rounded(kLeastRatioShown) + " to " +
                                  rounded(kMostRatioShown) + ", clipped beyond");

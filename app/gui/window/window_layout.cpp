@@ -6,8 +6,8 @@
 #include <QVBoxLayout>
 
 #include "app/gui/window/drawn_icon.h"
+#include "app/gui/window/theme.h"
 #include "app/gui/window/value_focus.h"
-#include "app/gui/window/window_style.h"
 
 namespace patina {
 namespace {

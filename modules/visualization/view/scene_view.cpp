@@ -1,6 +1,7 @@
 #include "visualization/view/scene_view.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include <vtkCamera.h>
 #include <vtkPolyDataMapper.h>
@@ -30,6 +31,9 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   inner->SetColor(palette::forVtk(palette::kSurfaceBack));
   inner->SetSpecular(0);
   my.mesh_actor->SetBackfaceProperty(inner);
+  my.coarse_actor->SetProperty(my.mesh_actor->GetProperty());
+  my.coarse_actor->SetBackfaceProperty(inner);
+  my.scene->AddActor(my.coarse_actor);
 
   const vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(my.outline->GetOutputPort());
@@ -69,6 +73,7 @@ void SceneView::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   my.mesh_box = my.mesh ? bounds(*my.mesh) : Box3();
   auto* mapper = vtkPolyDataMapper::SafeDownCast(my.mesh_actor->GetMapper());
   mapper->SetInputData(my.mesh ? surfaceData(*my.mesh) : vtkSmartPointer<vtkPolyData>::New());
+  my.makeCoarse();
   my.left_out.clear();
   my.painted = {}; // of another mesh, until setPaint() says otherwise
   my.choosePaint();
@@ -199,6 +204,19 @@ bool SceneView::shown(Layer layer) const {
 void SceneView::setView(ViewPreset view) {
   turnCamera(*impl_->scene->GetActiveCamera(), view);
   fit();
+}
+
+void SceneView::setMoving(bool moving) {
+  Impl& my = *impl_;
+  const bool shown = my.coarseShown();
+  my.moving = moving;
+  if (my.coarse_made.valid() &&
+      my.coarse_made.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    vtkPolyDataMapper::SafeDownCast(my.coarse_actor->GetMapper())
+        ->SetInputData(my.coarse_made.get());
+    my.has_coarse = true;
+  }
+  my.dirty = my.dirty || my.coarseShown() != shown;
 }
 
 void SceneView::fit() {

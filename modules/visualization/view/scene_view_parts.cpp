@@ -8,6 +8,7 @@
 #include <vtkTransform.h>
 
 #include "scene/surface_pick.h"
+#include "visualization/surfaces/coarse_surface.h"
 #include "visualization/surfaces/surface_data.h"
 #include "visualization/values/scalar_bar.h"
 #include "visualization/view/camera.h"
@@ -47,6 +48,17 @@ void SceneView::Impl::choosePaint() {
   if (slicedMaterial() || before) slice_stale = true;
 }
 
+// The mesh is kept by whoever makes it: the view may have another one before it is done.
+void SceneView::Impl::makeCoarse() {
+  has_coarse = false;
+  coarse_made = {};
+  constexpr std::size_t kMany = 300'000;
+  constexpr int kCells = 100; // some 100,000 triangles
+  if (mesh && mesh->triangles.size() > kMany)
+    coarse_made = std::async(std::launch::async,
+                             [shown = mesh] { return surfaceData(coarsened(*shown, kCells)); });
+}
+
 // Objects whose paint is shown are the paint layer's.
 void SceneView::Impl::drawMesh() {
   std::vector<bool> out;
@@ -81,7 +93,9 @@ void SceneView::Impl::applyVisibility() {
   placeScalarBar(paint.bar(), places - 1, barShare());
   paint.setVisible(shownPaint().has_value());
   paint.setWireframe(on(Layer::wireframe));
-  mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr && !map);
+  const bool plain = on(Layer::mesh) && mesh != nullptr && !map;
+  mesh_actor->SetVisibility(plain && !coarseShown());
+  coarse_actor->SetVisibility(plain && coarseShown());
   iso_actor->SetVisibility(on(Layer::iso) && field != nullptr);
   extent_actor->SetVisibility(on(Layer::extent) && field != nullptr);
   band_layer.setVisible(shellShown(), bandShown() && (!map || on(Layer::slice)));
@@ -114,8 +128,8 @@ void SceneView::Impl::cutAt() {
   if (wanted == cut_on && keeps_positive == cut_keeps_positive) return;
   cut_on = wanted;
   cut_keeps_positive = keeps_positive;
-  for (vtkActor* actor :
-       {mesh_actor.Get(), iso_actor.Get(), &band_layer.shell(), &stability.surface()}) {
+  for (vtkActor* actor : {mesh_actor.Get(), coarse_actor.Get(), iso_actor.Get(),
+                          &band_layer.shell(), &stability.surface()}) {
     actor->GetMapper()->RemoveAllClippingPlanes();
     if (wanted) actor->GetMapper()->AddClippingPlane(&plane);
   }

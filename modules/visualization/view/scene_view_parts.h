@@ -1,6 +1,7 @@
 // What SceneView holds: its layers, what they show, and what is out of date.
 #pragma once
 
+#include <future>
 #include <optional>
 
 #include <vtkActor.h>
@@ -24,6 +25,9 @@ struct SceneView::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
   vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> iso_actor = surfaceActor(palette::kIso);
+  vtkSmartPointer<vtkActor> coarse_actor = surfaceActor(palette::kSurface); // while it moves
+  std::future<vtkSmartPointer<vtkPolyData>> coarse_made;                    // on its way
+  bool has_coarse = false, moving = false;
   vtkNew<vtkOutlineSource> outline;
   vtkNew<vtkActor> extent_actor;
   SliceLayer slice{*scene, *overlay};
@@ -109,6 +113,8 @@ struct SceneView::Impl {
 
   void applyVisibility();
   void choosePaint();
+  void makeCoarse();
+  bool coarseShown() const { return moving && has_coarse && left_out.empty(); }
   void drawMesh(); // what of it is not drawn elsewhere
   void cutAt();
   void aimTool();
