@@ -78,7 +78,8 @@ class FrameDelay : public DrivenWindow {
     QObject::disconnect(shown);
     view().view().renderer().RemoveObserver(tag);
     view().removeEventFilter(&filter);
-    std::printf("%d frames, %zu not seen, %zu not drawn\n", frames, drawing.size(), handled_.size());
+    std::printf("%d frames, %zu not seen, %zu not drawn\n", frames, drawing.size(),
+                handled_.size());
     return delays;
   }
 
@@ -88,6 +89,7 @@ class FrameDelay : public DrivenWindow {
 
 // What a frame takes with the machine as it is says what may be asked of it.
 TEST_F(FrameDelay, TheCameraFollowsTheHandSoon) {
+  double of_few = 0;
   for (const int frequency : {60, 224}) { // 72,000 and 1,003,520 triangles
     ASSERT_TRUE(open(saved(icosphere(0.03, frequency), "sphere.ply")));
     wait(2000);
@@ -100,7 +102,9 @@ TEST_F(FrameDelay, TheCameraFollowsTheHandSoon) {
     const double frame = 1000 * view().frameSeconds();
     std::printf("%d triangles: p50 %.0f, p95 %.0f ms, max %.0f; a frame takes %.0f ms\n",
                 20 * frequency * frequency, ms.p50, p95, ms.max, frame);
-    EXPECT_LT(p95, std::max(60.0, 4 * frame + 30));
+    // 60 and 250 ms on a machine of two cores that does nothing else.
+    EXPECT_LT(p95, of_few > 0 ? std::max(250.0, 4 * of_few) : std::max(60.0, 6 * frame + 30));
+    of_few = p95;
     EXPECT_TRUE(waitUntil([&] { return view().settled(); }, 5000));
   }
 }

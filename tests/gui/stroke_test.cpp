@@ -109,5 +109,40 @@ TEST_F(Strokes, AWIsTheSameOnAMillionTrianglesAndGoesThroughEveryPixel) {
   EXPECT_LT(slow_off, 0.02 * radius);
 }
 
+// From the first frame with paint on, none is without.
+TEST_F(Strokes, NoFrameIsUnpaintedWhenAStrokeEnds) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 40), "sphere.ply")));
+  find<QCheckBox>(QStringLiteral("tip"))->setChecked(false);
+  type(QStringLiteral("p"));
+  ASSERT_TRUE(waitUntil([&] { return !edits().thread().busy(); }));
+  wait(300);
+  pointAt(inView({-80, 40}));
+  wait(500);
+  std::vector<int> red;
+  const QRect around(middle() - QPoint(40, 10), QSize(80, 60));
+  const auto shown = QObject::connect(&view(), &QOpenGLWidget::frameSwapped, [&] {
+    const QImage part = view().grab(around).toImage();
+    int count = 0;
+    for (int y = 0; y < part.height(); ++y)
+      for (int x = 0; x < part.width(); ++x) {
+        const QColor c = part.pixelColor(x, y);
+        count += c.red() > 90 && c.red() > 1.7 * c.green() && c.red() > 1.7 * c.blue() ? 1 : 0;
+      }
+    red.push_back(count);
+  });
+  drag(inView({-80, 20}), inView({80, 20}), 1, 40);
+  EXPECT_TRUE(waitUntil([&] { return edits().status().edits.size() == 1; }, 20000));
+  pointAt(inView({0, 200}));
+  wait(600);
+  QObject::disconnect(shown);
+  const int whole = red.back();
+  ASSERT_GT(whole, 300);
+  bool painted = false;
+  for (const int count : red) {
+    EXPECT_FALSE(painted && count < whole / 2) << count << " of " << whole;
+    painted = painted || count > 0.9 * whole;
+  }
+}
+
 } // namespace
 } // namespace patina

@@ -24,7 +24,7 @@ constexpr Ink kInks[] = {
     {"hover", "#e0e6ee", "#434c59"},    {"chosen", "#cfe0f3", "#2d4a68"},
     {"notice", "#e3eefa", "#2b3f55"},   {"text", "#222832", "#e6e9ee"},
     {"quiet", "#5b6575", "#aab4c2"}, // captions
-    {"faint", "#6b7482", "#98a2b0"}, // what is undone, or cannot be used
+    {"faint", "#5f6875", "#a9b3c1"}, // what is undone, or cannot be used
     {"line", "#d5dae2", "#454d59"},  // frames, grids
     {"grip", "#c3cad5", "#5b6573"},     {"strong", "#2b6cb0", "#2b6cb0"}, // below white
     {"accent", "#2b6cb0", "#6cabe6"},                                     // lines

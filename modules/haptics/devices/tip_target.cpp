@@ -35,11 +35,12 @@ void TipTarget::set(const Vec3& world) noexcept {
 
 void TipTarget::pass(const Vec3& world, double t) noexcept {
   if (!world.allFinite() || !std::isfinite(t)) return;
-  if (path_.push({world, t, version_.load(std::memory_order_relaxed)})) ++asked_;
+  if (path_.push({world, t, version_.load(std::memory_order_relaxed)}))
+    asked_.fetch_add(1, std::memory_order_release);
 }
 
 bool TipTarget::passed() const noexcept {
-  return passed_.load(std::memory_order_acquire) == asked_;
+  return passed_.load(std::memory_order_acquire) == asked_.load(std::memory_order_relaxed);
 }
 
 std::uint64_t TipTarget::read(Vec3& world) const noexcept {
@@ -56,6 +57,10 @@ bool TipTarget::next(Waypoint& waypoint) const noexcept {
   return path_.pop(waypoint);
 }
 
+bool TipTarget::isNewest() const noexcept {
+  return passed_.load(std::memory_order_relaxed) + 1 == asked_.load(std::memory_order_acquire);
+}
+
 void TipTarget::setPassed() const noexcept {
   passed_.fetch_add(1, std::memory_order_release);
 }
@@ -68,7 +73,8 @@ GlidingTip::GlidingTip(std::shared_ptr<const TipTarget> target, double max_speed
   tip_ = goal_;
 }
 
-// A pointer that rested has moved in the last step only. Told too late, the leg begins now.
+// A pointer that rested has moved in the last step only. Told too late, the leg begins now; and so
+// does the newest one, for these ticks may be slower than the pointer's clock.
 bool GlidingTip::take() noexcept {
   TipTarget::Waypoint next;
   do {
@@ -82,7 +88,8 @@ bool GlidingTip::take() noexcept {
   to_.t = std::max(to_.t, before);
   leaves_ =
       std::min(std::max(before, to_.t - kStep), to_.t - (to_.world - from_).norm() / max_speed_);
-  if (!on_path_ || now_ > leaves_ + kLate) now_ = leaves_;
+  const bool rests = now_ < leaves_ && !target_->isNewest();
+  if (!on_path_ || now_ > leaves_ + kLate || (now_ < leaves_ && !rests)) now_ = leaves_;
   return on_path_ = on_leg_ = true;
 }
 

@@ -31,13 +31,14 @@ class TipTarget {
   // The version of the place; 0 where it meets a write, and world stays.
   std::uint64_t read(Vec3& world) const noexcept;
   bool next(Waypoint& waypoint) const noexcept; // false: none waits
+  bool isNewest() const noexcept;               // what was taken last; none waits behind it
   void setPassed() const noexcept;              // one more of them
 
  private:
   std::atomic<std::uint64_t> version_{0};
   std::array<std::atomic<double>, 3> value_{};
   mutable Ring<Waypoint> path_{4096};
-  std::uint64_t asked_ = 0;
+  std::atomic<std::uint64_t> asked_{0};
   mutable std::atomic<std::uint64_t> passed_{0};
 };
 
