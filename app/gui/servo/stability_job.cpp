@@ -27,7 +27,7 @@ QString summary(const SurfaceStability& stability, bool device_given) {
   const auto untouched =
       std::count_if(map.least.begin(), map.least.end(), [](float l) { return std::isnan(l); });
   add(map.slipping, StabilityJob::tr("lets the tip slip off (violet, unless it buzzes)"));
-  add(map.jumping, StabilityJob::tr("jumps (black)"));
+  add(map.jumping, StabilityJob::tr("jumps (dark)"));
   add(static_cast<std::size_t>(untouched), StabilityJob::tr("is not touched (grey)"));
   if (!device_given)
     words += StabilityJob::tr(". For a device of 100 g and 0.5 N s/m at 1 kHz: the scene has no "

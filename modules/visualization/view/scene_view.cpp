@@ -21,10 +21,6 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   my.scene->GradientBackgroundOn();
   my.scene->AddActor(my.mesh_actor);
   my.scene->AddActor(my.iso_actor);
-  // At 0 the iso-surface lies on the mesh: it is drawn as if a hair nearer.
-  auto* iso_mapper = vtkPolyDataMapper::SafeDownCast(my.iso_actor->GetMapper());
-  iso_mapper->SetResolveCoincidentTopologyToPolygonOffset();
-  iso_mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(-2, -2);
   addLights(*my.scene);
   const vtkNew<vtkProperty> inner;
   inner->DeepCopy(my.mesh_actor->GetProperty());
@@ -49,7 +45,6 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   addLights(*my.overlay);
   my.corner->SetLayer(1);
   my.corner->InteractiveOff();
-  my.corner->SetViewport(0.0, 0.0, 0.13, 0.17);
   my.corner->AddActor(axesActor());
   my.applyVisibility();
 }
@@ -280,8 +275,9 @@ bool SceneView::prepare() {
   my.syncCorner();
   my.scene->ResetCameraClippingRange();
   const CameraPose pose = poseOf(*camera);
-  const bool changed = my.dirty || pose != my.drawn_from;
+  const bool changed = my.dirty || pose != my.drawn_from || my.size() != my.drawn_size;
   my.drawn_from = pose;
+  my.drawn_size = my.size();
   my.dirty = false;
   return changed;
 }
