@@ -91,6 +91,7 @@ void StabilityLayer::update(const TriangleMesh& surface, const std::vector<float
     untouched = untouched || ratio[v] == kUntouched;
     values->SetValue(static_cast<vtkIdType>(v), shown);
   }
+  tags_ = jumps || slips || untouched;
   bar_->SetDrawNanAnnotation(jumps);
   bar_->SetDrawBelowRangeSwatch(slips);
   bar_->SetDrawAboveRangeSwatch(untouched);

@@ -219,7 +219,8 @@ void SceneView::fit() {
   const Box3 box = my.box();
   vtkCamera& camera = *my.scene->GetActiveCamera();
   // Scalar bars stand at the right edge: what is fitted goes to their left.
-  const double taken = my.barShare() * my.bars();
+  const bool tags = my.mapShown() && my.stability.hasTags();
+  const double taken = my.barShare() * (my.bars() + (tags ? 0.7 : 0));
   const double aspect = my.aspect() * (1 - taken);
   std::vector<Vec3> points = my.outermost(box);
   fitCamera(camera, box.center(), points, aspect);
