@@ -25,7 +25,7 @@ class Tutorial : public DrivenWindow {
   double force() { return feel().sample().force.norm(); }
   void keepPicture(const char* name) {
     if (const char* folder = std::getenv("PATINA_PICTURES"))
-      window_->grab().save(QStringLiteral("%1/%2.png").arg(folder, name));
+      window_->grab().save(QStringLiteral("%1/tutorial_%2.png").arg(folder, name));
   }
   void typeInto(const char* row, const QString& number) {
     auto* line = find<ValueRow>(row)->findChild<QDoubleSpinBox*>()->findChild<QLineEdit*>();
@@ -64,7 +64,7 @@ void Tutorial::start() {
   EXPECT_FALSE(find<LoadBar>()->isVisible());
   EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("Toy dinosaur")));
   EXPECT_GT(toolShare(), 0);
-  keepPicture("window");
+  keepPicture("start");
 }
 
 void Tutorial::touch() {
@@ -81,7 +81,7 @@ void Tutorial::touch() {
   EXPECT_GT((sample.vcp - sample.tip).norm(), 5e-4) << "the ghost is inside, the tool is not";
   EXPECT_GT(forceShare(), 0);
   EXPECT_TRUE(find<ForcePlot>()->isVisible());
-  keepPicture("touch");
+  keepPicture("window");
   for (int i = 0; i < 30 && force() > 0; ++i) wheelAt(flank_, -1), wait(100);
   EXPECT_EQ(force(), 0);
 }
@@ -169,6 +169,7 @@ void Tutorial::lookInside() {
   tick("iso");
   typeInto("iso_value", QStringLiteral("1.5"));
   EXPECT_EQ(find<ValueRow>("iso_value")->value(), 1.5);
+  type(QStringLiteral("f"));
   wait(500);
   keepPicture("slice");
   const QImage before = pictures();

@@ -32,7 +32,7 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   stages_ = add(new ElidedLabel(bar), "stages", 2);
   picked_ = add(new ElidedLabel(bar), "picked", 3);
   picked_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-  picked_->setStyleSheet(themed("color: @link;"));
+  picked_->setStyleSheet(themed("color: @link; padding-right: 8px;"));
   picked_->setToolTip(tr("What is felt and painted under the pointer"));
   late_->setToolTip(
       tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
