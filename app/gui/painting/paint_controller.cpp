@@ -20,7 +20,7 @@ constexpr std::size_t kLingerTicks = 250;
 // And so long in all, for a tip that does not follow the pointer never arrives.
 constexpr int kLongest = 5000; // [ms]
 // A tick this far from the path between samples, in radii, is a sample.
-constexpr double kOff = 0.005;
+constexpr double kOff = 0.003;
 
 QString number(double value) {
   return QString::fromStdString(formatNumber(std::round(value * 1e4) / 1e4));

@@ -173,7 +173,7 @@ void EditThread::beginStroke(const Brush& brush) {
                  // What is laid on again and again depends on every sample.
                  const bool all =
                      brush.mode == StrokeMode::build_up || brush.mode == StrokeMode::smooth;
-                 impl_->off = all ? 0 : 0.01 * brush.radius;
+                 impl_->off = all ? 0 : 0.005 * brush.radius;
                  worker.beginStroke(brush, progress);
                }});
 }
