@@ -340,7 +340,7 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
       longest = std::max(longest, now - before);
       most_work = std::max(most_work, work - worked);
     }
-    frame = std::max(frame, 1000 * view().frameSeconds());
+    frame = std::max(frame, 1000 * frameSeconds());
     before = now;
     worked = work;
   });

@@ -127,8 +127,8 @@ class ServoUnderDrawing : public WindowTest {
     while (measuring.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
       orbit(*view().view().renderer().GetActiveCamera(), 0.004, 0);
       if (view().refresh()) {
-        longest = std::max(longest, view().frameSeconds());
-        sum += view().frameSeconds();
+        longest = std::max(longest, frameSeconds());
+        sum += frameSeconds();
         ++frames;
       }
       QApplication::processEvents(QEventLoop::AllEvents, 1);

@@ -65,7 +65,7 @@ class Strokes : public DrivenWindow {
     wait(800); // the tool hovers there
     draw(letterW());
     EXPECT_TRUE(waitUntil([&] { return edits().status().edits.size() == 1; }, 20000));
-    std::printf("%s: a frame takes %.0f ms\n", name, 1000 * view().frameSeconds());
+    std::printf("%s: a frame takes %.0f ms\n", name, 1000 * frameSeconds());
     const auto folder = folder_ / (std::string(name) + ".patina");
     documents().saveTo(QString::fromStdString(folder.string()));
     const OpenedWorkspace kept = openWorkspace(folder);

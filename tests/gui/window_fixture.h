@@ -121,6 +121,7 @@ class WindowTest : public ::testing::Test {
       if (action->text() == words) action->trigger();
   }
   SceneWidget& view() { return *find<SceneWidget>(); }
+  double frameSeconds() { return view().view().renderer().GetLastRenderTimeInSeconds(); }
   QPoint middle() { return view().rect().center(); }
   void send(QEvent::Type type, const QPoint& at, Qt::MouseButton button, Qt::MouseButtons held,
             Qt::KeyboardModifiers keys = Qt::NoModifier) {

@@ -44,7 +44,7 @@ TEST(StabilityPicture, ColoursTheSurfaceByItsVerticesAndShowsTheScale) {
   EXPECT_GT(pixels.share(isWarm, 0.14, 0.42), 0.2);
   EXPECT_EQ(pixels.share(isWarm, 0.46, 0.85), 0);
   EXPECT_GT(pixels.share(isCool, 0.46, 0.85), 0.2);
-  EXPECT_GT(pixels.share(unknown, 0.42, 0.46, 0.3, 0.7), 0.8);
+  EXPECT_GT(pixels.share(unknown, 0.385, 0.415, 0.3, 0.7), 0.8);
   EXPECT_EQ(pixels.share(isSurface), 0); // in the mesh's place
   // The scale, and room for it.
   EXPECT_GT(pixels.share(isWarm, 0.88, 1, 0.2, 0.8), 0.01);

@@ -184,7 +184,7 @@ void PaintController::follow(const Pointed& where) {
 
 bool PaintController::arrived(const std::vector<ToolSample>& ticks) const {
   return tracker_.painting() && at_.feel.passed() && !ticks.empty() &&
-         (ticks.back().surface - aim_).norm() < 0.25 * brush().radius;
+         (ticks.back().surface - aim_).norm() < 0.01 * brush().radius; // or the end is cut
 }
 
 void PaintController::send(const std::vector<StrokePiece>& pieces) {

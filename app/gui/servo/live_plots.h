@@ -27,7 +27,6 @@ class EnergyPlot : public StripPlot {
   // `dropped` counts what the servo's ring has lost so far.
   void addSamples(const std::vector<ToolSample>& samples, std::size_t dropped);
   void restart(); // another scene: nothing is shown, and the energy is zero
-  const EnergyMeter& meter() const { return meter_; }
 
  private:
   EnergyMeter meter_;

@@ -47,8 +47,6 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   bool refresh();
   // What is shown is up to date and smoothed.
   bool settled();
-  // Seconds that the last frame took in which something had changed.
-  double frameSeconds() const { return frame_seconds_; }
 
   // The surface under the pointer, while it is over the view and moves no camera.
   std::optional<Vec3> underPointer();
@@ -95,8 +93,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   QPoint last_;
   std::optional<QPoint> pointer_; // over the view
   Vec3 target_ = Vec3::Zero();
-  double frame_seconds_ = 0;
-  bool smooth_ = false; // the last frame was anti-aliased
+  double frame_seconds_ = 0; // that the last frame took in which something had changed
+  bool smooth_ = false;      // the last frame was anti-aliased
   std::chrono::steady_clock::time_point drawn_, moved_;
   QTimer soon_;
 };

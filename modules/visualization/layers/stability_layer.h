@@ -32,7 +32,7 @@ class StabilityLayer {
   void update(const TriangleMesh& surface, const std::vector<float>& ratio);
   void setVisible(bool on);
   void setTextSize(int pixels);
-  bool hasTags() const { return tags_; } // at the scale, which then needs more room
+  bool hasTags() const { return tags_; }  // at the scale, which then needs more room
   vtkActor& surface() { return *actor_; } // to be cut by the slice
   vtkScalarBarActor& bar() { return *bar_; }
 
