@@ -13,13 +13,13 @@ namespace patina {
 // A pinhole behind a lens, as OpenCV has it: z looks forward, x right, y down; the middle of the
 // first pixel is (0, 0).
 struct Camera {
-  int width = 0, height = 0;              // [px]
-  double fx = 0, fy = 0, cx = 0, cy = 0;  // [px]
-  std::array<double, 5> distortion{};     // k1 k2 p1 p2 k3
+  int width = 0, height = 0;             // [px]
+  double fx = 0, fy = 0, cx = 0, cy = 0; // [px]
+  std::array<double, 5> distortion{};    // k1 k2 p1 p2 k3
 };
 
 // The top row first.
-struct GreyImage {
+struct GreyFrame {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixel;
 
@@ -28,12 +28,12 @@ struct GreyImage {
   }
 };
 
-// Square markers of one size of code. A bit is 1 where it is white; rows from the top, each from the
-// left, the first bit the highest. Around the bits lies a black border one bit wide.
+// Square markers of one size of code. A bit is 1 where it is white; rows from the top, each from
+// the left, the first bit the highest. Around the bits lies a black border one bit wide.
 struct MarkerFamily {
-  std::string name;              // "4x4_50", "apriltag_36h11"
-  int side = 0;                  // bits a side
-  int correctable = 0;           // wrong bits that are forgiven
+  std::string name;                // "4x4_50", "apriltag_36h11"
+  int side = 0;                    // bits a side
+  int correctable = 0;             // wrong bits that are forgiven: the rest tells codes from what is none
   std::vector<std::uint64_t> code; // by id
 };
 

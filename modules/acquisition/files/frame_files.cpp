@@ -24,7 +24,8 @@ struct Entry {
   std::size_t line = 0;
 };
 
-// What of OpenCV's YAML a camera needs: `key: number`, and matrices' `data: [numbers]` under theirs.
+// What of OpenCV's YAML a camera needs: `key: number`, and matrices' `data: [numbers]` under
+// theirs.
 std::map<std::string, Entry> entriesIn(const fs::path& path) {
   const std::string name = path.string();
   std::istringstream text(readFile(path));
@@ -50,7 +51,8 @@ std::map<std::string, Entry> entriesIn(const fs::path& path) {
       } else if (first > 0 || rest.find("!!") != std::string::npos) {
         continue;
       } else {
-        if (const auto value = parseNumber(rest.substr(std::min(rest.find_first_not_of(' '), rest.size()))))
+        if (const auto value =
+                parseNumber(rest.substr(std::min(rest.find_first_not_of(' '), rest.size()))))
           entries[key] = {{*value}, number};
         continue;
       }
@@ -80,7 +82,8 @@ bool isPicture(const fs::path& path) {
 std::vector<fs::path> picturesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code code;
-  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code))
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end;
+       entry.increment(code))
     if (isPicture(entry->path())) files.push_back(entry->path());
   std::sort(files.begin(), files.end());
   return files;
@@ -88,16 +91,16 @@ std::vector<fs::path> picturesIn(const fs::path& folder) {
 
 } // namespace
 
-GreyImage readGrey(const fs::path& path) {
+GreyFrame readGrey(const fs::path& path) {
   const Picture picture = readPicture(path);
-  GreyImage image{picture.width, picture.height, {}};
+  GreyFrame image{picture.width, picture.height, {}};
   image.pixel.reserve(index(image.width) * index(image.height));
   const int channels = picture.channels;
   for (int y = picture.height - 1; y >= 0; --y) {
     const float* texel = picture.texel.data() + index(y) * index(picture.width * channels);
     for (int x = 0; x < picture.width; ++x, texel += channels) {
-      const float grey = channels < 3 ? texel[0]
-                                      : 0.299f * texel[0] + 0.587f * texel[1] + 0.114f * texel[2];
+      const float grey =
+          channels < 3 ? texel[0] : 0.299f * texel[0] + 0.587f * texel[1] + 0.114f * texel[2];
       image.pixel.push_back(
           static_cast<std::uint8_t>(std::lround(255 * std::clamp(grey, 0.f, 1.f))));
     }
@@ -105,19 +108,20 @@ GreyImage readGrey(const fs::path& path) {
   return image;
 }
 
-void writeGrey(const fs::path& path, const GreyImage& image) {
+void writeGrey(const fs::path& path, const GreyFrame& image) {
   Picture picture{image.width, image.height, 1, {}};
   picture.texel.reserve(image.pixel.size());
   for (int y = image.height - 1; y >= 0; --y)
     for (int x = 0; x < image.width; ++x)
       picture.texel.push_back(static_cast<float>(image.row(y)[x]) / 255);
-  writePicture(path, picture);
+  writePicture(path, picture, 8);
 }
 
 Camera readCamera(const fs::path& path) {
   const std::string name = path.string();
   const auto entries = entriesIn(path);
-  const auto entry = [&](const std::string& key, std::size_t least, std::size_t most) -> const Entry& {
+  const auto entry = [&](const std::string& key, std::size_t least,
+                         std::size_t most) -> const Entry& {
     const auto found = entries.find(key);
     if (found == entries.end()) throw FileError(name, 0, "'" + key + "' is missing");
     const std::size_t count = found->second.numbers.size();
@@ -168,9 +172,11 @@ std::vector<Frame> framesOf(const fs::path& folder, double rate) {
   std::vector<Frame> frames;
   const fs::path list = folder / "frames.csv";
   if (!fs::exists(list, code)) {
-    if (files.empty()) throw FileError(folder.string(), 0, "there is neither frames.csv nor a picture");
+    if (files.empty())
+      throw FileError(folder.string(), 0, "there is neither frames.csv nor a picture");
     if (!(rate > 0))
-      throw FileError(list.string(), 0, "is missing, so say how many frames there are a second: --rate");
+      throw FileError(list.string(), 0,
+                      "is missing, so say how many frames there are a second: --rate");
     for (const fs::path& file : files)
       frames.push_back({static_cast<double>(frames.size()) / rate, file});
     return frames;
@@ -178,8 +184,10 @@ std::vector<Frame> framesOf(const fs::path& folder, double rate) {
   CsvReader reader(list, {"frame", "t [s]"});
   for (std::vector<double> row; reader.next(row);) {
     if (!(row[0] >= 0 && row[0] < 1e9 && row[0] == std::floor(row[0])))
-      throw FileError(list.string(), reader.line(), "a frame's number must be whole and not negative");
-    if (!std::isfinite(row[1])) throw FileError(list.string(), reader.line(), "t [s] is not finite");
+      throw FileError(list.string(), reader.line(),
+                      "a frame's number must be whole and not negative");
+    if (!std::isfinite(row[1]))
+      throw FileError(list.string(), reader.line(), "t [s] is not finite");
     if (!frames.empty() && !(row[1] > frames.back().t))
       throw FileError(list.string(), reader.line(),
                       row[1] == frames.back().t ? "time repeats" : "time runs backwards");
@@ -187,7 +195,8 @@ std::vector<Frame> framesOf(const fs::path& folder, double rate) {
     std::snprintf(stem, sizeof stem, "%06d", static_cast<int>(row[0]));
     const auto file = std::find_if(files.begin(), files.end(),
                                    [&](const fs::path& each) { return each.stem() == stem; });
-    frames.push_back({row[1], file != files.end() ? *file : folder / "frames" / (std::string(stem) + ".png")});
+    frames.push_back(
+        {row[1], file != files.end() ? *file : folder / "frames" / (std::string(stem) + ".png")});
   }
   if (frames.empty()) throw FileError(list.string(), 0, "there is no frame in it");
   return frames;

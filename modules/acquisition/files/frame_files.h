@@ -10,9 +10,9 @@
 namespace patina {
 
 // Any picture that can be read, its brightness in 256 levels. Throws FileError.
-GreyImage readGrey(const std::filesystem::path& path);
+GreyFrame readGrey(const std::filesystem::path& path);
 // As a .png. Throws FileError.
-void writeGrey(const std::filesystem::path& path, const GreyImage& image);
+void writeGrey(const std::filesystem::path& path, const GreyFrame& image);
 
 // OpenCV's YAML: image_width, image_height, camera_matrix, distortion_coefficients of up to five
 // numbers (k1 k2 p1 p2 k3). Throws FileError with the line.
@@ -24,9 +24,10 @@ struct Frame {
   double t = 0;               // [s]
   std::filesystem::path file; // may be missing
 };
-// What frames.csv in the folder lists (frame,t [s]), each in frames/ as its number in six digits and
-// whatever extension; without frames.csv all pictures of the folder or of frames/ in it by their
-// names' order, `rate` a second. Throws FileError: no frame, time that does not increase, no rate.
+// What frames.csv in the folder lists (frame,t [s]), each in frames/ as its number in six digits
+// and whatever extension; without frames.csv all pictures of the folder or of frames/ in it by
+// their names' order, `rate` a second. Throws FileError: no frame, time that does not increase, no
+// rate.
 std::vector<Frame> framesOf(const std::filesystem::path& folder, double rate);
 
 } // namespace patina

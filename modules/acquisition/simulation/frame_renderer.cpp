@@ -99,8 +99,8 @@ void blurLine(const float* from, float* to, int count, std::ptrdiff_t stride,
   for (int i = 0; i < count; ++i) {
     float sum = half[0] * from[i * stride];
     for (int k = 1; k <= reach; ++k)
-      sum += half[static_cast<std::size_t>(k)] * (from[std::max(i - k, 0) * stride] +
-                                                  from[std::min(i + k, count - 1) * stride]);
+      sum += half[static_cast<std::size_t>(k)] *
+             (from[std::max(i - k, 0) * stride] + from[std::min(i + k, count - 1) * stride]);
     to[i * stride] = sum;
   }
 }
@@ -118,8 +118,7 @@ void blur(std::vector<float>& grey, int width, int height, double sigma) {
   for (int y = 0; y < height; ++y)
     blurLine(grey.data() + std::ptrdiff_t{y} * width, other.data() + std::ptrdiff_t{y} * width,
              width, 1, half);
-  for (int x = 0; x < width; ++x)
-    blurLine(other.data() + x, grey.data() + x, height, width, half);
+  for (int x = 0; x < width; ++x) blurLine(other.data() + x, grey.data() + x, height, width, half);
 }
 
 // Whether a pixel's corners look like its middle, all through the exposure.
@@ -173,7 +172,11 @@ FrameRenderer::FrameRenderer(const Camera& camera, std::vector<PrintedMarker> ma
   }
 }
 
-GreyImage FrameRenderer::render(const std::vector<Pose>& camera_from_probe, const FrameLook& look,
+Vec2 FrameRenderer::pixelOf(const Vec3& in_camera) const {
+  return throughLens(camera_, in_camera.hnormalized()).pixel;
+}
+
+GreyFrame FrameRenderer::render(const std::vector<Pose>& camera_from_probe, const FrameLook& look,
                                 std::uint32_t seed) const {
   if (camera_from_probe.empty()) throw std::invalid_argument("a frame without a pose");
   const int width = camera_.width, height = camera_.height;
@@ -210,12 +213,11 @@ GreyImage FrameRenderer::render(const std::vector<Pose>& camera_from_probe, cons
           mean /= kRays * kRays;
         }
       }
-      const double light =
-          1 - look.shade * (fall.dot(Vec2(x - width / 2., y - height / 2.)) + 0.5);
+      const double light = 1 - look.shade * (fall.dot(Vec2(x - width / 2., y - height / 2.)) + 0.5);
       grey.push_back(static_cast<float>(255 * light * mean));
     }
   blur(grey, width, height, look.blur);
-  GreyImage image{width, height, {}};
+  GreyFrame image{width, height, {}};
   image.pixel.reserve(grey.size());
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(0, static_cast<float>(look.noise));

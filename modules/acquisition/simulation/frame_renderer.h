@@ -39,8 +39,11 @@ class FrameRenderer {
   FrameRenderer(const Camera& camera, std::vector<PrintedMarker> markers);
 
   // `camera_from_probe` are poses evenly spread over the exposure, at least one.
-  GreyImage render(const std::vector<Pose>& camera_from_probe, const FrameLook& look,
+  GreyFrame render(const std::vector<Pose>& camera_from_probe, const FrameLook& look,
                    std::uint32_t seed) const;
+
+  // Where a point of the camera's frame is seen.
+  Vec2 pixelOf(const Vec3& in_camera) const;
 
  private:
   Camera camera_;

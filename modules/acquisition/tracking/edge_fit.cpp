@@ -8,8 +8,8 @@
 namespace patina {
 namespace {
 
-constexpr double kStep = 0.5;         // across an edge [px]
-constexpr double kLeastContrast = 8;  // grey levels across an edge
+constexpr double kStep = 0.5;        // across an edge [px]
+constexpr double kLeastContrast = 8; // grey levels across an edge
 // What no averaging along an edge removes: pixels, and for a border of so many pixels the bits that
 // shine into it. From rendered markers [px].
 double systematic(double border) {
@@ -18,7 +18,7 @@ double systematic(double border) {
 
 struct EdgeLine {
   Vec2 normal, middle, along;
-  double scatter = 0;             // of the points about it [px]
+  double scatter = 0;            // of the points about it [px]
   double weight = 0, spread = 0; // sums of weights, and times squared places along it
   double floor = 0;              // of its deviation [px]
 
@@ -31,7 +31,7 @@ struct EdgeLine {
 
 // Where along the normal, from -reach to reach about the middle, it gets bright; the middle of the
 // slopes. Nothing without contrast.
-std::optional<double> edgeAlong(const GreyImage& image, const Vec2& middle, const Vec2& normal,
+std::optional<double> edgeAlong(const GreyFrame& image, const Vec2& middle, const Vec2& normal,
                                 double reach) {
   const int steps = 2 * static_cast<int>(std::lround(reach / kStep));
   const double first = -0.5 * steps * kStep;
@@ -94,7 +94,7 @@ std::optional<EdgeLine> lineOf(const std::vector<Vec2>& points, const Vec2& outw
 }
 
 // Places of the edge between two corners; `again` looks a second time about each one found.
-std::vector<Vec2> edgePoints(const GreyImage& image, const Vec2& from, const Vec2& to, double reach,
+std::vector<Vec2> edgePoints(const GreyFrame& image, const Vec2& from, const Vec2& to, double reach,
                              bool again) {
   std::vector<Vec2> points;
   const double length = (to - from).norm();
@@ -123,7 +123,7 @@ std::optional<Vec2> meeting(const EdgeLine& a, const EdgeLine& b) {
   return a.middle + cross(b.middle - a.middle, b.along) / sine * a.along;
 }
 
-std::optional<Lines> linesOf(const GreyImage& image, const Quad& quad, const Camera* lens,
+std::optional<Lines> linesOf(const GreyFrame& image, const Quad& quad, const Camera* lens,
                              bool again) {
   Lines lines;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -147,7 +147,7 @@ std::optional<Lines> linesOf(const GreyImage& image, const Quad& quad, const Cam
 
 } // namespace
 
-std::optional<FittedQuad> fitEdges(const GreyImage& image, const Quad& quad, const Camera* lens) {
+std::optional<FittedQuad> fitEdges(const GreyFrame& image, const Quad& quad, const Camera* lens) {
   Quad now = quad;
   for (int round = 0; round < 2; ++round) {
     const auto lines = linesOf(image, now, nullptr, false);

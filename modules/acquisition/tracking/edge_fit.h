@@ -9,8 +9,8 @@
 namespace patina {
 
 struct FittedCorner {
-  Vec2 pixel;      // in the picture
-  Vec2 straight;   // where it would be without the lens; the same if there is none
+  Vec2 pixel;    // in the picture
+  Vec2 straight; // where it would be without the lens; the same if there is none
   // To errors of deviation 1: distances to the two lines that meet, each over its deviation.
   Eigen::Matrix2d whiten;
 };
@@ -26,10 +26,10 @@ struct FittedQuad {
 
 // `lens` straightens the edges; without it they are taken for straight. Nothing where a side is not
 // an edge from dark to bright.
-std::optional<FittedQuad> fitEdges(const GreyImage& image, const Quad& quad, const Camera* lens);
+std::optional<FittedQuad> fitEdges(const GreyFrame& image, const Quad& quad, const Camera* lens);
 
 // Grey between pixels; nothing outside of the image.
-inline std::optional<double> greyAt(const GreyImage& image, double x, double y) {
+inline std::optional<double> greyAt(const GreyFrame& image, double x, double y) {
   if (!(x >= 0 && y >= 0 && x < image.width - 1 && y < image.height - 1)) return std::nullopt;
   const int u = static_cast<int>(x), v = static_cast<int>(y);
   const double a = x - u, b = y - v;

@@ -23,6 +23,24 @@ std::uint64_t turned(std::uint64_t code, int side) {
   return out;
 }
 
+std::array<std::uint64_t, 4> turnsOf(std::uint64_t code, int side) {
+  std::array<std::uint64_t, 4> turns{code};
+  for (std::size_t i = 1; i < 4; ++i) turns[i] = turned(turns[i - 1], side);
+  return turns;
+}
+
+// Three fifths of what could be mended: two codes, or two turns of one, differ in so many bits.
+int correctable(const MarkerFamily& family) {
+  int least = family.side * family.side;
+  for (std::size_t i = 0; i < family.code.size(); ++i) {
+    const auto turns = turnsOf(family.code[i], family.side);
+    for (std::size_t turn = 0; turn < 4; ++turn)
+      for (std::size_t j = 0; j <= i; ++j)
+        if (turn || j < i) least = std::min(least, std::popcount(turns[turn] ^ family.code[j]));
+  }
+  return (least - 1) / 2 * 3 / 5;
+}
+
 // A plane of grey over the marker, by least squares.
 struct Shade {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
@@ -43,7 +61,7 @@ struct Shade {
 
 // Grey of all cells, the black border and one more ring around it; not a number outside of the
 // image.
-Eigen::MatrixXd cellsOf(const GreyImage& image, const Quad& quad, int side) {
+Eigen::MatrixXd cellsOf(const GreyFrame& image, const Quad& quad, int side) {
   const int all = side + 4;
   const double cell = 1. / (side + 2);
   const Eigen::Matrix3d map = squareTo(quad);
@@ -94,16 +112,14 @@ const MarkerFamily& markerFamily(const std::string& name) {
   MarkerFamily family;
   if (const std::string cause = visionLibrary().family(name, family); !cause.empty())
     throw Error(cause);
+  family.correctable = correctable(family);
   return known.emplace(name, std::move(family)).first->second;
 }
 
 CodeBook::CodeBook(const MarkerFamily& family, const std::vector<int>& ids)
     : family_(&family), ids_(ids) {
-  for (const int id : ids) {
-    std::array<std::uint64_t, 4> turns{family.code.at(static_cast<std::size_t>(id))};
-    for (std::size_t i = 1; i < 4; ++i) turns[i] = turned(turns[i - 1], family.side);
-    turned_.push_back(turns);
-  }
+  for (const int id : ids)
+    turned_.push_back(turnsOf(family.code.at(static_cast<std::size_t>(id)), family.side));
 }
 
 CodeBook::CodeBook(const MarkerFamily& family)
@@ -124,7 +140,7 @@ std::optional<CodeBook::Match> CodeBook::match(std::uint64_t code) const {
   return best;
 }
 
-std::optional<CodeBook::Match> readCode(const GreyImage& image, const Quad& quad,
+std::optional<CodeBook::Match> readCode(const GreyFrame& image, const Quad& quad,
                                         const CodeBook& book) {
   const int side = book.family().side, all = side + 4;
   Eigen::MatrixXd grey = cellsOf(image, quad, side);

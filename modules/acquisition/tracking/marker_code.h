@@ -36,7 +36,7 @@ class CodeBook {
 Eigen::Matrix3d squareTo(const Quad& quad);
 
 // The code inside of a quad whose border is black; `quad` in the image's pixels.
-std::optional<CodeBook::Match> readCode(const GreyImage& image, const Quad& quad,
+std::optional<CodeBook::Match> readCode(const GreyFrame& image, const Quad& quad,
                                         const CodeBook& book);
 
 } // namespace patina

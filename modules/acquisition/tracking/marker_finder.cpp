@@ -24,7 +24,7 @@ void keep(std::vector<SeenMarker>& seen, const SeenMarker& marker) {
   seen.push_back(marker);
 }
 
-void look(const GreyImage& image, const std::vector<CodeBook>& books, const Camera* lens,
+void look(const GreyFrame& image, const std::vector<CodeBook>& books, const Camera* lens,
           const QuadSearch& search, std::vector<SeenMarker>& seen) {
   for (const Quad& quad : findQuads(image, search)) {
     const auto fitted = fitEdges(image, quad, lens);
@@ -41,8 +41,8 @@ void look(const GreyImage& image, const std::vector<CodeBook>& books, const Came
   }
 }
 
-GreyImage doubled(const GreyImage& image) {
-  GreyImage out{2 * image.width, 2 * image.height, {}};
+GreyFrame doubled(const GreyFrame& image) {
+  GreyFrame out{2 * image.width, 2 * image.height, {}};
   out.pixel.reserve(4 * image.pixel.size());
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
@@ -57,7 +57,7 @@ Vec2 halved(const Vec2& p) {
   return {p.x() / 2 - 0.25, p.y() / 2 - 0.25};
 }
 
-void lookTwiceAsLarge(const GreyImage& image, const std::vector<CodeBook>& books,
+void lookTwiceAsLarge(const GreyFrame& image, const std::vector<CodeBook>& books,
                       const Camera* lens, const QuadSearch& search, std::vector<SeenMarker>& seen) {
   Camera large;
   if (lens) {
@@ -80,7 +80,7 @@ void lookTwiceAsLarge(const GreyImage& image, const std::vector<CodeBook>& books
 
 } // namespace
 
-std::vector<SeenMarker> findMarkers(const GreyImage& image, const std::vector<CodeBook>& books,
+std::vector<SeenMarker> findMarkers(const GreyFrame& image, const std::vector<CodeBook>& books,
                                     const Camera* lens, const FinderOptions& options) {
   std::vector<SeenMarker> seen;
   look(image, books, lens, {}, seen);

@@ -9,9 +9,9 @@ namespace patina {
 struct SeenMarker {
   std::string family;
   int id = 0;
-  int wrong = 0;                       // bits that were forgiven
+  int wrong = 0;                      // bits that were forgiven
   std::array<FittedCorner, 4> corner; // as the marker has them: top left, then clockwise
-  double roughness = 0;                // of its edges [px]
+  double roughness = 0;               // of its edges [px]
 };
 
 struct FinderOptions {
@@ -21,7 +21,7 @@ struct FinderOptions {
 };
 
 // Each marker once for each place where it is seen. `lens` straightens; see FittedCorner.
-std::vector<SeenMarker> findMarkers(const GreyImage& image, const std::vector<CodeBook>& books,
+std::vector<SeenMarker> findMarkers(const GreyFrame& image, const std::vector<CodeBook>& books,
                                     const Camera* lens, const FinderOptions& options = {});
 
 } // namespace patina

@@ -23,7 +23,7 @@ struct Tiles {
   std::vector<std::uint8_t> low, high;
 };
 
-Tiles tilesOf(const GreyImage& image) {
+Tiles tilesOf(const GreyFrame& image) {
   Tiles tiles{(image.width + kTile - 1) / kTile, (image.height + kTile - 1) / kTile, {}, {}};
   const std::size_t width = static_cast<std::size_t>(image.width);
   std::vector<std::uint8_t> low(width), high(width);
@@ -70,7 +70,7 @@ std::vector<std::uint8_t> thresholds(const Tiles& tiles, const QuadSearch& searc
   return threshold;
 }
 
-DarkMap darkMap(const GreyImage& image, const QuadSearch& search) {
+DarkMap darkMap(const GreyFrame& image, const QuadSearch& search) {
   const Tiles tiles = tilesOf(image);
   const std::vector<std::uint8_t> threshold = thresholds(tiles, search);
   DarkMap map{image.width + 2, {}};
@@ -227,7 +227,7 @@ std::optional<Quad> quadOf(const Border& border, const QuadSearch& search) {
 
 } // namespace
 
-std::vector<Quad> findQuads(const GreyImage& image, const QuadSearch& search) {
+std::vector<Quad> findQuads(const GreyFrame& image, const QuadSearch& search) {
   DarkMap map = darkMap(image, search);
   std::vector<Quad> quads;
   Border border;

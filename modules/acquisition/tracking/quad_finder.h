@@ -14,6 +14,6 @@ struct QuadSearch {
   double shortest = 8; // side [px]
 };
 
-std::vector<Quad> findQuads(const GreyImage& image, const QuadSearch& search = {});
+std::vector<Quad> findQuads(const GreyFrame& image, const QuadSearch& search = {});
 
 } // namespace patina

@@ -9,12 +9,12 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kFar = 10;        // by how much a marker may miss a first guess [px]
-constexpr double kMisfit = 2;      // rms that no good rig leaves [px]
-constexpr double kPrior = 8;       // for how many residuals the edges' own deviations count
-constexpr double kDoubt = 12;      // squared residuals by which another pose must be worse
-constexpr double kSame = 0.05;     // poses nearer to one another are one [rad]
-constexpr double kOwnTurn = 0.3;   // the most that a hand turns from frame to frame [rad]
+constexpr double kFar = 10;      // by how much a marker may miss a first guess [px]
+constexpr double kMisfit = 2;    // rms that no good rig leaves [px]
+constexpr double kPrior = 8;     // for how many residuals the edges' own deviations count
+constexpr double kDoubt = 12;    // squared residuals by which another pose must be worse
+constexpr double kSame = 0.05;   // poses nearer to one another are one [rad]
+constexpr double kOwnTurn = 0.3; // the most that a hand turns from frame to frame [rad]
 
 // A seen marker and where the rig has it.
 struct Sight {
@@ -136,7 +136,8 @@ double angleBetween(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-std::vector<Sight> sightsOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig) {
+std::vector<Sight> sightsOf(const std::vector<SeenMarker>& seen,
+                            const std::vector<RigMarker>& rig) {
   std::vector<Sight> sights;
   for (const RigMarker& marker : rig) {
     const auto is = [&](const SeenMarker& s) {

@@ -52,14 +52,13 @@ std::string family(const std::string& name, MarkerFamily& out) {
                                       [&](const Named& each) { return name == each.name; });
     if (found == std::end(kFamilies)) {
       std::string names;
-      for (const Named& each : kFamilies) names += (names.empty() ? "" : " ") + std::string(each.name);
+      for (const Named& each : kFamilies)
+        names += (names.empty() ? "" : " ") + std::string(each.name);
       return "'" + name + "' is no family of markers; there are " + names;
     }
     const auto dictionary = cv::aruco::getPredefinedDictionary(found->value);
     out.name = name;
     out.side = dictionary->markerSize;
-    // Three fifths of what the distance between codes allows: the rest is against what is no marker.
-    out.correctable = dictionary->maxCorrectionBits * 3 / 5;
     out.code.clear();
     for (int id = 0; id < dictionary->bytesList.rows; ++id) {
       const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
@@ -73,7 +72,7 @@ std::string family(const std::string& name, MarkerFamily& out) {
   });
 }
 
-std::string chessboard(const GreyImage& image, int columns, int rows, std::vector<Vec2>& corners) {
+std::string chessboard(const GreyFrame& image, int columns, int rows, std::vector<Vec2>& corners) {
   return guarded([&]() -> std::string {
     corners.clear();
     const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
@@ -104,8 +103,10 @@ std::string calibrate(const std::vector<BoardView>& views, CameraFit& fit) {
     fit.camera.fy = matrix.at<double>(1, 1);
     fit.camera.cx = matrix.at<double>(0, 2);
     fit.camera.cy = matrix.at<double>(1, 2);
-    for (int i = 0; i < 5; ++i) fit.camera.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
-    for (int i = 0; i < 9; ++i) fit.deviation[static_cast<std::size_t>(i)] = deviations.at<double>(i);
+    for (int i = 0; i < 5; ++i)
+      fit.camera.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
+    for (int i = 0; i < 9; ++i)
+      fit.deviation[static_cast<std::size_t>(i)] = deviations.at<double>(i);
     fit.view_rms.assign(each.begin<double>(), each.end<double>());
     return "";
   });

@@ -16,17 +16,18 @@ struct BoardView {
 };
 
 struct CameraFit {
-  Camera camera;                       // its size is given
-  std::array<double, 9> deviation{};   // of fx fy cx cy k1 k2 p1 p2 k3
-  double rms = 0;                      // [px]
-  std::vector<double> view_rms;        // [px]
+  Camera camera;                     // its size is given
+  std::array<double, 9> deviation{}; // of fx fy cx cy k1 k2 p1 p2 k3
+  double rms = 0;                    // [px]
+  std::vector<double> view_rms;      // [px]
 };
 
 // Each returns an empty text, or why it could not.
 struct VisionLibrary {
+  // Its codes; not how many bits are forgiven.
   std::string (*family)(const std::string& name, MarkerFamily& out);
   // Inner corners of a chessboard by rows, to about a pixel; none if it is not seen.
-  std::string (*chessboard)(const GreyImage&, int columns, int rows, std::vector<Vec2>& corners);
+  std::string (*chessboard)(const GreyFrame&, int columns, int rows, std::vector<Vec2>& corners);
   std::string (*calibrate)(const std::vector<BoardView>&, CameraFit& fit);
 };
 
