@@ -78,13 +78,12 @@ std::vector<PrintedMarker> printedBoard(const Board& board) {
   for (int y = 0; y < board.rows; ++y)
     for (int x = 0; x < board.columns; ++x) {
       PrintedMarker one{{board.family, 0, board.square, Pose::Identity()}, family.side, 0};
-      one.place.probe_from_marker.translation() =
-          board.square * Vec3(x + 0.5, -(y + 0.5), (x + y) % 2 ? 1e-6 : 0);
+      one.place.probe_from_marker.translation() = board.square * Vec3(x + 0.5, -(y + 0.5), 0);
       if ((x + y) % 2) {
         one.code = family.code[static_cast<std::size_t>(id++)];
         one.place.size = board.marker;
       } else {
-        one.place.probe_from_marker.translation().z() = 2e-6; // its margin is not printed over
+        one.margin = 0;
       }
       printed.push_back(one);
     }

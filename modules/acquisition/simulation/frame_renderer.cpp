@@ -49,6 +49,11 @@ struct Face {
   double light;
 };
 
+// From its middle to the end of its margin [m].
+double reachOf(const PrintedMarker& marker) {
+  return marker.place.size * (0.5 + marker.margin / (marker.side + 2));
+}
+
 struct Scene {
   std::vector<std::vector<Face>> moments;
   int left, right, top, bottom; // pixels outside show the ground only
@@ -85,7 +90,7 @@ Hit trace(const std::vector<Face>& faces, const Vec2& ray, const FrameLook& look
     if (!(far > 0 && far < nearest)) continue;
     const Vec3 at = far * direction - face.middle;
     const double u = face.x.dot(at), v = face.y.dot(at);
-    const double reach = face.marker->place.size * (0.5 + 1. / (face.marker->side + 2));
+    const double reach = reachOf(*face.marker);
     if (std::abs(u) > reach || std::abs(v) > reach) continue;
     nearest = far;
     hit = {printAt(*face.marker, u, v, look), face.light};
@@ -141,7 +146,7 @@ Scene sceneOf(const Camera& camera, const std::vector<PrintedMarker>& markers,
       scene.moments.back().push_back({&marker, face.linear().col(0), face.linear().col(1),
                                       face.linear().col(2), face.translation(),
                                       1 - look.slope_shade * (1 - cosine)});
-      const double reach = marker.place.size * (0.5 + 1. / (marker.side + 2));
+      const double reach = reachOf(marker);
       for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1)}) {
         const Vec3 p = face * Vec3(reach * corner.x(), reach * corner.y(), 0);
         const Vec2 pixel = throughLens(camera, p.hnormalized()).pixel;
@@ -192,7 +197,7 @@ GreyFrame FrameRenderer::render(const std::vector<Pose>& camera_from_probe, cons
                b * ((1 - a) * corner[width + 1] + a * corner[width + 2]);
       };
       const double ground =
-          look.ground * (1 + 0.08 * std::sin(40 * corner->x()) * std::sin(55 * corner->y()));
+          look.ground * (1 + look.waves * std::sin(40 * corner->x()) * std::sin(55 * corner->y()));
       const auto greyOf = [&](double a, double b, std::size_t moment) {
         const Vec2 at(x - 0.5 + a, y - 0.5 + b);
         for (const Occluder& disc : look.occluders)

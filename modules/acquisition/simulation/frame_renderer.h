@@ -7,11 +7,12 @@
 
 namespace patina {
 
-// A rig's marker as it is printed: on white, one bit of which is its margin.
+// A rig's marker as it is printed.
 struct PrintedMarker {
   RigMarker place;
   int side = 0;           // bits
   std::uint64_t code = 0; // as in MarkerFamily
+  double margin = 1;      // of white around the black, in bits
 };
 
 // A disc before everything: a finger, a cable.
@@ -24,6 +25,7 @@ struct Occluder {
 struct FrameLook {
   double white = 0.85, black = 0.08; // of the print, 1 is the brightest grey
   double ground = 0.45;              // of what is behind it
+  double waves = 0.08;               // of the ground, relative
   double shade = 0.3;                // light from one side of the picture to the other, relative
   double shade_angle = 0.6;          // towards where it falls off [rad]
   double slope_shade = 0.4;          // of a face that is seen edge on, relative
