@@ -33,8 +33,8 @@ struct ScanOptions {
   std::string family = "4x4_50";
 };
 
-const Keys kSimulateScanKeys = {{"poses", "", "poses", "", Shown::if_any},
-                                {"frames", "", "frames", "", Shown::if_any},
+const Keys kSimulateScanKeys = {{"poses", "", "poses"},
+                                {"frames", "", "frames", "in place of poses"},
                                 {"samples", "", "samples", "of the probe"},
                                 {"seconds", "s", "lasts"},
                                 {"touching", "", "touching", "the part of its time", Shown::never},
@@ -188,7 +188,11 @@ int runSimulateScan(ScanOptions options, Console& console) {
   for (const PathSample& sample : truth) touching += sample.touching;
   touching /= static_cast<double>(truth.size());
   Report report(kSimulateScanKeys);
-  report.set("poses", poses.size()).set("frames", frames).set("samples", samples.size());
+  if (options.frames)
+    report.set("frames", frames);
+  else
+    report.set("poses", poses.size());
+  report.set("samples", samples.size());
   report.set("seconds", hand.seconds(),
              rounded(hand.seconds()) + " s, touching for " + rounded(100 * touching) + " % of it");
   report.set("touching", touching);

@@ -13,7 +13,7 @@ constexpr double kLeastContrast = 8; // grey levels across an edge
 // What no averaging along an edge removes: pixels, and for a border of so many pixels the bits that
 // shine into it. From rendered markers [px].
 double systematic(double border) {
-  return 0.006 + 0.4 / (border * border);
+  return 0.004 + 0.28 / (border * border);
 }
 
 struct EdgeLine {

@@ -150,10 +150,17 @@ std::vector<Sight> sightsOf(const std::vector<SeenMarker>& seen,
   return sights;
 }
 
+// A corner counts as exactly as it is known: those of a face seen from its edge hardly.
 double rmsOf(const std::vector<Sight>& sights, const Camera& camera, const Pose& pose) {
-  double sum = 0;
-  for (const Sight& sight : sights) sum += missOf(sight, camera, pose);
-  return std::sqrt(sum / static_cast<double>(sights.size()));
+  double sum = 0, weights = 0;
+  for (const Sight& sight : sights)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const FittedCorner& corner = sight.seen->corner[i];
+      const Vec2 miss = pinhole(camera, pose * sight.corner[i]) - corner.straight;
+      sum += 2 * (corner.whiten * miss).squaredNorm();
+      weights += corner.whiten.squaredNorm();
+    }
+  return std::sqrt(sum / weights);
 }
 
 // The best of all guesses, and the best that is another pose: both with the markers that fit.
@@ -192,12 +199,15 @@ Choice choose(const std::vector<Sight>& sights, const Camera& camera) {
 // Takes out the marker that contradicts the others most, if there are enough to say so.
 bool dropWorst(std::vector<Sight>& sights, const Camera& camera, const Pose& pose) {
   if (sights.size() < 3) return false;
-  std::vector<double> misses;
-  for (const Sight& sight : sights) misses.push_back(std::sqrt(missOf(sight, camera, pose)));
+  std::vector<double> misses; // over what the edges allow
+  for (const Sight& sight : sights) {
+    Vec6 gradient;
+    misses.push_back(std::sqrt(linearised({sight}, camera, pose, gradient).cost / 8));
+  }
   const auto worst = std::max_element(misses.begin(), misses.end());
   std::vector<double> sorted = misses;
   std::sort(sorted.begin(), sorted.end());
-  if (*worst < 0.5 || *worst < 4 * sorted[(sorted.size() - 1) / 2]) return false;
+  if (*worst < 5 || *worst < 4 * sorted[(sorted.size() - 1) / 2]) return false;
   sights.erase(sights.begin() + (worst - misses.begin()));
   return true;
 }

@@ -20,7 +20,7 @@ struct SeenRig {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   std::size_t markers = 0; // that it follows from
   std::size_t dropped = 0; // that contradict the others
-  double rms = 0;          // of their corners [px]
+  double rms = 0;          // of their corners, each as exactly as it is known [px]
 };
 
 // `lately` decides where a picture does not, if the rig cannot have turned as far since.
