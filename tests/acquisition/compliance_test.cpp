@@ -110,5 +110,16 @@ TEST(Compliance, EachPressHasAZeroOfItsOwn) {
   EXPECT_NEAR(estimateCompliance(samples, 0)->stiffness, 1000, 1e-6);
 }
 
+// What lies between two presses was no press.
+TEST(Compliance, ALoadingDoesNotGoOnAcrossAPause) {
+  std::vector<PressSample> samples;
+  for (int i = 0; i < 100; ++i) samples.push_back({i / 500., 1e-5 * i, 0.01 * i});
+  for (int i = 0; i < 100; ++i) samples.push_back({1 + i / 500., 1 + 1e-5 * i, 1 + 0.01 * i});
+  const auto estimate = estimateCompliance(samples, 0);
+  ASSERT_TRUE(estimate);
+  EXPECT_EQ(estimate->loadings, 2u);
+  EXPECT_NEAR(estimate->stiffness, 1000, 1e-6);
+}
+
 } // namespace
 } // namespace patina

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -65,13 +66,13 @@ TEST(ContactCourse, IsPassedOnEveryShape) {
   expectExact(all, "all");
 }
 
-TEST(ContactCourse, ErrorFallsWithTheVoxel) {
+// Of the p99 of the error in the voxel, over 75, 150 and 300 voxels.
+double orderOn(const std::vector<ContactScene>& scenes, long contacts) {
   std::vector<double> log_voxel, log_error;
   for (const int resolution : {75, 150, 300}) {
     CourseReport all;
-    for (const char* name : {"box", "L", "room", "groove"})
-      all.add(courseOn(contactScene(name), resolution, longer(2000)));
-    const double voxel = contactField(contactScene("box"), 0, resolution)->grid.voxel;
+    for (const ContactScene& scene : scenes) all.add(courseOn(scene, resolution, contacts));
+    const double voxel = contactField(scenes[0], 0, resolution)->grid.voxel;
     const double error = percentiles(all.error).p99;
     std::printf("voxel %.3f mm: p99 %.4f N\n", 1e3 * voxel, error);
     log_voxel.push_back(std::log(voxel));
@@ -79,7 +80,25 @@ TEST(ContactCourse, ErrorFallsWithTheVoxel) {
   }
   const Eigen::Map<const Vec3> x(log_voxel.data()), y(log_error.data());
   const Vec3 dx = x.array() - x.mean(), dy = y.array() - y.mean();
-  EXPECT_GE(dx.dot(dy) / dx.squaredNorm(), 0.9);
+  return dx.dot(dy) / dx.squaredNorm();
+}
+
+TEST(ContactCourse, ErrorFallsWithTheVoxelWhereFacesAreLarge) {
+  std::vector<ContactScene> scenes;
+  for (const char* name : {"box", "L", "room", "groove"}) scenes.push_back(contactScene(name));
+  EXPECT_GE(orderOn(scenes, longer(2000)), 0.9);
+}
+
+// A limb of 1024 faces, each far narrower than a voxel. Faces as wide as one are another matter:
+// the oracle's contact point rests on one and leaps to the next, which no grid of that voxel can
+// know (docs/studies.md).
+TEST(ContactCourse, ErrorFallsWithTheVoxelAboutALimb) {
+  std::vector<Vec2> circle;
+  for (int i = 0; i < 1024; ++i) {
+    const double turn = 2 * std::numbers::pi / 1024 * i;
+    circle.emplace_back(0.004 * std::cos(turn), 0.004 * std::sin(turn));
+  }
+  EXPECT_GE(orderOn({{"limb", {prism(circle, 0.1)}}}, longer(4000)), 0.5); // 0.67; 0.77 over 12,000
 }
 
 TEST(ContactCourse, NoLoopGivesEnergy) {

@@ -94,6 +94,33 @@ TEST_F(Scans, AreTheSameForTheSameWords) {
   EXPECT_FALSE(first == readFile(scan + "/probe.csv") + readFile(scan + "/poses.tum"));
 }
 
+TEST_F(Scans, GiveHeightsWhereTheyAreAskedFor) {
+  ASSERT_EQ(run({"model", "plate", "-o", ball}).exit, 0);
+  simulate({"--roughness", "50um"});
+  const std::string heights = folder / "heights.csv";
+  const Json report = runJson({"filter", scan, "-o", path, "--heights", heights});
+  const CsvTable rows =
+      readCsv(heights, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"});
+  EXPECT_GT(rows.rows.size(), 4000u);
+  EXPECT_EQ(report.at("stretches").asNumber(), rows.rows.back()[4] + 1);
+  EXPECT_GT(report.at("stiffness").at("presses").asInteger(), 2);
+  const Json other =
+      runJson({"filter", scan, "-o", path, "--heights", heights, "--normal", "0,-0.53,-0.85"});
+  EXPECT_NEAR(other.at("normal").asArray()[1].asNumber(),
+              report.at("normal").asArray()[1].asNumber(), 0.01);
+  std::filesystem::remove(path);
+  std::filesystem::remove(heights);
+  const auto refused = [&](std::vector<std::string> more, const std::string& part) {
+    more.insert(more.begin(), {"filter", scan, "-o", path});
+    expectOneLineError(run(more), {part});
+    EXPECT_FALSE(std::filesystem::exists(path) || std::filesystem::exists(heights));
+  };
+  refused({"--normal", "0,0,1"}, "--normal");
+  refused({"--heights", heights, "--normal", "0,0,0"}, "--normal");
+  refused({"--heights", heights, "--model", "acceleration"}, "--heights");
+  refused({"--heights", path}, "path.csv");
+}
+
 TEST_F(Scans, WithFaultsTellThem) {
   simulate({"--dropouts", "3", "--outliers", "0.03", "--clock-offset", "0.1", "--from", "-x"});
   const Outcome text = run({"filter", scan, "-o", path});

@@ -69,4 +69,16 @@ Argument outputTo(std::filesystem::path& target, const std::string& value,
   return {"-o,--output", value, "", "", caption, into(target), Times::once};
 }
 
+Vec3 parsePoint(const std::string& text) {
+  Vec3 point;
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos) throw Error("'" + text + "' is not X,Y,Z");
+    point[axis] = parseLength(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return point;
+}
+
 } // namespace patina::cli

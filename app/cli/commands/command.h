@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/output/console.h"
+#include "core/types.h"
 
 namespace patina::cli {
 
@@ -57,6 +58,8 @@ Setter into(std::optional<double>& number);
 enum class NumberKind { plain, whole, length };
 Setter inRange(double lowest, double highest, std::function<void(double)> set,
                NumberKind kind = NumberKind::plain);
+// X,Y,Z; lengths may carry their unit. Throws Error.
+Vec3 parsePoint(const std::string& text);
 // What `parse` makes of the text.
 template <typename Value, typename Parse> Setter parsedInto(Value& target, Parse parse) {
   return [&target, parse](const std::string& text) { target = parse(text); };

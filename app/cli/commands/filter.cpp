@@ -10,13 +10,15 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/percentiles.h"
 
 namespace patina::cli {
 
 namespace {
 
 struct FilterOptions {
-  std::filesystem::path input, probe, rig, truth, output;
+  std::filesystem::path input, probe, rig, truth, output, heights;
+  std::optional<Vec3> normal;
   std::optional<PathModel> model;
   bool forward = false, lifted = false;
   PoseSigmas sigmas;
@@ -49,6 +51,15 @@ const Keys kFilterKeys = {
      "against the truth",
      Shown::always,
      {{"rms", "m", ""}, {"max", "m", ""}, {"nees", "", "1 if sigmas hold"}, {"samples", "", ""}}},
+    {"normal", "", "normal", "from which side heights are, in the camera's frame", Shown::if_any},
+    {"stretches", "", "stretches", "of contact whose heights were found", Shown::if_any},
+    {"height_sigma", "m", "sigma of heights", "median", Shown::if_any},
+    {"stiffness",
+     "N/m",
+     "stiffness",
+     "from presses while standing; absent without any",
+     Shown::if_any,
+     {{"value", "N/m", ""}, {"deviation", "N/m", ""}, {"presses", "", ""}}},
     {"seconds", "s", "filtered in"}};
 
 PathModel parseModel(const std::string& word) {
@@ -56,6 +67,12 @@ PathModel parseModel(const std::string& word) {
   if (word == "acceleration") return PathModel::acceleration;
   if (word == "velocity") return PathModel::velocity;
   throw Error("'" + word + "' is none of fused, acceleration, velocity");
+}
+
+Vec3 parseNormal(const std::string& word) {
+  const Vec3 normal = parsePoint(word);
+  if (!(normal.norm() > 0)) throw Error("'" + word + "' is no direction");
+  return normal;
 }
 
 std::string nameOf(PathModel model) {
@@ -144,21 +161,50 @@ Json gapsJson(const FilteredScan& scan) {
 void reportSigma(const std::vector<PathSample>& path, Report& report) {
   std::vector<double> sigmas;
   for (const PathSample& sample : path) sigmas.push_back(sample.sigma);
-  std::sort(sigmas.begin(), sigmas.end());
-  const double median = sigmas[sigmas.size() / 2], most = sigmas.back();
+  const double median = percentiles(sigmas).p50, most = percentiles(sigmas).max;
   report.set("sigma", Json::object().set("median", median).set("max", most),
              formatLength(median) + " (median), " + formatLength(most) + " (max)");
 }
 
+void reportHeights(const ScanHeights& scan, Report& report) {
+  report.set("normal", vectorJson(scan.plane.normal));
+  report.set("stretches", scan.heights.back().stretch + 1);
+  std::vector<double> sigmas;
+  for (const ScanHeight& height : scan.heights) sigmas.push_back(height.point.sigma);
+  report.set("height_sigma", percentiles(sigmas).p50);
+  if (const auto& found = scan.compliance)
+    report.set("stiffness",
+               Json::object()
+                   .set("value", found->stiffness)
+                   .set("deviation", found->stiffness_deviation)
+                   .set("presses", found->loadings),
+               rounded(found->stiffness) + " N/m, deviation " +
+                   rounded(found->stiffness_deviation) + " N/m, from " +
+                   formatCount(found->loadings) + " presses");
+}
+
 int runFilter(FilterOptions options, Console& console) {
   findFiles(options);
-  requireWritable(options.output, {options.input, options.probe, options.rig, options.truth});
+  const std::vector<std::filesystem::path> inputs = {options.input, options.probe, options.rig,
+                                                     options.truth};
+  requireWritable(options.output, inputs);
+  if (options.normal && options.heights.empty())
+    throw Error("--normal: is that of heights; name a file for them with --heights");
+  if (!options.heights.empty()) {
+    requireWritable(options.heights, inputs);
+    if (options.heights == options.output)
+      throw FileError(options.heights.string(), 0, "is the path's file too");
+  }
   const Inputs in = read(options, console);
   ScanFilter filter;
   filter.model = chosenModel(options, in);
   filter.smooth = !options.forward;
   filter.touching_only = !options.lifted;
   filter.gravity = in.rig.gravity;
+  filter.normal = options.normal;
+  filter.heights = !options.heights.empty();
+  if (filter.heights && filter.model != PathModel::fused)
+    throw Error("--heights: come from the accelerometers of the fused --model");
   const auto begin = std::chrono::steady_clock::now();
   const FilteredScan scan =
       filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
@@ -169,6 +215,7 @@ int runFilter(FilterOptions options, Console& console) {
                         " N; --lifted keeps what is in the air");
   console.progress().throwIfCancelled();
   writePath(options.output, scan.path);
+  if (scan.heights) writeHeights(options.heights, scan.heights->heights);
 
   const std::size_t rejected = in.poses.values.size() - scan.track.used();
   Report report(kFilterKeys);
@@ -202,6 +249,7 @@ int runFilter(FilterOptions options, Console& console) {
                formatLength(error.rms) + " (rms), " + formatLength(error.most) + " (max); NEES " +
                    rounded(error.nees));
   }
+  if (scan.heights) reportHeights(*scan.heights, report);
   report.set("seconds", taken.count());
   warnOf(scan.without_pose, options.input, in.poses, "a pose", console);
   warnOf(scan.without_sample, options.probe, in.samples, "a sample", console);
@@ -225,6 +273,10 @@ Command filterCommand() {
           "fused: camera and accelerometers together, a sample of the path for each of the "
           "probe. acceleration, velocity: poses alone, whose motion is taken to have a steady "
           "acceleration or velocity. Poses that do not fit are rejected and counted.\n"
+          "--heights writes the surface's height along the path, from the accelerometers, with its "
+          "sigma: above the plane through where the tip touched, or along --normal; what is below "
+          "the camera's noise is found, slow shape is the camera's. Where the probe was pressed "
+          "while it stood, the surface's stiffness is reported and taken off.\n"
           "With a probe only samples that touch, by their force, become path. Gaps are bridged, "
           "reported, and sigma grows in them. Where there is a truth, the error against it is "
           "reported.",
@@ -244,6 +296,11 @@ Command filterCommand() {
             [options](const std::string&) { options->forward = false; }},
            {"--forward", "", "", "", "Each sample knows the poses before it only.",
             into(options->forward)},
+           {"--heights", "HEIGHTS.csv", "", "", "Heights along the path, with sigma.",
+            into(options->heights)},
+           {"--normal", "X,Y,Z", "", "of the plane that was touched",
+            "Outwards, in the camera's frame.",
+            [options](const std::string& word) { options->normal = parseNormal(word); }},
            {"--lifted", "", "", "", "Keep what the probe did in the air.", into(options->lifted)},
            {"--sigma", "LENGTH", "m", "0.2mm", "Deviation of poses that do not tell their own.",
             inRange(

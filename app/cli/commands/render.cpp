@@ -46,18 +46,6 @@ PictureSize parseSize(const std::string& text) {
   return size;
 }
 
-Vec3 parsePoint(const std::string& text) {
-  Vec3 point;
-  std::size_t begin = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
-    if (end == std::string::npos) throw Error("'" + text + "' is not X,Y,Z");
-    point[axis] = parseLength(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return point;
-}
-
 template <typename Values> std::vector<std::string> wordsFor(const Values& values) {
   return namesIn(values, [](const auto& value) { return std::string(name(value)); });
 }

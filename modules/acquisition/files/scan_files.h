@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "acquisition/camera.h"
+#include "acquisition/profile/scan_heights.h"
 #include "acquisition/scan_samples.h"
 
 namespace patina {
@@ -42,6 +43,7 @@ OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path);
 void writeProbeStream(const std::filesystem::path& path, const std::vector<ProbeSample>& samples);
 std::vector<PathSample> readPath(const std::filesystem::path& path);
 void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples);
+void writeHeights(const std::filesystem::path& path, const std::vector<ScanHeight>& heights);
 
 // What rig.json says beside its markers.
 struct Rig {

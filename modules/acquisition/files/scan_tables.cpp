@@ -75,4 +75,11 @@ void writePath(const std::filesystem::path& path, const std::vector<PathSample>&
   writer.commit();
 }
 
+void writeHeights(const std::filesystem::path& path, const std::vector<ScanHeight>& heights) {
+  CsvWriter writer(path, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"});
+  for (const ScanHeight& h : heights)
+    writer.add({h.t, h.point.along, h.point.height, h.point.sigma, static_cast<double>(h.stretch)});
+  writer.commit();
+}
+
 } // namespace patina

@@ -49,6 +49,11 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
     }
     FusedPath fused = fuseWith(std::move(track), poses, corrected.empty() ? samples : corrected,
                                probe, options, progress);
+    if (filter.heights) {
+      markContact(fused.path);
+      scan.heights = scanHeights(fused, poses, corrected.empty() ? samples : corrected, probe,
+                                 filter.gravity, filter.normal);
+    }
     scan.path = std::move(fused.path);
     scan.track = std::move(fused.track);
     scan.bias = fused.bias;

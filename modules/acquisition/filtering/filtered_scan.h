@@ -3,6 +3,7 @@
 
 #include "acquisition/filtering/fused_path.h"
 #include "acquisition/filtering/probe_clock.h"
+#include "acquisition/profile/scan_heights.h"
 
 namespace patina {
 
@@ -14,6 +15,8 @@ struct ScanFilter {
   bool touching_only = true;           // leaves out what the probe did in the air
   double longest_pause = 0.05;         // between samples of the probe [s]
   Vec3 gravity = Vec3(0, 0, -9.80665); // in the camera's frame [m/s^2]
+  bool heights = false;                // of the surface; fused only
+  std::optional<Vec3> normal;          // of scanHeights()
 };
 
 struct FilteredScan {
@@ -21,12 +24,13 @@ struct FilteredScan {
   CameraTrack track;
   std::array<double, 4> bias{}; // of the accelerometers [m/s^2]; 0 where they were not used
   std::vector<Gap> without_pose, without_sample;
-  double largest_force = 0;        // [N]
+  double largest_force = 0; // [N]
+  std::optional<ScanHeights> heights;
   std::optional<ProbeClock> clock; // where accelerometers are known; corrected where it differs
 };
 
 // `samples` may be empty: the path then is at the poses' times, has no force and is not cut. Throws
-// Cancelled, and Error where the streams have no time in common.
+// Cancelled, and Error where the streams have no time in common, and as scanHeights() does.
 FilteredScan filterScan(const std::vector<CameraPose>& poses,
                         const std::vector<ProbeSample>& samples, const ProbeModel& probe,
                         const ScanFilter& filter, Progress& progress);

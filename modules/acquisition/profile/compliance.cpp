@@ -7,6 +7,7 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kSmooth = 7; // samples to either side
+constexpr double kPause = 0.05;    // between samples: beyond it another press begins [s]
 
 struct Loading {
   std::size_t begin, end;
@@ -41,6 +42,11 @@ std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double 
     loadings.push_back({begin, end + 1});
   };
   for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (samples[i].t - samples[i - 1].t > kPause) {
+      close();
+      low = high = i;
+      continue;
+    }
     if (force[i] >= force[high]) high = i;
     const bool falls = force[i] < force[high] - back;
     if (falls && high > low) {
@@ -61,7 +67,8 @@ struct Moments {
 } // namespace
 
 std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
-                                                     double force_sigma, double least_rise) {
+                                                     double force_sigma, bool alike_in_a_press,
+                                                     double least_rise) {
   const std::vector<Loading> loadings = loadingsOf(samples, least_rise);
   if (loadings.empty()) return std::nullopt;
   ComplianceEstimate estimate;
@@ -91,9 +98,12 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
   if (!(true_forces > 0) || !(m.mixed > 0) || m.freedom < 3) return std::nullopt;
   const double C = m.mixed / true_forces;
   double squares = 0, lagged = 0, pairs = 0;
+  std::vector<double> pulls; // of each loading on the slope
   for (std::size_t i = 0; i < f.size(); ++i) {
     const double residual = x[i] - C * f[i];
     squares += residual * residual;
+    if (first[i]) pulls.push_back(0);
+    pulls.back() += f[i] * residual;
     if (first[i]) continue;
     lagged += residual * (x[i - 1] - C * f[i - 1]);
     pairs += 1;
@@ -109,6 +119,13 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
       std::sqrt(fewer * residual_variance / true_forces +
                 m.freedom * force_variance * (residual_variance + C * C * force_variance) /
                     (true_forces * true_forces));
+  const double presses = static_cast<double>(pulls.size());
+  if (alike_in_a_press && presses > 1) {
+    double sum = 0;
+    for (const double pull : pulls) sum += pull * pull;
+    estimate.compliance_deviation = std::max(
+        estimate.compliance_deviation, std::sqrt(sum * presses / (presses - 1)) / true_forces);
+  }
   // 1 / C is too large on the mean by the square of C's relative deviation.
   const double relative = estimate.compliance_deviation / C;
   estimate.stiffness = 1 / (C * (1 + relative * relative));

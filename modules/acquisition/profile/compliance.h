@@ -23,9 +23,14 @@ struct ComplianceEstimate {
 // own: unloading would mix in what the material keeps. Both have errors: force that of
 // `force_sigma` [N], displacement what the samples show. Plain regression of force on displacement
 // takes the noise of the displacement for yielding, and is 42 % too soft at 3000 N/m with 0.3 mm.
-// The deviation counts the noise as correlated from sample to sample as the residuals are.
-// nullopt without a loading of at least `least_rise` [N].
+// The deviation counts the noise as correlated from sample to sample as the residuals are;
+// `alike_in_a_press`: as at least what the presses differ by among themselves, for displacements
+// whose errors last as long as one, such as a smoothed path's.
+// Samples more than 0.05 s apart belong to two presses. nullopt without a loading of at least
+// `least_rise` [N].
 std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
-                                                     double force_sigma, double least_rise = 0.3);
+                                                     double force_sigma,
+                                                     bool alike_in_a_press = false,
+                                                     double least_rise = 0.3);
 
 } // namespace patina

@@ -56,12 +56,16 @@ struct Roughness {
 Roughness likeliestRoughness(const std::vector<std::vector<TracedSample>>& stretches,
                              const HeightOptions& options);
 
-// Samples of a stretch of a fused path (its samples are `probe`'s by time). `normal` is the
-// surface's, outwards; `compliance` [m/N].
+// From which heights are measured: normal outwards, unit.
+struct Plane {
+  Vec3 normal = Vec3::UnitZ(), point = Vec3::Zero();
+};
+
+// Samples of a stretch of a fused path (its samples are `probe`'s by time); compliance [m/N].
 std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
                                  const std::vector<CameraPose>& poses,
                                  const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                                 const Vec3& gravity, const Vec3& normal, double compliance);
+                                 const Vec3& gravity, const Plane& plane, double compliance);
 
 // On places `step` apart [m]; the mean of the points about each place, by their sigmas. Where the
 // probe stood there are many points and one place.

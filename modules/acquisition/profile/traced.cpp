@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "acquisition/profile/height_profile.h"
+#include "core/error.h"
 
 namespace patina {
 namespace {
@@ -21,7 +22,7 @@ class TipAcceleration {
       normal += axis.direction * axis.direction.transpose();
     bool spans = false;
     normal.computeInverseWithCheck(inverse_, spans, 1e-6);
-    if (!spans) throw std::invalid_argument("traced: the accelerometers' axes lie in one plane");
+    if (!spans) throw Error("the accelerometers' axes lie in one plane: they tell no height");
   }
 
   Vec3 operator()(const ProbeSample& sample, const TipMotion& motion,
@@ -48,7 +49,8 @@ class TipAcceleration {
 std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
                                  const std::vector<CameraPose>& poses,
                                  const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                                 const Vec3& gravity, const Vec3& normal, double compliance) {
+                                 const Vec3& gravity, const Plane& plane, double compliance) {
+  const Vec3& normal = plane.normal;
   const TipAcceleration accelerationOf(probe, fused.bias);
   std::vector<TracedSample> trace;
   trace.reserve(stretch.end - stretch.begin);
@@ -87,7 +89,8 @@ std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
     if (next < poses.size() && poses[next].t <= point.t) {
       const CameraPose& pose = poses[next];
       const Vec3 lever = point.orientation * probe.tip;
-      sample.height = normal.dot(pose.position + pose.orientation.normalized() * probe.tip);
+      sample.height =
+          normal.dot(pose.position + pose.orientation.normalized() * probe.tip - plane.point);
       sample.height_sigma =
           std::hypot(pose.sigma_position, pose.sigma_angle * lever.cross(normal).norm());
       do ++next;

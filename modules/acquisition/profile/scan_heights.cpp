@@ -1,0 +1,85 @@
+#include "acquisition/profile/scan_heights.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+constexpr double kPressed = 5e-3;    // slower than this along the surface it is a press [m/s]
+constexpr double kFlat = 0.5;        // of the way across: beyond it is no plane
+constexpr std::size_t kFewest = 100; // samples of a stretch that tells a height: 0.2 s
+
+std::vector<PressSample> presses(const FusedPath& fused, const Vec3& normal) {
+  std::vector<PressSample> samples;
+  for (const PathSample& sample : fused.path) {
+    if (!sample.touching) continue;
+    const Vec3 velocity = motionAt(fused.track, sample.t).velocity;
+    if ((velocity - normal * normal.dot(velocity)).norm() > kPressed) continue;
+    samples.push_back({sample.t, -normal.dot(sample.position), sample.force});
+  }
+  return samples;
+}
+
+} // namespace
+
+Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip) {
+  Vec3 mean = Vec3::Zero(), shaft = Vec3::Zero();
+  double count = 0;
+  for (const PathSample& sample : path)
+    if (sample.touching) {
+      mean += sample.position;
+      shaft -= sample.orientation * tip;
+      count += 1;
+    }
+  if (count == 0) throw Error("the probe never touches: there is no height");
+  mean /= count;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const PathSample& sample : path)
+    if (sample.touching)
+      spread += (sample.position - mean) * (sample.position - mean).transpose() / count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  if (!(axes.eigenvalues()[0] < kFlat * kFlat * axes.eigenvalues()[1]))
+    throw Error("where the tip touched is no plane, so that its normal must be told");
+  const Vec3 normal = axes.eigenvectors().col(0);
+  return {normal.dot(shaft) < 0 ? Vec3(-normal) : normal, mean};
+}
+
+ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& poses,
+                        const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+                        const Vec3& gravity, const std::optional<Vec3>& normal) {
+  ScanHeights scan;
+  if (normal) {
+    scan.plane.normal = normal->normalized();
+    double count = 0;
+    for (const PathSample& sample : fused.path)
+      if (sample.touching) scan.plane.point += (sample.position - scan.plane.point) / ++count;
+  } else {
+    scan.plane = touchedPlane(fused.path, probe.tip);
+  }
+  scan.compliance =
+      estimateCompliance(presses(fused, scan.plane.normal), std::sqrt(probe.forceVariance()), true);
+  const double compliance = scan.compliance ? scan.compliance->compliance : 0;
+  std::vector<std::vector<TracedSample>> traces;
+  for (const Stretch& stretch : touchingStretches(fused.path))
+    if (stretch.end - stretch.begin >= kFewest)
+      traces.push_back(
+          traced(fused, stretch, poses, samples, probe, gravity, scan.plane, compliance));
+  if (traces.empty()) throw Error("the probe touches too shortly for a height");
+  HeightOptions options;
+  options.acceleration_variance = probe.accelerationVariance();
+  const Roughness roughness = likeliestRoughness(traces, options);
+  options.rms = roughness.rms;
+  options.length = roughness.length;
+  for (std::size_t s = 0; s < traces.size(); ++s) {
+    const HeightProfile profile = heightAlong(traces[s], options);
+    for (std::size_t i = 0; i < profile.points.size(); ++i)
+      scan.heights.push_back({traces[s][i].t, profile.points[i], s});
+  }
+  return scan;
+}
+
+} // namespace patina

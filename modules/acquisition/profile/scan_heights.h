@@ -1,0 +1,37 @@
+// What a scan says of the surface under its path: heights from acceleration (A07), and how far it
+// yields where the probe was pressed (A08).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "acquisition/profile/compliance.h"
+#include "acquisition/profile/height_profile.h"
+
+namespace patina {
+
+struct ScanHeight {
+  double t = 0; // [s], on the camera's clock
+  ProfilePoint point;
+  std::size_t stretch = 0; // of contact, from 0; each has an `along` of its own
+};
+
+struct ScanHeights {
+  Plane plane; // from which heights are measured, in the camera's frame
+  std::vector<ScanHeight> heights;
+  std::optional<ComplianceEstimate> compliance; // absent where nobody pressed while standing
+};
+
+// The plane through where the tip touched, outwards where the probe's shaft is. Throws Error where
+// that is more of a line than of a plane, or nowhere.
+Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip);
+
+// `fused.path` knows when it touches; its samples are `samples` by time. `normal`: outwards, in the
+// camera's frame; else that of touchedPlane(). Heights are of the surface as nobody presses it,
+// along that normal, from the plane. Throws Error as touchedPlane() does, where nothing touches,
+// and where the accelerometers' axes do not span space.
+ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& poses,
+                        const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+                        const Vec3& gravity, const std::optional<Vec3>& normal);
+
+} // namespace patina

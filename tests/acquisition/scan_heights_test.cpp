@@ -1,0 +1,161 @@
+// Heights and stiffness of a whole scan, against the hand that made it.
+#include "acquisition/profile/scan_heights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/filtering/filtered_scan.h"
+#include "acquisition/simulation/simulated_streams.h"
+#include "acquisition/simulation/simulated_surface.h"
+#include "core/error.h"
+#include "core/percentiles.h"
+
+namespace patina {
+namespace {
+
+struct Rough {
+  SimulatedHand hand;
+  ScanHeights found;
+};
+
+Rough roughScan(std::uint32_t seed, double rms, const SimulatedProbe& stream = {}) {
+  Rough rough;
+  rough.hand = strokes(seed);
+  rough.hand.relief = roughSurface(seed, rms);
+  const ProbeModel probe;
+  ScanFilter filter;
+  filter.heights = true;
+  Progress progress;
+  rough.found =
+      *filterScan(simulateCamera(rough.hand, probe, {}, seed),
+                  simulateProbe(rough.hand, probe, stream, seed + 100), probe, filter, progress)
+           .heights;
+  return rough;
+}
+
+// Less its mean over 0.1 s: what accelerometers can tell.
+std::vector<double> quick(const std::vector<double>& values) {
+  constexpr std::size_t kReach = 25;
+  std::vector<double> sums{0}, rest;
+  for (const double value : values) sums.push_back(sums.back() + value);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t low = i < kReach ? 0 : i - kReach,
+                      high = std::min(i + kReach + 1, values.size());
+    rest.push_back(values[i] - (sums[high] - sums[low]) / static_cast<double>(high - low));
+  }
+  return rest;
+}
+
+double squares(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return sum;
+}
+
+struct HeightError {
+  double quick = 0; // rms over that of the truth, of what is quick
+  double nees = 0;
+};
+
+HeightError errorOf(const Rough& rough) {
+  HeightError error;
+  double quick_error = 0, quick_truth = 0;
+  const std::vector<ScanHeight>& heights = rough.found.heights;
+  for (std::size_t begin = 0, end = 0; begin < heights.size(); begin = end) {
+    std::vector<double> wrong, truth;
+    for (; end < heights.size() && heights[end].stretch == heights[begin].stretch; ++end) {
+      truth.push_back(handAt(rough.hand, heights[end].t).surface);
+      wrong.push_back(heights[end].point.height - truth.back());
+    }
+    double mean = 0; // where the plane lies is not asked
+    for (const double each : wrong) mean += each / static_cast<double>(wrong.size());
+    for (std::size_t i = 0; i < wrong.size(); ++i)
+      error.nees += std::pow((wrong[i] - mean) / heights[begin + i].point.sigma, 2) /
+                    static_cast<double>(heights.size());
+    quick_error += squares(quick(wrong));
+    quick_truth += squares(quick(truth));
+  }
+  error.quick = std::sqrt(quick_error / quick_truth);
+  return error;
+}
+
+TEST(ScanHeights, AreThoseThatTheTipWentOver) {
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    const Rough rough = roughScan(seed, 50e-6);
+    const HeightError error = errorOf(rough);
+    std::printf("seed %u: %.2f of the truth above 10 Hz, NEES %.2f, %zu presses\n", seed,
+                error.quick, error.nees,
+                rough.found.compliance ? rough.found.compliance->loadings : 0);
+    EXPECT_GT(rough.found.heights.size(), 4000u);
+    EXPECT_LT(error.quick, 0.4);
+    EXPECT_GT(error.nees, 0.4);
+    EXPECT_LT(error.nees, 2);
+  }
+}
+
+TEST(ScanHeights, KnowThePlaneAndItsOutside) {
+  const Rough rough = roughScan(4, 25e-6);
+  EXPECT_GT(rough.found.plane.normal.z(), std::cos(0.01));
+  EXPECT_NEAR(rough.found.plane.point.z(), 0, 1e-3);
+}
+
+TEST(ScanHeights, KnowStiffnessWithinItsDeviation) {
+  double pulls = 0, found = 0;
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    const Rough rough = roughScan(seed, 25e-6);
+    if (!rough.found.compliance) continue;
+    const ComplianceEstimate& estimate = *rough.found.compliance;
+    found += 1;
+    std::printf("seed %u: %.0f +- %.0f N/m, %zu presses, %zu samples\n", seed, estimate.stiffness,
+                estimate.stiffness_deviation, estimate.loadings, estimate.samples);
+    pulls +=
+        std::pow((estimate.compliance - rough.hand.compliance) / estimate.compliance_deviation, 2);
+  }
+  ASSERT_GE(found, 10);
+  std::printf("mean square over the deviation %.2f\n", pulls / found);
+  EXPECT_LT(pulls / found, 3) << "chi^2 of one degree of freedom each, from few presses";
+}
+
+TEST(ScanHeights, AreOnTheCamerasClock) {
+  SimulatedProbe late;
+  late.clock_offset = 0.1;
+  EXPECT_LT(errorOf(roughScan(5, 50e-6, late)).quick, 0.45);
+}
+
+std::vector<PathSample> touching(const std::vector<Vec3>& places) {
+  std::vector<PathSample> path;
+  for (const Vec3& place : places) {
+    PathSample sample;
+    sample.position = place;
+    sample.touching = true;
+    path.push_back(sample);
+  }
+  return path;
+}
+
+TEST(TouchedPlane, IsNoneOnALineOrInTheAir) {
+  std::vector<Vec3> line, ball;
+  for (int i = 0; i < 500; ++i) {
+    const double t = 0.05 * i;
+    line.emplace_back(1e-3 * t, 1e-5 * std::sin(7 * t), 1e-5 * std::cos(9 * t));
+    ball.emplace_back(std::sin(3 * t) * std::cos(t), std::sin(3 * t) * std::sin(t),
+                      std::cos(3 * t));
+  }
+  const Vec3 tip = ProbeModel().tip;
+  EXPECT_THROW(touchedPlane(touching(line), tip), Error);
+  EXPECT_THROW(touchedPlane(touching(ball), tip), Error);
+  EXPECT_THROW(touchedPlane(std::vector<PathSample>(500), tip), Error);
+}
+
+TEST(TouchedPlane, LooksToWhereTheShaftIs) {
+  std::vector<Vec3> places;
+  for (int i = 0; i < 100; ++i) places.emplace_back(0.01 * std::sin(i), 0.01 * std::cos(i), 0.3);
+  std::vector<PathSample> path = touching(places);
+  EXPECT_NEAR(touchedPlane(path, Vec3(0, 0, -0.1)).normal.z(), 1, 1e-12);
+  EXPECT_NEAR(touchedPlane(path, Vec3(0, 0, 0.1)).normal.z(), -1, 1e-12);
+}
+
+} // namespace
+} // namespace patina
