@@ -129,12 +129,14 @@ TEST_F(ScanFiles, ARigReadsBackAndNeedsNoAccelerometers) {
   rig.probe.axes[2].direction = Vec3(0.6, 0.8, 0);
   rig.gravity = Vec3(1, 9, 2);
   rig.probe.force_noise = 0.5;
+  rig.force_zero = -0.25;
   const Rig back = readRig(written(rigText(rig)));
   EXPECT_TRUE(back.accelerometers);
   EXPECT_EQ(back.probe.tip, rig.probe.tip);
   EXPECT_TRUE(back.probe.axes[2].direction.isApprox(rig.probe.axes[2].direction, 1e-15));
   EXPECT_EQ(back.gravity, rig.gravity);
   EXPECT_EQ(back.probe.force_noise, 0.5);
+  EXPECT_EQ(back.force_zero, -0.25);
 
   const Rig bare = readRig(written("{\"tip\": [0, 0, -0.1], \"markers\": [{\"id\": 3}]}"));
   EXPECT_FALSE(bare.accelerometers);

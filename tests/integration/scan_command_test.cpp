@@ -265,6 +265,9 @@ TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
       {"none"});
   expectOneLineError(run({"calibrate", folder / "none", "--board", "chess", "-o", camera}),
                      {"--board", "chessboard:COLUMNSxROWS"});
+  (void)simulate({"--seconds", "3"}); // upright and moving
+  expectOneLineError(run({"calibrate", scan, "--still", "-o", rig}), {"scan", "held still"});
+  EXPECT_FALSE(std::filesystem::exists(rig));
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "acquisition/calibration/board.h"
 #include "acquisition/calibration/pivot.h"
+#include "acquisition/calibration/still_probe.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/files/scan_files.h"
 #include "acquisition/vision_library.h"
@@ -17,17 +18,21 @@ struct CalibrateOptions {
   std::filesystem::path input, rig, output;
   std::optional<Board> board;
   std::string board_text;
+  bool still = false;
 };
 
 const Keys kParameterParts = {{"value", "", ""}, {"deviation", "", ""}};
 const Keys kCalibrateKeys = {
     {"rms_px", "px", "corners miss by", "rms of an image's two axes together"},
     {"rms", "m", "tip misses by", "rms of its distance from where it stood"},
-    {"views", "", "used", "views, or poses"},
+    {"rms_acceleration", "m/s^2", "readings miss by", "rms of an axis, of the probe held still"},
+    {"views", "", "used", "views, poses, or half seconds held still"},
     {"rejected", "", "rejected", "views without the board, or poses that contradict the others"},
     {"parameters", "", "parameters",
-     "by name: fx fy cx cy k1 k2 p1 p2 k3 of a camera; x y z of a tip [m]", Shown::never,
-     kParameterParts}};
+     "by name: fx fy cx cy k1 k2 p1 p2 k3 of a camera; x y z of a tip [m]; "
+     "of a probe held still a1u a1v a2u a2v, the biases [m/s^2] with the deviations of the axes "
+     "[rad], and force_zero [N]",
+     Shown::never, kParameterParts}};
 
 constexpr const char* kCameraNames[] = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
 
@@ -139,9 +144,51 @@ int calibrateTip(const CalibrateOptions& options, Console& console) {
   return kDone;
 }
 
+Json vectorJson(const Vec3& v) {
+  return Json(Json::Array{v.x(), v.y(), v.z()});
+}
+
+int calibrateStill(const CalibrateOptions& options, Console& console) {
+  const OnFile<CameraPose> poses = readPoses(options.input / "poses.tum");
+  const OnFile<ProbeSample> samples = readProbeStream(options.input / "probe.csv");
+  Json json = Json::object();
+  Rig rig;
+  if (!options.rig.empty()) {
+    rig = readRig(options.rig);
+    json = parseJson(readFile(options.rig), options.rig.string());
+  }
+  const auto fit = fitStillProbe(poses.values, samples.values, rig.probe);
+  if (!fit)
+    throw FileError(
+        options.input.string(), 0,
+        "there are too few attitudes in which the probe was held still, or they are too "
+        "alike: half a second each, in the air, eight at least, leaning to all sides");
+  constexpr const char* kAxes[] = {"a1u", "a1v", "a2u", "a2v"};
+  Report report(kCalibrateKeys);
+  report.set("rms_acceleration", fit->rms).set("views", fit->attitudes);
+  Json axes = Json::object(), parameters = Json::object();
+  for (std::size_t k = 0; k < 4; ++k) {
+    tellParameter(parameters, report, kAxes[k], fit->bias[k], fit->deviation[k], 1, "");
+    Json axis = Json::object();
+    axis.set("position", vectorJson(rig.probe.axes[k].position));
+    axes.set(kAxes[k], axis.set("direction", vectorJson(fit->directions[k])));
+  }
+  tellParameter(parameters, report, "force_zero", fit->force_zero,
+                std::sqrt(rig.probe.forceVariance()), 1, " N");
+  report.set("parameters", parameters);
+  if (!json.find("tip")) json.set("tip", vectorJson(rig.probe.tip));
+  json.set("accelerometers", axes).set("gravity", vectorJson(fit->gravity));
+  json.set("force_zero", fit->force_zero);
+  writeFileAtomically(options.output, json.dump() + "\n");
+  console.report(report);
+  return kDone;
+}
+
 int runCalibrate(const CalibrateOptions& options, Console& console) {
   requireWritable(options.output, {options.input});
-  return options.board ? calibrateCamera(options, console) : calibrateTip(options, console);
+  if (options.board && options.still) throw Error("--still: not with --board");
+  if (options.board) return calibrateCamera(options, console);
+  return options.still ? calibrateStill(options, console) : calibrateTip(options, console);
 }
 
 } // namespace
@@ -150,19 +197,25 @@ Command calibrateCommand() {
   auto options = std::make_shared<CalibrateOptions>();
   return {
       .name = "calibrate",
-      .summary = "a camera from views of a board, or a probe's tip from turning about it",
+      .summary = "a camera from views of a board, a probe's tip or its accelerometers",
       .description =
           "With --board INPUT is a folder of pictures, and CAMERA.yml gets what OpenCV calls "
           "camera_matrix and distortion_coefficients, with the deviation of each. Views without "
           "the board are named and left out.\n"
-          "Without, INPUT is a file of poses while the probe's tip stood still and the probe "
+          "With --still INPUT is a scan folder (poses.tum, probe.csv) of a probe that was held "
+          "still in "
+          "the air, leaning to all sides, and RIG.json gets the accelerometers' axes, gravity and "
+          "the force's zero; --rig tells the axes roughly.\n"
+          "With neither, INPUT is a file of poses while the probe's tip stood still and the probe "
           "turned about it to all sides, and RIG.json gets the tip, beside what --rig holds. "
           "Poses that contradict the others are left out.",
       .examples = {"patina calibrate views --board chessboard:9x6:25mm -o camera.yml",
                    "patina calibrate views --board charuco:5x7:40mm:20mm:6x6_250 -o camera.yml",
-                   "patina calibrate turning.tum --rig rig.json -o rig-with-tip.json"},
+                   "patina calibrate turning.tum --rig rig.json -o rig-with-tip.json",
+                   "patina calibrate held --still --rig rig-with-tip.json -o rig-of-probe.json"},
       .keys = kCalibrateKeys,
-      .arguments = {input("INPUT", "Folder of pictures, or poses as TUM.", into(options->input)),
+      .arguments = {input("INPUT", "Folder of pictures, scan folder, or poses as TUM.",
+                          into(options->input)),
                     outputTo(options->output, "FILE", "CAMERA.yml, or RIG.json."),
                     {"--board", "BOARD", "", "",
                      "chessboard:COLUMNSxROWS:SQUARE, counted in inner corners, or "
@@ -171,7 +224,9 @@ Command calibrateCommand() {
                        options->board = parseBoard(text);
                        options->board_text = text;
                      }},
-                    {"--rig", "RIG.json", "", "", "A rig whose tip is to be replaced.",
+                    {"--still", "", "", "", "The accelerometers of a probe held still.",
+                     into(options->still)},
+                    {"--rig", "RIG.json", "", "", "What else RIG.json is to hold.",
                      into(options->rig)}},
       .run = [options](Console& console) { return runCalibrate(*options, console); }};
 }

@@ -48,6 +48,8 @@ Rig rigIn(const Json& json) {
   setNumber(json, "acceleration_noise", rig.probe.acceleration_noise);
   setNumber(json, "force_step", rig.probe.force_step);
   setNumber(json, "force_noise", rig.probe.force_noise);
+  if (const Json* zero = json.find("force_zero")) rig.force_zero = zero->asNumber();
+  if (!std::isfinite(rig.force_zero)) throw Error("'force_zero' is not finite");
   const Json* axes = json.find("accelerometers");
   if (!axes) return rig;
   for (std::size_t i = 0; i < rig.probe.axes.size(); ++i)
@@ -147,6 +149,7 @@ std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers) {
     axes.set(kAxes[i], axis.set("direction", jsonOf(rig.probe.axes[i].direction)));
   }
   json.set("accelerometers", axes).set("gravity", jsonOf(rig.gravity));
+  if (rig.force_zero != 0) json.set("force_zero", rig.force_zero);
   json.set("acceleration_step", rig.probe.acceleration_step);
   json.set("acceleration_noise", rig.probe.acceleration_noise);
   json.set("force_step", rig.probe.force_step).set("force_noise", rig.probe.force_noise);

@@ -51,6 +51,7 @@ struct Rig {
   // Where the accelerometers sit is known; if it is not, only force is read of the probe.
   bool accelerometers = false;
   Vec3 gravity = Vec3(0, 0, -9.80665); // in the camera's frame [m/s^2]
+  double force_zero = 0;               // what the force shows while nothing is pressed [N]
 };
 Rig readRig(const std::filesystem::path& path);
 std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers = {});
