@@ -11,7 +11,7 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kFewest = 6; // corners of a view that is of use
+constexpr std::size_t kFewestCorners = 6; // corners of a view that is of use
 
 std::vector<std::string> partsOf(const std::string& text, char between) {
   std::vector<std::string> parts(1);
@@ -193,7 +193,7 @@ Board parseBoard(const std::string& text) {
 
 std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board) {
   auto view = board.family.empty() ? chessboardIn(image, board) : charucoIn(image, board);
-  if (view && view->pixel.size() < kFewest) view.reset();
+  if (view && view->pixel.size() < kFewestCorners) view.reset();
   return view;
 }
 

@@ -10,9 +10,9 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kChi = 1.538; // median length of a normal vector of three
-constexpr double kReach = 4.7; // what is farther out, in deviations, does not count
-constexpr double kOpen = 1e-3; // of the normal equations' largest: what is less is not known
+constexpr double kChi = 1.538;  // median length of a normal vector of three
+constexpr double kFarOut = 4.7; // what is farther out, in deviations, does not count
+constexpr double kOpen = 1e-3;  // of the normal equations' largest: what is less is not known
 
 // Inverse of what a pose's deviations make of its residual: along the tip's arm the angle does
 // nothing.
@@ -59,7 +59,7 @@ std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses) {
                      sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     scale = std::max(sorted[sorted.size() / 2] / kChi, 1e-9);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      const double r = lengths[i] / (kReach * scale);
+      const double r = lengths[i] / (kFarOut * scale);
       weights[i] = r < 1 ? (1 - r * r) * (1 - r * r) : 0;
     }
     if (round > 2 && step < 1e-9) break;

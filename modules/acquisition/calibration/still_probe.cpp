@@ -10,8 +10,8 @@ namespace {
 constexpr double kGravityLength = 9.80665; // [m/s^2]
 constexpr double kWindow = 0.5;            // [s]
 constexpr double kTurned = 0.01;           // more is a movement [rad]
-constexpr std::size_t kFewest = 8;
-constexpr double kOpen = 2e-3; // of the normal equations' largest: what is less is not known
+constexpr std::size_t kAttitudes = 8;
+constexpr double kAlike = 2e-3; // of the normal equations' largest: what is less is not known
 
 struct Attitude {
   Eigen::Matrix3d camera_from_probe;
@@ -79,7 +79,7 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
             attitudeIn(within(poses, t, t + kWindow), within(samples, t, t + kWindow),
                        9 * model.accelerationVariance()))
       attitudes.push_back(*attitude);
-  if (attitudes.size() < kFewest) return std::nullopt;
+  if (attitudes.size() < kAttitudes) return std::nullopt;
 
   StillProbe fit;
   fit.attitudes = attitudes.size();
@@ -104,7 +104,7 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
       }
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal);
-    if (!(solver.eigenvalues()[0] > kOpen * solver.eigenvalues()[2])) return std::nullopt;
+    if (!(solver.eigenvalues()[0] > kAlike * solver.eigenvalues()[2])) return std::nullopt;
     fit.gravity = kGravityLength * normal.ldlt().solve(right).normalized();
     double change = 0;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -113,7 +113,7 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
         axes[k].add(-(a.camera_from_probe.transpose() * fit.gravity) / kGravityLength,
                     a.reading[k] / kGravityLength);
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> axis(axes[k].normal);
-      if (!(axis.eigenvalues()[0] > kOpen * axis.eigenvalues()[3])) return std::nullopt;
+      if (!(axis.eigenvalues()[0] > kAlike * axis.eigenvalues()[3])) return std::nullopt;
       const Eigen::Vector4d solved = axes[k].normal.ldlt().solve(axes[k].right);
       const Vec3 direction = solved.head<3>().normalized();
       change = std::max(change, (direction - fit.directions[k]).norm());

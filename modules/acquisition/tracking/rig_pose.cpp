@@ -164,12 +164,12 @@ double rmsOf(const std::vector<Sight>& sights, const Camera& camera, const Pose&
 }
 
 // The best of all guesses, and the best that is another pose: both with the markers that fit.
-struct Choice {
+struct PoseChoice {
   std::vector<Sight> sights;
   Fit best, other;
 };
 
-Choice choose(const std::vector<Sight>& sights, const Camera& camera) {
+PoseChoice choose(const std::vector<Sight>& sights, const Camera& camera) {
   std::vector<Pose> starts;
   for (const Sight& sight : sights)
     for (const Pose& pose : guesses(sight, camera)) starts.push_back(pose);
@@ -180,7 +180,7 @@ Choice choose(const std::vector<Sight>& sights, const Camera& camera) {
   };
   std::sort(starts.begin(), starts.end(),
             [&](const Pose& a, const Pose& b) { return miss(a) < miss(b); });
-  Choice choice;
+  PoseChoice choice;
   for (const Sight& sight : sights)
     if (missOf(sight, camera, starts[0]) < kFar * kFar) choice.sights.push_back(sight);
   choice.best.cost = choice.other.cost = INFINITY;
@@ -233,7 +233,7 @@ SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>
   SeenRig result;
   const std::vector<Sight> all = sightsOf(seen, rig);
   if (all.empty()) return result;
-  Choice choice = choose(all, camera);
+  PoseChoice choice = choose(all, camera);
   if (!std::isfinite(choice.best.cost)) {
     result.verdict = RigVerdict::misfit;
     return result;
