@@ -3,13 +3,13 @@
 
 PATINA_BUILD_PACKAGES="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libopenmesh-dev
  nlohmann-json3-dev libssl-dev libusb-1.0-0-dev libvtk9-qt-dev qtbase5-dev
-  libopenimageio-dev"
+  libopenimageio-dev libopencv-contrib-dev"
 # For a machine without a display.
 PATINA_HEADLESS_PACKAGES="xvfb xauth libgl1-mesa-dri"
 PATINA_TEST_PACKAGES="$PATINA_HEADLESS_PACKAGES libgtest-dev libgmock-dev libbenchmark-dev
   libxcb-xtest0-dev openbox clang-14 libclang-rt-14-dev python3"
 # Only for the comparison with other programs; the tests pass without them.
-PATINA_PEER_PACKAGES="libopenvdb-dev libembree-dev"
+PATINA_PEER_PACKAGES="libopenvdb-dev libembree-dev libapriltag-dev"
 
 say() { printf '\n== %s\n' "$*" >&2; }
 

@@ -2,6 +2,7 @@
 
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/studies/acquisition/filter_study.h"
+#include "app/studies/acquisition/tracking_study.h"
 #endif
 #include "app/studies/field/field_study.h"
 #include "app/studies/field/surfaces_study.h"
@@ -26,6 +27,8 @@ const std::vector<Study>& studies() {
       {"stability", "the closed loop against eigenvalues and closed forms; what quietens it",
        stabilityStudy},
 #ifdef PATINA_HAS_ACQUISITION
+      {"tracking", "poses of a marker rig from rendered frames; a tip by turning about it",
+       trackingStudy},
       {"filter", "paths of a probe from camera and accelerometers; heights; stiffness",
        filterStudy},
 #endif

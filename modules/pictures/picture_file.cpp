@@ -55,7 +55,7 @@ Picture readPicture(const std::filesystem::path& path) {
   return {rows.width, rows.height, rows.channels, std::move(rows.value)};
 }
 
-void writePicture(const std::filesystem::path& path, const Picture& picture) {
+void writePicture(const std::filesystem::path& path, const Picture& picture, int bits) {
   const std::string name = path.string();
   const std::string extension = extensionOf(path);
   if (extension != ".png" && extension != ".exr")
@@ -65,7 +65,7 @@ void writePicture(const std::filesystem::path& path, const Picture& picture) {
   const ImageLibrary& library = imageLibrary(name);
   std::string bytes;
   const std::string cause =
-      (extension == ".png" ? library.write_png : library.write_exr)(rows, bytes);
+      extension == ".png" ? library.write_png(rows, bits, bytes) : library.write_exr(rows, bytes);
   if (!cause.empty()) throw FileError(name, 0, "cannot be written: " + cause);
   writeFileAtomically(path, bytes);
 }

@@ -1,3 +1,4 @@
+#include "acquisition/files/frame_files.h"
 #include "acquisition/files/scan_files.h"
 
 #include <gtest/gtest.h>
@@ -128,12 +129,14 @@ TEST_F(ScanFiles, ARigReadsBackAndNeedsNoAccelerometers) {
   rig.probe.axes[2].direction = Vec3(0.6, 0.8, 0);
   rig.gravity = Vec3(1, 9, 2);
   rig.probe.force_noise = 0.5;
+  rig.force_zero = -0.25;
   const Rig back = readRig(written(rigText(rig)));
   EXPECT_TRUE(back.accelerometers);
   EXPECT_EQ(back.probe.tip, rig.probe.tip);
   EXPECT_TRUE(back.probe.axes[2].direction.isApprox(rig.probe.axes[2].direction, 1e-15));
   EXPECT_EQ(back.gravity, rig.gravity);
   EXPECT_EQ(back.probe.force_noise, 0.5);
+  EXPECT_EQ(back.force_zero, -0.25);
 
   const Rig bare = readRig(written("{\"tip\": [0, 0, -0.1], \"markers\": [{\"id\": 3}]}"));
   EXPECT_FALSE(bare.accelerometers);
@@ -147,6 +150,81 @@ TEST_F(ScanFiles, ARigReadsBackAndNeedsNoAccelerometers) {
             std::string::npos);
   EXPECT_NE(refusal(read, "{\"tip\": [0, 1, 2], \"force_noise\": -1}").find("force_noise"),
             std::string::npos);
+}
+
+TEST_F(ScanFiles, CamerasReadBackBitForBit) {
+  const Camera camera{640, 480, 600. / 7, 602, 322.1, 238, {-0.08, 0.03, 3e-4, -2e-4, 1. / 3}};
+  const Camera back = readCamera(written(cameraText(camera, "rms: 0.2\n")));
+  EXPECT_EQ(back.width, camera.width);
+  EXPECT_EQ(back.height, camera.height);
+  EXPECT_EQ(back.fx, camera.fx);
+  EXPECT_EQ(back.fy, camera.fy);
+  EXPECT_EQ(back.cx, camera.cx);
+  EXPECT_EQ(back.cy, camera.cy);
+  EXPECT_EQ(back.distortion, camera.distortion);
+}
+
+TEST_F(ScanFiles, CamerasAreReadAsOpenCvWritesThem) {
+  const Camera camera = readCamera(written(
+      "%YAML:1.0\n---\ncalibration_time: \"Wed 08 Dec\"\nimage_width: 640\nimage_height: 480\n"
+      "flags: 0\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+      "   data: [ 4.5e+02, 0., 3.1e+02, 0.,\n       4.6e+02, 2.7e+02, 0., 0., 1. ]\n"
+      "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n"
+      "   data: [ 1.2e-01, -1.0, 1e-04,\n       -4e-04,\n       2.9 ]\ninfo: \"none\"\n"));
+  EXPECT_EQ(camera.fx, 450);
+  EXPECT_EQ(camera.cy, 270);
+  EXPECT_EQ(camera.distortion[1], -1);
+  EXPECT_EQ(camera.distortion[4], 2.9);
+}
+
+TEST_F(ScanFiles, CamerasThatAreNoneAreRefusedWithALine) {
+  const auto read = [](const std::filesystem::path& path) { return readCamera(path); };
+  const std::string good = cameraText({640, 480, 600, 600, 320, 240, {}});
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(refusal(read, "nothing\n"), "file: 'image_width' is missing");
+  EXPECT_EQ(refusal(read, with("640", "6.5")),
+            "file:3: 'image_width' must be a whole number up to 16384");
+  EXPECT_EQ(refusal(read, with("600, 0, 320", "600, x, 320")),
+            "file:9: 'x' is not a finite number");
+  EXPECT_EQ(refusal(read, with("600, 0, 320", "-600, 0, 320")),
+            "file:9: 'camera_matrix' must be fx 0 cx 0 fy cy 0 0 1");
+  EXPECT_EQ(refusal(read, with("600, 0, 320, ", "600, ")), "file:9: 'camera_matrix' has 7 numbers");
+}
+
+TEST_F(ScanFiles, MarkersReadBack) {
+  RigMarker marker{"4x4_50", 3, 0.024, Pose::Identity()};
+  marker.probe_from_marker.linear() =
+      Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  marker.probe_from_marker.translation() = Vec3(0.01, -0.02, 0.03);
+  const auto back = readMarkers(written(rigText({}, {marker})));
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(back[0].family, marker.family);
+  EXPECT_EQ(back[0].id, marker.id);
+  EXPECT_EQ(back[0].size, marker.size);
+  EXPECT_TRUE(back[0].probe_from_marker.isApprox(marker.probe_from_marker, 1e-12));
+}
+
+TEST_F(ScanFiles, MarkersThatCannotBeAreRefused) {
+  const auto read = [](const std::filesystem::path& path) { return readMarkers(path); };
+  const std::string good = rigText({}, {{"4x4_50", 3, 0.024, Pose::Identity()}});
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(refusal(read, good), "taken");
+  EXPECT_EQ(readMarkers(written(with("4x4_50", "DICT_4X4_50")))[0].family, "4x4_50");
+  EXPECT_NE(refusal(read, "{\"markers\": []}"), "taken");
+  EXPECT_NE(refusal(read, "{\"tip\": [0, 0, 0]}"), "taken");
+  EXPECT_NE(refusal(read, with("0.024", "-0.024")), "taken");
+  EXPECT_NE(
+      refusal(read, rigText({}, {{"a", 3, 1, Pose::Identity()}, {"a", 3, 1, Pose::Identity()}})),
+      "taken");
+  RigMarker bent{"4x4_50", 3, 0.024, Pose::Identity()};
+  bent.probe_from_marker.linear()(0, 0) = 2;
+  EXPECT_NE(refusal(read, rigText({}, {bent})), "taken");
 }
 
 } // namespace

@@ -57,6 +57,7 @@ const std::vector<Library>& libraries() {
       {"nlohmann-json", {"nlohmann/"}, {{"modules/core/json.cpp", false}}},
       {"libusb", {"libusb"}, {{"modules/usb/", false}}},
       {"OpenImageIO", {"OpenImageIO/"}, {{"modules/pictures/", false}}},
+      {"OpenCV", {"opencv2/"}, {{"modules/acquisition/vision/", false}}},
       {"OpenSSL", {"openssl/"}, {{"modules/workspace/", false}}},
       {"pthread", {"pthread.h"}, {{"modules/haptics/", false}}},
       {"Qt", {"Q", "qt"}, {{"app/gui/", true}}},

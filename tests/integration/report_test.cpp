@@ -63,6 +63,9 @@ TEST_F(Reports, HaveNoKeyThatTheHelpOfTheirCommandLacks) {
   const std::string scan = folder / "scan";
   calls.push_back({"simulate-scan", box, "-o", scan, "--dropouts", "2"});
   calls.push_back({"filter", scan, "-o", folder / "path.csv"});
+  const std::string seen = folder / "seen";
+  calls.push_back({"simulate-scan", box, "-o", seen, "--frames", "--seconds", "1"});
+  calls.push_back({"track", seen, "-o", folder / "poses.tum"});
 #endif
   for (const std::vector<std::string>& call : calls) {
     const Json report = runJson(call);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "core/csv.h"
 #include "core/file.h"
 #include "integration/program.h"
@@ -176,6 +178,96 @@ TEST_F(Scans, OfNothingToScanAreRefused) {
   expectOneLineError(run({"simulate-scan", plate, "-o", scan}), {"--from"});
   EXPECT_FALSE(std::filesystem::exists(scan));
   expectOneLineError(run({"simulate-scan", ball, "-o", scan, "--from", "up"}), {"--from", "up"});
+}
+
+// The whole chain, by nothing but its files.
+TEST_F(Scans, RunFromFramesToPath) {
+  const Json made = simulate({"--frames", "--seconds", "4", "--dropouts", "1"});
+  EXPECT_EQ(made.find("poses"), nullptr);
+  const std::int64_t frames = made.at("frames").asInteger();
+  EXPECT_GT(frames, 100);
+  const std::string poses = scan + "/poses.tum";
+  const Json tracked = runJson({"track", scan, "-o", poses});
+  EXPECT_EQ(tracked.at("frames").asInteger(), frames);
+  // In the dropout of 0.3 s something is before the markers.
+  EXPECT_NEAR(tracked.at("frames_with_pose").asNumber(), static_cast<double>(frames) - 9, 3);
+  EXPECT_EQ(tracked.at("without_pose").asArray().size(),
+            static_cast<std::size_t>(frames - tracked.at("frames_with_pose").asInteger()));
+  EXPECT_EQ(tracked.at("unreadable").asInteger(), 0);
+  EXPECT_LT(tracked.at("reprojection_rms_px").asNumber(), 0.15);
+  EXPECT_NE(readFile(poses).find(" no pose: no marker of the rig"), std::string::npos);
+  const Json report = runJson({"filter", scan, "-o", path});
+  EXPECT_EQ(report.at("model").asString(), "fused");
+  EXPECT_EQ(report.at("gaps").asArray().size(), 1u);
+  EXPECT_LT(report.at("error").at("rms").asNumber(), 0.3e-3);
+
+  // Bad input: one line, nothing written.
+  const std::string other = folder / "other.tum";
+  const auto trackRefused = [&](const std::vector<std::string>& parts) {
+    expectOneLineError(run({"track", scan, "-o", other}), parts);
+    EXPECT_FALSE(std::filesystem::exists(other));
+  };
+  const std::string camera = readFile(scan + "/camera.yml"), rig = readFile(scan + "/rig.json");
+  writeFileAtomically(scan + "/camera.yml",
+                      std::string(camera).replace(camera.find("640"), 3, "320"));
+  trackRefused({"000000.png", "640 x 480", "320 x 480"});
+  writeFileAtomically(scan + "/camera.yml", "%YAML:1.0\n");
+  trackRefused({"camera.yml", "image_width"});
+  writeFileAtomically(scan + "/camera.yml", camera);
+  writeFileAtomically(scan + "/rig.json", "{\"markers\": []}");
+  trackRefused({"rig.json", "no marker"});
+  std::string unknown = rig;
+  while (unknown.find("4x4_50") != std::string::npos)
+    unknown.replace(unknown.find("4x4_50"), 6, "4x4_51");
+  writeFileAtomically(scan + "/rig.json", unknown);
+  trackRefused({"rig.json", "4x4_51", "4x4_50"});
+  std::filesystem::remove(scan + "/frames.csv");
+  writeFileAtomically(scan + "/rig.json", rig);
+  trackRefused({"frames.csv", "--rate"});
+  // Another rig's markers: no pose, which is no mistake of the words, and nothing is written.
+  std::string others = rig;
+  for (std::size_t at = 0; (at = others.find("\"id\": ", at)) != std::string::npos; at += 6)
+    others.insert(at + 6, "4");
+  writeFileAtomically(scan + "/rig.json", others);
+  EXPECT_EQ(run({"track", scan, "--rate", "30", "-o", other}).exit, 1);
+  EXPECT_FALSE(std::filesystem::exists(other));
+}
+
+TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
+  // A probe that leans to all sides about a tip 120 mm below its markers.
+  std::string text;
+  for (int i = 0; i < 40; ++i) {
+    const double around = 0.8 * i, leaning = 0.1 + 0.015 * i;
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(around, Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(leaning, Eigen::Vector3d::UnitX()));
+    const Eigen::Vector3d at =
+        Eigen::Vector3d(0.1, 0, 0.5) - turn * Eigen::Vector3d(0, 0.01, -0.12);
+    text += std::to_string(i);
+    for (const double value : {at.x(), at.y(), at.z(), turn.x(), turn.y(), turn.z(), turn.w()})
+      text += " " + std::to_string(value);
+    text += "\n";
+  }
+  const std::string poses = folder / "turning.tum", rig = folder / "tip.json";
+  writeFileAtomically(poses, text);
+  const Json report = runJson({"calibrate", poses, "-o", rig});
+  const Json& parameters = report.at("parameters");
+  EXPECT_NEAR(parameters.at("y").at("value").asNumber(), 0.01, 1e-5);
+  EXPECT_NEAR(parameters.at("z").at("value").asNumber(), -0.12, 1e-5);
+  EXPECT_LT(parameters.at("z").at("deviation").asNumber(), 1e-4);
+  EXPECT_NEAR(parseJson(readFile(rig), rig).at("tip").asArray()[2].asNumber(), -0.12, 1e-5);
+  std::filesystem::remove(rig);
+  writeFileAtomically(poses, text.substr(0, text.find("\n5 ") + 1));
+  expectOneLineError(run({"calibrate", poses, "-o", rig}), {"turning.tum", "tip"});
+  EXPECT_FALSE(std::filesystem::exists(rig));
+  const std::string camera = folder / "camera.yml";
+  expectOneLineError(
+      run({"calibrate", folder / "none", "--board", "chessboard:9x6:25mm", "-o", camera}),
+      {"none"});
+  expectOneLineError(run({"calibrate", folder / "none", "--board", "chess", "-o", camera}),
+                     {"--board", "chessboard:COLUMNSxROWS"});
+  (void)simulate({"--seconds", "3"}); // upright and moving
+  expectOneLineError(run({"calibrate", scan, "--still", "-o", rig}), {"scan", "held still"});
+  EXPECT_FALSE(std::filesystem::exists(rig));
 }
 
 } // namespace

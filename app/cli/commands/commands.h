@@ -19,6 +19,8 @@ Command renderCommand();
 Command exportCommand();
 #ifdef PATINA_HAS_ACQUISITION
 Command simulateScanCommand();
+Command calibrateCommand();
+Command trackCommand();
 Command filterCommand();
 #endif
 Command studyCommand();
@@ -30,13 +32,13 @@ Command manCommand();
 
 // In the order in which --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),         sceneCommand(),    fieldCommand(),   sampleCommand(),
-          feelCommand(),         simulateCommand(), paintCommand(),   undoCommand(),
-          redoCommand(),         embossCommand(),   renderCommand(),  exportCommand(),
+  return {infoCommand(),         sceneCommand(),     fieldCommand(),   sampleCommand(),
+          feelCommand(),         simulateCommand(),  paintCommand(),   undoCommand(),
+          redoCommand(),         embossCommand(),    renderCommand(),  exportCommand(),
 #ifdef PATINA_HAS_ACQUISITION
-          simulateScanCommand(), filterCommand(),
+          simulateScanCommand(), calibrateCommand(), trackCommand(),   filterCommand(),
 #endif
-          studyCommand(),        modelCommand(),    devicesCommand(), latencyTestCommand(),
+          studyCommand(),        modelCommand(),     devicesCommand(), latencyTestCommand(),
           guiCommand(),          manCommand()};
 }
 

@@ -114,6 +114,7 @@ Inputs read(const FilterOptions& options, Console& console) {
     console.warn(options.input.string() +
                  ": no rig.json beside it and no --rig: the path is that of the poses' origin, "
                  "not of a tip");
+  for (ProbeSample& sample : in.samples.values) sample.force -= in.rig.force_zero;
   return in;
 }
 

@@ -1,7 +1,10 @@
+#include "acquisition/files/frame_files.h"
 #include "acquisition/files/scan_files.h"
 #include "acquisition/simulation/mesh_strokes.h"
+#include "acquisition/simulation/simulated_frames.h"
 #include "acquisition/simulation/simulated_streams.h"
 #include "acquisition/simulation/simulated_surface.h"
+#include "acquisition/tracking/marker_code.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/mesh_output.h"
 #include "app/cli/output/reports.h"
@@ -24,17 +27,25 @@ struct ScanOptions {
   int dropouts = 0;
   SimulatedCamera camera;
   SimulatedProbe probe;
+  bool frames = false;
+  std::filesystem::path lens; // camera.yml
+  FrameLook look;
+  std::string family = "4x4_50";
 };
 
 const Keys kSimulateScanKeys = {{"poses", "", "poses"},
+                                {"frames", "", "frames", "in place of poses"},
                                 {"samples", "", "samples", "of the probe"},
                                 {"seconds", "s", "lasts"},
                                 {"touching", "", "touching", "the part of its time", Shown::never},
                                 {"files", "", "files", "in the folder"}};
 
-// It looks at the middle from above and from the side, 0.4 m away.
-Pose cameraOver(const Box3& box) {
-  const Vec3 middle = box.center(), eye = middle + 0.4 * Vec3(0, -0.5, 0.8).normalized();
+constexpr double kCube = 0.036; // [m]
+
+// It looks at a point over the middle from above and from the side, 0.4 m away.
+Pose cameraOver(const Box3& box, double over) {
+  const Vec3 middle = box.center() + over * Vec3::UnitZ(),
+             eye = middle + 0.4 * Vec3(0, -0.5, 0.8).normalized();
   Eigen::Matrix3d axes; // of the camera: x right, y down, z forward
   axes.col(2) = (middle - eye).normalized();
   axes.col(0) = axes.col(2).cross(Vec3::UnitZ()).normalized();
@@ -86,6 +97,40 @@ std::string truthText(const ScanOptions& options, const Pose& camera_from_mesh) 
   return json.dump() + "\n";
 }
 
+// Wide enough for a hand's breadth at 0.4 m.
+Camera usualCamera() {
+  return {640, 480, 600, 600, 321.5, 238.5, {-0.08, 0.03, 3e-4, -2e-4, 0}};
+}
+
+// frames/, frames.csv and camera.yml; how many frames there are.
+std::size_t writeFrames(const ScanOptions& options, const Camera& camera, const SimulatedHand& hand,
+                        const ProbeModel& probe, const std::vector<RigMarker>& cube,
+                        const MarkerFamily& family, Progress& progress) {
+  std::vector<PrintedMarker> printed;
+  for (const RigMarker& marker : cube)
+    printed.push_back({marker, family.side, family.code[static_cast<std::size_t>(marker.id)]});
+  const FrameRenderer renderer(camera, printed);
+  FrameCourse course;
+  course.camera_from_world = options.camera.camera_from_world;
+  course.covered = options.camera.gaps;
+  course.look = options.look;
+  course.seed = options.seed;
+  CsvTable times{{"frame", "t [s]"}, {}};
+  const int count = frameCount(hand, course);
+  requireFolder(options.output / "frames");
+  for (int i = 0; i < count; ++i) {
+    progress.throwIfCancelled();
+    progress.report(0.1 + 0.8 * i / count, "frames");
+    char name[32];
+    std::snprintf(name, sizeof name, "frames/%06d.png", i);
+    writeGrey(options.output / name, frameAt(renderer, hand, probe, course, i));
+    times.rows.push_back({static_cast<double>(i), i / course.rate});
+  }
+  writeCsv(options.output / "frames.csv", times);
+  writeFileAtomically(options.output / "camera.yml", cameraText(camera));
+  return static_cast<std::size_t>(count);
+}
+
 int runSimulateScan(ScanOptions options, Console& console) {
   const std::filesystem::path& folder = options.output;
   if (std::filesystem::is_directory(folder)) requireWritable(folder / "mesh.obj", {options.mesh});
@@ -95,14 +140,21 @@ int runSimulateScan(ScanOptions options, Console& console) {
   const Pose hand_from_mesh(Eigen::Quaterniond::FromTwoVectors(options.from, Vec3::UnitZ()));
   const TriangleMesh turned = transformed(mesh, Eigen::Affine3d(hand_from_mesh.matrix()));
   const SimulatedHand hand = handOver(turned, options);
-  const Pose camera_from_hand = cameraOver(bounds(turned));
+  Rig rig;
+  const double over = options.frames ? bounds(turned).sizes().z() / 2 - rig.probe.tip.z()
+                                     : 0; // there are the markers
+  const Pose camera_from_hand = cameraOver(bounds(turned), over);
   options.camera.camera_from_world = camera_from_hand;
   options.camera.gaps = dropouts(options.dropouts, hand.seconds());
-  Rig rig;
+  Camera camera = usualCamera();
+  if (!options.lens.empty()) camera = readCamera(options.lens);
+  const MarkerFamily* family = options.frames ? &markerFamily(options.family) : nullptr;
+  const std::vector<RigMarker> cube =
+      family ? markerCube(options.family, family->side, kCube) : std::vector<RigMarker>();
   rig.gravity = camera_from_hand.linear() * kGravity;
   console.progress().report(0.1, "poses");
-  const std::vector<CameraPose> poses =
-      simulateCamera(hand, rig.probe, options.camera, options.seed);
+  std::vector<CameraPose> poses;
+  if (!options.frames) poses = simulateCamera(hand, rig.probe, options.camera, options.seed);
   console.progress().throwIfCancelled();
   console.progress().report(0.2, "probe");
   const std::vector<ProbeSample> samples =
@@ -118,9 +170,17 @@ int runSimulateScan(ScanOptions options, Console& console) {
   requireFolder(folder);
   writeMeshIn(folder / "mesh.obj", mesh,
               options.unit == MeshUnit::fit ? MeshUnit::mm : options.unit);
-  writePoses(folder / "poses.tum", poses);
+  std::vector<std::string> files = {"mesh.obj", "probe.csv", "rig.json", "truth.csv", "truth.json"};
+  std::size_t frames = 0;
+  if (options.frames) {
+    frames = writeFrames(options, camera, hand, rig.probe, cube, *family, console.progress());
+    files.insert(files.end(), {"frames", "frames.csv", "camera.yml"});
+  } else {
+    writePoses(folder / "poses.tum", poses);
+    files.emplace_back("poses.tum");
+  }
   writeProbeStream(folder / "probe.csv", samples);
-  writeFileAtomically(folder / "rig.json", rigText(rig));
+  writeFileAtomically(folder / "rig.json", rigText(rig, cube));
   writePath(folder / "truth.csv", truth);
   writeFileAtomically(folder / "truth.json", truthText(options, camera_from_hand * hand_from_mesh));
 
@@ -128,12 +188,15 @@ int runSimulateScan(ScanOptions options, Console& console) {
   for (const PathSample& sample : truth) touching += sample.touching;
   touching /= static_cast<double>(truth.size());
   Report report(kSimulateScanKeys);
-  report.set("poses", poses.size()).set("samples", samples.size());
+  if (options.frames)
+    report.set("frames", frames);
+  else
+    report.set("poses", poses.size());
+  report.set("samples", samples.size());
   report.set("seconds", hand.seconds(),
              rounded(hand.seconds()) + " s, touching for " + rounded(100 * touching) + " % of it");
   report.set("touching", touching);
-  report.set("files",
-             jsonOf({"mesh.obj", "poses.tum", "probe.csv", "rig.json", "truth.csv", "truth.json"}));
+  report.set("files", jsonOf(files));
   console.report(report);
   return kDone;
 }
@@ -147,14 +210,18 @@ Command simulateScanCommand() {
   };
   return {
       .name = "simulate-scan",
-      .summary = "a scan of a mesh with known truth: poses, the probe's stream",
+      .summary = "a scan of a mesh with known truth: poses or frames, the probe's stream",
       .description =
           "A hand scans what of the mesh is seen along an axis and no steeper than 45 degrees: "
           "strokes, presses, pauses, ways back and lift-offs. FOLDER becomes a scan folder with "
           "the poses that a camera would find, the probe's stream, its rig and the truth. The "
-          "same words give the same scan.",
+          "same words give the same scan.\n"
+          "With --frames the camera's frames of a cube of markers on the probe take the place of "
+          "its poses, which patina track then finds: through a lens, blurred, noisy, unevenly lit; "
+          "in dropouts something is before the markers.",
       .examples = {"patina simulate-scan dinosaur.ply -o scan --from -y",
-                   "patina simulate-scan sphere.ply -o scan --dropouts 4 --outliers 0.03"},
+                   "patina simulate-scan sphere.ply -o scan --dropouts 4 --outliers 0.03",
+                   "patina simulate-scan sphere.ply -o scan --frames --seconds 5"},
       .keys = kSimulateScanKeys,
       .arguments =
           {input("MESH", "Mesh (.obj .ply .stl).", into(options->mesh)),
@@ -173,6 +240,15 @@ Command simulateScanCommand() {
                 NumberKind::whole)},
            {"--outliers", "PART", "", "0", "Of the poses, wrong by centimetres; up to 0.5.",
             inRange(0, 0.5, [options](double part) { options->camera.outliers = part; })},
+           {"--frames", "", "", "", "Frames of a camera in place of its poses.",
+            into(options->frames)},
+           {"--camera", "CAMERA.yml", "", "640 x 480", "That takes them.", into(options->lens)},
+           {"--markers", "FAMILY", "", "4x4_50", "Of the markers: apriltag_36h11, 6x6_250 ...",
+            [options](const std::string& word) { options->family = word; }},
+           {"--blur", "PX", "px", "0.6", "Of lens and focus, a Gaussian's deviation.",
+            inRange(0, 20, [options](double px) { options->look.blur = px; })},
+           {"--noise", "LEVELS", "", "2", "Of a pixel, of 256 levels.",
+            inRange(0, 100, [options](double levels) { options->look.noise = levels; })},
            {"--clock-offset", "T", "s", "0", "By how much the probe's clock is ahead.",
             inRange(-0.5, 0.5, [options](double t) { options->probe.clock_offset = t; })},
            {"--clock-skew", "PART", "", "0", "By how much it runs faster.",

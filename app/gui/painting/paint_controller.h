@@ -11,7 +11,7 @@
 #include "app/gui/painting/brush_presets.h"
 #include "app/gui/painting/stroke_tracker.h"
 #include "app/gui/panels/tool_panel.h"
-#include "app/gui/window/scene_widget.h"
+#include "app/gui/widgets/scene_widget.h"
 #include "app/gui/window/tool_bar.h"
 #include "haptics/servo/tip_servo.h"
 #include "session/edit/edit_thread.h"

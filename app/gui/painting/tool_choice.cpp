@@ -7,7 +7,7 @@
 #include <QPainter>
 #include <QPainterPath>
 
-#include "app/gui/window/drawn_icon.h"
+#include "app/gui/widgets/drawn_icon.h"
 #include "app/gui/window/theme.h"
 
 namespace patina {

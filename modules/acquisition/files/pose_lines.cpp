@@ -20,6 +20,13 @@ double finiteIn(const std::string& word, const std::string& name, std::size_t li
   return *value;
 }
 
+std::string lineOf(const CameraPose& pose) {
+  std::string text = formatNumber(pose.t);
+  for (const double value : pose.position) text += " " + formatNumber(value);
+  for (const double value : pose.orientation.coeffs()) text += " " + formatNumber(value);
+  return text;
+}
+
 } // namespace
 
 OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid) {
@@ -62,12 +69,24 @@ OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas
 
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses) {
   std::string text = "# t [s] tx ty tz [m] qx qy qz qw\n";
+  for (const CameraPose& pose : poses) text += lineOf(pose) + "\n";
+  writeFileAtomically(path, text);
+}
+
+void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
+                const std::vector<NoPose>& without) {
+  std::string text = "# t [s] tx ty tz [m] qx qy qz qw sigma [m] sigma_angle [rad]\n";
+  auto gap = without.begin();
+  const auto tellGapsBefore = [&](double t) {
+    for (; gap != without.end() && gap->t < t; ++gap)
+      text += "# " + formatNumber(gap->t) + " no pose: " + gap->why + "\n";
+  };
   for (const CameraPose& pose : poses) {
-    text += formatNumber(pose.t);
-    for (const double value : pose.position) text += " " + formatNumber(value);
-    for (const double value : pose.orientation.coeffs()) text += " " + formatNumber(value);
-    text += "\n";
+    tellGapsBefore(pose.t);
+    text += lineOf(pose) + " " + formatNumber(pose.sigma_position) + " " +
+            formatNumber(pose.sigma_angle) + "\n";
   }
+  tellGapsBefore(INFINITY);
   writeFileAtomically(path, text);
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "acquisition/files/scan_files.h"
@@ -47,6 +48,8 @@ Rig rigIn(const Json& json) {
   setNumber(json, "acceleration_noise", rig.probe.acceleration_noise);
   setNumber(json, "force_step", rig.probe.force_step);
   setNumber(json, "force_noise", rig.probe.force_noise);
+  if (const Json* zero = json.find("force_zero")) rig.force_zero = zero->asNumber();
+  if (!std::isfinite(rig.force_zero)) throw Error("'force_zero' is not finite");
   const Json* axes = json.find("accelerometers");
   if (!axes) return rig;
   for (std::size_t i = 0; i < rig.probe.axes.size(); ++i)
@@ -58,12 +61,59 @@ Rig rigIn(const Json& json) {
   return rig;
 }
 
-} // namespace
+// Numbers of a rigid motion are mended where they are rounded, refused where they are another
+// thing.
+Pose poseIn(const Json& json) {
+  Eigen::Matrix4d m;
+  const Json::Array& rows = json.asArray();
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (rows.size() != 4 || rows[i].asArray().size() != 4)
+        throw Error("'probe_from_marker' must be 4 x 4");
+      m(static_cast<int>(i), static_cast<int>(j)) = rows[i].asArray()[j].asNumber();
+    }
+  const Eigen::Matrix3d turn = m.topLeftCorner<3, 3>();
+  const bool rigid = m.allFinite() && m.row(3) == Eigen::RowVector4d(0, 0, 0, 1) &&
+                     (turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm() < 0.01 &&
+                     turn.determinant() > 0;
+  if (!rigid) throw Error("'probe_from_marker' is no rigid motion");
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
+  pose.translation() = m.topRightCorner<3, 1>();
+  return pose;
+}
 
-Rig readRig(const std::filesystem::path& path) {
+RigMarker markerIn(const Json& json) {
+  RigMarker marker;
+  for (const char c : json.at("dictionary").asString())
+    marker.family += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (marker.family.starts_with("dict_")) marker.family = marker.family.substr(5); // OpenCV's name
+  const std::int64_t id = json.at("id").asInteger();
+  if (id < 0 || id > 100000) throw Error("an 'id' must be 0 or more");
+  marker.id = static_cast<int>(id);
+  marker.size = json.at("size").asNumber();
+  if (!(marker.size > 0 && marker.size < 100)) throw Error("a 'size' must be above 0 [m]");
+  marker.probe_from_marker = poseIn(json.at("probe_from_marker"));
+  return marker;
+}
+
+std::vector<RigMarker> markersIn(const Json& json) {
+  std::vector<RigMarker> markers;
+  for (const Json& each : json.at("markers").asArray()) {
+    const RigMarker marker = markerIn(each);
+    for (const RigMarker& other : markers)
+      if (other.id == marker.id && other.family == marker.family)
+        throw Error("marker " + std::to_string(marker.id) + " is there twice");
+    markers.push_back(marker);
+  }
+  if (markers.empty()) throw Error("there is no marker in it");
+  return markers;
+}
+
+template <class Read> auto readJson(const std::filesystem::path& path, const Read& read) {
   const Json json = parseJson(readFile(path), path.string());
   try {
-    return rigIn(json);
+    return read(json);
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
@@ -71,7 +121,26 @@ Rig readRig(const std::filesystem::path& path) {
   }
 }
 
-std::string rigText(const Rig& rig) {
+Json jsonOf(const RigMarker& marker) {
+  Json rows = Json::array();
+  const Eigen::Matrix4d m = marker.probe_from_marker.matrix();
+  for (int i = 0; i < 4; ++i) rows.push(Json(Json::Array{m(i, 0), m(i, 1), m(i, 2), m(i, 3)}));
+  Json json = Json::object();
+  json.set("dictionary", marker.family).set("id", marker.id).set("size", marker.size);
+  return json.set("probe_from_marker", rows);
+}
+
+} // namespace
+
+Rig readRig(const std::filesystem::path& path) {
+  return readJson(path, rigIn);
+}
+
+std::vector<RigMarker> readMarkers(const std::filesystem::path& path) {
+  return readJson(path, markersIn);
+}
+
+std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers) {
   Json json = Json::object(), axes = Json::object();
   json.set("tip", jsonOf(rig.probe.tip));
   for (std::size_t i = 0; i < rig.probe.axes.size(); ++i) {
@@ -80,9 +149,13 @@ std::string rigText(const Rig& rig) {
     axes.set(kAxes[i], axis.set("direction", jsonOf(rig.probe.axes[i].direction)));
   }
   json.set("accelerometers", axes).set("gravity", jsonOf(rig.gravity));
+  if (rig.force_zero != 0) json.set("force_zero", rig.force_zero);
   json.set("acceleration_step", rig.probe.acceleration_step);
   json.set("acceleration_noise", rig.probe.acceleration_noise);
   json.set("force_step", rig.probe.force_step).set("force_noise", rig.probe.force_noise);
+  Json list = Json::array();
+  for (const RigMarker& marker : markers) list.push(jsonOf(marker));
+  if (!markers.empty()) json.set("markers", list);
   return json.dump() + "\n";
 }
 

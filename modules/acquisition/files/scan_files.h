@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/camera.h"
 #include "acquisition/profile/scan_heights.h"
 #include "acquisition/scan_samples.h"
 
@@ -29,6 +30,13 @@ struct PoseSigmas {
 // numbers are deviations of the position [m] and the angle [rad].
 OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid = {});
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses);
+// With their deviations, and a comment for each time without a pose that says why.
+struct NoPose {
+  double t = 0;
+  std::string why;
+};
+void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
+                const std::vector<NoPose>& without);
 
 // CSV. `touching` and `gap` of a path are not in it.
 OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path);
@@ -43,8 +51,12 @@ struct Rig {
   // Where the accelerometers sit is known; if it is not, only force is read of the probe.
   bool accelerometers = false;
   Vec3 gravity = Vec3(0, 0, -9.80665); // in the camera's frame [m/s^2]
+  double force_zero = 0;               // what the force shows while nothing is pressed [N]
 };
 Rig readRig(const std::filesystem::path& path);
-std::string rigText(const Rig& rig);
+std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers = {});
+// The markers of rig.json: each with `dictionary`, `id`, `size` [m] and `probe_from_marker`, 4 x 4;
+// one at least, none twice.
+std::vector<RigMarker> readMarkers(const std::filesystem::path& path);
 
 } // namespace patina

@@ -147,17 +147,26 @@ std::string writeExr(const ImageRows& rows, std::string& bytes) {
   });
 }
 
-std::string writePng(const ImageRows& rows, std::string& bytes) {
+template <typename Whole>
+std::string writePngOf(const ImageRows& rows, const OIIO::TypeDesc& type, std::string& bytes) {
+  OIIO::ImageSpec spec = specOf(rows, type);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  // Frames are grey noise, of which packing takes more time than it saves room.
+  if (sizeof(Whole) == 1) spec.attribute("png:compressionLevel", 1);
+  constexpr double kMost = std::numeric_limits<Whole>::max();
+  std::vector<Whole> data;
+  data.reserve(rows.value.size());
+  for (const float v : rows.value) {
+    const double whole = std::round(static_cast<double>(v) * kMost);
+    data.push_back(static_cast<Whole>(whole > 0 ? std::min(whole, kMost) : 0));
+  }
+  return write("png", spec, data.data(), bytes);
+}
+
+std::string writePng(const ImageRows& rows, int bits, std::string& bytes) {
   return guarded([&] {
-    OIIO::ImageSpec spec = specOf(rows, OIIO::TypeUInt16);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    std::vector<std::uint16_t> data;
-    data.reserve(rows.value.size());
-    for (const float v : rows.value) {
-      const double whole = std::round(static_cast<double>(v) * 65535);
-      data.push_back(static_cast<std::uint16_t>(whole > 0 ? std::min(whole, 65535.0) : 0));
-    }
-    return write("png", spec, data.data(), bytes);
+    return bits == 8 ? writePngOf<std::uint8_t>(rows, OIIO::TypeUInt8, bytes)
+                     : writePngOf<std::uint16_t>(rows, OIIO::TypeUInt16, bytes);
   });
 }
 

@@ -30,7 +30,8 @@ struct ImageLibrary {
   std::string (*read_file)(const std::string& path, const ImageLimits&, ImageRows& out);
   std::string (*read_exr)(std::string_view bytes, const ImageLimits&, ImageRows& out);
   std::string (*write_exr)(const ImageRows&, std::string& bytes);
-  std::string (*write_png)(const ImageRows&, std::string& bytes); // 16 bits; values in [0, 1]
+  // 8 or 16 bits; values in [0, 1].
+  std::string (*write_png)(const ImageRows&, int bits, std::string& bytes);
 };
 
 // The one symbol that is looked up.

@@ -1,4 +1,4 @@
-#include "app/gui/window/folding_tabs.h"
+#include "app/gui/widgets/folding_tabs.h"
 
 #include "app/gui/window/theme.h"
 

@@ -1,4 +1,4 @@
-#include "app/gui/window/status_line.h"
+#include "app/gui/widgets/status_line.h"
 
 #include "app/gui/window/theme.h"
 #include "core/numbers.h"

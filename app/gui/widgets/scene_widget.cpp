@@ -1,4 +1,4 @@
-#include "app/gui/window/scene_widget.h"
+#include "app/gui/widgets/scene_widget.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "app/gui/window/drawn_icon.h"
+#include "app/gui/widgets/drawn_icon.h"
 
 #include <QPainterPath>
 #include <QPixmap>

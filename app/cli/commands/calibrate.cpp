@@ -1,0 +1,234 @@
+#include "acquisition/calibration/board.h"
+#include "acquisition/calibration/pivot.h"
+#include "acquisition/calibration/still_probe.h"
+#include "acquisition/files/frame_files.h"
+#include "acquisition/files/scan_files.h"
+#include "acquisition/vision_library.h"
+#include "app/cli/commands/commands.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/numbers.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct CalibrateOptions {
+  std::filesystem::path input, rig, output;
+  std::optional<Board> board;
+  std::string board_text;
+  bool still = false;
+};
+
+const Keys kParameterParts = {{"value", "", ""}, {"deviation", "", ""}};
+const Keys kCalibrateKeys = {
+    {"rms_px", "px", "corners miss by", "rms of an image's two axes together"},
+    {"rms", "m", "tip misses by", "rms of its distance from where it stood"},
+    {"rms_acceleration", "m/s^2", "readings miss by", "rms of an axis, of the probe held still"},
+    {"views", "", "used", "views, poses, or half seconds held still"},
+    {"rejected", "", "rejected", "views without the board, or poses that contradict the others"},
+    {"parameters", "", "parameters",
+     "by name: fx fy cx cy k1 k2 p1 p2 k3 of a camera; x y z of a tip [m]; "
+     "of a probe held still a1u a1v a2u a2v, the biases [m/s^2] with the deviations of the axes "
+     "[rad], and force_zero [N]",
+     Shown::never, kParameterParts}};
+
+constexpr const char* kCameraNames[] = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
+
+void tellParameter(Json& parameters, Report& report, const std::string& name, double value,
+                   double deviation, double shown_in, const std::string& unit) {
+  Json json = Json::object();
+  parameters.set(name, json.set("value", value).set("deviation", deviation));
+  const auto text = [&](double number) {
+    char digits[40];
+    std::snprintf(digits, sizeof digits, "%.6g", number * shown_in);
+    return std::string(digits);
+  };
+  report.tell(name, text(value) + " +- " + text(deviation) + unit);
+}
+
+int calibrateCamera(const CalibrateOptions& options, Console& console) {
+  const std::vector<Frame> frames = framesOf(options.input, 1);
+  std::vector<BoardView> views;
+  std::vector<std::string> names, rejected;
+  CameraFit fit;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    console.progress().throwIfCancelled();
+    console.progress().report(0.8 * static_cast<double>(i) / static_cast<double>(frames.size()),
+                              "views");
+    const std::string name = frames[i].file.string();
+    const GreyFrame image = readGrey(frames[i].file);
+    if (i == 0) {
+      fit.camera.width = image.width;
+      fit.camera.height = image.height;
+    } else if (image.width != fit.camera.width || image.height != fit.camera.height) {
+      throw FileError(name, 0, "is of another size than the views before it");
+    }
+    const auto view = [&] {
+      try {
+        return findBoard(image, *options.board);
+      } catch (const FileError&) {
+        throw;
+      } catch (const Error& error) {
+        throw FileError(name, 0, error.what());
+      }
+    }();
+    if (view)
+      views.push_back(*view);
+    else
+      rejected.push_back(name);
+  }
+  if (views.size() < 3)
+    throw FileError(options.input.string(), 0,
+                    "the board " + options.board_text + " is seen in " +
+                        std::to_string(views.size()) + " of " + std::to_string(frames.size()) +
+                        " views; three at least are needed");
+  console.progress().report(0.8, "camera");
+  if (const std::string cause = visionLibrary().calibrate(views, fit); !cause.empty())
+    throw FileError(options.input.string(), 0, cause);
+  Report report(kCalibrateKeys);
+  report.set("rms_px", fit.rms, rounded(fit.rms) + " px");
+  report.set("views", views.size()).set("rejected", rejected.size());
+  const Camera& c = fit.camera;
+  const double values[] = {c.fx,
+                           c.fy,
+                           c.cx,
+                           c.cy,
+                           c.distortion[0],
+                           c.distortion[1],
+                           c.distortion[2],
+                           c.distortion[3],
+                           c.distortion[4]};
+  Json parameters = Json::object();
+  std::string lines = "avg_reprojection_error: " + formatNumber(fit.rms) + "\nboard: \"" +
+                      options.board_text + "\"\ndeviations: !!opencv-matrix\n   rows: 1\n" +
+                      "   cols: 9\n   dt: d\n   data: [ ";
+  for (std::size_t i = 0; i < 9; ++i) {
+    tellParameter(parameters, report, kCameraNames[i], values[i], fit.deviation[i], 1,
+                  i < 4 ? " px" : "");
+    lines += (i ? ", " : "") + formatNumber(fit.deviation[i]);
+  }
+  report.set("parameters", parameters);
+  writeFileAtomically(options.output, cameraText(fit.camera, lines + " ]\n"));
+  if (!rejected.empty())
+    console.warn(
+        rejected[0] + ": the board is not seen" +
+        (rejected.size() > 1 ? ", nor in " + formatCount(rejected.size() - 1) + " others" : ""));
+  console.report(report);
+  return kDone;
+}
+
+int calibrateTip(const CalibrateOptions& options, Console& console) {
+  const OnFile<CameraPose> poses = readPoses(options.input);
+  Json rig = Json::object();
+  if (!options.rig.empty()) rig = parseJson(readFile(options.rig), options.rig.string());
+  if (!rig.isObject()) throw FileError(options.rig.string(), 0, "is no object");
+  const auto fit = fitPivot(poses.values);
+  if (!fit)
+    throw FileError(
+        options.input.string(), 0,
+        "the poses do not tell the tip: ten at least, turned to all sides about a point "
+        "that stands still");
+  Report report(kCalibrateKeys);
+  report.set("rms", fit->rms).set("views", poses.values.size() - fit->rejected);
+  report.set("rejected", fit->rejected);
+  Json parameters = Json::object();
+  for (int i = 0; i < 3; ++i)
+    tellParameter(parameters, report, std::string(1, static_cast<char>('x' + i)), fit->tip[i],
+                  std::sqrt(fit->covariance(i, i)), 1e3, " mm");
+  report.set("parameters", parameters);
+  rig.set("tip", Json(Json::Array{fit->tip.x(), fit->tip.y(), fit->tip.z()}));
+  writeFileAtomically(options.output, rig.dump() + "\n");
+  console.report(report);
+  return kDone;
+}
+
+Json vectorJson(const Vec3& v) {
+  return Json(Json::Array{v.x(), v.y(), v.z()});
+}
+
+int calibrateStill(const CalibrateOptions& options, Console& console) {
+  const OnFile<CameraPose> poses = readPoses(options.input / "poses.tum");
+  const OnFile<ProbeSample> samples = readProbeStream(options.input / "probe.csv");
+  Json json = Json::object();
+  Rig rig;
+  if (!options.rig.empty()) {
+    rig = readRig(options.rig);
+    json = parseJson(readFile(options.rig), options.rig.string());
+  }
+  const auto fit = fitStillProbe(poses.values, samples.values, rig.probe);
+  if (!fit)
+    throw FileError(
+        options.input.string(), 0,
+        "there are too few attitudes in which the probe was held still, or they are too "
+        "alike: half a second each, in the air, eight at least, leaning to all sides");
+  constexpr const char* kAxes[] = {"a1u", "a1v", "a2u", "a2v"};
+  Report report(kCalibrateKeys);
+  report.set("rms_acceleration", fit->rms).set("views", fit->attitudes);
+  Json axes = Json::object(), parameters = Json::object();
+  for (std::size_t k = 0; k < 4; ++k) {
+    tellParameter(parameters, report, kAxes[k], fit->bias[k], fit->deviation[k], 1, "");
+    Json axis = Json::object();
+    axis.set("position", vectorJson(rig.probe.axes[k].position));
+    axes.set(kAxes[k], axis.set("direction", vectorJson(fit->directions[k])));
+  }
+  tellParameter(parameters, report, "force_zero", fit->force_zero,
+                std::sqrt(rig.probe.forceVariance()), 1, " N");
+  report.set("parameters", parameters);
+  if (!json.find("tip")) json.set("tip", vectorJson(rig.probe.tip));
+  json.set("accelerometers", axes).set("gravity", vectorJson(fit->gravity));
+  json.set("force_zero", fit->force_zero);
+  writeFileAtomically(options.output, json.dump() + "\n");
+  console.report(report);
+  return kDone;
+}
+
+int runCalibrate(const CalibrateOptions& options, Console& console) {
+  requireWritable(options.output, {options.input});
+  if (options.board && options.still) throw Error("--still: not with --board");
+  if (options.board) return calibrateCamera(options, console);
+  return options.still ? calibrateStill(options, console) : calibrateTip(options, console);
+}
+
+} // namespace
+
+Command calibrateCommand() {
+  auto options = std::make_shared<CalibrateOptions>();
+  return {
+      .name = "calibrate",
+      .summary = "a camera from views of a board, a probe's tip or its accelerometers",
+      .description =
+          "With --board INPUT is a folder of pictures, and CAMERA.yml gets what OpenCV calls "
+          "camera_matrix and distortion_coefficients, with the deviation of each. Views without "
+          "the board are named and left out.\n"
+          "With --still INPUT is a scan folder (poses.tum, probe.csv) of a probe that was held "
+          "still in "
+          "the air, leaning to all sides, and RIG.json gets the accelerometers' axes, gravity and "
+          "the force's zero; --rig tells the axes roughly.\n"
+          "With neither, INPUT is a file of poses while the probe's tip stood still and the probe "
+          "turned about it to all sides, and RIG.json gets the tip, beside what --rig holds. "
+          "Poses that contradict the others are left out.",
+      .examples = {"patina calibrate views --board chessboard:9x6:25mm -o camera.yml",
+                   "patina calibrate views --board charuco:5x7:40mm:20mm:6x6_250 -o camera.yml",
+                   "patina calibrate turning.tum --rig rig.json -o rig-with-tip.json",
+                   "patina calibrate held --still --rig rig-with-tip.json -o rig-of-probe.json"},
+      .keys = kCalibrateKeys,
+      .arguments = {input("INPUT", "Folder of pictures, scan folder, or poses as TUM.",
+                          into(options->input)),
+                    outputTo(options->output, "FILE", "CAMERA.yml, or RIG.json."),
+                    {"--board", "BOARD", "", "",
+                     "chessboard:COLUMNSxROWS:SQUARE, counted in inner corners, or "
+                     "charuco:COLUMNSxROWS:SQUARE:MARKER:FAMILY, counted in squares.",
+                     [options](const std::string& text) {
+                       options->board = parseBoard(text);
+                       options->board_text = text;
+                     }},
+                    {"--still", "", "", "", "The accelerometers of a probe held still.",
+                     into(options->still)},
+                    {"--rig", "RIG.json", "", "", "What else RIG.json is to hold.",
+                     into(options->rig)}},
+      .run = [options](Console& console) { return runCalibrate(*options, console); }};
+}
+
+} // namespace patina::cli

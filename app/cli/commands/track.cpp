@@ -1,0 +1,143 @@
+#include <chrono>
+
+#include "acquisition/tracking/track_frames.h"
+#include "app/cli/commands/commands.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct TrackOptions {
+  std::filesystem::path scan, camera, rig, output;
+  double rate = 0;
+  FinderOptions finder;
+};
+
+const Keys kTrackKeys = {
+    {"frames", "", "frames"},
+    {"frames_with_pose", "", "with a pose"},
+    {"without_pose",
+     "",
+     "without",
+     "a pose, and why",
+     Shown::if_any,
+     {{"t", "s", ""}, {"why", "", ""}}},
+    {"unreadable", "", "unreadable", "frames that are missing or no picture", Shown::if_any},
+    {"ambiguous", "", "ambiguous", "frames in which the rig may be tilted either way",
+     Shown::if_any},
+    {"misfit", "", "misfit", "frames whose markers are not where the rig has them", Shown::if_any},
+    {"dropped_markers", "", "dropped", "markers that contradicted the others of a frame",
+     Shown::if_any},
+    {"reprojection_rms_px", "px", "corners miss by", "rms of an image's two axes together"},
+    {"sigma",
+     "",
+     "sigma",
+     "of the poses, median",
+     Shown::always,
+     {{"position", "m", ""}, {"angle", "rad", ""}}},
+    {"seconds", "s", "tracked in"}};
+
+Json sigmaJson(const std::vector<CameraPose>& poses) {
+  std::vector<double> positions, angles;
+  for (const CameraPose& pose : poses) {
+    positions.push_back(pose.sigma_position);
+    angles.push_back(pose.sigma_angle);
+  }
+  std::sort(positions.begin(), positions.end());
+  std::sort(angles.begin(), angles.end());
+  Json json = Json::object();
+  json.set("position", positions[positions.size() / 2]);
+  return json.set("angle", angles[angles.size() / 2]);
+}
+
+int runTrack(TrackOptions options, Console& console) {
+  const auto orIn = [&](std::filesystem::path& path, const char* name) {
+    if (path.empty()) path = options.scan / name;
+  };
+  orIn(options.camera, "camera.yml");
+  orIn(options.rig, "rig.json");
+  const std::vector<Frame> frames = framesOf(options.scan, options.rate);
+  const Camera camera = readCamera(options.camera);
+  const std::vector<RigMarker> rig = readMarkers(options.rig);
+  requireWritable(options.output, {options.camera, options.rig});
+  const auto begin = std::chrono::steady_clock::now();
+  TrackedFrames found;
+  try {
+    found = trackFrames(frames, camera, rig, options.finder, console.progress());
+  } catch (const FileError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    throw FileError(options.rig.string(), 0, error.what());
+  }
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+
+  Report report(kTrackKeys);
+  report.set("frames", frames.size()).set("frames_with_pose", found.poses.size());
+  Json without = Json::array();
+  for (const NoPose& gap : found.without)
+    without.push(Json::object().set("t", gap.t).set("why", gap.why));
+  report.set("without_pose", without,
+             found.without.empty()
+                 ? ""
+                 : formatCount(found.without.size()) + ", the first at " +
+                       rounded(found.without[0].t) + " s: " + found.without[0].why);
+  report.set("unreadable", found.unreadable).set("ambiguous", found.ambiguous);
+  report.set("misfit", found.misfit).set("dropped_markers", found.dropped);
+  if (!found.poses.empty()) {
+    report.set("reprojection_rms_px", found.rms, rounded(found.rms) + " px");
+    const Json sigma = sigmaJson(found.poses);
+    report.set("sigma", sigma,
+               formatLength(sigma.at("position").asNumber()) + ", " +
+                   rounded(1e3 * sigma.at("angle").asNumber()) + " mrad");
+    writePoses(options.output, found.poses, found.without);
+  }
+  report.set("seconds", taken.count());
+  if (found.unreadable > 0)
+    console.warn(options.scan.string() + ": " + formatCount(found.unreadable) + " of " +
+                 formatCount(frames.size()) + " frames cannot be read; the first: " +
+                 std::find_if(found.without.begin(), found.without.end(), [](const NoPose& gap) {
+                   return gap.why.find(": ") != std::string::npos;
+                 })->why);
+  console.report(report);
+  if (!found.poses.empty()) return kDone;
+  console.warn(options.scan.string() + ": no frame shows a pose of the rig, so nothing is written");
+  return kNotSolved;
+}
+
+} // namespace
+
+Command trackCommand() {
+  auto options = std::make_shared<TrackOptions>();
+  return {
+      .name = "track",
+      .summary = "frames of a camera become poses of the markers' rig, with error bars",
+      .description =
+          "SCAN is a scan folder (frames/, frames.csv, camera.yml, rig.json) or a folder of "
+          "pictures. All markers of the rig that a frame shows give its pose together, from lines "
+          "fitted to their edges. A frame without a pose, by whatever cause, is a comment in "
+          "POSES.tum and is listed in the report; one that could be tilted either way is decided "
+          "by the frame before it or left out.",
+      .examples =
+          {"patina track scan -o scan/poses.tum",
+           "patina track pictures --rate 30 --camera camera.yml --rig rig.json -o poses.tum"},
+      .keys = kTrackKeys,
+      .arguments = {input("SCAN", "Scan folder, or a folder of pictures.", into(options->scan)),
+                    outputTo(options->output, "POSES.tum", "The poses, with deviations."),
+                    {"--camera", "CAMERA.yml", "", "SCAN/camera.yml",
+                     "What the camera's calibration says.", into(options->camera)},
+                    {"--rig", "RIG.json", "", "SCAN/rig.json",
+                     "Where the markers are on the probe.", into(options->rig)},
+                    {"--rate", "HZ", "Hz", "", "Frames a second, where there is no frames.csv.",
+                     inRange(1e-3, 1e5, [options](double rate) { options->rate = rate; })},
+                    {"--thorough", "", "", "",
+                     "Look for small, blurred and crowded markers too, ten times as long.",
+                     into(options->finder.thorough)}},
+      .run = [options](Console& console) { return runTrack(*options, console); }};
+}
+
+} // namespace patina::cli

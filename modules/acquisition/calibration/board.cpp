@@ -1,0 +1,200 @@
+#include "acquisition/calibration/board.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/vision_library.h"
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+constexpr std::size_t kFewestCorners = 6; // corners of a view that is of use
+
+std::vector<std::string> partsOf(const std::string& text, char between) {
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == between)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+// From the board to the picture, by least squares over four points or more, both brought near 1.
+Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec2>& pixel) {
+  const auto near = [](const std::vector<Vec2>& points) {
+    Vec2 middle = Vec2::Zero();
+    for (const Vec2& p : points) middle += p / static_cast<double>(points.size());
+    double size = 0;
+    for (const Vec2& p : points) size += (p - middle).norm() / static_cast<double>(points.size());
+    Eigen::Matrix3d m;
+    m << 1 / size, 0, -middle.x() / size, 0, 1 / size, -middle.y() / size, 0, 0, 1;
+    return m;
+  };
+  const Eigen::Matrix3d from = near(board), to = near(pixel);
+  Eigen::Matrix<double, 9, 9> squares = Eigen::Matrix<double, 9, 9>::Zero();
+  for (std::size_t i = 0; i < board.size(); ++i) {
+    const Vec3 b = from * board[i].homogeneous();
+    const Vec2 p = (to * pixel[i].homogeneous()).head<2>();
+    Eigen::Matrix<double, 2, 9> rows = Eigen::Matrix<double, 2, 9>::Zero();
+    rows.block<1, 3>(0, 0) = rows.block<1, 3>(1, 3) = b.transpose();
+    rows.block<1, 3>(0, 6) = -p.x() * b.transpose();
+    rows.block<1, 3>(1, 6) = -p.y() * b.transpose();
+    squares += rows.transpose() * rows;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(squares);
+  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  Eigen::Matrix3d m;
+  m << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
+  return to.inverse() * m * from;
+}
+
+std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board) {
+  std::vector<Vec2> found;
+  const std::string cause = visionLibrary().chessboard(image, board.columns, board.rows, found);
+  if (!cause.empty()) throw Error(cause);
+  if (found.empty()) return std::nullopt;
+  BoardView view;
+  for (int y = 0; y < board.rows; ++y)
+    for (int x = 0; x < board.columns; ++x) {
+      const Vec2& at = found[index(y * board.columns + x)];
+      double cell = INFINITY;
+      for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+        if (x + dx >= 0 && x + dx < board.columns && y + dy >= 0 && y + dy < board.rows)
+          cell = std::min(cell, (found[index((y + dy) * board.columns + x + dx)] - at).norm());
+      const auto saddle = saddleNear(image, at, cell);
+      if (!saddle) continue;
+      view.board.emplace_back(board.square * x, board.square * y);
+      view.pixel.push_back(*saddle);
+    }
+  return view;
+}
+
+// Where the board has its marker, top left first.
+Quad markerOn(const Board& board, int id) {
+  int next = 0;
+  for (int y = 0; y < board.rows; ++y)
+    for (int x = 0; x < board.columns; ++x) {
+      if ((x + y) % 2 == 0 || next++ != id) continue;
+      const Vec2 middle(board.square * (x + 0.5), board.square * (y + 0.5));
+      const double h = board.marker / 2;
+      return {middle + Vec2(-h, -h), middle + Vec2(h, -h), middle + Vec2(h, h),
+              middle + Vec2(-h, h)};
+    }
+  throw Error("marker " + std::to_string(id) + " is not on a board of " +
+              std::to_string(board.columns) + " x " + std::to_string(board.rows) + " squares");
+}
+
+std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
+  const MarkerFamily& family = markerFamily(board.family);
+  std::vector<int> ids(index(board.columns * board.rows / 2));
+  if (ids.size() > family.code.size())
+    throw Error("family " + board.family + " has no more than " +
+                std::to_string(family.code.size()) + " markers");
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<int>(i);
+  const auto seen = findMarkers(image, {CodeBook(family, ids)}, nullptr);
+  BoardView markers, view;
+  for (const SeenMarker& marker : seen) {
+    const Quad place = markerOn(board, marker.id);
+    for (std::size_t i = 0; i < 4; ++i) {
+      markers.board.push_back(place[i]);
+      markers.pixel.push_back(marker.corner[i].pixel);
+    }
+  }
+  for (int y = 1; y < board.rows; ++y)
+    for (int x = 1; x < board.columns; ++x) {
+      // From the corners near by only: the lens bends the rest.
+      const Vec2 corner(board.square * x, board.square * y);
+      std::vector<Vec2> near, pixel;
+      for (std::size_t i = 0; i < markers.board.size(); ++i)
+        if ((markers.board[i] - corner).norm() < 1.8 * board.square) {
+          near.push_back(markers.board[i]);
+          pixel.push_back(markers.pixel[i]);
+        }
+      if (near.size() < 8) continue;
+      const Eigen::Matrix3d map = homography(near, pixel);
+      const auto at = [&](const Vec2& p) -> Vec2 { return (map * p.homogeneous()).hnormalized(); };
+      const Vec2 guess = at(corner);
+      double cell = INFINITY;
+      for (const Vec2& step : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)})
+        cell = std::min(cell, (at(corner + board.square * step) - guess).norm());
+      // The markers beside it must stay outside of what is looked at.
+      const auto saddle = saddleNear(image, guess, cell * (1 - board.marker / board.square));
+      if (!saddle) continue;
+      view.board.push_back(corner);
+      view.pixel.push_back(*saddle);
+    }
+  return view;
+}
+
+} // namespace
+
+std::optional<Vec2> saddleNear(const GreyFrame& image, const Vec2& corner, double cell) {
+  const double reach = std::clamp(0.45 * cell, 2., 8.);
+  Vec2 at = corner;
+  for (int round = 0; round < 30; ++round) {
+    // Along every edge through the saddle the slope of grey stands at right angles to the way
+    // there.
+    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+    Vec2 sum = Vec2::Zero();
+    const int steps = static_cast<int>(std::ceil(reach));
+    for (int j = -steps; j <= steps; ++j)
+      for (int i = -steps; i <= steps; ++i) {
+        const Vec2 aside(i, j), p = at + aside;
+        const auto left = greyAt(image, p.x() - 1, p.y()), right = greyAt(image, p.x() + 1, p.y()),
+                   up = greyAt(image, p.x(), p.y() - 1), down = greyAt(image, p.x(), p.y() + 1);
+        if (!left || !right || !up || !down) return std::nullopt;
+        const Vec2 slope(*right - *left, *down - *up);
+        const double weight = std::exp(-2 * aside.squaredNorm() / (reach * reach));
+        squares += weight * slope * slope.transpose();
+        sum += weight * slope * slope.dot(aside);
+      }
+    const double trace = squares.trace();
+    if (!(squares.determinant() > 1e-3 * trace * trace)) return std::nullopt;
+    const Vec2 step = squares.inverse() * sum;
+    at += step;
+    if ((at - corner).norm() > std::max(1.5, cell / 3)) return std::nullopt;
+    if (step.squaredNorm() < 1e-8) return at;
+  }
+  return at;
+}
+
+Board parseBoard(const std::string& text) {
+  const std::vector<std::string> parts = partsOf(text, ':');
+  const bool chess = parts[0] == "chessboard" && parts.size() == 3;
+  const bool charuco = parts[0] == "charuco" && parts.size() == 5;
+  const auto count = [](const std::string& word) {
+    const auto value = parseNumber(word);
+    return value && *value >= 2 && *value <= 100 && *value == std::floor(*value)
+               ? static_cast<int>(*value)
+               : 0;
+  };
+  Board board;
+  if (chess || charuco) {
+    const std::vector<std::string> sides = partsOf(parts[1], 'x');
+    board.columns = count(sides[0]);
+    board.rows = sides.size() == 2 ? count(sides[1]) : 0;
+    board.square = parseLength(parts[2]);
+  }
+  if (charuco) {
+    board.marker = parseLength(parts[3]);
+    board.family = parts[4];
+  }
+  if (!board.columns || !board.rows || !(board.square > 0 && board.square < 10) ||
+      (charuco && !(board.marker > 0 && board.marker < board.square)))
+    throw Error("'" + text +
+                "' is no board: chessboard:COLUMNSxROWS:SQUARE, counted in inner corners, or "
+                "charuco:COLUMNSxROWS:SQUARE:MARKER:FAMILY, counted in squares");
+  return board;
+}
+
+std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board) {
+  auto view = board.family.empty() ? chessboardIn(image, board) : charucoIn(image, board);
+  if (view && view->pixel.size() < kFewestCorners) view.reset();
+  return view;
+}
+
+} // namespace patina

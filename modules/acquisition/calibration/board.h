@@ -1,0 +1,31 @@
+// Boards that a camera is calibrated with, and their corners in a picture (A05).
+#pragma once
+
+#include <optional>
+
+#include "acquisition/tracking/marker_finder.h"
+#include "acquisition/vision/vision.h"
+
+namespace patina {
+
+// Squares of `square` [m]. A chessboard counts its inner corners. A ChArUco board counts its
+// squares, the top left one black, with markers of `marker` [m] in the white ones, from 0 on by
+// rows.
+struct Board {
+  int columns = 0, rows = 0;
+  double square = 0, marker = 0;
+  std::string family; // of a ChArUco board; empty: a chessboard
+};
+
+// "chessboard:9x6:25mm", "charuco:5x7:40mm:20mm:6x6_250". Throws Error saying what is expected.
+Board parseBoard(const std::string& text);
+
+// Inner corners; nothing where fewer than six are seen. Of a chessboard all or nothing. Throws
+// Error where markers do not fit the board.
+std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board);
+
+// The saddle of grey near a corner where four squares meet, `cell` [px] being the least of their
+// sides; nothing if there is none within a third of it.
+std::optional<Vec2> saddleNear(const GreyFrame& image, const Vec2& corner, double cell);
+
+} // namespace patina

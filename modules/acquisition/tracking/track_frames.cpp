@@ -1,0 +1,95 @@
+#include "acquisition/tracking/track_frames.h"
+
+#include <cmath>
+#include <map>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+constexpr double kLately = 0.15; // how long a pose helps to choose the next one [s]
+
+std::string sizeOf(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+
+CameraPose cameraPose(const SeenRig& seen, double t) {
+  CameraPose pose;
+  pose.t = t;
+  pose.position = seen.camera_from_probe.translation();
+  pose.orientation = Eigen::Quaterniond(seen.camera_from_probe.linear());
+  pose.sigma_position = std::sqrt(seen.covariance.topLeftCorner<3, 3>().trace() / 3);
+  pose.sigma_angle = std::sqrt(seen.covariance.bottomRightCorner<3, 3>().trace() / 3);
+  return pose;
+}
+
+} // namespace
+
+RigTracker::RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
+                       const FinderOptions& options)
+    : camera_(camera), rig_(rig), options_(options) {
+  std::map<std::string, std::vector<int>> ids;
+  for (const RigMarker& marker : rig) ids[marker.family].push_back(marker.id);
+  for (const auto& [name, wanted] : ids) {
+    const MarkerFamily& family = markerFamily(name);
+    for (const int id : wanted)
+      if (id >= static_cast<int>(family.code.size()))
+        throw Error("marker " + std::to_string(id) + ": family " + name + " has ids 0 to " +
+                    std::to_string(family.code.size() - 1));
+    books_.emplace_back(family, wanted);
+  }
+}
+
+SeenRig RigTracker::track(const GreyFrame& image, double t) {
+  const bool lately = last_ && std::abs(t - last_t_) < kLately;
+  const SeenRig seen = poseOf(findMarkers(image, books_, &camera_, options_), rig_, camera_,
+                              lately ? &*last_ : nullptr);
+  if (seen.verdict == RigVerdict::seen) {
+    last_ = seen.camera_from_probe;
+    last_t_ = t;
+  }
+  return seen;
+}
+
+TrackedFrames trackFrames(const std::vector<Frame>& frames, const Camera& camera,
+                          const std::vector<RigMarker>& rig, const FinderOptions& options,
+                          Progress& progress) {
+  RigTracker tracker(camera, rig, options);
+  TrackedFrames result;
+  double squares = 0, corners = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Frame& frame = frames[i];
+    progress.throwIfCancelled();
+    progress.report(static_cast<double>(i) / static_cast<double>(frames.size()), "frames");
+    GreyFrame image;
+    try {
+      image = readGrey(frame.file);
+    } catch (const FileError& error) {
+      result.without.push_back({frame.t, error.what()});
+      ++result.unreadable;
+      continue;
+    }
+    if (image.width != camera.width || image.height != camera.height)
+      throw FileError(frame.file.string(), 0,
+                      "is " + sizeOf(image.width, image.height) +
+                          ", but the camera was calibrated at " +
+                          sizeOf(camera.width, camera.height));
+    const SeenRig seen = tracker.track(image, frame.t);
+    result.dropped += seen.dropped;
+    if (seen.verdict != RigVerdict::seen) {
+      result.without.push_back({frame.t, std::string(nameOf(seen.verdict))});
+      result.ambiguous += seen.verdict == RigVerdict::ambiguous;
+      result.misfit += seen.verdict == RigVerdict::misfit;
+      continue;
+    }
+    result.poses.push_back(cameraPose(seen, frame.t));
+    const double n = 4 * static_cast<double>(seen.markers);
+    squares += n * seen.rms * seen.rms;
+    corners += n;
+  }
+  if (corners > 0) result.rms = std::sqrt(squares / corners);
+  return result;
+}
+
+} // namespace patina

@@ -1,0 +1,16 @@
+#include "acquisition/vision_library.h"
+
+#include "core/error.h"
+#include "pictures/loaded_library.h"
+
+namespace patina {
+
+const VisionLibrary& visionLibrary() {
+  static std::string cause;
+  static void* const symbol = loadedSymbol("patina_vision.so", kVisionLibrarySymbol, cause);
+  if (!symbol)
+    throw Error("markers need Patina's library of vision, which cannot be loaded: " + cause);
+  return *reinterpret_cast<VisionLibraryFunction*>(symbol)();
+}
+
+} // namespace patina

@@ -1,0 +1,110 @@
+// What tests and studies of tracking stand on: the renderer against OpenCV's camera.
+#include "acquisition/simulation/frame_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "acquisition/tracking/lens.h"
+#include "support/rendered_rig.h"
+
+namespace patina {
+namespace {
+
+Vec2 projectedByOpenCv(const Camera& camera, const Vec3& point) {
+  const cv::Matx33d matrix(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  std::vector<cv::Point2d> pixel;
+  cv::projectPoints(std::vector<cv::Point3d>{{point.x(), point.y(), point.z()}}, cv::Vec3d(0, 0, 0),
+                    cv::Vec3d(0, 0, 0), matrix,
+                    std::vector<double>(camera.distortion.begin(), camera.distortion.end()), pixel);
+  return {pixel[0].x, pixel[0].y};
+}
+
+const Camera kCameras[] = {test::smallCamera(), test::largeCamera(), test::wideCamera()};
+
+// The middle of the dark of a tile without white bits, against the middle of its points.
+TEST(FrameRenderer, PutsTilesWhereOpenCvProjectsThem) {
+  for (const Camera& camera : kCameras)
+    for (const Vec2& aside : {Vec2(0, 0), Vec2(-0.7, 0.6), Vec2(0.75, 0.7), Vec2(0.1, -0.8)}) {
+      PrintedMarker tile{{"", 0, 0.0123, Pose::Identity()}, 4, 0};
+      Pose pose = Pose::Identity();
+      const Vec2 edge(0.5 * camera.width / camera.fx, 0.5 * camera.height / camera.fy);
+      pose.translation() = 0.5 * Vec3(aside.x() * edge.x(), aside.y() * edge.y(), 1);
+      pose.linear() = (Eigen::AngleAxisd(M_PI, Vec3::UnitX()) *
+                       Eigen::AngleAxisd(0.4, Vec3(1, 2, 0.5).normalized()))
+                          .toRotationMatrix();
+      FrameLook look;
+      look.ground = look.white;
+      look.shade = look.slope_shade = look.noise = look.waves = 0;
+      const GreyFrame image = FrameRenderer(camera, {tile}).render({pose}, look, 1);
+      const double white = std::lround(255 * look.white);
+      double dark = 0;
+      Vec2 middle = Vec2::Zero(), known = Vec2::Zero();
+      for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+          const double d = white - image.row(y)[x];
+          dark += d;
+          middle += d * Vec2(x, y);
+        }
+      // Of small cells of the tile, each with the area that it has in the picture.
+      constexpr int kCells = 16;
+      const auto node = [&](int i, int j) {
+        return projectedByOpenCv(camera, pose * Vec3(tile.place.size * (1. * i / kCells - 0.5),
+                                                     tile.place.size * (1. * j / kCells - 0.5), 0));
+      };
+      double area = 0;
+      for (int i = 0; i < kCells; ++i)
+        for (int j = 0; j < kCells; ++j) {
+          const Vec2 p = node(i, j), q = node(i + 1, j), r = node(i + 1, j + 1), s = node(i, j + 1);
+          const double cell = std::abs(cross(r - p, s - q));
+          area += cell;
+          known += cell * (p + q + r + s) / 4;
+        }
+      known /= area;
+      ASSERT_GT(dark, 0);
+      EXPECT_LT((middle / dark - known).norm(), 0.02) << camera.width << " " << aside.transpose();
+    }
+}
+
+TEST(FrameRenderer, RefusesALensThatFolds) {
+  Camera camera = test::smallCamera();
+  camera.fx = camera.fy = 200;
+  camera.distortion = {-0.5, 0, 0, 0, 0};
+  EXPECT_THROW(FrameRenderer(camera, {}), std::invalid_argument);
+}
+
+TEST(FrameRenderer, BlursWhatMovesDuringTheExposure) {
+  const test::RenderedRig rig(test::smallCamera(), "4x4_50");
+  std::mt19937 random(1);
+  const Pose pose = test::somePose(random);
+  FrameLook look;
+  look.noise = 0;
+  const auto sharpness = [&](double way) {
+    Pose end = pose;
+    end.translation().x() += way;
+    const GreyFrame image = rig.renderer.render({pose, end}, look, 1);
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 1; x < image.width; ++x)
+        sum += std::pow(image.row(y)[x] - image.row(y)[x - 1], 2);
+    return sum;
+  };
+  EXPECT_LT(sharpness(3e-3), 0.8 * sharpness(0));
+}
+
+TEST(Lens, AgreesWithOpenCvAndIsInverted) {
+  for (const Camera& camera : kCameras)
+    for (int i = 0; i <= 10; ++i)
+      for (int j = 0; j <= 10; ++j) {
+        const Vec2 pixel(0.1 * i * (camera.width - 1), 0.1 * j * (camera.height - 1));
+        const Vec2 flat = flatOf(camera, pixel);
+        const Vec3 point = 0.7 * flat.homogeneous();
+        EXPECT_LT((pixelOf(camera, point) - pixel).norm(), 1e-6);
+        EXPECT_LT((projectedByOpenCv(camera, point) - pixel).norm(), 1e-6);
+        EXPECT_LT((bentBack(camera, straightened(camera, pixel)) - pixel).norm(), 1e-6);
+      }
+}
+
+} // namespace
+} // namespace patina

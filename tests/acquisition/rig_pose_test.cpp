@@ -1,0 +1,239 @@
+#include "acquisition/tracking/rig_pose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <unistd.h>
+
+#include "acquisition/tracking/track_frames.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "support/rendered_rig.h"
+
+namespace patina {
+namespace {
+
+using test::kTip;
+using test::RenderedRig;
+using test::somePose;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+Vec6 errorOf(const Pose& found, const Pose& known) {
+  Vec6 error;
+  const Eigen::AngleAxisd turn(found.linear() * known.linear().transpose());
+  error << found.translation() - known.translation(), turn.angle() * turn.axis();
+  return error;
+}
+
+TEST(RigPose, FindsTheTipAndSaysHowWell) {
+  const struct {
+    Camera camera;
+    const char* family;
+    double distance, most; // tip rms [m]
+  } settings[] = {{test::smallCamera(), "4x4_50", 0.4, 0.4e-3},
+                  {test::largeCamera(), "apriltag_36h11", 0.4, 0.08e-3},
+                  {test::wideCamera(), "5x5_100", 0.3, 0.4e-3}};
+  for (const auto& s : settings) {
+    const RenderedRig rig(s.camera, s.family);
+    std::mt19937 random(4);
+    double squares = 0, nees = 0;
+    int poses = 0;
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      const Pose known = somePose(random, s.distance, 0.8);
+      const SeenRig seen = rig.track(rig.renderer.render({known}, {}, i));
+      if (seen.verdict == RigVerdict::ambiguous) continue; // one face seen from before
+      ASSERT_EQ(seen.verdict, RigVerdict::seen) << nameOf(seen.verdict);
+      ++poses;
+      squares += (seen.camera_from_probe * kTip - known * kTip).squaredNorm();
+      const Vec6 error = errorOf(seen.camera_from_probe, known);
+      nees += error.dot(seen.covariance.ldlt().solve(error)) / 6;
+    }
+    std::printf("%s: tip %.3f mm, NEES %.2f of %d poses\n", s.family,
+                1e3 * std::sqrt(squares / poses), nees / poses, poses);
+    EXPECT_GE(poses, 17);
+    EXPECT_LT(std::sqrt(squares / poses), s.most);
+    // Half of its standard deviations at least, twice of them at most.
+    EXPECT_GT(nees / poses, 0.25);
+    EXPECT_LT(nees / poses, 4);
+  }
+}
+
+// Corners without an image: what the tests below are about is exact.
+std::vector<SeenMarker> seenExactly(const RenderedRig& rig, const Pose& pose,
+                                    const std::vector<std::size_t>& which, double noise = 0) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<SeenMarker> seen;
+  for (const std::size_t i : which) {
+    SeenMarker marker{rig.markers[i].family, rig.markers[i].id, 0, {}, 0};
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Vec3 p = pose * rig.markers[i].corners()[c];
+      FittedCorner& corner = marker.corner[c];
+      corner.straight = {rig.camera.fx * p.x() / p.z() + rig.camera.cx,
+                         rig.camera.fy * p.y() / p.z() + rig.camera.cy};
+      corner.straight += noise * Vec2(normal(random), normal(random));
+      corner.pixel = corner.straight;
+      corner.whiten = 20 * Eigen::Matrix2d::Identity(); // 0.05 px
+    }
+    seen.push_back(marker);
+  }
+  return seen;
+}
+
+TEST(RigPose, IsExactWithoutNoise) {
+  const RenderedRig rig(test::smallCamera(), "4x4_50");
+  std::mt19937 random(7);
+  for (int i = 0; i < 50; ++i) {
+    const Pose known = somePose(random, 0.4, 1);
+    const SeenRig seen = poseOf(seenExactly(rig, known, {0, 1, 3}), rig.markers, rig.camera);
+    ASSERT_EQ(seen.verdict, RigVerdict::seen);
+    EXPECT_LT(errorOf(seen.camera_from_probe, known).norm(), 1e-8);
+    EXPECT_LT(seen.rms, 1e-6);
+  }
+}
+
+TEST(RigPose, OfOneMarkerFarAwayMayBeEitherAndTheLastPoseDecides) {
+  const RenderedRig rig(test::smallCamera(), "4x4_50");
+  Pose known = Pose::Identity();
+  known.translation() = Vec3(0.02, -0.01, 1.5);
+  known.linear() = (Eigen::AngleAxisd(M_PI, Vec3::UnitX()) * Eigen::AngleAxisd(0.3, Vec3::UnitY()))
+                       .toRotationMatrix();
+  const auto corners = seenExactly(rig, known, {0}, 0.05);
+  EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::ambiguous);
+  Pose lately = known;
+  lately.linear() = known.linear() * Eigen::AngleAxisd(0.05, Vec3::UnitX()).toRotationMatrix();
+  const SeenRig seen = poseOf(corners, rig.markers, rig.camera, &lately);
+  ASSERT_EQ(seen.verdict, RigVerdict::seen);
+  EXPECT_LT(errorOf(seen.camera_from_probe, known).tail<3>().norm(), 0.15);
+  // A second face leaves no doubt.
+  EXPECT_EQ(poseOf(seenExactly(rig, known, {0, 3}, 0.05), rig.markers, rig.camera).verdict,
+            RigVerdict::seen);
+}
+
+TEST(RigPose, OfOneMarkerCloseByIsFound) {
+  const RenderedRig rig(test::smallCamera(), "4x4_50");
+  std::mt19937 random(3);
+  Pose known = somePose(random, 0.25);
+  known.linear() = (Eigen::AngleAxisd(M_PI, Vec3::UnitX()) * Eigen::AngleAxisd(0.6, Vec3::UnitY()))
+                       .toRotationMatrix();
+  const SeenRig seen = poseOf(seenExactly(rig, known, {0}, 0.03), rig.markers, rig.camera);
+  ASSERT_EQ(seen.verdict, RigVerdict::seen);
+  EXPECT_EQ(seen.markers, 1u);
+  EXPECT_LT((seen.camera_from_probe * kTip - known * kTip).norm(), 3e-3);
+}
+
+TEST(RigPose, DropsAMarkerThatContradictsTheOthers) {
+  const RenderedRig rig(test::smallCamera(), "4x4_50");
+  std::mt19937 random(3);
+  const Pose known = somePose(random);
+  auto corners = seenExactly(rig, known, {0, 1, 3}, 0.02);
+  for (FittedCorner& corner : corners[1].corner) corner.straight += Vec2(30, -20);
+  const SeenRig seen = poseOf(corners, rig.markers, rig.camera);
+  ASSERT_EQ(seen.verdict, RigVerdict::seen);
+  EXPECT_EQ(seen.dropped, 1u);
+  EXPECT_LT((seen.camera_from_probe * kTip - known * kTip).norm(), 1e-3);
+}
+
+TEST(RigPose, RefusesARigOfAnotherSize) {
+  RenderedRig rig(test::smallCamera(), "4x4_50");
+  std::mt19937 random(3);
+  const auto corners = seenExactly(rig, somePose(random), {0, 1, 3});
+  for (RigMarker& marker : rig.markers) marker.size *= 0.7; // but not their places
+  EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::misfit);
+}
+
+TEST(RigPose, NeedsAMarkerOfTheRig) {
+  const RenderedRig rig(test::smallCamera(), "4x4_50");
+  EXPECT_EQ(poseOf({}, rig.markers, rig.camera).verdict, RigVerdict::no_marker);
+  std::mt19937 random(3);
+  auto corners = seenExactly(rig, somePose(random), {0});
+  corners.push_back(corners[0]); // the same marker twice cannot be
+  EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::no_marker);
+}
+
+class Frames : public testing::Test {
+ protected:
+  Frames()
+      : rig(test::smallCamera(), "4x4_50"), folder(std::filesystem::path(testing::TempDir()) /
+                                                   ("patina_frames_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder / "frames");
+    std::mt19937 random(8);
+    std::string list = "frame,t [s]\n";
+    for (int i = 0; i < 4; ++i) {
+      poses.push_back(somePose(random, 0.4, 0.5));
+      writeGrey(fileOf(i), rig.renderer.render({poses.back()}, {}, 1));
+      list += std::to_string(i) + "," + std::to_string(0.5 * i) + "\n";
+    }
+    writeFileAtomically(folder / "frames.csv", list);
+  }
+  ~Frames() override { std::filesystem::remove_all(folder); }
+  std::filesystem::path fileOf(int i) const {
+    return folder / "frames" / ("00000" + std::to_string(i) + ".png");
+  }
+  TrackedFrames tracked(const Camera& camera) const {
+    Progress progress;
+    return trackFrames(framesOf(folder, 0), camera, rig.markers, {}, progress);
+  }
+
+  RenderedRig rig;
+  std::filesystem::path folder;
+  std::vector<Pose> poses;
+};
+
+TEST_F(Frames, BecomePosesAtTheirTimes) {
+  const TrackedFrames found = tracked(rig.camera);
+  ASSERT_EQ(found.poses.size(), 4u);
+  EXPECT_LT(found.rms, 0.1);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(found.poses[i].t, 0.5 * static_cast<double>(i));
+    EXPECT_LT((found.poses[i].position - poses[i].translation()).norm(), 1e-3);
+    EXPECT_GT(found.poses[i].sigma_position, 1e-6);
+  }
+}
+
+TEST_F(Frames, ThatAreMissingUnreadableOrEmptyAreGapsWithAReason) {
+  std::filesystem::remove(fileOf(0));
+  writeFileAtomically(fileOf(1), "no picture");
+  writeGrey(fileOf(2), {640, 480, std::vector<std::uint8_t>(640 * 480, 100)});
+  const TrackedFrames found = tracked(rig.camera);
+  ASSERT_EQ(found.poses.size(), 1u);
+  ASSERT_EQ(found.without.size(), 3u);
+  EXPECT_EQ(found.unreadable, 2u);
+  EXPECT_NE(found.without[0].why.find("000000.png: does not exist"), std::string::npos);
+  EXPECT_NE(found.without[1].why.find("000001.png: cannot be read"), std::string::npos);
+  EXPECT_EQ(found.without[2].why, "no marker of the rig");
+  // They are marked in the file, which reads back as if they were not.
+  writePoses(folder / "poses.tum", found.poses, found.without);
+  EXPECT_NE(readFile(folder / "poses.tum").find("# 1 no pose: no marker"), std::string::npos);
+  const auto back = readPoses(folder / "poses.tum");
+  ASSERT_EQ(back.values.size(), 1u);
+  EXPECT_EQ(back.values[0].sigma_position, found.poses[0].sigma_position);
+}
+
+TEST_F(Frames, OfAnotherSizeThanTheCalibrationAreRefused) {
+  try {
+    (void)tracked(test::largeCamera());
+    FAIL();
+  } catch (const FileError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("000000.png: is 640 x 480"), std::string::npos) << what;
+    EXPECT_NE(what.find("1920 x 1080"), std::string::npos) << what;
+  }
+}
+
+TEST_F(Frames, NeedTheirTimes) {
+  writeFileAtomically(folder / "frames.csv", "frame,t [s]\n0,1\n1,0.5\n");
+  EXPECT_THROW((void)framesOf(folder, 0), FileError);
+  std::filesystem::remove(folder / "frames.csv");
+  EXPECT_THROW((void)framesOf(folder, 0), FileError);
+  EXPECT_EQ(framesOf(folder, 30).size(), 4u);
+  EXPECT_THROW((void)framesOf(folder / "none", 30), FileError);
+}
+
+TEST(RigTracker, NamesAnIdThatItsFamilyDoesNotHave) {
+  RigMarker marker{"4x4_50", 50, 0.03, Pose::Identity()};
+  EXPECT_THROW(RigTracker(test::smallCamera(), {marker}), Error);
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,94 @@
+#include "acquisition/calibration/still_probe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace patina {
+namespace {
+
+struct HeldProbe {
+  std::vector<CameraPose> poses;
+  std::vector<ProbeSample> samples;
+};
+
+const std::array<double, 4> kBias{0.06, -0.04, 0.05, -0.07};
+const Vec3 kDown = 9.80665 * Vec3(0.1, 0.85, 0.5).normalized();
+
+// Two seconds in each attitude, turned quickly from one to the next.
+HeldProbe held(const ProbeModel& model, int attitudes, double lean, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(-1, 1);
+  HeldProbe probe;
+  for (int i = 0; i < attitudes; ++i) {
+    const double a = unit(random), b = unit(random), c = unit(random);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(lean * a, Vec3::UnitX()) *
+                                  Eigen::AngleAxisd(lean * b, Vec3::UnitY()) *
+                                  Eigen::AngleAxisd(lean * c, Vec3::UnitZ()));
+    for (int k = 0; k < 60; ++k) {
+      CameraPose pose;
+      pose.t = 2 * i + k / 30.;
+      pose.sigma_angle = 2e-3;
+      const double x = normal(random), y = normal(random), z = normal(random);
+      const Vec3 error = 2e-3 * Vec3(x, y, z);
+      pose.orientation =
+          turn * Eigen::Quaterniond(Eigen::AngleAxisd(error.norm(), error.normalized()));
+      probe.poses.push_back(pose);
+    }
+    for (int k = 0; k < 1000; ++k) {
+      ProbeSample sample;
+      sample.t = 2 * i + k / 500.;
+      sample.force = 0.03;
+      for (std::size_t axis = 0; axis < 4; ++axis) {
+        const double exact =
+            -model.axes[axis].direction.dot(turn.conjugate() * kDown) + kBias[axis];
+        const double noisy = exact + model.acceleration_noise * normal(random);
+        sample.acceleration[axis] =
+            model.acceleration_step * std::round(noisy / model.acceleration_step);
+      }
+      probe.samples.push_back(sample);
+    }
+  }
+  return probe;
+}
+
+TEST(StillProbe, TellsGravityAxesAndBiases) {
+  ProbeModel known, rough;
+  for (AccelerometerAxis& axis : known.axes)
+    axis.direction = Eigen::AngleAxisd(0.15, Vec3(1, -2, 0.5).normalized()) * axis.direction;
+  known.axes[1].direction = Eigen::AngleAxisd(0.1, Vec3::UnitX()) * known.axes[1].direction;
+  double nees = 0;
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    const HeldProbe probe = held(known, 25, 1.2, seed);
+    const auto fit = fitStillProbe(probe.poses, probe.samples, rough);
+    ASSERT_TRUE(fit);
+    EXPECT_GE(fit->attitudes, 95u);
+    EXPECT_LT((fit->gravity - kDown).norm(), 0.03);
+    EXPECT_NEAR(fit->force_zero, 0.03, 1e-9);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_LT((fit->directions[k] - known.axes[k].direction).norm(), 0.01);
+      EXPECT_NEAR(fit->bias[k], kBias[k], 0.05);
+      nees += (fit->directions[k] - known.axes[k].direction).squaredNorm() /
+              (2 * fit->deviation[k] * fit->deviation[k]) / 20;
+    }
+  }
+  EXPECT_LT(nees, 9) << "an attitude's steps are the same in all of its half seconds";
+}
+
+TEST(StillProbe, SaysNothingWhereAttitudesAreAlikeOrMoving) {
+  const ProbeModel model;
+  HeldProbe probe = held(model, 25, 0.02, 1);
+  EXPECT_FALSE(fitStillProbe(probe.poses, probe.samples, model)) << "alike";
+  probe = held(model, 2, 1.2, 1);
+  EXPECT_FALSE(fitStillProbe({}, probe.samples, model));
+  EXPECT_FALSE(fitStillProbe(probe.poses, {}, model));
+  EXPECT_FALSE(fitStillProbe(probe.poses, probe.samples, model)) << "too few";
+  probe = held(model, 25, 1.2, 1);
+  for (ProbeSample& sample : probe.samples) sample.acceleration[2] += 2 * std::sin(60 * sample.t);
+  EXPECT_FALSE(fitStillProbe(probe.poses, probe.samples, model)) << "moving";
+}
+
+} // namespace
+} // namespace patina

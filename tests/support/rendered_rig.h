@@ -1,0 +1,61 @@
+// Frames of a marker cube in known poses.
+#pragma once
+
+#include <random>
+
+#include "acquisition/simulation/simulated_frames.h"
+#include "acquisition/tracking/rig_pose.h"
+
+namespace patina::test {
+
+inline Camera smallCamera() {
+  return {640, 480, 600, 602, 322, 238, {-0.08, 0.03, 3e-4, -2e-4, 0}};
+}
+inline Camera largeCamera() {
+  return {1920, 1080, 1500, 1500, 955, 545, {-0.08, 0.03, 3e-4, -2e-4, 0}};
+}
+// The corners of its picture are bent inwards by a tenth.
+inline Camera wideCamera() {
+  return {800, 600, 420, 420, 410, 290, {-0.22, 0.06, -5e-4, 4e-4, -0.006}};
+}
+
+struct RenderedRig {
+  RenderedRig(const Camera& lens, const std::string& name, double edge = 0.04)
+      : camera(lens), family(&markerFamily(name)),
+        markers(markerCube(name, family->side, edge)), books{CodeBook(*family, {0, 1, 2, 3, 4})},
+        renderer(camera, printed()) {}
+
+  std::vector<PrintedMarker> printed() const {
+    std::vector<PrintedMarker> out;
+    for (const RigMarker& marker : markers)
+      out.push_back({marker, family->side, family->code[static_cast<std::size_t>(marker.id)]});
+    return out;
+  }
+  SeenRig track(const GreyFrame& image, const Pose* lately = nullptr) const {
+    return poseOf(findMarkers(image, books, &camera), markers, camera, lately);
+  }
+
+  Camera camera;
+  const MarkerFamily* family;
+  std::vector<RigMarker> markers;
+  std::vector<CodeBook> books;
+  FrameRenderer renderer;
+};
+
+// Faces look at the camera, tilted by up to `tilt` about x and y [rad].
+inline Pose somePose(std::mt19937& random, double distance = 0.4, double tilt = 0.6) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto turn = [](double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis); };
+  Pose pose = Pose::Identity();
+  const double x = unit(random), y = unit(random), z = unit(random);
+  pose.translation() = distance * Vec3(0.1 * x, 0.07 * y, 1 + 0.05 * z);
+  const double a = unit(random), b = unit(random), c = unit(random);
+  pose.linear() = (turn(3.14159265, Vec3::UnitX()) * turn(tilt * a, Vec3::UnitX()) *
+                   turn(tilt * b, Vec3::UnitY()) * turn(3 * c, Vec3::UnitZ()))
+                      .toRotationMatrix();
+  return pose;
+}
+
+inline const Vec3 kTip(0, 0, -0.12); // where the tip is in the probe's frame [m]
+
+} // namespace patina::test
