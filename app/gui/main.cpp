@@ -17,8 +17,8 @@
 
 #include "app/gui/loading/first_picture.h"
 #include "app/gui/window/main_window.h"
+#include "app/gui/window/theme.h"
 #include "app/gui/window/tour.h"
-#include "app/gui/window/window_style.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "visualization/view/display.h"
@@ -31,6 +31,7 @@ constexpr const char* kHelp =
     "the\n"
     "mouse feel it. Without FILE: the toy dinosaur.\n\n"
     "  --unit UNIT               of a mesh: mm (default), cm, m, in, or fit (longest side 100 mm)\n"
+    "  --up AXIS                 of a mesh file: z (default), or y, which is turned to z\n"
     "  --iso VALUE               of a volume from elsewhere: where its surface is\n"
     "  --log FILE.csv            record every tick, written when the window closes\n"
     "  --tour FOLDER             a scripted session: pictures and feel.csv into FOLDER, then quit\n"
@@ -39,6 +40,7 @@ constexpr const char* kHelp =
 
 struct Arguments {
   patina::LoadRequest request;
+  std::optional<patina::UpAxis> up; // absent: as it was chosen last
   std::optional<std::filesystem::path> log, tour;
   bool first_picture_time = false;
   bool help = false, version = false;
@@ -59,6 +61,8 @@ Arguments parse(const std::vector<std::string>& words) {
     } else if (word == "--unit") {
       arguments.request.options.unit = patina::parseMeshUnit(value());
       arguments.request.unit_chosen = true;
+    } else if (word == "--up") {
+      arguments.up = arguments.request.options.up = patina::parseUpAxis(value());
     } else if (word == "--iso") {
       const std::string& text = value();
       arguments.request.options.iso = patina::parseNumber(text);
@@ -101,7 +105,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
   QApplication application(argc, argv);
   QApplication::setApplicationName(QStringLiteral("patina"));
   QApplication::setOrganizationName(QStringLiteral("patina"));
-  patina::applyStyle(application);
+  patina::applyStyle(application, patina::systemTheme());
   patina::MainWindow window;
   patina::DocumentController& documents = window.controllers().documents;
   patina::FeelController& feel = window.controllers().feel;
@@ -120,7 +124,9 @@ int run(const Arguments& arguments, int argc, char** argv) {
     return 0;
   }
   documents.offerRecovery();
-  documents.open(arguments.request);
+  patina::LoadRequest request = arguments.request;
+  if (!arguments.up && documents.asks()) request.options.up = documents.up();
+  documents.open(request);
   if (arguments.log) feel.startLog();
   // Ctrl-C, kill and a lost terminal are ways to close the window: the log is still written.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})

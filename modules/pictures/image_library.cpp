@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/loaded_library.h"
+#include "pictures/loaded_library.h"
 
 namespace patina {
 

@@ -19,11 +19,13 @@ std::string describeLayer(const BrushLayer& layer, const Brush& brush) {
 
 std::string describeStroke(const Stroke& stroke) {
   const Brush& brush = stroke.brush;
-  if (brush.tool == Tool::erase) return brush.erases.empty() ? "erase" : "erase " + brush.erases;
   std::string text;
-  for (const BrushLayer& layer : layersOf(brush))
-    text += (text.empty() ? "" : ", ") + describeLayer(layer, brush);
-  return text;
+  if (brush.tool == Tool::erase)
+    text = brush.erases.empty() ? "erase" : "erase " + brush.erases;
+  else
+    for (const BrushLayer& layer : layersOf(brush))
+      text += (text.empty() ? "" : ", ") + describeLayer(layer, brush);
+  return text + ", " + formatLength(brush.radius);
 }
 
 std::string describeValues(const ValueEdit& edit) {

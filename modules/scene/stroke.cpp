@@ -229,6 +229,17 @@ Stroke strokeOfKeys(const Json& json) {
 
 } // namespace
 
+bool strays(std::span<const StrokeSample> way, const StrokeSample& next, double off) {
+  const Vec3& start = way.front().position;
+  const Vec3 along = next.position - start;
+  const double length = along.squaredNorm();
+  return std::any_of(way.begin(), way.end(), [&](const StrokeSample& sample) {
+    const Vec3 from = sample.position - start;
+    const double part = length > 0 ? std::clamp(from.dot(along) / length, 0.0, 1.0) : 0;
+    return !((from - part * along).norm() <= off);
+  });
+}
+
 Seed parseSeed(const std::string& text) {
   return chosen("seed", text, kSeedNames);
 }

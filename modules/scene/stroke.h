@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,6 +89,10 @@ struct Stroke {
   std::vector<StrokeSample> samples; // times ascend
   bool operator==(const Stroke&) const = default;
 };
+
+// Whether a sample of the way, which is not empty, lies farther than `off` [m] from the straight
+// line from its first one to the next.
+bool strays(std::span<const StrokeSample> way, const StrokeSample& next, double off);
 
 Seed parseSeed(const std::string& text); // throws Error
 // As in files: "color", "friction.static", ...

@@ -61,6 +61,34 @@ TEST(EditThread, MoreSamplesThanCanBePaintedAreThinnedAndTheLastOneCounts) {
   }
 }
 
+TEST(EditThread, WhatIsThinnedOutLeavesTheCornersOfAStroke) {
+  Desk desk;
+  desk.open(oneBall());
+  const Brush brush = stiffBrush();
+  std::vector<StrokeSample> zigzag;
+  for (int i = 0; i <= 400; ++i) {
+    const double a = 0.004 * i, b = 0.4 * std::abs((i % 100) / 50.0 - 1);
+    zigzag.push_back({i / 120.0, 0.02 * Vec3(std::cos(a), std::sin(a), b).normalized(), 0.5});
+  }
+  desk.edits.beginStroke(brush);
+  desk.edits.dabs(zigzag);
+  desk.edits.endStroke();
+  ASSERT_TRUE(desk.settle());
+  Progress progress;
+  Editor every(oneBall(), progress);
+  every.apply(Stroke{brush, zigzag}, progress);
+  const auto& thinned = *desk.compiled->scene.objects[0].paint->material;
+  const auto& all = *every.scene().objects[0].paint->material;
+  const Material base = baseMaterial(every.scene().haptics);
+  double most = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double a = 1.8 * i / 4000 - 0.1, b = 0.6 * std::sin(0.7 * i) + 0.2;
+    const Vec3 p = 0.02 * Vec3(std::cos(a), std::sin(a), b).normalized();
+    most = std::max(most, std::abs(thinned.at(p, base).stiffness - all.at(p, base).stiffness));
+  }
+  EXPECT_LT(most, 0.05 * (900 - base.stiffness)); // a hundredth of the radius, on the steep rim
+}
+
 TEST(EditThread, DraggedValuesAreFeltAtOnceAndAreOneEditWhenTheyRest) {
   std::atomic<double> felt{0};
   Desk desk({}, [&](const CompiledScene& c) { felt = c.scene.haptics.stiffness; });

@@ -7,6 +7,7 @@
 #include <limits>
 #include <unistd.h>
 
+#include "core/error.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/shapes.h"
 #include "session/build/stage_cost.h"
@@ -102,7 +103,7 @@ TEST_F(Session, OpensAFieldAsItsIsoSurfaceInMetres) {
   // The unit of meshes has no say: a field file is in metres.
   const OpenedScene opened = openScene(folder / "field.vti", {MeshUnit::in, {}});
   EXPECT_NEAR(bounds(*opened.scene.objects[0].mesh).max().z(), 0.02, 3e-4);
-  const OpenedScene outer = openScene(folder / "field.vti", {MeshUnit::mm, 0.002});
+  const OpenedScene outer = openScene(folder / "field.vti", {.iso = 0.002});
   EXPECT_NEAR(bounds(*outer.scene.objects[0].mesh).max().z(), 0.022, 3e-4);
 }
 
@@ -164,6 +165,14 @@ TEST_F(Session, StagesCostSomethingAndAsManyAreMeasuredAsAreOn) {
     EXPECT_LT(cost, 1e6);
   }
   EXPECT_GT(*std::max_element(ns.begin(), ns.end()), 5);
+}
+
+TEST_F(Session, AMeshWhoseYIsUpIsTurnedToZ) {
+  writeMesh(folder / "tall.obj", box(Vec3(2, 6, 4)));
+  const OpenedScene turned = openScene(folder / "tall.obj", {.up = UpAxis::y});
+  const Box3 at = bounds(*turned.scene.objects[0].mesh);
+  EXPECT_LT((at.sizes() - Vec3(2e-3, 4e-3, 6e-3)).norm(), 1e-12);
+  EXPECT_THROW(parseUpAxis("x"), Error);
 }
 
 } // namespace

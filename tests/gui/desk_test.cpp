@@ -18,14 +18,7 @@ class Desks : public DrivenWindow {
     wait(300);
   }
   Desk desk() { return window_->controllers().desks.desk(); }
-  void go(const char* name) { clickDesk(name); }
-  // Of the bar on top.
-  void clickDesk(const QString& name) {
-    QAction* action = find<QAction>("desk_" + name);
-    for (QWidget* widget : action->associatedWidgets())
-      if (auto* bar = qobject_cast<QToolBar*>(widget)) return click(*bar->widgetForAction(action));
-    FAIL() << "the bar has no desk " << name.toStdString();
-  }
+  void go(const QString& name) { clickAction("desk_" + name); }
   QWidget& column() { return *find<QWidget>("column"); }
   QWidget& drawer() { return *find<QWidget>("drawer"); }
   void saveScreen(const char* name) {

@@ -6,6 +6,8 @@
 #include <thread>
 
 #include <QAbstractButton>
+#include <QFileDialog>
+#include <QToolBar>
 #include <QWindow>
 
 #include "gui/window_fixture.h"
@@ -63,6 +65,24 @@ class DrivenWindow : public WindowTest {
     ASSERT_NE(widget, nullptr) << name.toStdString();
     click(*widget);
   }
+  void clickAction(const QString& name) { // of the bar on top
+    auto* action = find<QAction>(name);
+    ASSERT_NE(action, nullptr) << name.toStdString();
+    for (QWidget* widget : action->associatedWidgets())
+      if (auto* bar = qobject_cast<QToolBar*>(widget)) return click(*bar->widgetForAction(action));
+    FAIL() << "no bar has " << name.toStdString();
+  }
+  void choose(QMenu& menu, const QString& words) { // that is open
+    ASSERT_TRUE(waitUntil([&] { return menu.isVisible(); }, 3000));
+    wait(200); // until the window manager has let it be
+    for (QAction* action : menu.actions()) {
+      if (action->text() != words) continue;
+      pointAt(menu.mapToGlobal(menu.actionGeometry(action).center()));
+      press(), release();
+      return wait(50);
+    }
+    FAIL() << "the menu has no " << words.toStdString();
+  }
   // In the picture, from its middle.
   QPoint inView(const QPoint& from_middle) { return view().mapToGlobal(middle() + from_middle); }
   void doubleClickAt(const QPoint& screen) {
@@ -111,6 +131,16 @@ class DrivenWindow : public WindowTest {
     hand_->key(keysym, false);
     if (with != 0) hand_->key(with, false);
     wait(30);
+  }
+  template <typename Dialog> void whenAsked(std::function<void(Dialog&)> act) {
+    whenThere([] { return qobject_cast<Dialog*>(QApplication::activeModalWidget()); },
+              std::move(act));
+  }
+  void answerWithPath(const std::filesystem::path& path) { // the next question for a file
+    whenAsked<QFileDialog>([this, text = QString::fromStdString(path.string())](QFileDialog&) {
+      type(text);
+      type(kEnter);
+    });
   }
   void type(const QString& letters) {
     for (const QChar& letter : letters) type(letter.unicode());

@@ -16,7 +16,7 @@
 #include <QToolBar>
 
 #include "app/gui/panels/strip_plot.h"
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 
 namespace patina::test {
 namespace {

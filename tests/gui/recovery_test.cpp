@@ -1,6 +1,9 @@
 // What a window had painted is offered by the next one, and a damaged workspace says what it has.
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 #include <signal.h>
 #include <sys/wait.h>
@@ -30,16 +33,63 @@ class Recovery : public WindowTest {
   bool editsDone(std::size_t count) {
     return waitUntil([&] { return edits().status().edits.size() == count; }, 20000);
   }
+  std::size_t editsAfterAKillIn(int milliseconds);
   QWidget* bar() { return find<QWidget>("recover_bar"); }
 };
 
-// Runs in a program of its own, that kills itself when its stroke is done.
+// Runs in a program of its own, that kills itself in its second stroke.
 TEST_F(Recovery, DISABLED_PaintsAndIsKilled) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   paintOne();
   ASSERT_TRUE(editsDone(1));
-  fs::remove_all(folder_);
-  kill(getpid(), SIGKILL);
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (entry.path().filename() != "state") fs::remove_all(entry.path());
+  const char* after = std::getenv("PATINA_KILL_AFTER");
+  std::thread([wait = after != nullptr ? std::atoi(after) : 0] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+    kill(getpid(), SIGKILL);
+  }).detach();
+  for (;;) dragFromTo(middle() - QPoint(50, 20), middle() + QPoint(50, 20)), wait(20);
+}
+
+// The edits that are found after `milliseconds` of another stroke.
+std::size_t Recovery::editsAfterAKillIn(int milliseconds) {
+  const pid_t child = fork();
+  if (child == 0) {
+    setenv("PATINA_KILL_AFTER", std::to_string(milliseconds).c_str(), 1);
+    execl("/proc/self/exe", "gui_tests", "--gtest_also_run_disabled_tests",
+          "--gtest_filter=Recovery.DISABLED_PaintsAndIsKilled", nullptr);
+    _exit(1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status)) << "it was to be killed";
+  documents().setAsks(false);
+  documents().offerRecovery();
+  if (!bar()->isVisible()) return 0;
+  bool ready = false;
+  const auto connection =
+      QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  find<QAbstractButton>("recover")->click();
+  EXPECT_TRUE(waitUntil([&] { return ready; }));
+  wait(300);
+  QObject::disconnect(connection);
+  const auto& paint = edits().scene()->scene.objects[0].paint;
+  EXPECT_TRUE(paint && paint->color);
+  return edits().status().edits.size();
+}
+
+// A shorter row than by hand: PATINA_KILLS=50.
+TEST_F(Recovery, AKillInAStrokeLosesNoFinishedOne) {
+  const char* asked = std::getenv("PATINA_KILLS");
+  const int kills = asked != nullptr ? std::atoi(asked) : 3;
+  std::size_t least = 100;
+  for (int i = 0; i < kills; ++i) {
+    const std::size_t found = editsAfterAKillIn(37 * i % 211);
+    EXPECT_GE(found, 1U) << "kill " << i;
+    least = std::min(least, found);
+  }
+  std::printf("%d kills, at least %zu strokes found\n", kills, least);
 }
 
 TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {

@@ -23,6 +23,8 @@ class TouchPanels : public WindowTest {
   }
   void click(const char* name) {
     find<QToolButton>(name)->click();
+    edits().tryValues(); // not with the window's next tick
+    edits().settle();
     wait(150);
   }
   const Scene& scene() { return edits().scene()->scene; }

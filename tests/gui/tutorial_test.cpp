@@ -1,10 +1,20 @@
-// The first five minutes of the tutorial: clicks, drags and keys that it names come through the
-// window system; the menu of properties does not.
+// The tutorial is a test: every click, drag and key that it names comes through the window system,
+// and its commands are run as they stand there.
+#include <fstream>
+#include <sstream>
+
+#include <QDialogButtonBox>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
+#include <QRadioButton>
 #include <vtkCamera.h>
 
+#include "app/gui/panels/object_panel.h"
+#include "core/csv.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
+#include "support/places.h"
+#include "workspace/workspace.h"
 
 namespace patina {
 namespace {
@@ -41,6 +51,10 @@ class Tutorial : public DrivenWindow {
   void stroke();
   void softAndHard();
   void friction();
+  void lookInside();
+  void ownMesh();
+  void takeHome();
+  void commands();
 };
 
 void Tutorial::start() {
@@ -67,7 +81,7 @@ void Tutorial::touch() {
   EXPECT_GT((sample.vcp - sample.tip).norm(), 5e-4) << "the ghost is inside, the tool is not";
   EXPECT_GT(forceShare(), 0);
   EXPECT_TRUE(find<ForcePlot>()->isVisible());
-  keepPicture("touch");
+  keepPicture("window");
   for (int i = 0; i < 30 && force() > 0; ++i) wheelAt(flank_, -1), wait(100);
   EXPECT_EQ(force(), 0);
 }
@@ -79,7 +93,7 @@ void Tutorial::stroke() {
   pointAt(flank_ - QPoint(60, 0));
   press();
   for (int i = 0; i <= 20; ++i) pointAt(flank_ + QPoint(-60 + 6 * i, 0));
-  keepPicture("stroke");
+  keepPicture("feel");
   const auto samples = feel().log().samples();
   release();
   std::size_t pressed = 0;
@@ -120,7 +134,8 @@ void Tutorial::softAndHard() {
 }
 
 void Tutorial::friction() {
-  addProperty("Friction");
+  clickOn("add_property");
+  choose(*find<QMenu>("properties"), "Friction");
   ASSERT_TRUE(soon([&] { return haptics().friction.has_value(); }));
   EXPECT_TRUE(soon([&] { return find<QLabel>("stages")->text().contains("friction"); }));
   typeInto("friction_static", QStringLiteral("1"));
@@ -141,13 +156,117 @@ void Tutorial::friction() {
   EXPECT_TRUE(soon([&] { return !haptics().friction.has_value(); }));
 }
 
-TEST_F(Tutorial, TheFirstFiveMinutesAsTheyAreWritten) {
+void Tutorial::lookInside() {
+  clickAction("desk_analyse");
+  type(QStringLiteral("7"));
+  const auto pictures = [this] { return view().grabFramebuffer(); };
+  const auto tick = [this](const char* name) {
+    clickOn(name);
+    EXPECT_TRUE(find<QCheckBox>(name)->isChecked()) << name;
+    wait(500);
+  };
+  tick("slice");
+  tick("iso");
+  typeInto("iso_value", QStringLiteral("1.5"));
+  EXPECT_EQ(find<ValueRow>("iso_value")->value(), 1.5);
+  type(QStringLiteral("f"));
+  wait(500);
+  keepPicture("slice");
+  const QImage before = pictures();
+  auto* slider = find<ValueRow>("slice_position")->findChild<QSlider*>();
+  const QPoint grip = slider->mapToGlobal(slider->rect().center());
+  drag(grip, grip + QPoint(30, 0));
+  EXPECT_NE(find<ValueRow>("slice_position")->value(), 50);
+  wait(500);
+  EXPECT_NE(pictures(), before);
+  for (const char* name : {"slice", "iso"}) {
+    clickOn(name);
+    EXPECT_FALSE(find<QCheckBox>(name)->isChecked()) << name;
+  }
+  doubleClickAt(flank_);
+  pressIn(0.5);
+  tick("nodes");
+  tick("wireframe");
+  keepPicture("nodes");
+}
+
+void Tutorial::ownMesh() {
+  type('1', kControl);
+  TriangleMesh mesh = icosphere(30, 40);
+  mesh.triangles.resize(mesh.triangles.size() - 100); // a hole
+  const auto path = saved(mesh, "own.obj");
+  answerWithPath(path);
+  whenAsked<QMessageBox>([this](QMessageBox& box) { click(*box.button(QMessageBox::Discard)); });
+  bool ready = false;
+  const auto connection =
+      QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  type('o', kControl);
+  ASSERT_TRUE(soon([&] { return ready; }));
+  QObject::disconnect(connection);
+  clickOn("tab_object");
+  EXPECT_TRUE(find<ObjectPanel>()->isVisible());
+  bool defect = false;
+  for (const auto* label : find<ObjectPanel>()->findChildren<QLabel*>())
+    defect = defect || label->text() == QStringLiteral("Boundary edges");
+  EXPECT_TRUE(defect);
+  doubleClickAt(flank_);
+  pressIn(0.4);
+  EXPECT_GT(force(), 0.4);
+}
+
+void Tutorial::takeHome() {
+  type(QStringLiteral("r"));
+  EXPECT_TRUE(feel().recording());
+  type(QStringLiteral("q"));
+  drag(flank_, flank_ + QPoint(60, 0), 1, 40);
+  answerWithPath(folder_ / "feel.csv");
+  type(QStringLiteral("r"));
+  ASSERT_TRUE(soon([&] { return std::filesystem::exists(folder_ / "feel.csv"); }));
+  EXPECT_FALSE(feel().recording());
+  answerWithPath(folder_ / "scene.patina");
+  type('s', kControl);
+  ASSERT_TRUE(soon([&] { return isWorkspace(folder_ / "scene.patina"); }));
+  wait(300);
+  EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("scene.patina")));
+}
+
+// All lines of the tutorial that are indented, but the first of them, which starts the window.
+std::string commandsOfTutorial() {
+  std::ifstream text(test::sourceFolder() / "docs/tutorial.md");
+  std::string all;
+  for (std::string line; std::getline(text, line);)
+    if (line.starts_with("    ") && line.find("run.sh") == std::string::npos)
+      all += line.substr(4) + "\n";
+  return all;
+}
+
+void Tutorial::commands() {
+  documents().setAsks(false);
+  ASSERT_TRUE(window_->close());
+  window_.reset(); // with which the program ends
+  std::filesystem::create_directory_symlink(test::programFolder().parent_path(), folder_ / "build");
+  std::ofstream(folder_ / "commands.sh") << commandsOfTutorial();
+  const std::string run = "cd '" + folder_.string() + "' && sh -e commands.sh > said.txt 2>&1";
+  const int code = std::system(run.c_str());
+  std::ostringstream said;
+  said << std::ifstream(folder_ / "said.txt").rdbuf();
+  EXPECT_EQ(code, 0) << said.str();
+  EXPECT_GT(readCsv(folder_ / "forces.csv", {"t [s]"}).rows.size(), 100U);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "picture.png"));
+  EXPECT_EQ(loadWorkspace(folder_ / "scene.patina").objects[0].paint, nullptr) << "it is undone";
+}
+
+TEST_F(Tutorial, EachStepIsDoneAsItIsWritten) {
   const std::pair<const char*, void (Tutorial::*)()> steps[] = {
       {"start", &Tutorial::start},
       {"touch", &Tutorial::touch},
       {"stroke", &Tutorial::stroke},
       {"soft and hard", &Tutorial::softAndHard},
-      {"friction", &Tutorial::friction}};
+      {"friction", &Tutorial::friction},
+      {"look inside", &Tutorial::lookInside},
+      {"own mesh", &Tutorial::ownMesh},
+      {"take it home", &Tutorial::takeHome},
+      {"without a hand", &Tutorial::commands}};
   for (const auto& [name, step] : steps) {
     SCOPED_TRACE(name);
     (this->*step)();

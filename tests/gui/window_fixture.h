@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "app/gui/window/main_window.h"
-#include "app/gui/window/window_style.h"
+#include "app/gui/window/theme.h"
 #include "geometry/io/mesh_io.h"
 #include "support/own_display.h"
 
@@ -35,7 +35,7 @@ inline QApplication& application() {
     auto* app = new QApplication(count, words);
     QApplication::setOrganizationName(QStringLiteral("patina-tests"));
     QApplication::setApplicationName(QStringLiteral("patina-tests"));
-    applyStyle(*app);
+    applyStyle(*app, Theme::light);
     return app;
   }();
   return *made;
@@ -117,7 +117,7 @@ class WindowTest : public ::testing::Test {
     find<ValueRow>(name)->findChild<QDoubleSpinBox*>()->setValue(value);
   }
   void addProperty(const QString& words) {
-    for (QAction* action : find<QToolButton>("add_property")->menu()->actions())
+    for (QAction* action : find<QMenu>("properties")->actions())
       if (action->text() == words) action->trigger();
   }
   SceneWidget& view() { return *find<SceneWidget>(); }

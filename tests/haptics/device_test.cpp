@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <thread>
 
@@ -54,6 +57,72 @@ TEST(TipTarget, IsNeverReadByHalf) {
     ASSERT_EQ(tip.x(), tip.z());
   }
   writer.join();
+}
+
+// A zigzag as a hand draws it, a place every 8 ms.
+std::vector<TipTarget::Waypoint> zigzag() {
+  std::vector<TipTarget::Waypoint> places;
+  for (int i = 0; i <= 60; ++i)
+    places.push_back({Vec3(1e-3 * i, 1e-3 * std::abs(i % 20 - 10), 0), 3 + 0.008 * i, 0});
+  return places;
+}
+
+// The tip's way where what the pointer did is told at the times of `told`.
+std::vector<Vec3> followed(const std::function<double(double)>& told) {
+  const auto target = targetAt(Vec3(0, 0.01, 0));
+  const auto mouse = makeMouse(target);
+  const auto places = zigzag();
+  std::vector<Vec3> way;
+  std::size_t next = 0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    while (next < places.size() && told(places[next].t) <= 3 + tick * kPeriod) {
+      target->pass(places[next].world, places[next].t);
+      ++next;
+    }
+    way.push_back(mouse->exchange(Vec3::Zero(), kPeriod).position);
+    if (next == places.size() && target->passed()) return way;
+  }
+  ADD_FAILURE() << "it never arrives";
+  return way;
+}
+
+TEST(TipTarget, APathIsFollowedThroughEveryPlaceHoweverLateItIsTold) {
+  const auto late = [](double t) { return 3 + 0.25 * std::ceil((t - 3) / 0.25); };
+  for (const auto& way : {followed([](double t) { return t; }), followed(late)}) {
+    for (const auto& place : zigzag()) {
+      double nearest = 1;
+      for (const Vec3& tip : way) nearest = std::min(nearest, (tip - place.world).norm());
+      EXPECT_LT(nearest, 1.5e-4) << place.world.transpose(); // half of what it goes in a tick
+    }
+    for (std::size_t i = 1; i < way.size(); ++i) // as fast as the hand, which does 0.18 m/s
+      EXPECT_LT((way[i] - way[i - 1]).norm(), 2.5 * 0.18 * kPeriod) << i;
+  }
+}
+
+TEST(TipTarget, APathTakesAsLongAsTheHandDidAndARestStays) {
+  const auto target = targetAt(Vec3::Zero());
+  const auto mouse = makeMouse(target);
+  target->pass(Vec3(0.001, 0, 0), 1.0);
+  target->pass(Vec3(0.002, 0, 0), 1.3);
+  target->pass(Vec3(0.003, 0, 0), 1.31);
+  int ticks = 0, rest = 0;
+  for (; ticks < 2000 && !target->passed(); ++ticks)
+    if (mouse->exchange(Vec3::Zero(), kPeriod).position.x() == 0.001) ++rest;
+  EXPECT_NEAR(ticks, 330, 5); // a step to the first place, then what the hand took
+  EXPECT_NEAR(rest, 280, 5);
+}
+
+TEST(TipTarget, APlaceThatIsSetForgetsThePath) {
+  const auto target = targetAt(Vec3::Zero());
+  const auto mouse = makeMouse(target);
+  for (int i = 1; i < 50; ++i) target->pass(Vec3(0, 1e-3 * i, 0), 0.01 * i);
+  mouse->exchange(Vec3::Zero(), kPeriod);
+  EXPECT_FALSE(target->passed());
+  target->set(Vec3(0.01, 0, 0));
+  Vec3 tip;
+  for (int i = 0; i < 500; ++i) tip = mouse->exchange(Vec3::Zero(), kPeriod).position;
+  EXPECT_TRUE(target->passed());
+  EXPECT_NEAR((tip - Vec3(0.01, 0, 0)).norm(), 0, 1e-6);
 }
 
 struct Held {

@@ -101,6 +101,7 @@ TEST(Help, FeelHasExactlyTheOptionsOfThisVersion) {
                                              "--band",
                                              "--sampler",
                                              "--unit",
+                                             "--up",
                                              "--iso",
                                              "--json",
                                              "--help"};

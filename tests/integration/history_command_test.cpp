@@ -74,8 +74,8 @@ TEST_F(History, ListNamesEveryEditAndWhatIsUndone) {
   const Json list = runJson({"undo", workspace, "--list"});
   const auto& edits = list.at("edits").asArray();
   ASSERT_EQ(edits.size(), 4U);
-  EXPECT_EQ(edits[0].at("what").asString(), "stiffness 900 N/m");
-  EXPECT_EQ(edits[1].at("what").asString(), "relief 0.5 mm");
+  EXPECT_EQ(edits[0].at("what").asString(), "stiffness 900 N/m, 6 mm");
+  EXPECT_EQ(edits[1].at("what").asString(), "relief 0.5 mm, 8 mm");
   EXPECT_EQ(edits[3].at("what").asString(), "stiffness = 700");
   EXPECT_TRUE(edits[2].at("done").asBool());
   EXPECT_FALSE(edits[3].at("done").asBool());

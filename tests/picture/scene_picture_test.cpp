@@ -38,13 +38,13 @@ class ScenePicture : public ::testing::Test {
     view_.setField(torusField());
   }
   Pixels drawn(const std::string& name, const std::set<Layer>& layers,
-               ViewPreset preset = ViewPreset::iso) {
+               ViewPreset preset = ViewPreset::iso, const PictureSize& size = {960, 720}) {
     view_.showOnly(layers);
     view_.setView(preset);
     const char* keep = std::getenv("PATINA_KEEP_PICTURES");
     const fs::path folder = keep != nullptr ? fs::path(keep) : fs::temp_directory_path();
     const fs::path path = folder / (name + "-" + std::to_string(getpid()) + ".png");
-    renderToPng(view_, {960, 720}, path);
+    renderToPng(view_, size, path);
     Pixels pixels(path);
     if (keep == nullptr)
       fs::remove(path);
@@ -83,7 +83,7 @@ TEST_F(ScenePicture, HiddenLayersDrawNothing) {
 
 TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
   view_.setSlice({1, 0.5});
-  const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::extent, Layer::iso});
+  const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::extent});
   EXPECT_GT(pixels.share(isWarm), 0.02);
   EXPECT_GT(pixels.share(isCool), 0.02);
   EXPECT_GT(pixels.share(isSurface), 0.04); // the half behind the plane
@@ -163,6 +163,22 @@ TEST_F(ScenePicture, NodesNearTheTipShowBothSidesOfTheSurface) {
   const Pixels pixels = drawn("nodes", {Layer::mesh, Layer::nodes, Layer::wireframe});
   EXPECT_GT(pixels.share(isWarm), 0.0005);
   EXPECT_GT(pixels.share(isCool), 0.0002);
+}
+
+TEST_F(ScenePicture, TheIsoSurfaceAtZeroTakesTheMeshsPlace) {
+  view_.setIso(0);
+  const Pixels pixels = drawn("iso_0", {Layer::mesh, Layer::iso});
+  EXPECT_GT(pixels.share(isCool), 0.2);
+  EXPECT_LT(pixels.share(isSurface), 0.002) << "two that lie in one another fight";
+}
+
+TEST_F(ScenePicture, TheAxesLettersAreWholeInASmallPicture) {
+  const Pixels pixels = drawn("small", {Layer::mesh}, ViewPreset::iso, {680, 440});
+  const auto blue = [](const Vec3& c) { return c[2] > c[0] + 60 && c[2] > c[1] + 30; };
+  int y = pixels.height() / 2, across = 0;
+  for (; y > 0 && across == 0; --y)
+    for (int x = 0; x < pixels.width() / 5; ++x) across += blue(pixels.at(x, y)) ? 1 : 0;
+  EXPECT_GE(across, 5) << "the upper bar of the Z, not its middle";
 }
 
 TEST_F(ScenePicture, IsoSurfaceAloneLooksLikeTheShape) {

@@ -96,7 +96,7 @@ TEST(Strokes, SeveralLayersAreOneStrokeAndOneLayerIsTheOldForm) {
   EXPECT_EQ(strokes[0].samples[0].tip, std::optional(Vec3(0.1, 0.2, 0.9)));
   EXPECT_FALSE(strokes[0].samples[1].tip);
   EXPECT_EQ(parseStrokes(toJson(strokes).dump(-1), "again"), strokes);
-  EXPECT_EQ(describe(strokes[0]), "color, stiffness 900 N/m, friction.static 0.7");
+  EXPECT_EQ(describe(strokes[0]), "color, stiffness 900 N/m, friction.static 0.7, 4 mm");
 
   const auto one = parseStrokes(
       textOf(
@@ -233,15 +233,15 @@ TEST(Edits, AreDescribedInAFewWords) {
   Stroke stroke;
   stroke.brush.tool = Tool::relief;
   stroke.brush.value = 3e-4;
-  EXPECT_EQ(describe(stroke), "relief 0.3 mm");
+  EXPECT_EQ(describe(stroke), "relief 0.3 mm, 5 mm");
   stroke.brush.tool = Tool::material(MaterialChannel::stiffness);
   stroke.brush.value = 900;
-  EXPECT_EQ(describe(stroke), "stiffness 900 N/m");
+  EXPECT_EQ(describe(stroke), "stiffness 900 N/m, 5 mm");
   stroke.brush.mode = StrokeMode::smooth;
-  EXPECT_EQ(describe(stroke), "stiffness smoothed");
+  EXPECT_EQ(describe(stroke), "stiffness smoothed, 5 mm");
   stroke.brush.tool = Tool::erase;
   stroke.brush.erases = "color";
-  EXPECT_EQ(describe(stroke), "erase color");
+  EXPECT_EQ(describe(stroke), "erase color, 5 mm");
   EXPECT_EQ(describe(ValueEdit{{{"stiffness", "800"}, {"damping", "1"}}}),
             "stiffness = 800, damping = 1");
   EXPECT_EQ(describe(SceneEdit{"add pot", nullptr}), "add pot");

@@ -65,6 +65,8 @@ Command guiCommand() {
                           into(options->input), Times::at_most_once),
                     {"--unit", "mm|cm|m|in|fit", "", "mm", "Unit of a mesh file.",
                      pass("--unit", parseMeshUnit)},
+                    {"--up", "z|y", "", "", "Axis of a mesh file that points upwards.",
+                     pass("--up", parseUpAxis)},
                     {"--iso", "VALUE", "", "",
                      "Value at which a volume (.vti) from elsewhere is a surface.",
                      pass("--iso", number)},

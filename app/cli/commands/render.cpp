@@ -144,7 +144,7 @@ int runRender(const RenderOptions& options, Console& console) {
     }
     if (options.layers.contains(Layer::stability)) {
       const SurfaceStability stability = requiredStability(*compiled, console.progress());
-      view.setStability(stability.surface.get(), stability.map.ratio);
+      view.setStability(stability.surface.get(), shownRatios(stability.map));
       report.set("stability", stabilityReport(stability, compiled->scene));
       report.tell("colours", "K*/K from " + rounded(kLeastRatioShown) + " to " +
                                  rounded(kMostRatioShown) + ", clipped beyond");
@@ -183,8 +183,9 @@ Command renderCommand() {
           "the tool at --tip, come to from outside; the layer band is where an offset or a magnet "
           "acts; the layer stability colours the surface by K*(x)/K for the scene's device "
           "(device.* values; without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below "
-          "1 the loop would buzz when pressed with 1 N, grey where the force jumps; colours end at "
-          "0.25 and 4. The layers from color on show what was painted in a workspace: color with "
+          "1 the loop would buzz when pressed with 1 N, violet where the tip slips off, dark where "
+          "the force jumps, grey where nothing is touched; colours end at 0.25 and 4. The layers "
+          "from color on show what was painted in a workspace: color with "
           "relief shaded as relief, the others against a scale, one at a time, material also on "
           "the slice; objects without it stay as they are.\n"
           "Needs a display; on a machine without one: xvfb-run -a patina render ...",

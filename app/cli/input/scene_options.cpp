@@ -56,6 +56,9 @@ void addOpenOptions(Command& command, OpenOptions& open) {
                                  open.unit = parseMeshUnit(text);
                                  open.unit_chosen = true;
                                }});
+  command.arguments.push_back({"--up", "z|y", "", "z",
+                               "Axis of a mesh file that points upwards; y is turned to z.",
+                               parsedInto(open.up, parseUpAxis)});
   command.arguments.push_back({"--iso", "VALUE", "", "",
                                "Value at which a volume (.vti) from elsewhere is a surface.",
                                into(open.iso)});

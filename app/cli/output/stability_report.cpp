@@ -76,7 +76,7 @@ Report stabilityReport(const SurfaceStability& stability, const Scene& scene) {
   report.set("slipping", share(map.slipping, map),
              percent(map.slipping) +
                  ": a light grip does not hold the tip there; judged as a plane");
-  report.set("jumping", share(map.jumping, map), percent(map.jumping) + ": the force jumps; grey");
+  report.set("jumping", share(map.jumping, map), percent(map.jumping) + ": the force jumps; dark");
   report.set("limit", map.limits.plain).set("limit_damped", map.limits.damped);
   report.set("device_given", scene.device_model.has_value(), deviceText(scene));
   report.set("coupled", map.limits.coupled(), "on: the map is of the coupled loop");

@@ -7,8 +7,8 @@
 #include <QObject>
 #include <QSplitter>
 
+#include "app/gui/widgets/folding_tabs.h"
 #include "app/gui/window/desk_layout.h"
-#include "app/gui/window/folding_tabs.h"
 #include "app/gui/window/tool_bar.h"
 
 namespace patina {

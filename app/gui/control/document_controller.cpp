@@ -3,6 +3,7 @@
 #include <QDragEnterEvent>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QSettings>
 
 #include "app/gui/loading/file_question.h"
 #include "app/gui/loading/load_dialogs.h"
@@ -23,17 +24,13 @@ QString wordsFor(const LoadRequest& request) {
                                 : fileNameOf(request.path);
 }
 
-LoadRequest requestFor(const QString& path) {
-  LoadRequest request;
-  request.path = path.toStdString();
-  return request;
-}
+const QString kYUp = QStringLiteral("y_up");
 
 } // namespace
 
 DocumentController::DocumentController(const Parts& parts, QObject* parent)
     : QObject(parent), at_(parts), loader_(parts.edits.thread().listener(), this),
-      recent_(parts.recent, this) {
+      recent_(parts.recent, this), up_(QSettings().value(kYUp).toBool() ? UpAxis::y : UpAxis::z) {
   connectLoader();
   connectRecovery();
   connect(&recent_, &RecentFiles::chosen, this,
@@ -63,12 +60,16 @@ void DocumentController::connectLoader() {
   });
   connect(&loader_, &SceneLoader::needsUnit, this, [this](double longest) {
     abandon();
-    askUnit(&at_.window, wordsFor(loader_.request()), longest, [this](MeshUnit unit) {
-      LoadRequest request = loader_.request();
-      request.options.unit = unit;
-      request.unit_chosen = true;
-      open(request);
-    });
+    const LoadRequest asked = loader_.request();
+    askUnit(&at_.window, wordsFor(asked), longest, asked.options.up,
+            [this, asked](MeshUnit unit, UpAxis up) {
+              LoadRequest request = asked;
+              request.options.unit = unit;
+              request.options.up = up;
+              request.unit_chosen = true;
+              setUp(up);
+              open(request);
+            });
   });
   connect(&loader_, &SceneLoader::needsIso, this, [this](double low, double high) {
     abandon();
@@ -139,6 +140,19 @@ void DocumentController::open(const LoadRequest& request) {
 
 void DocumentController::openAsked(const LoadRequest& request) {
   if (!asks_ || settleEdits()) open(request);
+}
+
+LoadRequest DocumentController::requestFor(const QString& path) const {
+  LoadRequest request;
+  request.path = path.toStdString();
+  request.options.up = up_;
+  return request;
+}
+
+void DocumentController::setUp(UpAxis up) {
+  up_ = up;
+  QSettings().setValue(kYUp, up == UpAxis::y);
+  emit changed();
 }
 
 void DocumentController::openDialog(bool adds) {

@@ -35,6 +35,9 @@ class DocumentController : public QObject {
   void open(const LoadRequest& request);
   void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
   void openDialog(bool adds);
+  // What is up in the mesh files that a person opens from now on, in later sessions too.
+  UpAxis up() const { return up_; }
+  void setUp(UpAxis up);
   bool save();                        // false: nothing was saved
   bool saveDialog();                  // the same, into a folder that is asked for
   void saveTo(const QString& folder); // events go on until it is there; throws Error
@@ -68,6 +71,7 @@ class DocumentController : public QObject {
   void add(const OpenedScene& opened);
   void abandon();
   void fail(const QString& message);
+  LoadRequest requestFor(const QString& path) const;
   void discard(); // what was edited since it was saved
   bool trySaving(const std::function<void()>& save, const QString& where, const QString& advice);
 
@@ -77,6 +81,7 @@ class DocumentController : public QObject {
   QString name_;
   std::optional<Work> work_;
   std::vector<std::filesystem::path> left_behind_; // what is offered comes first
+  UpAxis up_;
   bool asks_ = true, closing_ = false;
 };
 

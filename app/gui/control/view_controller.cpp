@@ -82,7 +82,7 @@ void ViewController::showPaint(const Scene& scene) {
 
 void ViewController::showStability(const std::shared_ptr<const SurfaceStability>& stability) {
   view().setStability(stability ? stability->surface.get() : nullptr,
-                      stability ? stability->map.ratio : std::vector<float>{});
+                      stability ? shownRatios(stability->map) : std::vector<float>{});
 }
 
 void ViewController::refresh() {

@@ -9,7 +9,7 @@
 #include "app/gui/painting/paint_display.h"
 #include "app/gui/panels/display_panel.h"
 #include "app/gui/panels/object_panel.h"
-#include "app/gui/window/scene_widget.h"
+#include "app/gui/widgets/scene_widget.h"
 #include "app/gui/window/window_state.h"
 #include "session/build/surface_stability.h"
 

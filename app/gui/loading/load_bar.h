@@ -8,7 +8,7 @@
 #include <QTimer>
 #include <QWidget>
 
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 #include "app/gui/window/window_state.h"
 
 namespace patina {

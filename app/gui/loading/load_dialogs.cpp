@@ -1,6 +1,7 @@
 #include "app/gui/loading/load_dialogs.h"
 
 #include <QButtonGroup>
+#include <QCheckBox>
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QDoubleSpinBox>
@@ -42,8 +43,8 @@ QString inWords(double metres) {
 
 } // namespace
 
-void askUnit(QWidget* parent, const QString& name, double longest,
-             std::function<void(MeshUnit)> answer) {
+void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
+             std::function<void(MeshUnit, UpAxis)> answer) {
   QDialog* dialog = questionAbout(
       parent, QDialog::tr("Which unit?"),
       QDialog::tr("%1 is %2 units long. Mesh files carry no unit, and in millimetres it would be "
@@ -64,9 +65,13 @@ void askUnit(QWidget* parent, const QString& name, double longest,
     dialog->layout()->addWidget(button);
   }
   group->button(static_cast<int>(MeshUnit::fit))->setChecked(true);
+  auto* y_up = new QCheckBox(QDialog::tr("y points upwards, not z"), dialog);
+  y_up->setObjectName(QStringLiteral("y_is_up"));
+  y_up->setChecked(up == UpAxis::y);
+  dialog->layout()->addWidget(y_up);
   addButtons(dialog);
-  QObject::connect(dialog, &QDialog::accepted, parent, [group, answer = std::move(answer)] {
-    answer(static_cast<MeshUnit>(group->checkedId()));
+  QObject::connect(dialog, &QDialog::accepted, parent, [group, y_up, answer = std::move(answer)] {
+    answer(static_cast<MeshUnit>(group->checkedId()), y_up->isChecked() ? UpAxis::y : UpAxis::z);
   });
   dialog->open();
 }

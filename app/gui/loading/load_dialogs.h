@@ -11,9 +11,10 @@
 
 namespace patina {
 
-// What unit a mesh is in whose size in millimetres makes little sense; longest in file units.
-void askUnit(QWidget* parent, const QString& name, double longest,
-             std::function<void(MeshUnit)> answer);
+// What unit a mesh is in whose size in millimetres makes little sense, and what is up in it;
+// longest in file units.
+void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
+             std::function<void(MeshUnit, UpAxis)> answer);
 
 // Which value of a volume is the surface.
 void askIso(QWidget* parent, const QString& name, double low, double high,

@@ -6,12 +6,14 @@
 #include <QLocale>
 #include <QPushButton>
 
+#include "app/gui/window/theme.h"
+
 namespace patina {
 
 RecoverBar::RecoverBar(QWidget* parent) : QWidget(parent), words_(new ElidedLabel(this)) {
   setAttribute(Qt::WA_StyledBackground);
   setObjectName(QStringLiteral("recover_bar"));
-  setStyleSheet(QStringLiteral("#recover_bar { background: #e3eefa; }"));
+  setStyleSheet(themed("#recover_bar { background: @notice; }"));
   auto* line = new QHBoxLayout(this);
   line->setContentsMargins(6, 0, 4, 0);
   line->addWidget(words_, 1);

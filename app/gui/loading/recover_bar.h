@@ -5,7 +5,7 @@
 
 #include <QWidget>
 
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 
 namespace patina {
 

@@ -4,6 +4,7 @@
 
 #include <QPainter>
 
+#include "app/gui/window/theme.h"
 #include "authoring/brush/painter.h"
 
 namespace patina {
@@ -22,8 +23,8 @@ void BrushCurve::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   const QRectF frame = QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5);
-  painter.setPen(QColor(0xd5, 0xda, 0xe2));
-  painter.setBrush(QColor(0xf6, 0xf8, 0xfa));
+  painter.setPen(ink("line"));
+  painter.setBrush(ink("soft"));
   painter.drawRoundedRect(frame, 3, 3);
   const double high = frame.height() - 8, base = frame.bottom() - 3;
   QPolygonF curve;
@@ -35,7 +36,7 @@ void BrushCurve::paintEvent(QPaintEvent*) {
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(0x2b, 0x6c, 0xb0, 60));
   painter.drawPolygon(curve);
-  painter.setPen(QPen(QColor(0x2b, 0x6c, 0xb0), 1.4));
+  painter.setPen(QPen(ink("accent"), 1.4));
   painter.drawPolyline(curve);
 }
 

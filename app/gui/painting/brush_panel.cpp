@@ -10,6 +10,7 @@
 #include <QToolButton>
 
 #include "app/gui/painting/tool_choice.h"
+#include "app/gui/window/theme.h"
 
 namespace patina {
 namespace {
@@ -88,7 +89,7 @@ void BrushPanel::addColor() {
   now->setToolTip(tr("What is painted with; choose another colour…"));
   const auto take = [this, now](const std::array<double, 3>& color) {
     brush_.color = color;
-    now->setStyleSheet(swatchStyle(color, QStringLiteral("2px solid #2b6cb0")));
+    now->setStyleSheet(swatchStyle(color, themed("2px solid @accent")));
   };
   take(brush_.color);
   connect(now, &QToolButton::clicked, this, [this, take] {
@@ -99,7 +100,7 @@ void BrushPanel::addColor() {
   });
   for (const auto& color : kSwatches) {
     QToolButton* button = swatch(21);
-    button->setStyleSheet(swatchStyle(color, QStringLiteral("1px solid #9aa3b0")));
+    button->setStyleSheet(swatchStyle(color, themed("1px solid @faint")));
     button->setToolTip(tr("Paint with %1").arg(qColor(color).name()));
     connect(button, &QToolButton::clicked, this, [this, color, take] {
       take(color);

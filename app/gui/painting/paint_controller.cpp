@@ -17,6 +17,10 @@ namespace {
 // for it does not move while the machine has no time for it.
 constexpr int kLinger = 250; // [ms]
 constexpr std::size_t kLingerTicks = 250;
+// And so long in all, for a tip that does not follow the pointer never arrives.
+constexpr int kLongest = 5000; // [ms]
+// A tick this far from the path between samples, in radii, is a sample.
+constexpr double kOff = 0.003;
 
 QString number(double value) {
   return QString::fromStdString(formatNumber(std::round(value * 1e4) / 1e4));
@@ -119,6 +123,12 @@ void PaintController::moveTip(const Vec3& target) {
   at_.feel.setTarget(target);
 }
 
+void PaintController::passTip(const Vec3& target) {
+  if (target == at_.view.target()) return;
+  at_.view.setTarget(target);
+  at_.feel.passTarget(target, t_);
+}
+
 void PaintController::press(const Vec3& surface, double newtons) {
   const HapticProperties& haptics = scene_->scene.haptics;
   // By the scene's own stiffness: what is painted harder or softer is felt as another force. Relief
@@ -130,32 +140,42 @@ void PaintController::press(const Vec3& surface, double newtons) {
   const SurfaceField& field = *scene_->built.field;
   depth = std::min(depth, 0.5 * field.band * field.grid.voxel);
   aim_ = surface;
+  if (newtons_ == 0) begin_ = surface;
   newtons_ = newtons;
-  moveTip(surface +
+  passTip(surface +
           (skinOf(haptics) + (values ? values->height : 0) - depth) * normalAt(*scene_, surface));
 }
 
-void PaintController::lift() {
-  newtons_ = 0;
+Vec3 PaintController::lifted() const {
   const HapticProperties& haptics = scene_->scene.haptics;
   const double skin = skinOf(haptics) + (haptics.magnet ? haptics.magnet->range : 0);
   const auto values = valuesAt(aim_);
   const double raised = values ? std::max(0.0, values->height) : 0;
-  moveTip(aim_ + (skin + raised + 0.02 * presets_.extent()) * normalAt(*scene_, aim_));
+  return aim_ + (skin + raised + 0.02 * presets_.extent()) * normalAt(*scene_, aim_);
+}
+
+void PaintController::lift() {
+  newtons_ = 0;
+  moveTip(lifted());
 }
 
 void PaintController::follow(const Pointed& where) {
   if (!scene_) return;
+  t_ = where.t;
+  const auto raise = [this] {
+    newtons_ = 0;
+    passTip(lifted());
+  };
   if (where.down) {
     down_ = true;
     lingers_ = false;
     if (where.surface)
       press(*where.surface, presets_.press * where.pressure);
     else
-      lift(); // beside the object: the stroke ends with its contact
+      raise(); // beside the object: the stroke ends with its contact
   } else if (down_) {
     down_ = false;
-    if (presses_) return lift();
+    if (presses_) return raise();
     lingers_ = true;
     released_.start();
     lingered_ = 0;
@@ -163,7 +183,7 @@ void PaintController::follow(const Pointed& where) {
 }
 
 bool PaintController::arrived(const std::vector<ToolSample>& ticks) const {
-  return tracker_.painting() && !ticks.empty() &&
+  return tracker_.painting() && at_.feel.passed() && !ticks.empty() &&
          (ticks.back().surface - aim_).norm() < 0.25 * brush().radius;
 }
 
@@ -181,9 +201,11 @@ void PaintController::feed(const std::vector<ToolSample>& ticks) {
   if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
   if (presses_) return;
   const double near = std::max(brush().radius, 0.02 * presets_.extent());
-  send(tracker_.feed(ticks, {down_ || lingers_, aim_, near}));
-  const bool over = lingered_ > kLingerTicks && released_.elapsed() > kLinger;
-  lingered_ += ticks.size(); // only after: the first of them may be from before the button
+  send(tracker_.feed(ticks, {down_ || lingers_, begin_, near, kOff * brush().radius}));
+  const bool waits = lingers_ && !at_.feel.passed(); // for a tip that is still on its way
+  const bool over = (!waits && lingered_ > kLingerTicks && released_.elapsed() > kLinger) ||
+                    released_.elapsed() > kLongest;
+  lingered_ += waits ? 0 : ticks.size(); // only after: the first may be from before the button
   if (!lingers_ || !(arrived(ticks) || over)) return;
   lingers_ = false;
   send(tracker_.feed({}, {}));
@@ -193,8 +215,8 @@ void PaintController::feed(const std::vector<ToolSample>& ticks) {
 void PaintController::refresh() {
   const bool paints = scene_ && at_.bar.choice().handling == Handling::paint;
   const auto surface = scene_ ? at_.view.underPointer() : std::nullopt;
-  if ((paints || (scene_ && presses_)) && surface && !down_ &&
-      !lingers_) { // the tool hovers where it would paint
+  if ((paints || (scene_ && presses_)) && surface && !down_ && !lingers_ &&
+      at_.feel.passed()) { // the tool hovers where it would paint
     aim_ = *surface;
     lift();
   }

@@ -11,7 +11,7 @@
 #include "app/gui/painting/brush_presets.h"
 #include "app/gui/painting/stroke_tracker.h"
 #include "app/gui/panels/tool_panel.h"
-#include "app/gui/window/scene_widget.h"
+#include "app/gui/widgets/scene_widget.h"
 #include "app/gui/window/tool_bar.h"
 #include "haptics/servo/tip_servo.h"
 #include "session/edit/edit_thread.h"
@@ -50,10 +50,12 @@ class PaintController : public QObject {
   void pickAt(const Vec3& surface);
   void follow(const Pointed& where);
   void press(const Vec3& surface, double newtons);
-  void lift();
+  Vec3 lifted() const; // the place over the aim
+  void lift();         // there at once
   void setForce(double newtons);
   void escape(); // the stroke is taken back
   void moveTip(const Vec3& target);
+  void passTip(const Vec3& target); // when it is that event's turn
   std::optional<SurfaceValues> valuesAt(const Vec3& surface, QString* object = nullptr) const;
   bool arrived(const std::vector<ToolSample>& ticks) const;
   void send(const std::vector<StrokePiece>& pieces);
@@ -65,8 +67,10 @@ class PaintController : public QObject {
   BrushPresets presets_;
   Tool tool_ = Tool::color; // of the brush, also while something else is chosen
   StrokeTracker tracker_;
-  Vec3 aim_ = Vec3::Zero(); // on the surface
-  double newtons_ = 0;      // with which it is pressed there; 0: it is not
+  Vec3 aim_ = Vec3::Zero();   // on the surface
+  Vec3 begin_ = Vec3::Zero(); // the aim when the tip was pressed on
+  double t_ = 0;              // [s], of the pointer
+  double newtons_ = 0;        // with which it is pressed there; 0: it is not
   bool down_ = false, lingers_ = false;
   bool presses_ = false; // and paints nothing
   QElapsedTimer released_;

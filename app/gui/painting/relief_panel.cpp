@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "app/gui/window/theme.h"
 #include "authoring/relief/relief_limits.h"
 #include "core/numbers.h"
 
@@ -144,8 +145,7 @@ void ReliefPanel::measure(std::shared_ptr<const CompiledScene> scene) {
       note_->setText(words);
       note_->setProperty("bad", beyond);
       note_->setProperty("quiet", !beyond);
-      note_->setStyleSheet(beyond ? QStringLiteral("color: #a12a1a;")
-                                  : QStringLiteral("color: #5b6575;"));
+      note_->setStyleSheet(beyond ? themed("color: @bad;") : themed("color: @quiet;"));
     });
   });
 }

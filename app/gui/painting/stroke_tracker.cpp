@@ -23,14 +23,19 @@ std::vector<StrokePiece> StrokeTracker::feed(std::span<const ToolSample> ticks, 
       if (!((tick.surface - hand.aim).norm() <= hand.near)) continue;
       painting_ = true;
       began_ = tick.t;
-      StrokePiece& first = piece();
-      first.begins = true;
-      first.samples.push_back({0, tick.surface, tick.force.norm(), tick.tip});
-      taken_ = tick.t;
-    } else if (tick.t - taken_ >= kSpacing - 1e-4) { // a clock's rounding is not a tick
-      piece().samples.push_back({tick.t - began_, tick.surface, tick.force.norm(), tick.tip});
-      taken_ = tick.t;
+      way_.clear();
+      piece().begins = true;
     }
+    const auto take = [&](const StrokeSample& sample) {
+      piece().samples.push_back(sample);
+      way_ = {sample};
+    };
+    const StrokeSample now{tick.t - began_, tick.surface, tick.force.norm(), tick.tip};
+    if (!way_.empty() && strays(way_, now, hand.off)) take(StrokeSample(way_.back()));
+    if (way_.empty() || now.t - way_.front().t >= kSpacing - 1e-4) // a clock's rounding is no tick
+      take(now);
+    else
+      way_.push_back(now);
   }
   if (painting_ && !hand.down) end();
   return pieces;

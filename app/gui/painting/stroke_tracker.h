@@ -23,17 +23,19 @@ class StrokeTracker {
     // A stroke begins only near there: a tip on its way to the place must not paint the way.
     Vec3 aim = Vec3::Zero();
     double near = 0; // [m]
+    double off = 1;  // [m], at most, from a tick to the way between two samples
   };
   // Ticks in their order. A contact that is lost for kLost ends the stroke; it may begin again.
   std::vector<StrokePiece> feed(std::span<const ToolSample> ticks, const Hand& hand);
   bool painting() const { return painting_; }
 
-  static constexpr double kSpacing = 1.0 / 120; // [s], between samples at least
+  static constexpr double kSpacing = 1.0 / 120; // [s], between samples, and nearer at a corner
   static constexpr double kLost = 0.03;         // [s]
 
  private:
   bool painting_ = false;
-  double began_ = 0, taken_ = 0, touched_ = 0; // [s], servo's time
+  double began_ = 0, touched_ = 0; // [s], servo's time
+  std::vector<StrokeSample> way_;  // from the last sample on
 };
 
 } // namespace patina

@@ -7,14 +7,11 @@
 #include <QPainter>
 #include <QPainterPath>
 
-#include "app/gui/window/drawn_icon.h"
+#include "app/gui/widgets/drawn_icon.h"
+#include "app/gui/window/theme.h"
 
 namespace patina {
 namespace {
-
-const QColor kInk(0x2a, 0x32, 0x40);
-const QColor kAccent(0x2b, 0x6c, 0xb0);
-const QColor kWarm(0xcc, 0x4a, 0x2c);
 
 QString tr(const char* words) {
   return QCoreApplication::translate("ToolBar", words);
@@ -24,7 +21,7 @@ QString tr(const char* words) {
 void drawNavigate(QPainter& p) {
   p.drawEllipse(QRectF(4, 7, 12, 6));
   p.drawEllipse(QRectF(7, 4, 6, 12));
-  p.setBrush(kInk);
+  p.setBrush(ink("text"));
   p.drawEllipse(QPointF(10, 10), 1.4, 1.4);
 }
 
@@ -33,7 +30,7 @@ void drawFeel(QPainter& p) {
   ground.cubicTo(6, 15, 7, 17.5, 10, 17.5);
   ground.cubicTo(13, 17.5, 14, 15, 18, 15);
   p.drawPath(ground);
-  p.setPen(QPen(kWarm, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("warm"), 1.8, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(10, 13), QPointF(10, 3.5));
   p.drawLine(QPointF(10, 3), QPointF(7.2, 6.2));
   p.drawLine(QPointF(10, 3), QPointF(12.8, 6.2));
@@ -44,7 +41,7 @@ void drawPress(QPainter& p) {
   ground.cubicTo(6, 14, 7, 17.5, 10, 17.5);
   ground.cubicTo(13, 17.5, 14, 14, 18, 14);
   p.drawPath(ground);
-  p.setPen(QPen(kAccent, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("accent"), 1.8, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(10, 3), QPointF(10, 13));
   p.drawLine(QPointF(10, 14), QPointF(7.2, 10.8));
   p.drawLine(QPointF(10, 14), QPointF(12.8, 10.8));
@@ -56,8 +53,8 @@ void drawBrush(QPainter& p) {
   tip.cubicTo(7, 8.6, 6.2, 12, 3, 16.6);
   tip.cubicTo(8, 17, 12, 15, 12.2, 10.8);
   tip.closeSubpath();
-  p.setBrush(kWarm);
-  p.setPen(QPen(kWarm.darker(130), 1));
+  p.setBrush(ink("warm"));
+  p.setPen(QPen(ink("warm").darker(130), 1));
   p.drawPath(tip);
 }
 
@@ -67,7 +64,7 @@ void drawRelief(QPainter& p) {
   hill.cubicTo(14, 5, 14, 15, 18.5, 15);
   p.setBrush(QColor(0x2b, 0x6c, 0xb0, 70));
   p.drawPath(hill);
-  p.setPen(QPen(kAccent, 1.6, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("accent"), 1.6, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(10, 12.5), QPointF(10, 8.5));
   p.drawLine(QPointF(10, 8), QPointF(8.3, 9.9));
   p.drawLine(QPointF(10, 8), QPointF(11.7, 9.9));
@@ -78,9 +75,9 @@ void drawStiffness(QPainter& p) { // a spring
   line << QPointF(10, 2) << QPointF(10, 4.5);
   for (int i = 0; i < 4; ++i) line << QPointF(i % 2 ? 5.5 : 14.5, 5.8 + 2.6 * i);
   line << QPointF(10, 15.5) << QPointF(10, 18);
-  p.setPen(QPen(kAccent, 1.7, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  p.setPen(QPen(ink("accent"), 1.7, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
   p.drawPolyline(line);
-  p.setPen(QPen(kInk, 1.6));
+  p.setPen(QPen(ink("text"), 1.6));
   p.drawLine(QPointF(4, 18), QPointF(16, 18));
 }
 
@@ -90,7 +87,7 @@ void drawFriction(QPainter& p) { // a block on rough ground
   QPolygonF ground;
   for (int i = 0; i <= 8; ++i) ground << QPointF(2 + 2 * i, i % 2 ? 13.4 : 16.4);
   p.drawPolyline(ground);
-  p.setPen(QPen(kWarm, 1.6, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("warm"), 1.6, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(7.5, 8.5), QPointF(12, 8.5));
 }
 
@@ -116,16 +113,16 @@ void drawErase(QPainter& p) {
   p.rotate(-40);
   p.setBrush(QColor(0xf0, 0xb8, 0xb0));
   p.drawRoundedRect(QRectF(-7, -3.6, 6, 7.2), 1, 1);
-  p.setBrush(QColor(0xff, 0xff, 0xff));
+  p.setBrush(ink("card"));
   p.drawRoundedRect(QRectF(-1, -3.6, 8, 7.2), 1, 1);
   p.restore();
   p.drawLine(QPointF(4, 17.5), QPointF(16, 17.5));
 }
 
 void drawPick(QPainter& p) { // a pipette
-  p.setPen(QPen(kInk, 3.6, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("text"), 3.6, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(13.5, 6.5), QPointF(16, 4));
-  p.setPen(QPen(kInk, 1.5, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("text"), 1.5, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(10.5, 5.5), QPointF(14.5, 9.5));
   p.setBrush(QColor(0x2b, 0x6c, 0xb0, 90));
   p.drawPolygon(QPolygonF() << QPointF(11.2, 6.8) << QPointF(13.2, 8.8) << QPointF(6, 16)

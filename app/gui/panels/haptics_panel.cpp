@@ -187,9 +187,9 @@ void HapticsPanel::addMenu() {
   auto* button = new QToolButton(form_);
   button->setObjectName(QStringLiteral("add_property"));
   button->setText(tr("+ Add property"));
-  button->setPopupMode(QToolButton::InstantPopup);
   button->setToolTip(tr("What a scene does not have costs nothing: no stage, no memory, no row."));
   auto* menu = new QMenu(button);
+  menu->setObjectName(QStringLiteral("properties"));
   const auto offer = [&](const QString& words, auto add) {
     connect(menu->addAction(words), &QAction::triggered, this,
             [this, add] { change([this, add] { add(haptics_); }); });
@@ -201,7 +201,9 @@ void HapticsPanel::addMenu() {
     offer(tr("Damping cut-off"), [](HapticProperties& h) { h.damping_cutoff = 100; });
   if (!haptics_.tip_radius)
     offer(tr("Tip radius"), [](HapticProperties& h) { h.tip_radius = 1e-3; });
-  button->setMenu(menu);
+  // Not the button's own: that would wait for the menu, whose choice takes both away.
+  connect(button, &QToolButton::clicked, menu,
+          [=] { menu->popup(button->mapToGlobal(button->rect().bottomLeft())); });
   button->setVisible(!menu->isEmpty());
   form_->addWidget(button);
 }

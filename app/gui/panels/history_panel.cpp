@@ -1,6 +1,7 @@
 #include "app/gui/panels/history_panel.h"
 
 #include "app/gui/panels/history_words.h"
+#include "app/gui/window/theme.h"
 
 namespace patina {
 
@@ -11,10 +12,10 @@ HistoryPanel::HistoryPanel(QWidget* parent) : QListWidget(parent) {
   setFocusPolicy(Qt::NoFocus); // keys are the view's
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setTextElideMode(Qt::ElideRight);
-  setStyleSheet(QStringLiteral("QListWidget { border: none; background: #ffffff; }"
-                               "QListWidget::item { padding: 2px 6px; }"
-                               "QListWidget::item:selected { background: #cfe0f3;"
-                               " color: #222832; }"));
+  setStyleSheet(themed("QListWidget { border: none; background: @card; }"
+                       "QListWidget::item { padding: 2px 6px; }"
+                       "QListWidget::item:selected { background: @chosen;"
+                       " color: @text; }"));
   connect(this, &QListWidget::itemClicked, this,
           [this](QListWidgetItem* item) { emit asked(static_cast<std::size_t>(row(item))); });
 }
@@ -33,7 +34,7 @@ void HistoryPanel::show(const EditStatus& status) {
     QFont font = this->font();
     font.setItalic(!done);
     item(i)->setFont(font);
-    item(i)->setForeground(done ? QColor(0x22, 0x28, 0x32) : QColor(0x9a, 0xa3, 0xb0));
+    item(i)->setForeground(done ? ink("text") : ink("faint"));
     item(i)->setToolTip(done ? item(i)->text() : tr("%1 (undone)").arg(item(i)->text()));
   }
   setCurrentRow(static_cast<int>(status.done));

@@ -20,18 +20,40 @@ QString text(std::string_view utf8) {
   return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
 }
 
+// "tip.radius" as "tip radius".
+QString plain(QString key) {
+  return key.replace(QRegExp(QStringLiteral("[._](?=[a-z])")), QStringLiteral(" "));
+}
+
+QString micro(QString words) {
+  return words.replace(QStringLiteral(" um"), QStringLiteral(" µm"));
+}
+
 // "tip.radius = 0.001" as "tip radius 1 mm".
 QString wordsOfValue(const QString& piece) {
-  const int sign = piece.indexOf(QStringLiteral(" = "));
-  const QString key = piece.left(sign), value = piece.mid(sign + 3);
-  const QString caption = QString(key).replace('.', ' ').replace('_', ' ');
+  const QString key = piece.section(QStringLiteral(" = "), 0, 0);
+  const QString value = piece.section(QStringLiteral(" = "), 1);
   const auto number = parseNumber(value.toStdString());
-  if (!number) return caption + ' ' + value;
+  if (!number) return plain(key) + ' ' + value;
   const std::string_view unit = sceneKey(key.toStdString()).unit;
-  if (unit == "m")
-    return caption + ' ' +
-           text(formatLength(*number)).replace(QStringLiteral("um"), QStringLiteral("µm"));
-  return (caption + ' ' + QString::number(*number, 'g', 4) + ' ' + text(unit)).trimmed();
+  if (unit == "m") return plain(key) + ' ' + micro(text(formatLength(*number)));
+  return (plain(key) + ' ' + QString::number(*number, 'g', 4) + ' ' + text(unit)).trimmed();
+}
+
+// What goes with all its keys is named once: "no friction".
+QString wordsOfValues(const QStringList& pieces) {
+  const QString none = QStringLiteral(" = none");
+  QStringList words;
+  for (const QString& piece : pieces) {
+    const QString whole = piece.section('.', 0, 0);
+    const bool gone = piece.endsWith(none);
+    const bool family = pieces.filter(QRegExp("^" + whole + "[. ]")).filter(none).size() > 1;
+    words << (gone ? tr("no %1").arg(
+                         plain(family ? QString(whole).remove(none) : QString(piece).remove(none)))
+                   : wordsOfValue(piece));
+  }
+  words.removeDuplicates();
+  return words.join(QStringLiteral(", "));
 }
 
 bool isStroke(const QString& edit) {
@@ -45,15 +67,12 @@ bool isStroke(const QString& edit) {
 QString wordsOfEdit(const std::string& edit) {
   QString words = text(edit);
   if (words.contains(QStringLiteral(" = "))) {
-    QStringList pieces = words.split(QStringLiteral(", "));
-    for (QString& piece : pieces) piece = wordsOfValue(piece);
-    words = pieces.join(QStringLiteral(", "));
+    words = wordsOfValues(words.split(QStringLiteral(", ")));
   } else if (words.startsWith(text(name(Tool::erase)))) {
     words.replace(0, 5, tr("erased"));
   } else if (isStroke(words)) {
-    words = tr("painted %1")
-                .arg(words.replace(QStringLiteral("color"), tr("colour"))
-                         .replace(QStringLiteral(" um"), QStringLiteral(" µm")));
+    words =
+        tr("painted %1").arg(micro(plain(words).replace(QStringLiteral("color"), tr("colour"))));
   }
   return words.left(1).toUpper() + words.mid(1);
 }

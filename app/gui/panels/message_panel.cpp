@@ -3,10 +3,11 @@
 #include <QHBoxLayout>
 #include <QTime>
 
+#include "app/gui/window/theme.h"
+
 namespace patina {
 namespace {
 constexpr int kPatience = 8000; // [ms]
-const QColor kWarning(0x7a, 0x4f, 0x00);
 } // namespace
 
 MessagePanel::MessagePanel(QWidget* parent) : QListWidget(parent) {
@@ -15,15 +16,15 @@ MessagePanel::MessagePanel(QWidget* parent) : QListWidget(parent) {
   setWordWrap(true);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setSelectionMode(QAbstractItemView::NoSelection);
-  setStyleSheet(QStringLiteral("QListWidget { border: none; background: #ffffff; }"
-                               "QListWidget::item { padding: 2px 6px; }"));
+  setStyleSheet(themed("QListWidget { border: none; background: @card; }"
+                       "QListWidget::item { padding: 2px 6px; }"));
   setToolTip(tr("What the window has said since it was opened"));
 }
 
 void MessagePanel::add(const Message& message) {
   auto* item = new QListWidgetItem(
       QTime::currentTime().toString(QStringLiteral("hh:mm  ")) + message.words, this);
-  if (message.warns) item->setForeground(kWarning);
+  if (message.warns) item->setForeground(ink("warn"));
   scrollToBottom();
 }
 
@@ -48,7 +49,7 @@ NoticeLine::NoticeLine(QWidget* parent) : QWidget(parent), words_(new ElidedLabe
 
 void NoticeLine::show(const Message& message) {
   QPalette colors = palette();
-  colors.setColor(QPalette::WindowText, message.warns ? kWarning : QColor(0x22, 0x28, 0x32));
+  colors.setColor(QPalette::WindowText, message.warns ? ink("warn") : ink("text"));
   words_->setPalette(colors);
   words_->setText(message.words);
   message.warns ? patience_.stop() : patience_.start();

@@ -5,7 +5,7 @@
 #include <QTimer>
 #include <QToolButton>
 
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 
 namespace patina {
 

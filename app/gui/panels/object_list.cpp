@@ -7,6 +7,7 @@
 #include <QVBoxLayout>
 
 #include "app/gui/panels/pose_values.h"
+#include "app/gui/window/theme.h"
 
 namespace patina {
 
@@ -19,7 +20,7 @@ ObjectList::ObjectList(QWidget* parent)
   column->setSpacing(6);
   list_->setObjectName(QStringLiteral("objects"));
   list_->setToolTip(tr("What is felt as one surface; the chosen one is moved below"));
-  list_->setStyleSheet(QStringLiteral("QListWidget { border: 1px solid #d5dae2; }"));
+  list_->setStyleSheet(themed("QListWidget { border: 1px solid @line; }"));
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   column->addWidget(list_);
 

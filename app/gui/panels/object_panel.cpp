@@ -4,7 +4,7 @@
 #include <QVBoxLayout>
 #include <QVariant>
 
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 #include "core/numbers.h"
 
 namespace patina {

@@ -7,14 +7,14 @@
 #include <QLayout>
 #include <QPainter>
 
+#include "app/gui/window/theme.h"
+
 namespace patina {
 namespace {
 
 constexpr double kSpan = 5;       // [s]
 constexpr double kEvery = 0.004;  // [s]: 250 points a second are more than pixels
 constexpr float kNothing = 1e-6F; // in the unit of the plot
-
-const QColor kWords(0x4a, 0x53, 0x62), kGrid(0xe4, 0xe8, 0xee), kZero(0xa8, 0xb0, 0xbc);
 
 QString withMinus(QString words) {
   return words.replace('-', QStringLiteral("−"));
@@ -87,21 +87,21 @@ double StripPlot::toY(const QRectF& area, double value) const {
 
 void StripPlot::paintAxes(QPainter& painter, const QRectF& area) const {
   const int line = QFontMetrics(font()).height();
-  painter.setPen(kWords);
+  painter.setPen(ink("quiet"));
   painter.drawText(QRectF(0, area.top(), 26, area.height()), Qt::AlignCenter, unit_);
   for (const double value : {-top_, -0.5 * top_, 0.0, 0.5 * top_, top_}) {
     const double y = toY(area, value);
-    painter.setPen(value == 0 ? kZero : kGrid);
+    painter.setPen(value == 0 ? ink("grip") : ink("line"));
     painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y));
-    painter.setPen(kWords);
+    painter.setPen(ink("quiet"));
     painter.drawText(QRectF(14, y - 8, 38, 16), Qt::AlignRight | Qt::AlignVCenter,
                      withMinus(QString::number(value, 'g', 3)));
   }
   for (int back = 0; back <= static_cast<int>(kSpan); ++back) {
     const double x = toX(area, latest_ - back);
-    painter.setPen(kGrid);
+    painter.setPen(ink("line"));
     painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
-    painter.setPen(kWords);
+    painter.setPen(ink("quiet"));
     painter.drawText(QRectF(x - 30, area.bottom() + 3, 60, line), Qt::AlignCenter,
                      back == 0 ? tr("now") : QStringLiteral("−%1 s").arg(back));
   }
@@ -129,7 +129,7 @@ void StripPlot::paintLegend(QPainter& painter, const QRectF& area) const {
         withMinus(QStringLiteral("%1 %2 %3").arg(curves_[c].name).arg(value, 0, 'f', 2).arg(unit_));
     painter.setPen(QPen(curves_[c].color, 3));
     painter.drawLine(QPointF(x, middle), QPointF(x + 12, middle));
-    painter.setPen(QColor(0x22, 0x28, 0x32));
+    painter.setPen(ink("text"));
     painter.drawText(QPointF(x + 17, 4 + metrics.ascent()), words);
     x += legendWidth(c);
   }
@@ -137,7 +137,7 @@ void StripPlot::paintLegend(QPainter& painter, const QRectF& area) const {
 
 void StripPlot::paintEvent(QPaintEvent*) {
   QPainter painter(this);
-  painter.fillRect(rect(), Qt::white);
+  painter.fillRect(rect(), ink("card"));
   top_ = top();
   const int line = QFontMetrics(font()).height();
   const QRectF area(58, line + 10, width() - 74, height() - 2 * line - 20);

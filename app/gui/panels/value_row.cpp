@@ -6,7 +6,7 @@
 #include <QGridLayout>
 #include <QSignalBlocker>
 
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 
 namespace patina {
 namespace {

@@ -3,18 +3,17 @@
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 
-#include "app/gui/window/window_style.h"
+#include "app/gui/window/theme.h"
 
 namespace patina {
 
 ForcePlot::ForcePlot(QWidget* parent)
-    : StripPlot(
-          QStringLiteral("N"),
-          {{QStringLiteral("|F|"), toQColor(palette::kText), 2.0, true}, // told apart by any eye
-           {QStringLiteral("x"), QColor(0xd5, 0x5e, 0x00)},
-           {QStringLiteral("y"), QColor(0x00, 0x9e, 0x73)},
-           {QStringLiteral("z"), QColor(0x00, 0x72, 0xb2)}},
-          0.5, parent) {
+    : StripPlot(QStringLiteral("N"),
+                {{QStringLiteral("|F|"), ink("text"), 2.0, true}, // told apart by any eye
+                 {QStringLiteral("x"), ink("series_x")},
+                 {QStringLiteral("y"), ink("series_y")},
+                 {QStringLiteral("z"), ink("series_z")}},
+                0.5, parent) {
   setToolTip(tr("Force on the hand over the last five seconds"));
 }
 
@@ -27,9 +26,8 @@ void ForcePlot::addSamples(const std::vector<ToolSample>& samples) {
 
 EnergyPlot::EnergyPlot(QWidget* parent)
     : StripPlot(QStringLiteral("mJ"),
-                {{QStringLiteral("E"), toQColor(palette::kSeries[0]), 2.0},
-                 {tr("lowest"), toQColor(palette::kSeries[1])}},
-                1.0, parent) {
+                {{QStringLiteral("E"), ink("series_e"), 2.0}, {tr("lowest"), ink("series_x")}}, 1.0,
+                parent) {
   setToolTip(tr("Energy that the surface has taken from the hand. A spring gives back what it "
                 "took; friction and damping keep it. Well below zero the surface feeds the hand: "
                 "that is what a buzz lives on."));

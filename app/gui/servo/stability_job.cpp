@@ -24,11 +24,11 @@ QString summary(const SurfaceStability& stability, bool device_given) {
     if (count > 0)
       words += StabilityJob::tr("; %1 % %2").arg(part, 0, 'f', part < 10 ? 1 : 0).arg(what);
   };
-  const auto grey = static_cast<std::size_t>(
-      std::count_if(map.ratio.begin(), map.ratio.end(), [](float r) { return std::isnan(r); }));
-  add(map.slipping, StabilityJob::tr("lets the tip slip off and is judged as a plane"));
-  add(map.jumping, StabilityJob::tr("jumps (grey)"));
-  add(grey - std::min(grey, map.jumping), StabilityJob::tr("is not touched (grey)"));
+  const auto untouched =
+      std::count_if(map.least.begin(), map.least.end(), [](float l) { return std::isnan(l); });
+  add(map.slipping, StabilityJob::tr("lets the tip slip off (violet, unless it buzzes)"));
+  add(map.jumping, StabilityJob::tr("jumps (dark)"));
+  add(static_cast<std::size_t>(untouched), StabilityJob::tr("is not touched (grey)"));
   if (!device_given)
     words += StabilityJob::tr(". For a device of 100 g and 0.5 N s/m at 1 kHz: the scene has no "
                               "device numbers.");

@@ -3,6 +3,8 @@
 #include <QHBoxLayout>
 #include <QToolButton>
 
+#include "app/gui/window/theme.h"
+
 namespace patina {
 
 TouchMode touchMode(const HapticProperties& haptics) {
@@ -35,10 +37,10 @@ ModeSwitch::ModeSwitch(QWidget* parent) : QWidget(parent), buttons_(new QButtonG
     buttons_->addButton(button, static_cast<int>(choice.mode));
     row->addWidget(button);
   }
-  setStyleSheet(QStringLiteral(
-      "QToolButton { border: 1px solid #c3cad5; padding: 3px; background: #f6f8fa; }"
-      "QToolButton:hover { background: #e0e6ee; }"
-      "QToolButton:checked { background: #2b6cb0; color: white; border-color: #2b6cb0; }"));
+  setStyleSheet(
+      themed("QToolButton { border: 1px solid @grip; padding: 3px; background: @soft; }"
+             "QToolButton:hover { background: @hover; }"
+             "QToolButton:checked { background: @strong; color: white; border-color: @strong; }"));
   setMode(TouchMode::contact);
   connect(buttons_, &QButtonGroup::idClicked, this,
           [this](int id) { emit chosen(static_cast<TouchMode>(id)); });

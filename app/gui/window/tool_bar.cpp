@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "app/gui/window/theme.h"
+
 namespace patina {
 namespace {
 
@@ -32,11 +34,11 @@ ToolBar::ToolBar(QWidget* parent)
   setOrientation(Qt::Vertical);
   setIconSize({20, 20});
   setToolButtonStyle(Qt::ToolButtonIconOnly);
-  setStyleSheet(QStringLiteral(
-      "QToolBar { border: none; border-right: 1px solid #d5dae2; padding: 6px 3px; spacing: 2px; }"
+  setStyleSheet(themed(
+      "QToolBar { border: none; border-right: 1px solid @line; padding: 6px 3px; spacing: 2px; }"
       "QToolButton { padding: 5px; border: 1px solid transparent; border-radius: 4px; }"
-      "QToolButton:hover { background: #e0e6ee; }"
-      "QToolButton:checked { background: #cfe0f3; border-color: #2b6cb0; }"
+      "QToolButton:hover { background: @hover; }"
+      "QToolButton:checked { background: @chosen; border-color: @accent; }"
       "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
   auto* menu = new QMenu(more_);
   for (const ToolCard& card : toolCards()) {

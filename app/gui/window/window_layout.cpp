@@ -5,9 +5,9 @@
 #include <QScrollArea>
 #include <QVBoxLayout>
 
-#include "app/gui/window/drawn_icon.h"
-#include "app/gui/window/value_focus.h"
-#include "app/gui/window/window_style.h"
+#include "app/gui/widgets/drawn_icon.h"
+#include "app/gui/widgets/value_focus.h"
+#include "app/gui/window/theme.h"
 
 namespace patina {
 namespace {

@@ -23,9 +23,9 @@
 #include "app/gui/panels/object_panel.h"
 #include "app/gui/panels/tool_panel.h"
 #include "app/gui/servo/live_plots.h"
-#include "app/gui/window/folding_tabs.h"
-#include "app/gui/window/scene_widget.h"
-#include "app/gui/window/status_line.h"
+#include "app/gui/widgets/folding_tabs.h"
+#include "app/gui/widgets/scene_widget.h"
+#include "app/gui/widgets/status_line.h"
 #include "app/gui/window/tool_bar.h"
 #include "app/gui/window/window_state.h"
 

@@ -11,6 +11,7 @@
 #include "app/gui/control/feel_controller.h"
 #include "app/gui/control/view_controller.h"
 #include "app/gui/painting/paint_controller.h"
+#include "app/gui/window/theme.h"
 #include "visualization/view/camera.h"
 
 namespace patina {
@@ -76,6 +77,15 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   add->setToolTip(tr("A mesh or volume that is felt together with what is open"));
   file->addMenu(parts.recent);
   file->addAction(tr("Open the toy &dinosaur"), documents, [=] { documents->openAsked({}); });
+  QAction* y_up = file->addAction(tr("&Y is up in mesh files"));
+  y_up->setObjectName(QStringLiteral("y_up"));
+  y_up->setToolTip(tr("Meshes that are opened from now on are turned so that their y is up"));
+  y_up->setCheckable(true);
+  y_up->setChecked(documents->up() == UpAxis::y);
+  QObject::connect(y_up, &QAction::toggled, documents,
+                   [=](bool on) { documents->setUp(on ? UpAxis::y : UpAxis::z); });
+  QObject::connect(documents, &DocumentController::changed, y_up,
+                   [=] { y_up->setChecked(documents->up() == UpAxis::y); });
   file->addSeparator();
   QAction* save =
       file->addAction(tr("&Save"), documents, &DocumentController::save, QKeySequence::Save);
@@ -213,11 +223,11 @@ void addMenus(QMainWindow& window, WindowParts& parts, const Controllers& contro
   bar->setObjectName(QStringLiteral("tools"));
   bar->setMovable(false);
   bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
-  bar->setStyleSheet(QStringLiteral(
-      "QToolBar { border: none; border-bottom: 1px solid #d5dae2; padding: 1px 6px; spacing: 2px; }"
+  bar->setStyleSheet(themed(
+      "QToolBar { border: none; border-bottom: 1px solid @line; padding: 1px 6px; spacing: 2px; }"
       "QToolButton { padding: 3px 8px; border: 1px solid transparent; border-radius: 4px; }"
-      "QToolButton:hover { background: #e0e6ee; }"
-      "QToolButton:checked { background: #2b6cb0; color: white; }"
+      "QToolButton:hover { background: @hover; }"
+      "QToolButton:checked { background: @strong; color: white; }"
       "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
   bar->addActions(controllers.desks.actions());
   bar->addSeparator();

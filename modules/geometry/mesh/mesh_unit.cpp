@@ -46,6 +46,18 @@ std::string_view name(MeshUnit unit) {
   return textIn(kUnits, unit);
 }
 
+UpAxis parseUpAxis(std::string_view text) {
+  constexpr std::array<Named<UpAxis>, 2> kAxes = {{{UpAxis::z, "z"}, {UpAxis::y, "y"}}};
+  if (const auto axis = valueIn(kAxes, text)) return *axis;
+  throw Error("up axis '" + std::string(text) + "' is unknown; z and y are");
+}
+
+TriangleMesh zUp(TriangleMesh mesh, UpAxis up) {
+  if (up == UpAxis::y)
+    for (Vec3& p : mesh.positions) p = Vec3(p.x(), -p.z(), p.y());
+  return mesh;
+}
+
 ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit) {
   ScaledMesh result;
   const Box3 box = finiteBox(mesh);

@@ -1,4 +1,4 @@
-// Meshes carry no unit; this gives them one.
+// Meshes carry no unit, and some have y upwards; this gives them metres and z.
 #pragma once
 
 #include <string>
@@ -12,6 +12,12 @@ enum class MeshUnit { mm, cm, m, in, fit }; // fit: longest side becomes 100 mm
 
 MeshUnit parseMeshUnit(std::string_view text); // throws Error naming the choices
 std::string_view name(MeshUnit unit);
+
+enum class UpAxis { z, y }; // of the program that wrote the file
+
+UpAxis parseUpAxis(std::string_view text); // throws Error naming the choices
+// Turned about x so that what was up is z.
+TriangleMesh zUp(TriangleMesh mesh, UpAxis up);
 
 // [m] from the origin, along an axis. Areas are squared: the fourth power of a length must be a
 // double, and distances lose their signs from 1e77 on.

@@ -1,6 +1,10 @@
 #include "haptics/devices/tip_target.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "haptics/devices/exact_step.h"
 
@@ -9,6 +13,8 @@ namespace {
 
 // Pointer events come every 8 to 16 ms; following slower than that hides their steps.
 constexpr double kFollowTime = 0.015; // [s]
+constexpr double kLate = 0.002;       // [s]: less is made up for
+constexpr double kStep = 0.020;       // [s]: a longer one is a pointer that rested
 
 } // namespace
 
@@ -27,24 +33,84 @@ void TipTarget::set(const Vec3& world) noexcept {
   version_.store(version + 2, std::memory_order_seq_cst);
 }
 
-void TipTarget::read(Vec3& world) const noexcept {
+void TipTarget::pass(const Vec3& world, double t) noexcept {
+  if (!world.allFinite() || !std::isfinite(t)) return;
+  if (path_.push({world, t, version_.load(std::memory_order_relaxed)}))
+    asked_.fetch_add(1, std::memory_order_release);
+}
+
+bool TipTarget::passed() const noexcept {
+  return passed_.load(std::memory_order_acquire) == asked_.load(std::memory_order_relaxed);
+}
+
+std::uint64_t TipTarget::read(Vec3& world) const noexcept {
   const std::uint64_t before = version_.load(std::memory_order_seq_cst);
   Vec3 seen;
   for (std::size_t i = 0; i < 3; ++i)
     seen[static_cast<int>(i)] = value_[i].load(std::memory_order_seq_cst);
-  if (before % 2 == 0 && version_.load(std::memory_order_seq_cst) == before) world = seen;
+  if (before % 2 != 0 || version_.load(std::memory_order_seq_cst) != before) return 0;
+  world = seen;
+  return before;
+}
+
+bool TipTarget::next(Waypoint& waypoint) const noexcept {
+  return path_.pop(waypoint);
+}
+
+bool TipTarget::isNewest() const noexcept {
+  return passed_.load(std::memory_order_relaxed) + 1 == asked_.load(std::memory_order_acquire);
+}
+
+void TipTarget::setPassed() const noexcept {
+  passed_.fetch_add(1, std::memory_order_release);
 }
 
 GlidingTip::GlidingTip(std::shared_ptr<const TipTarget> target, double max_speed)
     : target_(std::move(target)), max_speed_(max_speed) {
   if (!target_ || !(max_speed > 0))
     throw std::invalid_argument("gliding tip: it needs a target and a speed above 0");
-  target_->read(goal_);
+  version_ = target_->read(goal_);
   tip_ = goal_;
 }
 
+// A pointer that rested has moved in the last step only. Told too late, the leg begins now; and so
+// does the newest one, for these ticks may be slower than the pointer's clock.
+bool GlidingTip::take() noexcept {
+  TipTarget::Waypoint next;
+  do {
+    if (!target_->next(next)) return false;
+    if (next.version < version_) target_->setPassed(); // set anew since
+  } while (next.version < version_);
+  version_ = next.version;
+  const double before = on_path_ ? to_.t : -std::numeric_limits<double>::infinity();
+  from_ = tip_;
+  to_ = next;
+  to_.t = std::max(to_.t, before);
+  leaves_ =
+      std::min(std::max(before, to_.t - kStep), to_.t - (to_.world - from_).norm() / max_speed_);
+  const bool rests = now_ < leaves_ && !target_->isNewest();
+  if (!on_path_ || now_ > leaves_ + kLate || (now_ < leaves_ && !rests)) now_ = leaves_;
+  return on_path_ = on_leg_ = true;
+}
+
 const Vec3& GlidingTip::follow(double dt) noexcept {
-  target_->read(goal_);
+  if (const std::uint64_t version = target_->read(goal_); version > version_) {
+    version_ = version;
+    if (std::exchange(on_leg_, false)) target_->setPassed();
+    on_path_ = false;
+  }
+  now_ += dt;
+  while (on_leg_ || take()) {
+    if (now_ < to_.t) {
+      const double part = std::max(0.0, (now_ - leaves_) / (to_.t - leaves_));
+      return tip_ = from_ + part * (to_.world - from_);
+    }
+    tip_ = to_.world;
+    on_leg_ = false;
+    target_->setPassed();
+    if (now_ < to_.t + dt) return tip_; // at each place is a tick, or a corner would be cut
+  }
+  if (on_path_) return tip_;
   Vec3 move = (goal_ - tip_) * masslessShare(kFollowTime, dt);
   const double longest = max_speed_ * dt;
   const double length = move.norm();

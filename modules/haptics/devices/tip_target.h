@@ -6,24 +6,44 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/ring.h"
 #include "core/types.h"
 
 namespace patina {
 
-// Three numbers that never tear; neither side ever waits.
+// A place, or places with the times at which a pointer was there. Neither side ever waits. set(),
+// pass() and passed() are one thread's at a time, the rest is the servo's; what is not finite is
+// ignored.
 class TipTarget {
  public:
   explicit TipTarget(const Vec3& start); // throws std::invalid_argument if it is not finite
-  void set(const Vec3& world) noexcept;  // one thread at a time; what is not finite is ignored
-  void read(Vec3& world) const noexcept; // leaves it as it is where it meets a write
+  void set(const Vec3& world) noexcept;  // at once: what was to be passed is forgotten
+  // After those before, as much later as t [s] says, whenever it is told: pointer events that a
+  // long frame has held up are still followed as the hand moved.
+  void pass(const Vec3& world, double t) noexcept;
+  bool passed() const noexcept; // the tip has been at all of them
+
+  struct Waypoint {
+    Vec3 world = Vec3::Zero();
+    double t = 0;
+    std::uint64_t version = 0; // of the place that was set before
+  };
+  // The version of the place; 0 where it meets a write, and world stays.
+  std::uint64_t read(Vec3& world) const noexcept;
+  bool next(Waypoint& waypoint) const noexcept; // false: none waits
+  bool isNewest() const noexcept;               // what was taken last; none waits behind it
+  void setPassed() const noexcept;              // one more of them
 
  private:
   std::atomic<std::uint64_t> version_{0};
   std::array<std::atomic<double>, 3> value_{};
+  mutable Ring<Waypoint> path_{4096};
+  std::atomic<std::uint64_t> asked_{0};
+  mutable std::atomic<std::uint64_t> passed_{0};
 };
 
 // A point that glides to a target at no more than max_speed, so that a jump of the pointer is not a
-// jump of the tip.
+// jump of the tip. A path it follows corner by corner, a pointer's step later.
 class GlidingTip {
  public:
   // Begins at the target. Throws std::invalid_argument without one, or if max_speed [m/s] is not
@@ -33,10 +53,18 @@ class GlidingTip {
   const Vec3& position() const noexcept { return tip_; }
 
  private:
+  bool take() noexcept; // the next leg of the path
+
   std::shared_ptr<const TipTarget> target_;
   Vec3 goal_ = Vec3::Zero();
+  std::uint64_t version_ = 0; // of the goal
   Vec3 tip_;
   double max_speed_;
+  // On a path: the leg that it is on, or that it has come to the end of.
+  bool on_path_ = false, on_leg_ = false;
+  Vec3 from_ = Vec3::Zero();
+  TipTarget::Waypoint to_;
+  double leaves_ = 0, now_ = 0; // [s], of the pointer's time
 };
 
 } // namespace patina

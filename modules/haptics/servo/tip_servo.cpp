@@ -54,6 +54,14 @@ void TipServo::setTarget(const Vec3& target) {
   if (target_) target_->set(target);
 }
 
+void TipServo::passTarget(const Vec3& target, double t) {
+  if (target_) target_->pass(target, t);
+}
+
+bool TipServo::passed() const {
+  return !target_ || target_->passed();
+}
+
 std::vector<ToolSample> TipServo::drain() {
   if (loop_)
     if (const std::unique_lock lock(publishers_, std::try_to_lock); lock) loop_->collect();

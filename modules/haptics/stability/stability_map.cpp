@@ -138,6 +138,7 @@ StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   map.ratio.assign(mesh.positions.size(), unknown);
   map.least.assign(mesh.positions.size(), unknown);
+  map.slips.assign(mesh.positions.size(), false);
   map.worst_ratio = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if (v % kBetweenPolls == 0) {
@@ -155,7 +156,8 @@ StabilityMap stabilityMap(const Scene& scene, std::shared_ptr<const SurfaceField
     const double ratio = stabilityRatio(*at, scene, map.limits);
     map.ratio[v] = static_cast<float>(ratio);
     if (ratio < 1) ++map.buzzing;
-    if (slips(*at, map.limits)) ++map.slipping;
+    map.slips[v] = slips(*at, map.limits);
+    map.slipping += map.slips[v] ? 1 : 0;
     if (!(ratio >= map.worst_ratio)) {
       map.worst = v;
       map.worst_ratio = ratio;

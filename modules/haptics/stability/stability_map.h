@@ -56,13 +56,14 @@ struct StabilityMap {
   // no contact.
   std::vector<float> ratio;
   std::vector<float> least; // lambda_min of the wall [N/m], one a vertex; NaN without contact
+  std::vector<bool> slips;  // one a vertex: the tip slips off
   LoopLimits limits;
   std::size_t worst = 0;  // vertex of the smallest ratio
   double worst_ratio = 0; // NaN if there is none
   // Counts of vertices.
-  std::size_t buzzing = 0;  // ratio below 1
-  std::size_t slipping = 0; // the tip slips off
-  std::size_t jumping = 0;  // the force jumps
+  std::size_t buzzing = 0; // ratio below 1
+  std::size_t slipping = 0;
+  std::size_t jumping = 0; // the force jumps
 };
 
 // Every vertex of `mesh`, which lies on the field's surface, pressed as StiffnessProbe says: with

@@ -146,7 +146,8 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   }
   bool in_metres = false;
   const bool is_volume = isVolumeFile(path);
-  TriangleMesh mesh = is_volume ? meshOfVolume(path, options, in_metres) : readMesh(path);
+  TriangleMesh mesh =
+      is_volume ? meshOfVolume(path, options, in_metres) : zUp(readMesh(path), options.up);
   if (options.unit_chosen && in_metres) warnOf("--unit", "field");
   if (options.iso && !is_volume) warnOf("--iso", "mesh");
   if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");

@@ -17,6 +17,7 @@ namespace patina {
 
 struct OpenOptions {
   MeshUnit unit = MeshUnit::mm;
+  UpAxis up = UpAxis::z;          // of a mesh file
   std::optional<double> iso{};    // needed for a volume from elsewhere
   bool unit_chosen = false;       // so that a unit without an effect is warned of
   bool tip_radius_chosen = false; // what is opened gets a tip radius: no advice to set one

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "field/surface/iso_surface.h"
+#include "visualization/layers/stability_layer.h"
 
 namespace patina {
 
@@ -16,6 +17,15 @@ std::optional<SurfaceStability> surfaceStability(const CompiledScene& compiled,
   result.map = stabilityMap(scene, field, *result.surface, progress, compiled.paint.objects);
   if (std::isnan(result.map.worst_ratio)) return std::nullopt;
   return result;
+}
+
+std::vector<float> shownRatios(const StabilityMap& map) {
+  std::vector<float> shown = map.ratio;
+  for (std::size_t v = 0; v < shown.size(); ++v) {
+    if (std::isnan(map.least[v])) shown[v] = kUntouched;
+    if (map.slips[v] && shown[v] >= 1) shown[v] = kSlips;
+  }
+  return shown;
 }
 
 } // namespace patina

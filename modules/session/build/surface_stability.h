@@ -20,4 +20,8 @@ struct SurfaceStability {
 // (thin sheets under a tip without a radius).
 std::optional<SurfaceStability> surfaceStability(const CompiledScene& compiled, Progress& progress);
 
+// As the layer of the view takes it: what is not touched is no ratio, nor what slips off and does
+// not buzz.
+std::vector<float> shownRatios(const StabilityMap& map);
+
 } // namespace patina

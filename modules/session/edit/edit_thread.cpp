@@ -14,16 +14,23 @@
 namespace patina {
 namespace {
 
-// So many samples at once keep the brush near the hand; more than that are thinned out.
+// So many samples at once keep the brush near the hand; of more those go that say nothing.
 constexpr std::size_t kMostAtOnce = 12;
 // Values that nobody has moved for so long have come to rest.
 constexpr std::chrono::milliseconds kRest{400};
 
-std::vector<StrokeSample> thinned(std::vector<StrokeSample> samples) {
+std::vector<StrokeSample> thinned(std::vector<StrokeSample> samples, double off) {
   if (samples.size() <= kMostAtOnce) return samples;
-  std::vector<StrokeSample> kept;
-  for (std::size_t i = 1; i <= kMostAtOnce; ++i)
-    kept.push_back(samples[i * samples.size() / kMostAtOnce - 1]); // the last one is among them
+  std::vector<StrokeSample> kept, way;
+  for (const StrokeSample& sample : samples) {
+    if (!way.empty() && !strays(way, sample, off)) {
+      way.push_back(sample);
+      continue;
+    }
+    kept.push_back(way.empty() ? sample : way.back());
+    way = {kept.back(), sample};
+  }
+  kept.push_back(samples.back());
   return kept;
 }
 
@@ -102,7 +109,7 @@ struct EditThread::Impl {
       if (task.work)
         task.work(worker, *progress);
       else
-        worker.dabs(thinned(std::move(task.samples)));
+        worker.dabs(thinned(std::move(task.samples), off));
     } catch (const std::bad_alloc&) {
       problem = "there is not enough memory";
     } catch (const std::exception& error) {
@@ -119,6 +126,7 @@ struct EditThread::Impl {
 
   EditEventBuffer events;
   EditWorker worker; // the thread's own
+  double off = 0;    // the same: how far a stroke may lie from its samples [m]
   std::mutex mutex;  // of what follows, but rests_at
   std::condition_variable wakes;
   std::deque<Task> queue;
@@ -161,7 +169,11 @@ void EditThread::prepare(Tool tool) {
 }
 
 void EditThread::beginStroke(const Brush& brush) {
-  impl_->push({"Preparing the brush", [brush](EditWorker& worker, Progress& progress) {
+  impl_->push({"Preparing the brush", [brush, this](EditWorker& worker, Progress& progress) {
+                 // What is laid on again and again depends on every sample.
+                 const bool all =
+                     brush.mode == StrokeMode::build_up || brush.mode == StrokeMode::smooth;
+                 impl_->off = all ? 0 : 0.005 * brush.radius;
                  worker.beginStroke(brush, progress);
                }});
 }

@@ -35,7 +35,8 @@ class EditThread {
   void adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave = {});
 
   // A stroke; samples may come in pieces of any size. When more of them come than can be painted,
-  // some are left out, evenly. Anything else that is asked for ends the stroke first.
+  // those are left out that change the path by no more than a hundredth of the radius. Anything
+  // else that is asked for ends the stroke first.
   void prepare(Tool tool);
   void beginStroke(const Brush& brush);
   void dabs(std::vector<StrokeSample> samples);

@@ -48,7 +48,8 @@ void EditWorker::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave>
   tried_.reset();
   saved_at_.reset();
   if (!editor_) return;
-  if (!editor_->unsaved()) saved_at_ = editor_->history().undoable();
+  // What has no folder of ours is as it was saved until it is edited.
+  if (!editor_->unsaved() || !ownsFolder()) saved_at_ = editor_->history().undoable();
   show(editor_->compiled(), true);
 }
 
@@ -159,7 +160,8 @@ void EditWorker::report() {
     if (history.undoable() > 0) keep();
     status.edits = history.descriptions();
     status.done = history.undoable();
-    status.unsaved = tried_ || (ownsFolder() ? editor_->unsaved() : recovered_ || status.done > 0);
+    status.unsaved =
+        tried_ || (ownsFolder() ? editor_->unsaved() : recovered_ || saved_at_ != status.done);
     if (ownsFolder()) status.folder = editor_->folder();
   }
   if (status == told_) return;

@@ -55,7 +55,7 @@ class EditWorker {
   bool recovered_ = false;             // from an autosave: unsaved, edited or not
   bool keeps_ = true;                  // until it failed: a full disk is told of once
   std::optional<ValueEdit> tried_;
-  std::optional<std::size_t> saved_at_; // position in the history; absent: not in it
+  std::optional<std::size_t> saved_at_; // or opened; position in the history; absent: not in it
   EditStatus told_;
 };
 

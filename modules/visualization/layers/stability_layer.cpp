@@ -45,11 +45,15 @@ vtkSmartPointer<vtkLookupTable> stabilityColors() {
   table->SetScaleToLog10();
   table->SetRange(kLeastRatioShown, kMostRatioShown);
   table->SetNanColor(palette::kToolShaft[0], palette::kToolShaft[1], palette::kToolShaft[2], 1);
+  table->SetBelowRangeColor(palette::kSlips[0], palette::kSlips[1], palette::kSlips[2], 1);
+  table->SetAboveRangeColor(palette::kQuiet[0], palette::kQuiet[1], palette::kQuiet[2], 1);
+  table->UseBelowRangeColorOn();
+  table->UseAboveRangeColorOn();
   return table;
 }
 
 StabilityLayer::StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay)
-    : actor_(surfaceActor(palette::kSurface)), bar_(scalarBar("K*/K\ngrey: jumps")) {
+    : actor_(surfaceActor(palette::kSurface)), bar_(scalarBar("K*/K")) {
   const auto colors = stabilityColors();
   auto* mapper = vtkPolyDataMapper::SafeDownCast(actor_->GetMapper());
   mapper->SetLookupTable(colors);
@@ -61,8 +65,9 @@ StabilityLayer::StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay)
   scene.AddActor(actor_);
   bar_->SetLookupTable(colors);
   bar_->SetLabelFormat("%.3g");
-  bar_->DrawNanAnnotationOn();
-  bar_->SetNanAnnotation("");
+  bar_->SetNanAnnotation("jumps");
+  bar_->SetBelowRangeAnnotation("slips off");
+  bar_->SetAboveRangeAnnotation("untouched");
   overlay.AddActor2D(bar_);
   setVisible(false);
 }
@@ -75,12 +80,21 @@ void StabilityLayer::update(const TriangleMesh& surface, const std::vector<float
   const vtkNew<vtkFloatArray> values;
   values->SetName("stability [K*/K]");
   values->SetNumberOfValues(static_cast<vtkIdType>(ratio.size()));
-  for (std::size_t v = 0; v < ratio.size(); ++v)
-    values->SetValue(static_cast<vtkIdType>(v),
-                     std::isnan(ratio[v])
-                         ? ratio[v]
-                         : std::clamp(ratio[v], static_cast<float>(kLeastRatioShown),
-                                      static_cast<float>(kMostRatioShown)));
+  bool jumps = false, slips = false, untouched = false;
+  for (std::size_t v = 0; v < ratio.size(); ++v) {
+    float shown = std::clamp(ratio[v], static_cast<float>(kLeastRatioShown),
+                             static_cast<float>(kMostRatioShown)); // a NaN stays
+    if (ratio[v] == kSlips) shown = 0.1F * static_cast<float>(kLeastRatioShown);
+    if (ratio[v] == kUntouched) shown = 10 * static_cast<float>(kMostRatioShown);
+    jumps = jumps || std::isnan(ratio[v]);
+    slips = slips || ratio[v] == kSlips;
+    untouched = untouched || ratio[v] == kUntouched;
+    values->SetValue(static_cast<vtkIdType>(v), shown);
+  }
+  tags_ = jumps || slips || untouched;
+  bar_->SetDrawNanAnnotation(jumps);
+  bar_->SetDrawBelowRangeSwatch(slips);
+  bar_->SetDrawAboveRangeSwatch(untouched);
   data->GetPointData()->SetScalars(values);
   vtkPolyDataMapper::SafeDownCast(actor_->GetMapper())->SetInputData(data);
 }

@@ -30,6 +30,8 @@ inline constexpr Color kGhost{0.45, 0.35, 0.62};
 inline constexpr Color kContactPoint{0.10, 0.11, 0.14};
 inline constexpr Color kForce{0.78, 0.10, 0.22};
 
+inline constexpr Color kSlips{0.62, 0.36, 0.72}; // of the stability map
+
 // Ends of the diverging map of distance: inside warm, outside cool.
 inline constexpr Color kInside{0.706, 0.204, 0.118};
 inline constexpr Color kOutside{0.130, 0.330, 0.640};

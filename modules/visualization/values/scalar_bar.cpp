@@ -22,6 +22,11 @@ vtkSmartPointer<vtkScalarBarActor> scalarBar(const std::string& title) {
     text->ShadowOff();
   }
   bar->GetTitleTextProperty()->BoldOn();
+  // Of what is no value: a tag beside its swatch.
+  vtkTextProperty* tag = bar->GetAnnotationTextProperty();
+  tag->ShallowCopy(bar->GetLabelTextProperty());
+  tag->SetBackgroundColor(palette::forVtk(palette::kBackgroundHigh));
+  tag->SetBackgroundOpacity(1);
   bar->SetBarRatio(0.22);
   // Its own plate: what lies behind never mixes with the colours that are read.
   bar->DrawBackgroundOn();
@@ -43,7 +48,8 @@ void placeScalarBar(vtkScalarBarActor& bar, int place, double share) {
 }
 
 void setTextSize(vtkScalarBarActor& bar, int pixels) {
-  for (vtkTextProperty* text : {bar.GetTitleTextProperty(), bar.GetLabelTextProperty()})
+  for (vtkTextProperty* text :
+       {bar.GetTitleTextProperty(), bar.GetLabelTextProperty(), bar.GetAnnotationTextProperty()})
     text->SetFontSize(pixels);
 }
 

@@ -1,6 +1,7 @@
 #include "visualization/view/scene_view.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include <vtkCamera.h>
 #include <vtkPolyDataMapper.h>
@@ -20,16 +21,15 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   my.scene->GradientBackgroundOn();
   my.scene->AddActor(my.mesh_actor);
   my.scene->AddActor(my.iso_actor);
-  // At 0 the iso-surface lies on the mesh: it is drawn as if a hair nearer.
-  auto* iso_mapper = vtkPolyDataMapper::SafeDownCast(my.iso_actor->GetMapper());
-  iso_mapper->SetResolveCoincidentTopologyToPolygonOffset();
-  iso_mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(-2, -2);
   addLights(*my.scene);
   const vtkNew<vtkProperty> inner;
   inner->DeepCopy(my.mesh_actor->GetProperty());
   inner->SetColor(palette::forVtk(palette::kSurfaceBack));
   inner->SetSpecular(0);
   my.mesh_actor->SetBackfaceProperty(inner);
+  my.coarse_actor->SetProperty(my.mesh_actor->GetProperty());
+  my.coarse_actor->SetBackfaceProperty(inner);
+  my.scene->AddActor(my.coarse_actor);
 
   const vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(my.outline->GetOutputPort());
@@ -45,7 +45,6 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   addLights(*my.overlay);
   my.corner->SetLayer(1);
   my.corner->InteractiveOff();
-  my.corner->SetViewport(0.0, 0.0, 0.13, 0.17);
   my.corner->AddActor(axesActor());
   my.applyVisibility();
 }
@@ -69,6 +68,7 @@ void SceneView::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   my.mesh_box = my.mesh ? bounds(*my.mesh) : Box3();
   auto* mapper = vtkPolyDataMapper::SafeDownCast(my.mesh_actor->GetMapper());
   mapper->SetInputData(my.mesh ? surfaceData(*my.mesh) : vtkSmartPointer<vtkPolyData>::New());
+  my.makeCoarse();
   my.left_out.clear();
   my.painted = {}; // of another mesh, until setPaint() says otherwise
   my.choosePaint();
@@ -201,12 +201,26 @@ void SceneView::setView(ViewPreset view) {
   fit();
 }
 
+void SceneView::setMoving(bool moving) {
+  Impl& my = *impl_;
+  const bool shown = my.coarseShown();
+  my.moving = moving;
+  if (my.coarse_made.valid() &&
+      my.coarse_made.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    vtkPolyDataMapper::SafeDownCast(my.coarse_actor->GetMapper())
+        ->SetInputData(my.coarse_made.get());
+    my.has_coarse = true;
+  }
+  my.dirty = my.dirty || my.coarseShown() != shown;
+}
+
 void SceneView::fit() {
   Impl& my = *impl_;
   const Box3 box = my.box();
   vtkCamera& camera = *my.scene->GetActiveCamera();
   // Scalar bars stand at the right edge: what is fitted goes to their left.
-  const double taken = my.barShare() * my.bars();
+  const bool tags = my.mapShown() && my.stability.hasTags();
+  const double taken = my.barShare() * (my.bars() + (tags ? 0.7 : 0));
   const double aspect = my.aspect() * (1 - taken);
   std::vector<Vec3> points = my.outermost(box);
   fitCamera(camera, box.center(), points, aspect);
@@ -262,8 +276,9 @@ bool SceneView::prepare() {
   my.syncCorner();
   my.scene->ResetCameraClippingRange();
   const CameraPose pose = poseOf(*camera);
-  const bool changed = my.dirty || pose != my.drawn_from;
+  const bool changed = my.dirty || pose != my.drawn_from || my.size() != my.drawn_size;
   my.drawn_from = pose;
+  my.drawn_size = my.size();
   my.dirty = false;
   return changed;
 }

@@ -67,8 +67,11 @@ class SceneView {
   bool shown(Layer layer) const;
 
   void setView(ViewPreset view); // and fit
-  void fit();                    // everything in the picture, from the present direction
-  Box3 extent() const;           // of mesh and field; never empty
+  // While the camera moves a mesh of very many triangles is shown with fewer, once these are made,
+  // which is done behind the picture.
+  void setMoving(bool moving);
+  void fit();          // everything in the picture, from the present direction
+  Box3 extent() const; // of mesh and field; never empty
 
   // Call before a render: places what depends on the camera. True if something changed since the
   // last call.

@@ -1,6 +1,7 @@
 #include "visualization/view/scene_view_parts.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <vtkCamera.h>
 #include <vtkPolyDataMapper.h>
@@ -8,6 +9,7 @@
 #include <vtkTransform.h>
 
 #include "scene/surface_pick.h"
+#include "visualization/surfaces/coarse_surface.h"
 #include "visualization/surfaces/surface_data.h"
 #include "visualization/values/scalar_bar.h"
 #include "visualization/view/camera.h"
@@ -47,6 +49,17 @@ void SceneView::Impl::choosePaint() {
   if (slicedMaterial() || before) slice_stale = true;
 }
 
+// The mesh is kept by whoever makes it: the view may have another one before it is done.
+void SceneView::Impl::makeCoarse() {
+  has_coarse = false;
+  coarse_made = {};
+  constexpr std::size_t kMany = 300'000;
+  constexpr int kCells = 100; // some 100,000 triangles
+  if (mesh && mesh->triangles.size() > kMany)
+    coarse_made = std::async(std::launch::async,
+                             [shown = mesh] { return surfaceData(coarsened(*shown, kCells)); });
+}
+
 // Objects whose paint is shown are the paint layer's.
 void SceneView::Impl::drawMesh() {
   std::vector<bool> out;
@@ -81,8 +94,13 @@ void SceneView::Impl::applyVisibility() {
   placeScalarBar(paint.bar(), places - 1, barShare());
   paint.setVisible(shownPaint().has_value());
   paint.setWireframe(on(Layer::wireframe));
-  mesh_actor->SetVisibility(on(Layer::mesh) && mesh != nullptr && !map);
-  iso_actor->SetVisibility(on(Layer::iso) && field != nullptr);
+  // At 0 the iso-surface is the mesh: one of them is seen, for two would fight.
+  const bool same = field && std::abs(iso) < 0.5 * field->grid.voxel;
+  const bool as_iso = same && on(Layer::iso) && !map && !shownPaint();
+  const bool plain = on(Layer::mesh) && mesh != nullptr && !map && !as_iso;
+  mesh_actor->SetVisibility(plain && !coarseShown());
+  coarse_actor->SetVisibility(plain && coarseShown());
+  iso_actor->SetVisibility(on(Layer::iso) && field != nullptr && (as_iso || !same));
   extent_actor->SetVisibility(on(Layer::extent) && field != nullptr);
   band_layer.setVisible(shellShown(), bandShown() && (!map || on(Layer::slice)));
   slice.setVisible(on(Layer::slice) && field != nullptr);
@@ -91,7 +109,7 @@ void SceneView::Impl::applyVisibility() {
   for (vtkActor* actor : {mesh_actor.Get(), iso_actor.Get(), &stability.surface()})
     actor->GetProperty()->SetEdgeVisibility(on(Layer::wireframe));
   // Over the mesh the iso-surface is a shell that one sees through; alone it is the surface.
-  const bool shell = map || shownPaint() || (on(Layer::mesh) && mesh != nullptr);
+  const bool shell = !as_iso && (map || shownPaint() || (on(Layer::mesh) && mesh != nullptr));
   iso_actor->GetProperty()->SetOpacity(shell ? 0.38 : 1.0);
   iso_actor->GetProperty()->SetBackfaceCulling(shell);
 }
@@ -114,8 +132,8 @@ void SceneView::Impl::cutAt() {
   if (wanted == cut_on && keeps_positive == cut_keeps_positive) return;
   cut_on = wanted;
   cut_keeps_positive = keeps_positive;
-  for (vtkActor* actor :
-       {mesh_actor.Get(), iso_actor.Get(), &band_layer.shell(), &stability.surface()}) {
+  for (vtkActor* actor : {mesh_actor.Get(), coarse_actor.Get(), iso_actor.Get(),
+                          &band_layer.shell(), &stability.surface()}) {
     actor->GetMapper()->RemoveAllClippingPlanes();
     if (wanted) actor->GetMapper()->AddClippingPlane(&plane);
   }
@@ -160,6 +178,11 @@ void SceneView::Impl::syncCorner() {
   small->SetPosition(back.data());
   small->SetFocalPoint(0, 0, 0);
   small->SetViewUp(camera->GetViewUp());
+  // Letters do not shrink with the picture: there is room for them beside the axes.
+  const auto [wide, high] = size();
+  const double side = std::max(0.17 * high, 8.5 * textSize(scene->GetRenderWindow()));
+  corner->SetViewport(0, 0, std::min(1.0, side / std::max(1, wide)),
+                      std::min(1.0, side / std::max(1, high)));
   corner->ResetCameraClippingRange();
 }
 

@@ -1,6 +1,8 @@
 // What SceneView holds: its layers, what they show, and what is out of date.
 #pragma once
 
+#include <array>
+#include <future>
 #include <optional>
 
 #include <vtkActor.h>
@@ -24,6 +26,9 @@ struct SceneView::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
   vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> iso_actor = surfaceActor(palette::kIso);
+  vtkSmartPointer<vtkActor> coarse_actor = surfaceActor(palette::kSurface); // while it moves
+  std::future<vtkSmartPointer<vtkPolyData>> coarse_made;                    // on its way
+  bool has_coarse = false, moving = false;
   vtkNew<vtkOutlineSource> outline;
   vtkNew<vtkActor> extent_actor;
   SliceLayer slice{*scene, *overlay};
@@ -52,6 +57,7 @@ struct SceneView::Impl {
   bool dirty = true, has_stability = false;
   bool cut_keeps_positive = true, cut_on = false;
   CameraPose drawn_from{};
+  std::array<int, 2> drawn_size{}; // bars and axes are placed by it
 
   Box3 mesh_box; // empty without a mesh
   Box3 gridBox() const {
@@ -86,12 +92,13 @@ struct SceneView::Impl {
     return points;
   }
 
-  double aspect() {
-    if (auto* window = scene->GetRenderWindow()) {
-      const int* pixels = window->GetSize();
-      if (pixels[0] > 0 && pixels[1] > 0) return static_cast<double>(pixels[0]) / pixels[1];
-    }
-    return 4.0 / 3.0;
+  std::array<int, 2> size() const { // [pixels]
+    auto* window = scene->GetRenderWindow();
+    return window ? std::array{window->GetSize()[0], window->GetSize()[1]} : std::array{0, 0};
+  }
+  double aspect() const {
+    const auto [wide, high] = size();
+    return wide > 0 && high > 0 ? static_cast<double>(wide) / high : 4.0 / 3.0;
   }
   bool on(Layer layer) const { return layers.count(layer) != 0; }
   bool mapShown() const { return on(Layer::stability) && has_stability; }
@@ -109,6 +116,8 @@ struct SceneView::Impl {
 
   void applyVisibility();
   void choosePaint();
+  void makeCoarse();
+  bool coarseShown() const { return moving && has_coarse && left_out.empty(); }
   void drawMesh(); // what of it is not drawn elsewhere
   void cutAt();
   void aimTool();

@@ -1,5 +1,6 @@
-#include "app/gui/window/status_line.h"
+#include "app/gui/widgets/status_line.h"
 
+#include "app/gui/window/theme.h"
 #include "core/numbers.h"
 #include "haptics/stability/stabilisers.h"
 
@@ -17,7 +18,7 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   const auto label = [&](const char* name) { return add(new QLabel(bar), name); };
   fault_ = label("fault");
   fault_->setText(tr("force faded: it comes back by itself"));
-  fault_->setStyleSheet(QStringLiteral("background: #a12a1a; color: white;"));
+  fault_->setStyleSheet(themed("background: @bad; color: @card;"));
   fault_->setToolTip(tr("The force would have jumped, so it was faded to zero. It comes back when "
                         "the tip has left the surface."));
   showFault(false);
@@ -26,12 +27,12 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   missed_ = label("missed");
   policy_ = label("policy");
   stabilisers_ = label("stabilisers");
-  stabilisers_->setStyleSheet(QStringLiteral("color: #14568c; font-weight: bold;"));
+  stabilisers_->setStyleSheet(themed("color: @link; font-weight: bold;"));
   bytes_ = label("bytes");
   stages_ = add(new ElidedLabel(bar), "stages", 2);
   picked_ = add(new ElidedLabel(bar), "picked", 3);
   picked_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-  picked_->setStyleSheet(QStringLiteral("color: #14568c;"));
+  picked_->setStyleSheet(themed("color: @link; padding-right: 8px;"));
   picked_->setToolTip(tr("What is felt and painted under the pointer"));
   late_->setToolTip(
       tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
@@ -60,7 +61,7 @@ void StatusLine::showTiming(const ServoTiming& timing, bool running) {
   late_->setText(tr("p99 late %1 µs").arg(timing.late_p99, 0, 'f', 0));
   missed_->setText(tr("missed %1").arg(timing.missed));
   policy_->setText(timing.realtime ? tr("real time") : tr("no real time"));
-  policy_->setStyleSheet(timing.realtime ? QString() : QStringLiteral("color: #a15c00;"));
+  policy_->setStyleSheet(timing.realtime ? QString() : themed("color: @warn;"));
   policy_->setToolTip(QString::fromStdString(timing.policy));
 }
 

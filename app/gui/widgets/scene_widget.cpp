@@ -1,7 +1,8 @@
-#include "app/gui/window/scene_widget.h"
+#include "app/gui/widgets/scene_widget.h"
 
 #include <cmath>
 
+#include <QCoreApplication>
 #include <QMouseEvent>
 #include <QTabletEvent>
 #include <QWheelEvent>
@@ -13,6 +14,10 @@
 #include "visualization/view/camera.h"
 
 namespace patina {
+namespace {
+constexpr std::chrono::milliseconds kFrame{16};  // no frame is sooner after another
+constexpr std::chrono::milliseconds kMoves{120}; // after its last event a camera still moves
+} // namespace
 
 SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
@@ -23,8 +28,12 @@ SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
   setMinimumSize(480,
                  320);    // without one, a docked layout may give it no pixel and nothing is drawn
   setMouseTracking(true); // the brush is seen before it paints
+  QCoreApplication::setAttribute(Qt::AA_CompressHighFrequencyEvents, false); // each one counts
   setFocusPolicy(Qt::StrongFocus);
   setHandling(handling_);
+  soon_.setSingleShot(true);
+  soon_.setTimerType(Qt::PreciseTimer);
+  connect(&soon_, &QTimer::timeout, this, &SceneWidget::refresh);
 }
 
 SceneWidget::~SceneWidget() = default;
@@ -42,6 +51,8 @@ void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
 
 bool SceneWidget::refresh() {
   const auto now = std::chrono::steady_clock::now();
+  const bool moves = now - moved_ < kMoves;
+  view_.setMoving(moves);
   const bool changed = view_.prepare();
   if (!isVisible()) return false;
   // Smoothing costs 20 ms of a frame where OpenGL is software: a moving picture goes without it if
@@ -52,6 +63,7 @@ bool SceneWidget::refresh() {
   view_.renderer().SetUseFXAA(smooth_);
   renderWindow()->Render();
   drawn_ = std::chrono::steady_clock::now();
+  if (moves && changed) moved_ = drawn_; // events that the frame held up come now
   // The one smoothed frame of a picture that stands says nothing about moving ones.
   if (changed) frame_seconds_ = std::chrono::duration<double>(drawn_ - now).count();
   return changed;
@@ -77,6 +89,12 @@ Vec3 SceneWidget::restingPlace() {
          (0.5 * view_.extent().diagonal().norm() + gap) * viewDirection(camera);
 }
 
+void SceneWidget::drawSoon() {
+  moved_ = std::chrono::steady_clock::now();
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(drawn_ + kFrame - moved_);
+  if (!soon_.isActive()) soon_.start(std::max(0, static_cast<int>(left.count())));
+}
+
 void SceneWidget::moveTip(const Vec3& target) {
   target_ = target;
   emit tipMoved(target);
@@ -94,8 +112,8 @@ std::optional<Vec3> SceneWidget::underPointer() {
   return pointer_ && looks ? surfaceAt(*pointer_) : std::nullopt;
 }
 
-void SceneWidget::brush(const QPoint& pixel, bool down, double pressure) {
-  emit pointed({surfaceAt(pixel), down, pressure});
+void SceneWidget::brush(const QPoint& pixel, bool down, double pressure, const QInputEvent& event) {
+  emit pointed({surfaceAt(pixel), down, pressure, 1e-3 * static_cast<double>(event.timestamp())});
 }
 
 bool SceneWidget::pick(const QMouseEvent& event) {
@@ -114,14 +132,14 @@ bool SceneWidget::pen(QTabletEvent& event) {
   pointer_ = event.pos();
   const bool down = event.type() != QEvent::TabletRelease &&
                     (event.type() == QEvent::TabletPress || drag_ == Drag::brush);
-  if (down || drag_ == Drag::brush) brush(event.pos(), down, event.pressure());
+  if (down || drag_ == Drag::brush) brush(event.pos(), down, event.pressure(), event);
   drag_ = down ? Drag::brush : Drag::none;
   event.accept();
   return true;
 }
 
-void SceneWidget::release() {
-  if (drag_ == Drag::brush) brush(last_, false, 1);
+void SceneWidget::release(const QMouseEvent& event) {
+  if (drag_ == Drag::brush) brush(last_, false, 1, event);
   drag_ = Drag::none;
 }
 
@@ -157,20 +175,20 @@ void SceneWidget::drag(QMouseEvent& event) {
   pointer_ = last_;
   switch (drag_) {
   case Drag::brush:
-    brush(last_, true, 1);
+    brush(last_, true, 1, event);
     break;
   case Drag::tip:
     moveTip(pointInViewPlane(camera, now[0], now[1], target_));
     break;
   case Drag::orbit:
     orbit(camera, moved[0], moved[1]);
-    break;
+    return drawSoon();
   case Drag::pan:
     pan(camera, moved[0], moved[1]);
-    break;
+    return drawSoon();
   case Drag::zoom:
     zoom(camera, std::exp(3 * moved[1]));
-    break;
+    return drawSoon();
   case Drag::none:
     break;
   }
@@ -200,6 +218,7 @@ void SceneWidget::wheel(QWheelEvent& event) {
     emit forceTurned(notches);
   } else {
     zoom(camera, std::pow(1.12, notches));
+    drawSoon();
   }
 }
 
@@ -215,7 +234,7 @@ bool SceneWidget::event(QEvent* event) {
     doubleClick(*static_cast<QMouseEvent*>(event));
     return true;
   case QEvent::MouseButtonRelease:
-    release();
+    release(*static_cast<QMouseEvent*>(event));
     return true;
   case QEvent::TabletPress:
   case QEvent::TabletMove:

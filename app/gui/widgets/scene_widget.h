@@ -5,7 +5,9 @@
 #include <memory>
 #include <optional>
 
+#include <QInputEvent>
 #include <QPoint>
+#include <QTimer>
 #include <QVTKOpenGLNativeWidget.h>
 
 #include "app/gui/window/handling.h"
@@ -19,6 +21,7 @@ struct Pointed {
   std::optional<Vec3> surface; // under it; absent: beside the object
   bool down = false;
   double pressure = 1; // of a pen, in [0, 1]
+  double t = 0;        // [s], of the window system
 };
 
 // Feeling, the left button moves the tip in the plane that faces the viewer, the wheel moves it in
@@ -71,10 +74,10 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
     return (handling_ == Handling::paint || handling_ == Handling::press) && field_ != nullptr;
   }
   std::optional<Vec3> surfaceAt(const QPoint& pixel);
-  void brush(const QPoint& pixel, bool down, double pressure);
+  void brush(const QPoint& pixel, bool down, double pressure, const QInputEvent& event);
   bool pick(const QMouseEvent& event); // false: it is no picking
   bool pen(QTabletEvent& event);
-  void release();
+  void release(const QMouseEvent& event);
   Vec2 fraction(const QPoint& pixel) const; // of the height, from the centre, right and up
   void press(QMouseEvent& event);
   void drag(QMouseEvent& event);
@@ -82,6 +85,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   bool escape(const QKeyEvent& event); // false: there is nothing to leave
   void wheel(QWheelEvent& event);
   void moveTip(const Vec3& target);
+  void drawSoon(); // the camera moved: not with the next tick only
 
   enum class Drag { none, tip, orbit, pan, zoom, brush };
   SceneView view_;
@@ -93,7 +97,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   Vec3 target_ = Vec3::Zero();
   double frame_seconds_ = 0;
   bool smooth_ = false; // the last frame was anti-aliased
-  std::chrono::steady_clock::time_point drawn_;
+  std::chrono::steady_clock::time_point drawn_, moved_;
+  QTimer soon_;
 };
 
 } // namespace patina

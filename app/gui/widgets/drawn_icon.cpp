@@ -1,17 +1,17 @@
-#include "app/gui/window/drawn_icon.h"
+#include "app/gui/widgets/drawn_icon.h"
 
 #include <QPainterPath>
 #include <QPixmap>
 
+#include "app/gui/window/theme.h"
+
 namespace patina {
 namespace {
 
-const QColor kAccent(0x2b, 0x6c, 0xb0), kWarm(0xcc, 0x4a, 0x2c);
-
 void drawTool(QPainter& p) {
-  p.setPen(QPen(kWarm, 2.4, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("warm"), 2.4, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(4, 16), QPointF(9, 11));
-  p.setPen(QPen(QColor(0x2a, 0x32, 0x40), 2.4, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("text"), 2.4, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(10, 10), QPointF(16, 4));
 }
 
@@ -19,9 +19,9 @@ void drawSurface(QPainter& p) {
   QPainterPath ground(QPointF(2, 13));
   ground.cubicTo(6, 4, 9, 8, 11, 11);
   ground.cubicTo(13, 14, 16, 12, 18, 8);
-  p.setPen(QPen(kAccent, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("accent"), 1.8, Qt::SolidLine, Qt::RoundCap));
   p.drawPath(ground);
-  p.setPen(QPen(QColor(0x2a, 0x32, 0x40), 1.2));
+  p.setPen(QPen(ink("text"), 1.2));
   for (int i = 0; i < 4; ++i) p.drawLine(QPointF(4 + 4 * i, 17), QPointF(6 + 4 * i, 15));
 }
 
@@ -35,7 +35,7 @@ void drawObject(QPainter& p) {
 void drawDevice(QPainter& p) {
   p.drawRoundedRect(QRectF(5, 3, 10, 14), 5, 5);
   p.drawLine(QPointF(10, 3), QPointF(10, 9));
-  p.setPen(QPen(kWarm, 1.8, Qt::SolidLine, Qt::RoundCap));
+  p.setPen(QPen(ink("warm"), 1.8, Qt::SolidLine, Qt::RoundCap));
   p.drawLine(QPointF(10, 6), QPointF(10, 7));
 }
 
@@ -44,7 +44,7 @@ void drawEye(QPainter& p) {
   lids.cubicTo(6, 3.5, 14, 3.5, 18, 10);
   lids.cubicTo(14, 16.5, 6, 16.5, 2, 10);
   p.drawPath(lids);
-  p.setBrush(kAccent);
+  p.setBrush(ink("accent"));
   p.drawEllipse(QPointF(10, 10), 2.6, 2.6);
 }
 
@@ -58,7 +58,7 @@ QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
     QPainter painter(&pixmap);
     painter.setRenderHint(QPainter::Antialiasing);
     painter.scale(scale, scale);
-    painter.setPen(QPen(QColor(0x2a, 0x32, 0x40), 1.4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+    painter.setPen(QPen(ink("text"), 1.4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
     draw(painter);
     painter.end();
     icon.addPixmap(pixmap);

@@ -3,7 +3,7 @@
 
 #include <QStatusBar>
 
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 #include "haptics/servo/servo_loop.h"
 #include "session/build/session.h"
 

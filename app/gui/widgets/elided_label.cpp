@@ -1,4 +1,4 @@
-#include "app/gui/window/elided_label.h"
+#include "app/gui/widgets/elided_label.h"
 
 #include <QHelpEvent>
 #include <QPainter>

@@ -1,4 +1,4 @@
-#include "app/gui/window/value_focus.h"
+#include "app/gui/widgets/value_focus.h"
 
 #include <QAbstractButton>
 #include <QAbstractSpinBox>

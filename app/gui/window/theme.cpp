@@ -1,0 +1,102 @@
+#include "app/gui/window/theme.h"
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <QFont>
+#include <QPalette>
+#include <QRegularExpression>
+#include <QStyleFactory>
+
+namespace patina {
+namespace {
+
+// Text on what it stands on has a contrast of 4.5 or more; a test looks at every pixel of it.
+struct Ink {
+  const char *name, *light, *dark;
+};
+constexpr Ink kInks[] = {
+    {"window", "#f1f3f6", "#23272e"}, // behind everything
+    {"card", "#ffffff", "#2b3038"},   // what text and numbers stand on
+    {"soft", "#f6f8fa", "#31363f"},     {"button", "#e8ebf0", "#3a414c"},
+    {"hover", "#e0e6ee", "#434c59"},    {"chosen", "#cfe0f3", "#2d4a68"},
+    {"notice", "#e3eefa", "#2b3f55"},   {"text", "#222832", "#e6e9ee"},
+    {"quiet", "#5b6575", "#aab4c2"}, // captions
+    {"faint", "#5f6875", "#a9b3c1"}, // what is undone, or cannot be used
+    {"line", "#d5dae2", "#454d59"},  // frames, grids
+    {"grip", "#c3cad5", "#5b6573"},     {"strong", "#2b6cb0", "#2b6cb0"}, // below white
+    {"accent", "#2b6cb0", "#6cabe6"},                                     // lines
+    {"link", "#14568c", "#8fc1f0"},     {"warm", "#cc4a2c", "#e8795c"},
+    {"warn", "#7a4f00", "#f0c060"},     {"bad", "#a12a1a", "#ff9d8f"},
+    {"series_x", "#d55e00", "#f08030"}, {"series_y", "#009e73", "#20c090"},
+    {"series_z", "#0072b2", "#56b4e9"}, {"series_e", "#1f5ca8", "#7fb2f0"}};
+
+bool isDark() {
+  return QApplication::palette().color(QPalette::Window).lightness() < 128;
+}
+
+} // namespace
+
+Theme systemTheme() {
+  return isDark() ? Theme::dark : Theme::light;
+}
+
+QColor ink(const char* name) {
+  const bool dark = isDark();
+  for (const Ink& row : kInks)
+    if (std::string_view(name) == row.name) return {QLatin1String(dark ? row.dark : row.light)};
+  throw std::invalid_argument(std::string("no ink is called ") + name);
+}
+
+QString themed(const char* sheet) {
+  static const QRegularExpression kName(QStringLiteral("@([a-z_]+)"));
+  QString made = QString::fromUtf8(sheet);
+  for (auto name = kName.match(made); name.hasMatch(); name = kName.match(made))
+    made.replace(name.capturedStart(), name.capturedLength(),
+                 ink(name.captured(1).toUtf8().constData()).name());
+  return made;
+}
+
+QString cardStyle() {
+  return themed("QGroupBox { background: @card; border: 1px solid @line;"
+                " border-radius: 6px; margin-top: 22px; padding: 6px 8px 6px 8px; }"
+                "QGroupBox::title { subcontrol-origin: margin; left: 2px; top: 2px;"
+                " color: @text; font-weight: bold; }"
+                "QScrollBar:vertical { width: 10px; border: none; background: transparent; }"
+                "QScrollBar::handle:vertical { background: @grip; border-radius: 4px;"
+                " min-height: 24px; margin: 1px; }"
+                "QScrollBar::handle:vertical:disabled { background: transparent; }"
+                "QScrollBar::add-line:vertical, QScrollBar::sub-line:vertical { height: 0; }"
+                "QLabel[quiet=\"true\"] { color: @quiet; }"
+                "QLabel[bad=\"true\"] { color: @bad; }");
+}
+
+void applyStyle(QApplication& application, Theme theme) {
+  application.setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
+  QPalette palette(QColor(QLatin1String(theme == Theme::dark ? kInks[0].dark : kInks[0].light)));
+  application.setPalette(palette); // which says what ink() is
+  const std::pair<QPalette::ColorRole, const char*> roles[] = {{QPalette::Window, "window"},
+                                                               {QPalette::WindowText, "text"},
+                                                               {QPalette::Base, "card"},
+                                                               {QPalette::AlternateBase, "soft"},
+                                                               {QPalette::Text, "text"},
+                                                               {QPalette::Button, "button"},
+                                                               {QPalette::ButtonText, "text"},
+                                                               {QPalette::ToolTipBase, "card"},
+                                                               {QPalette::ToolTipText, "text"},
+                                                               {QPalette::Highlight, "strong"},
+                                                               {QPalette::PlaceholderText, "quiet"},
+                                                               {QPalette::Link, "link"}};
+  for (const auto& [role, name] : roles) palette.setColor(role, ink(name));
+  palette.setColor(QPalette::HighlightedText, Qt::white);
+  for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
+    palette.setColor(QPalette::Disabled, role, ink("faint"));
+  application.setPalette(palette);
+  QFont font = application.font();
+  font.setPointSizeF(9);
+  application.setFont(font);
+}
+
+} // namespace patina

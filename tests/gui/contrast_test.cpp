@@ -1,0 +1,113 @@
+// Every word can be read, in the light theme and in the dark one.
+#include <cmath>
+#include <map>
+
+#include "app/gui/control/desk_controller.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/window_fixture.h"
+
+namespace patina {
+namespace {
+
+// WCAG 2.1: relative luminance, and the contrast of two.
+double luminance(QRgb color) {
+  const auto linear = [](int byte) {
+    const double c = byte / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(qRed(color)) + 0.7152 * linear(qGreen(color)) +
+         0.0722 * linear(qBlue(color));
+}
+double contrast(QRgb a, QRgb b) {
+  const double la = luminance(a), lb = luminance(b);
+  return (std::max(la, lb) + 0.05) / (std::min(la, lb) + 0.05);
+}
+
+// Drawn four times as large, where the stems of letters are whole pixels: the ground is what there
+// is most of, the text what stands out most.
+double contrastOf(QWidget& widget) {
+  QImage image(4 * widget.size(), QImage::Format_RGB32);
+  image.setDevicePixelRatio(4);
+  image.fill(widget.window()->palette().color(QPalette::Window));
+  const QRect place(widget.mapTo(widget.window(), QPoint()), widget.size());
+  widget.window()->render(&image, QPoint(), QRegion(place));
+  std::map<QRgb, int> count;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) ++count[image.pixel(x, y)];
+  const auto ground = std::max_element(count.begin(), count.end(), [](auto& a, auto& b) {
+                        return a.second < b.second;
+                      })->first;
+  double most = 1;
+  for (const auto& [color, pixels] : count)
+    if (pixels >= 6) most = std::max(most, contrast(color, ground));
+  return most;
+}
+
+bool hasWords(const QWidget& widget) {
+  if (const auto* label = qobject_cast<const QLabel*>(&widget)) return !label->text().isEmpty();
+  if (const auto* button = qobject_cast<const QToolButton*>(&widget))
+    return !button->text().isEmpty() && button->toolButtonStyle() != Qt::ToolButtonIconOnly;
+  if (const auto* button = qobject_cast<const QAbstractButton*>(&widget))
+    return !button->text().isEmpty();
+  return qobject_cast<const QAbstractSpinBox*>(&widget) != nullptr ||
+         qobject_cast<const QComboBox*>(&widget) != nullptr ||
+         qobject_cast<const QListWidget*>(&widget) != nullptr ||
+         qobject_cast<const QMenuBar*>(&widget) != nullptr ||
+         qobject_cast<const StripPlot*>(&widget) != nullptr;
+}
+
+class Contrast : public WindowTest, public ::testing::WithParamInterface<Theme> {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    if (IsSkipped()) return;
+    window_.reset();
+    applyStyle(application(), GetParam());
+    window_ = std::make_unique<MainWindow>();
+    window_->resize(1280, 800);
+    window_->show();
+    ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+  }
+  void TearDown() override {
+    window_.reset();
+    if (!IsSkipped()) applyStyle(application(), Theme::light);
+    WindowTest::TearDown();
+  }
+};
+
+TEST_P(Contrast, OfEveryWordIsFourAndAHalf) {
+  for (const char* property : {"Friction", "Damping", "Tip radius"}) addProperty(property);
+  setRow("stiffness", 333);
+  ASSERT_TRUE(waitUntil([&] { return edits().status().edits.size() > 0; }, 20000));
+  edits().thread().undo();
+  emit documents().said({QStringLiteral("a warning"), true});
+  for (const Layer layer : {Layer::slice, Layer::iso}) show(layer, true);
+  int seen = 0;
+  for (const DeskRow& desk : deskRows()) {
+    window_->controllers().desks.choose(desk.desk);
+    for (const Panel panel : desk.panels) {
+      window_->controllers().desks.open(panel);
+      wait(60);
+      for (QWidget* widget : window_->findChildren<QWidget*>()) {
+        if (!widget->isVisible() || widget->window() != window_.get() || !hasWords(*widget))
+          continue;
+        if (widget->visibleRegion().boundingRect().size() != widget->size()) continue; // scrolled
+        ++seen;
+        EXPECT_GE(contrastOf(*widget), 4.5)
+            << widget->metaObject()->className() << ' ' << widget->objectName().toStdString()
+            << " on " << desk.name;
+      }
+    }
+    if (const char* folder = std::getenv("PATINA_PICTURES"))
+      window_->grab().save(QStringLiteral("%1/theme_%2_%3.png")
+                               .arg(folder)
+                               .arg(static_cast<int>(GetParam()))
+                               .arg(desk.name));
+  }
+  EXPECT_GT(seen, 300);
+}
+
+INSTANTIATE_TEST_SUITE_P(Themes, Contrast, ::testing::Values(Theme::light, Theme::dark));
+
+} // namespace
+} // namespace patina

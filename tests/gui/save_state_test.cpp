@@ -1,0 +1,65 @@
+// What is marked as unsaved and asked about, where a folder is not the window's own.
+#include "core/progress.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "session/edit/editor.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+class SaveState : public DrivenWindow {
+ protected:
+  bool marked(bool wanted) {
+    return waitUntil([&] { return window_->isWindowModified() == wanted; }, 5000);
+  }
+  bool editsAre(std::size_t count, std::size_t done) {
+    return waitUntil(
+        [&] { return edits().status().edits.size() == count && edits().status().done == done; },
+        10000);
+  }
+};
+
+TEST_F(SaveState, OfAWorkspaceThatAnotherProgramHasOpen) {
+  Scene scene;
+  scene.objects.push_back(
+      {"ball", std::make_shared<const TriangleMesh>(icosphere(0.03, 12)), Pose::Identity(), {}});
+  Progress progress;
+  Editor other(scene, progress);
+  other.apply(ValueEdit{{{"stiffness", "700"}}}, progress);
+  const auto folder = folder_ / "pot.patina";
+  other.saveAs(folder);
+
+  ASSERT_TRUE(open(folder));
+  wait(300);
+  EXPECT_EQ(edits().status().edits.size(), 1U);
+  EXPECT_FALSE(window_->isWindowModified()) << "nothing was edited";
+  EXPECT_TRUE(find<QLabel>("notice")->text().contains(QStringLiteral("not kept")));
+  type('z', kControl);
+  EXPECT_TRUE(editsAre(1, 0));
+  EXPECT_TRUE(marked(true));
+  type('y', kControl);
+  EXPECT_TRUE(editsAre(1, 1));
+  EXPECT_TRUE(marked(false));
+  setRow("stiffness", 250);
+  EXPECT_TRUE(editsAre(2, 2));
+  EXPECT_TRUE(marked(true));
+
+  answerWithPath(folder_ / "mine.patina");
+  type('s', kControl);
+  ASSERT_TRUE(waitUntil([&] { return isWorkspace(folder_ / "mine.patina"); }, 20000));
+  EXPECT_TRUE(marked(false));
+  EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("mine.patina")));
+  EXPECT_EQ(loadWorkspace(folder).haptics.stiffness, 700) << "what is another's stays";
+  EXPECT_EQ(loadWorkspace(folder_ / "mine.patina").haptics.stiffness, 250);
+  setRow("stiffness", 300);
+  EXPECT_TRUE(editsAre(3, 3));
+  EXPECT_TRUE(marked(true));
+  type('s', kControl);
+  EXPECT_TRUE(marked(false)) << "it is its own now";
+  EXPECT_EQ(loadWorkspace(folder_ / "mine.patina").haptics.stiffness, 300);
+  EXPECT_TRUE(window_->close()) << "there is nothing to ask";
+}
+
+} // namespace
+} // namespace patina
