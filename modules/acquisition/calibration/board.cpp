@@ -1,6 +1,6 @@
 #include "acquisition/calibration/board.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -35,20 +35,23 @@ Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec
     return m;
   };
   const Eigen::Matrix3d from = near(board), to = near(pixel);
-  Eigen::Matrix<double, 9, 9> squares = Eigen::Matrix<double, 9, 9>::Zero();
+  // Its last number is 1: the middle of the points is not at infinity.
+  Eigen::Matrix<double, 8, 8> squares = Eigen::Matrix<double, 8, 8>::Zero();
+  Eigen::Matrix<double, 8, 1> right = Eigen::Matrix<double, 8, 1>::Zero();
   for (std::size_t i = 0; i < board.size(); ++i) {
     const Vec3 b = from * board[i].homogeneous();
     const Vec2 p = (to * pixel[i].homogeneous()).head<2>();
-    Eigen::Matrix<double, 2, 9> rows = Eigen::Matrix<double, 2, 9>::Zero();
-    rows.block<1, 3>(0, 0) = rows.block<1, 3>(1, 3) = b.transpose();
-    rows.block<1, 3>(0, 6) = -p.x() * b.transpose();
-    rows.block<1, 3>(1, 6) = -p.y() * b.transpose();
-    squares += rows.transpose() * rows;
+    for (int k = 0; k < 2; ++k) {
+      Eigen::Matrix<double, 8, 1> row = Eigen::Matrix<double, 8, 1>::Zero();
+      row.segment<3>(3 * k) = b;
+      row.tail<2>() = -p[k] * b.head<2>();
+      squares += row * row.transpose();
+      right += p[k] * row;
+    }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(squares);
-  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  const Eigen::Matrix<double, 8, 1> h = squares.ldlt().solve(right);
   Eigen::Matrix3d m;
-  m << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
+  m << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1;
   return to.inverse() * m * from;
 }
 

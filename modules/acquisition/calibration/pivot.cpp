@@ -1,6 +1,6 @@
 #include "acquisition/calibration/pivot.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -44,9 +44,9 @@ std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses) {
       normal += J.transpose() * information * J;
       right -= J.transpose() * information * poses[i].position;
     }
-    const Eigen::SelfAdjointEigenSolver<Mat6> solver(normal);
-    if (!(solver.eigenvalues()[0] > kOpen * solver.eigenvalues()[5])) return std::nullopt;
-    const Vec6 next = normal.ldlt().solve(right);
+    const Eigen::LDLT<Mat6> solver(normal);
+    if (!(solver.vectorD().minCoeff() > kOpen * solver.vectorD().maxCoeff())) return std::nullopt;
+    const Vec6 next = solver.solve(right);
     const double step = (next.head<3>() - fit.tip).norm();
     fit.tip = next.head<3>();
     fit.point = next.tail<3>();

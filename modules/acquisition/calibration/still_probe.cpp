@@ -1,6 +1,6 @@
 #include "acquisition/calibration/still_probe.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -39,10 +39,12 @@ std::optional<Attitude> attitudeIn(const std::vector<const CameraPose*>& poses,
     if (pose->orientation.angularDistance(middle.orientation) >
         kTurned + 3 * std::hypot(pose->sigma_angle, middle.sigma_angle))
       return std::nullopt;
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const CameraPose* pose : poses) sum += pose->orientation.toRotationMatrix();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  attitude.camera_from_probe = svd.matrixU() * svd.matrixV().transpose();
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero(); // of quaternions near each other
+  for (const CameraPose* pose : poses) {
+    const Eigen::Vector4d q = pose->orientation.coeffs();
+    sum += q.dot(middle.orientation.coeffs()) < 0 ? Eigen::Vector4d(-q) : q;
+  }
+  attitude.camera_from_probe = Eigen::Quaterniond(sum).normalized().toRotationMatrix();
   const double n = static_cast<double>(samples.size());
   for (const ProbeSample* sample : samples) attitude.force += sample->force / n;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -66,6 +68,10 @@ struct Affine {
     right += reading * full;
   }
 };
+
+template <class Pivots> bool told(const Pivots& pivots) {
+  return pivots.minCoeff() > kAlike * pivots.maxCoeff();
+}
 
 } // namespace
 
@@ -103,18 +109,18 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
         right -= (a.reading[k] - reading) * row;
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal);
-    if (!(solver.eigenvalues()[0] > kAlike * solver.eigenvalues()[2])) return std::nullopt;
-    fit.gravity = kGravityLength * normal.ldlt().solve(right).normalized();
+    const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+    if (!told(solver.vectorD())) return std::nullopt;
+    fit.gravity = kGravityLength * solver.solve(right).normalized();
     double change = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       axes[k] = Affine();
       for (const Attitude& a : attitudes)
         axes[k].add(-(a.camera_from_probe.transpose() * fit.gravity) / kGravityLength,
                     a.reading[k] / kGravityLength);
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> axis(axes[k].normal);
-      if (!(axis.eigenvalues()[0] > kAlike * axis.eigenvalues()[3])) return std::nullopt;
-      const Eigen::Vector4d solved = axes[k].normal.ldlt().solve(axes[k].right);
+      const Eigen::LDLT<Eigen::Matrix4d> axis(axes[k].normal);
+      if (!told(axis.vectorD())) return std::nullopt;
+      const Eigen::Vector4d solved = axis.solve(axes[k].right);
       const Vec3 direction = solved.head<3>().normalized();
       change = std::max(change, (direction - fit.directions[k]).norm());
       fit.directions[k] = direction;
