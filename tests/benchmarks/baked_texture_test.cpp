@@ -71,8 +71,9 @@ TEST(BakedTexture, ATickCostsWhatItCostsWithoutIt) {
               0.01 * static_cast<double>(without.samples));
   // The look-ups tell whether a tick does more; the time, whether each costs more: 1.00 measured,
   // and where its blocks lie in memory is worth a few hundredths.
-  if (!test::kSanitized)
+  if (!test::kSanitized) {
     EXPECT_TRUE(test::within("a pass with texture, against without", seconds[1], seconds[0], 1.1));
+  }
 }
 
 } // namespace
