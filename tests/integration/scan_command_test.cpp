@@ -267,6 +267,8 @@ TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
                      {"--board", "chessboard:COLUMNSxROWS"});
   (void)simulate({"--seconds", "3"}); // upright and moving
   expectOneLineError(run({"calibrate", scan, "--still", "-o", rig}), {"scan", "held still"});
+  // The hand moves: whatever point fits best is no tip.
+  expectOneLineError(run({"calibrate", scan + "/poses.tum", "-o", rig}), {"poses.tum", "tip"});
   EXPECT_FALSE(std::filesystem::exists(rig));
 }
 

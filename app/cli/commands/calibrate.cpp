@@ -119,6 +119,8 @@ int calibrateCamera(const CalibrateOptions& options, Console& console) {
   return kDone;
 }
 
+constexpr double kWorstTip = 1e-3; // standard deviation of what is no tip [m]
+
 int calibrateTip(const CalibrateOptions& options, Console& console) {
   const OnFile<CameraPose> poses = readPoses(options.input);
   Json rig = Json::object();
@@ -130,6 +132,11 @@ int calibrateTip(const CalibrateOptions& options, Console& console) {
         options.input.string(), 0,
         "the poses do not tell the tip: ten at least, turned to all sides about a point "
         "that stands still");
+  const double deviation = std::sqrt(fit->covariance.diagonal().maxCoeff());
+  if (deviation > kWorstTip)
+    throw FileError(options.input.string(), 0,
+                    "the poses tell the tip to " + formatLength(deviation) +
+                        " only: it must stand still while the probe turns about it to all sides");
   Report report(kCalibrateKeys);
   report.set("rms", fit->rms).set("views", poses.values.size() - fit->rejected);
   report.set("rejected", fit->rejected);
@@ -142,10 +149,6 @@ int calibrateTip(const CalibrateOptions& options, Console& console) {
   writeFileAtomically(options.output, rig.dump() + "\n");
   console.report(report);
   return kDone;
-}
-
-Json vectorJson(const Vec3& v) {
-  return Json(Json::Array{v.x(), v.y(), v.z()});
 }
 
 int calibrateStill(const CalibrateOptions& options, Console& console) {
