@@ -63,6 +63,18 @@ TEST(StrokeTracker, OneStrokeFromTheFirstContactUntilTheButtonGoes) {
   EXPECT_TRUE(tracker.feed({}, {}).empty());
 }
 
+TEST(StrokeTracker, TheStrokeEndsWhereTheTipIsNotWhereASampleFell) {
+  StrokeTracker tracker;
+  std::vector<ToolSample> ticks;
+  for (int i = 0; i < 20; ++i) ticks.push_back(touching(i * kTick, i * 1e-4));
+  (void)tracker.feed(ticks, kDown);
+  const auto last = tracker.feed({}, {});
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_TRUE(last[0].ends);
+  ASSERT_EQ(last[0].samples.size(), 1u);
+  EXPECT_DOUBLE_EQ(last[0].samples[0].position.x(), 19e-4);
+}
+
 TEST(StrokeTracker, AContactThatIsLostForAMomentGoesOnAndALongerOneIsAnotherStroke) {
   StrokeTracker tracker;
   std::vector<ToolSample> ticks = contact(0, 0.05);

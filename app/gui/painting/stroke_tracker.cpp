@@ -8,8 +8,9 @@ std::vector<StrokePiece> StrokeTracker::feed(std::span<const ToolSample> ticks, 
     if (pieces.empty() || pieces.back().ends) pieces.emplace_back();
     return pieces.back();
   };
-  const auto end = [&] {
+  const auto end = [&] { // where the tip is, not where the last sample fell
     painting_ = false;
+    if (way_.size() > 1) piece().samples.push_back(way_.back());
     piece().ends = true;
   };
   for (const ToolSample& tick : ticks) {
