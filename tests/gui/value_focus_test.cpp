@@ -68,7 +68,7 @@ TEST_F(ValueFields, TheWheelScrollsThePanelAndChangesNoValue) {
   openTab("show");
   ASSERT_TRUE(waitUntil([&] { return choice->isVisible(); }, 5000));
   find<DisplayPanel>()->setStabilityNote(QStringLiteral("one\ntwo\nthree\nfour\nfive"));
-  wait(100);
+  ASSERT_TRUE(waitUntil([&] { return scroll_->verticalScrollBar()->maximum() > 0; }, 5000));
   tried(choice, [=] { return choice->currentIndex(); });
 }
 
