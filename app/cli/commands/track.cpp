@@ -5,6 +5,7 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/percentiles.h"
 
 namespace patina::cli {
 
@@ -46,11 +47,9 @@ Json sigmaJson(const std::vector<CameraPose>& poses) {
     positions.push_back(pose.sigma_position);
     angles.push_back(pose.sigma_angle);
   }
-  std::sort(positions.begin(), positions.end());
-  std::sort(angles.begin(), angles.end());
   Json json = Json::object();
-  json.set("position", positions[positions.size() / 2]);
-  return json.set("angle", angles[angles.size() / 2]);
+  json.set("position", percentiles(positions).p50);
+  return json.set("angle", percentiles(angles).p50);
 }
 
 int runTrack(TrackOptions options, Console& console) {
