@@ -1,0 +1,290 @@
+#include <chrono>
+#include <numbers>
+
+#include "acquisition/files/registered_file.h"
+#include "acquisition/files/scan_files.h"
+#include "acquisition/filtering/contact.h"
+#include "acquisition/registration/closest_point_loop.h"
+#include "app/cli/commands/commands.h"
+#include "app/cli/input/pose_file.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/numbers.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_report.h"
+
+namespace patina::cli {
+
+namespace {
+
+enum class Method { distance, loop, literal };
+
+struct RegisterOptions {
+  std::filesystem::path mesh, path, output, report, initial, truth;
+  MeshUnit unit = MeshUnit::mm;
+  Method method = Method::distance;
+  double tip_radius = 0, compliance = 0;
+  std::optional<double> noise;
+  bool no_search = false;
+};
+
+const Keys kRegisterKeys = {
+    {"mesh_from_scan", "", "mesh from scan", "4 x 4"},
+    {"samples",
+     "",
+     "samples",
+     "in contact; and how many of them count",
+     Shown::always,
+     {{"all", "", ""}, {"count", "", ""}}},
+    {"mean_distance", "m", "mean distance"},
+    {"rms", "m", "rms", "distance of what counts from where it should be"},
+    {"noise", "m", "noise", "that was expected of the samples", Shown::if_any},
+    {"converged", "", "converged", "residual and pose are at rest, and as small as the noise"},
+    {"last_step",
+     "",
+     "last step",
+     "of the pose",
+     Shown::always,
+     {{"turn", "rad", ""}, {"shift", "m", ""}}},
+    {"deviation",
+     "",
+     "deviation",
+     "of the pose, rms of the axes; of what is seen",
+     Shown::if_any,
+     {{"turn", "rad", ""}, {"shift", "m", ""}}},
+    {"unobservable",
+     "",
+     "free",
+     "motions that the surface does not see, left where they were",
+     Shown::if_any,
+     {{"axis", "", ""}, {"kind", "", ""}, {"through", "m", ""}, {"pitch", "m", ""}}},
+    {"iterations", "", "iterations"},
+    {"evaluations", "", "evaluations", "of a sample's distance", Shown::if_any},
+    {"starts", "", "starts", "poses that were fitted from", Shown::if_any},
+    {"error", "m", "error", "against the truth: of the samples, rms", Shown::if_any},
+    {"seconds", "s", "registered in"}};
+
+Method parseMethod(const std::string& word) {
+  if (word == "distance") return Method::distance;
+  if (word == "loop") return Method::loop;
+  if (word == "literal") return Method::literal;
+  throw Error("'" + word + "' is none of distance, loop, literal");
+}
+
+Pose truePose(const std::filesystem::path& file) try {
+  const Json rows = parseJson(readFile(file), file.string()).at("mesh_from_camera");
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      matrix(i, j) = rows.asArray()
+                         .at(static_cast<std::size_t>(i))
+                         .asArray()
+                         .at(static_cast<std::size_t>(j))
+                         .asNumber();
+  return Pose(matrix);
+} catch (const FileError&) {
+  throw;
+} catch (const std::exception& error) {
+  throw FileError(file.string(), 0, std::string("mesh_from_camera: ") + error.what());
+}
+
+// Where no sample tells a force, all are taken to touch.
+std::vector<PathSample> inContact(std::vector<PathSample> path) {
+  const bool told = std::any_of(path.begin(), path.end(),
+                                [](const PathSample& sample) { return sample.force != 0; });
+  if (!told) return path;
+  markContact(path);
+  std::erase_if(path, [](const PathSample& sample) { return !sample.touching; });
+  return path;
+}
+
+double medianSigma(const std::vector<PathSample>& path) {
+  std::vector<double> sigmas;
+  for (const PathSample& sample : path) sigmas.push_back(sample.sigma);
+  return percentiles(sigmas).p50;
+}
+
+// The path's middle onto the mesh's: what is known of a path where nothing is.
+Pose middleOnMiddle(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
+  Pose pose = Pose::Identity();
+  pose.translation() = bounds(mesh).center() - scaleOf(points, Pose::Identity()).centre;
+  return pose;
+}
+
+Registration byLoop(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,
+                    bool literal, Console& console, const std::string& file) {
+  LoopOptions options;
+  options.literal = literal;
+  const LoopFit fit = closestPointLoop(target, points, start, options);
+  if (fit.fell_back)
+    console.warn(file + ": lies in a plane, where the literal fit does not exist; each step was "
+                        "fitted by singular values");
+  Registration result;
+  result.mesh_from_path = fit.mesh_from_path;
+  result.mean_distance = fit.mean_distance;
+  result.rms = std::sqrt(fit.mean_square);
+  result.last_turn = fit.last_turn;
+  result.last_shift = fit.last_shift;
+  result.iterations = fit.iterations;
+  result.converged = fit.converged;
+  for (const Vec3& p : points) result.misses.push_back(target.miss(fit.mesh_from_path * p));
+  result.counts.assign(points.size(), true);
+  return result;
+}
+
+Json freeJson(const std::vector<FreeMotion>& motions) {
+  Json list = Json::array();
+  for (const FreeMotion& motion : motions) {
+    const bool turns = motion.kind == FreeMotion::Kind::turn;
+    Json json = Json::object();
+    json.set("axis", vectorJson(motion.axis)).set("kind", turns ? "turn" : "slide");
+    if (turns) json.set("through", vectorJson(motion.through)).set("pitch", motion.pitch);
+    list.push(json);
+  }
+  return list;
+}
+
+Report reportOf(const Registration& found, const RegisterOptions& options, double seconds) {
+  Report report(kRegisterKeys);
+  const auto count =
+      static_cast<std::size_t>(std::count(found.counts.begin(), found.counts.end(), true));
+  const Eigen::AngleAxisd turn(found.mesh_from_path.linear());
+  const Vec3& shift = found.mesh_from_path.translation();
+  report.set("mesh_from_scan", poseJson(found.mesh_from_path),
+             "turned by " + rounded(turn.angle() * 180 / std::numbers::pi) +
+                 " degrees, shifted by " + formatLength(shift.norm()));
+  report.set("samples", Json::object().set("all", found.counts.size()).set("count", count),
+             formatCount(found.counts.size()) + ", of which " + formatCount(count) + " count");
+  report.set("mean_distance", found.mean_distance).set("rms", found.rms);
+  if (found.noise > 0 && options.noise) report.set("noise", *options.noise);
+  report.set("converged", found.converged);
+  report.set("last_step",
+             Json::object().set("turn", found.last_turn).set("shift", found.last_shift),
+             rounded(1e3 * found.last_turn) + " mrad, " + formatLength(found.last_shift));
+  if (options.method == Method::distance) {
+    const double turns = std::sqrt(found.covariance.topLeftCorner<3, 3>().trace() / 3),
+                 shifts = std::sqrt(found.covariance.bottomRightCorner<3, 3>().trace() / 3);
+    report.set("deviation", Json::object().set("turn", turns).set("shift", shifts),
+               rounded(1e3 * turns) + " mrad, " + formatLength(shifts));
+    std::string words;
+    for (const FreeMotion& motion : found.free)
+      words += (words.empty() ? "" : "; ") + inWords(motion);
+    report.set("unobservable", freeJson(found.free), words);
+    report.set("evaluations", found.evaluations)
+        .set("starts", static_cast<std::size_t>(found.starts));
+  }
+  report.set("iterations", static_cast<std::size_t>(found.iterations));
+  return report.set("seconds", seconds);
+}
+
+int runRegister(RegisterOptions options, Console& console) {
+  const std::vector<std::filesystem::path> inputs = {options.mesh, options.path, options.initial,
+                                                     options.truth};
+  requireWritable(options.output, inputs);
+  if (!options.report.empty()) {
+    requireWritable(options.report, inputs);
+    if (areOne(options.report, options.output))
+      throw FileError(options.report.string(), 0, "is the path's file too");
+  }
+  if (options.method != Method::distance &&
+      (options.tip_radius > 0 || options.compliance > 0 || options.noise || options.no_search))
+    throw Error("--method: --tip-radius, --compliance, --noise and --no-search are of 'distance'");
+  ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
+  if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
+  TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
+  if (mesh.triangles.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
+  const std::vector<PathSample> path = inContact(readPath(options.path));
+  if (path.size() < 3)
+    throw FileError(options.path.string(), 0, "has fewer than three samples in contact");
+  const std::optional<Pose> truth =
+      options.truth.empty() ? std::nullopt : std::optional(truePose(options.truth));
+  std::vector<Vec3> points;
+  RegistrationOptions fitting;
+  for (const PathSample& sample : path) {
+    points.push_back(sample.position);
+    if (options.compliance > 0) fitting.pressed.push_back(options.compliance * sample.force);
+  }
+  const Pose start =
+      options.initial.empty() ? middleOnMiddle(mesh, points) : readPose(options.initial);
+  if (!options.noise) options.noise = medianSigma(path);
+  fitting.noise = *options.noise;
+  fitting.search = !options.no_search;
+  if (options.initial.empty()) {
+    fitting.around = {std::numbers::pi, bounds(mesh).sizes().norm() / 2, 12, 8000};
+  }
+  const SurfaceTarget target(std::move(mesh), options.tip_radius, options.compliance > 0);
+
+  const auto begin = std::chrono::steady_clock::now();
+  const Registration found = options.method == Method::distance
+                                 ? registerPath(target, points, start, fitting, console.progress())
+                                 : byLoop(target, points, start, options.method == Method::literal,
+                                          console, options.path.string());
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  console.progress().throwIfCancelled();
+  Report report = reportOf(found, options, taken.count());
+  if (truth) {
+    double squares = 0;
+    for (const Vec3& p : points) squares += (found.mesh_from_path * p - *truth * p).squaredNorm();
+    report.set("error", std::sqrt(squares / static_cast<double>(points.size())));
+  }
+  writeRegisteredPath(options.output, path, found);
+  if (!options.report.empty()) writeFileAtomically(options.report, report.json().dump() + "\n");
+  console.report(report);
+  if (!found.converged)
+    console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
+                                         "noise lets expect");
+  return found.converged ? kDone : kNotSolved;
+}
+
+} // namespace
+
+Command registerCommand() {
+  auto options = std::make_shared<RegisterOptions>();
+  const auto length = [](double& target) {
+    return inRange(
+        0, 1, [&target](double value) { target = value; }, NumberKind::length);
+  };
+  return {
+      .name = "register",
+      .summary = "a scan path finds its place on a mesh",
+      .description =
+          "Turns and shifts PATH.csv (of `patina filter`) so that it lies on MESH, and writes it "
+          "in "
+          "the mesh's frame with the face and barycentric coordinates of each sample. Samples that "
+          "do not fit are left out; only those in contact take part.\n"
+          "distance: Gauss-Newton on the distances; where the fit from --initial is not as good as "
+          "the path's sigma lets expect, many poses about it are tried. loop: nearest points and a "
+          "fit of points onto points, in turns, as Andrews and Lang have it (2007); literal: its 4 "
+          "x 4 matrix by least squares.\n"
+          "Motions that the surface does not see are named and left where they were. Exit code 1 "
+          "where no pose explains the path.",
+      .examples = {"patina register dinosaur.obj path.csv -o registered.csv --report r.json",
+                   "patina register plate.obj path.csv -o r.csv --initial pose.txt --tip-radius "
+                   "0.5mm --json"},
+      .keys = kRegisterKeys,
+      .arguments =
+          {input("MESH", "Mesh.", into(options->mesh)),
+           input("PATH", "Scan path.", into(options->path)),
+           outputTo(options->output, "REGISTERED.csv", "The path on the mesh."),
+           {"--report", "R.json", "", "", "The report as a file.", into(options->report)},
+           {"--initial", "T.txt", "", "middle on middle", "First guess of mesh_from_scan, 4 x 4.",
+            into(options->initial)},
+           {"--method", "distance|loop|literal", "", "distance", "How it is found.",
+            parsedInto(options->method, parseMethod)},
+           {"--tip-radius", "LENGTH", "m", "0", "Of the probe: its middle stays that far off.",
+            length(options->tip_radius)},
+           {"--compliance", "M_PER_N", "m/N", "0", "How far the surface yields to a newton.",
+            inRange(0, 1, [options](double c) { options->compliance = c; })},
+           {"--noise", "LENGTH", "m", "the path's median sigma", "Deviation of the samples.",
+            inRange(
+                1e-9, 1, [options](double n) { options->noise = n; }, NumberKind::length)},
+           {"--no-search", "", "", "", "Fit from the first guess alone.", into(options->no_search)},
+           {"--truth", "TRUTH.json", "", "", "Of a simulated scan, to compare with.",
+            into(options->truth)},
+           {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",
+            parsedInto(options->unit, parseMeshUnit)}},
+      .run = [options](Console& console) { return runRegister(*options, console); }};
+}
+
+} // namespace patina::cli

@@ -1,0 +1,16 @@
+// A path in a mesh's frame, with where on the mesh each sample belongs.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "acquisition/registration/register_path.h"
+#include "acquisition/scan_samples.h"
+
+namespace patina {
+
+// The columns of a path, then face,b0,b1,b2,distance [m]. Samples that do not count are left out.
+void writeRegisteredPath(const std::filesystem::path& path, const std::vector<PathSample>& samples,
+                         const Registration& registration);
+
+} // namespace patina

@@ -1,0 +1,205 @@
+#include "acquisition/registration/path_fit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace patina {
+namespace {
+
+constexpr double kInlier = 3;      // deviations
+constexpr double kNormal = 1.4826; // of a normal error, deviation over median
+
+struct Working {
+  const SurfaceTarget& target;
+  const std::vector<Vec3>& points;
+  const std::vector<double>& pressed;
+  PathFit fit;
+
+  void evaluate(const Pose& pose, std::vector<Miss>& misses) {
+    misses.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!points[i].allFinite()) continue;
+      misses[i] = target.miss(pose * points[i], misses[i].foot.face);
+      if (!pressed.empty()) misses[i].distance += pressed[i];
+      ++fit.evaluations;
+    }
+  }
+
+  double cost(const std::vector<Miss>& misses) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < misses.size(); ++i)
+      sum += fit.weights[i] * misses[i].distance * misses[i].distance;
+    return sum;
+  }
+
+  // Deviation of the better half.
+  double spread() const {
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].allFinite()) sizes.push_back(std::abs(fit.misses[i].distance));
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return kNormal * *middle;
+  }
+
+  Vec6 normalEquations(const MotionScale& scale) {
+    fit.normal.setZero();
+    Vec6 right = Vec6::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (fit.weights[i] == 0) continue;
+      const Vec6 g = scale.gradient(fit.mesh_from_path * points[i], fit.misses[i].direction);
+      fit.normal.selfadjointView<Eigen::Lower>().rankUpdate(g, fit.weights[i]);
+      right -= fit.weights[i] * fit.misses[i].distance * g;
+    }
+    fit.normal = fit.normal.selfadjointView<Eigen::Lower>();
+    return right;
+  }
+
+  // Steps until nothing moves. `reweigh` is called before each and says whether weights changed.
+  template <class Reweigh> void run(int iterations, double tiny, Reweigh&& reweigh) {
+    const double extent = target.extent();
+    double damping = 0;
+    for (fit.converged = false; iterations > 0 && !fit.converged; --iterations) {
+      const bool free = reweigh(); // costs of other weights say nothing of each other
+      const MotionScale scale = scaleOf(points, fit.mesh_from_path);
+      const Vec6 right = normalEquations(scale);
+      const Eigen::SelfAdjointEigenSolver<Mat6> eigen(fit.normal);
+      const double largest = std::max(eigen.eigenvalues()[5], 1e-300);
+      const double before = cost(fit.misses);
+      ++fit.iterations;
+      for (;;) {
+        Vec6 step = Vec6::Zero();
+        for (int k = 0; k < 6; ++k)
+          if (eigen.eigenvalues()[k] > kBlind * largest)
+            step += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).dot(right) /
+                    (eigen.eigenvalues()[k] + damping * largest);
+        limit(step, scale, extent);
+        const Pose next = scale.motion(step) * fit.mesh_from_path;
+        std::vector<Miss> misses = fit.misses;
+        evaluate(next, misses);
+        const double after = cost(misses);
+        const bool still = step.norm() < tiny;
+        if (after <= before || free || still) {
+          fit.last_turn = step.head<3>().norm() / scale.radius;
+          fit.last_shift = step.tail<3>().norm();
+          fit.converged = still;
+          if (after <= before || free) {
+            fit.mesh_from_path = next;
+            fit.misses = std::move(misses);
+          }
+          damping = damping < 1e-6 ? 0 : damping / 10;
+          break;
+        }
+        damping = std::max(1e-4, damping * 10);
+      }
+    }
+  }
+};
+
+} // namespace
+
+Pose MotionScale::motion(const Vec6& lengths) const {
+  const Vec3 turn = lengths.head<3>() / radius;
+  const double angle = turn.norm();
+  Pose pose = Pose::Identity();
+  if (angle > 0) pose.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  pose.translation() = centre - pose.linear() * centre + lengths.tail<3>();
+  return pose;
+}
+
+Vec6 MotionScale::gradient(const Vec3& at, const Vec3& direction) const {
+  Vec6 g;
+  g << (at - centre).cross(direction) / radius, direction;
+  return g;
+}
+
+double sharing(const PathFit& fit) {
+  std::vector<double> r;
+  for (std::size_t i = 0; i < fit.misses.size(); ++i)
+    if (fit.weights[i] > 0) r.push_back(fit.misses[i].distance);
+  const double all = std::inner_product(r.begin(), r.end(), r.begin(), 0.0);
+  double sum = 1;
+  for (std::size_t lag = 1; lag < r.size() / 4 && all > 0; ++lag) {
+    const double like =
+        std::inner_product(r.begin() + static_cast<std::ptrdiff_t>(lag), r.end(), r.begin(), 0.0) /
+        all;
+    if (like < 2 / std::sqrt(static_cast<double>(r.size()))) break;
+    sum += 2 * like;
+  }
+  return sum;
+}
+
+void limit(Vec6& step, const MotionScale& scale, double extent) {
+  const double turn = step.head<3>().norm() / (scale.radius / 2),
+               shift = step.tail<3>().norm() / (std::max(extent, scale.radius) / 4);
+  step /= std::max({1.0, turn, shift});
+}
+
+MotionScale scaleOf(const std::vector<Vec3>& points, const Pose& mesh_from_path) {
+  MotionScale scale;
+  Vec3 sum = Vec3::Zero();
+  std::size_t n = 0;
+  for (const Vec3& p : points)
+    if (p.allFinite()) {
+      sum += p;
+      ++n;
+    }
+  const Vec3 mean = sum / static_cast<double>(std::max<std::size_t>(n, 1));
+  double squares = 0;
+  for (const Vec3& p : points)
+    if (p.allFinite()) squares += (p - mean).squaredNorm();
+  scale.centre = mesh_from_path * mean;
+  scale.radius = std::max(std::sqrt(squares / static_cast<double>(std::max<std::size_t>(n, 1))),
+                          1e-9); // a single point has none
+  return scale;
+}
+
+PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,
+                const FitOptions& options) {
+  Working work{target, points, options.pressed, {}};
+  PathFit& fit = work.fit;
+  fit.mesh_from_path = start;
+  for (const Vec3& p : points) fit.weights.push_back(p.allFinite() ? 1 : 0);
+  if (std::count(fit.weights.begin(), fit.weights.end(), 1) == 0)
+    throw std::invalid_argument("fitPath: no point is finite");
+  work.evaluate(start, fit.misses);
+  const double tiny = 1e-8 * scaleOf(points, start).radius;
+  const auto countAll = [&](auto&& weight) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].allFinite()) fit.weights[i] = weight(std::abs(fit.misses[i].distance));
+  };
+  int left = options.iterations;
+  if (options.noise > 0) {
+    // What is far off for all others counts little; how far that is follows from the better half.
+    work.run(left / 2, 1e-2 * options.noise, [&] {
+      const double s = std::max(options.noise, 1.5 * work.spread());
+      countAll([&](double r) {
+        const double q = s * s / (s * s + r * r);
+        return q * q;
+      });
+      return true;
+    });
+    left -= fit.iterations;
+  }
+  for (int round = 0; round < 8; ++round) {
+    std::vector<double> before = fit.weights;
+    if (options.noise > 0) {
+      const double most = kInlier * std::max(options.noise, work.spread());
+      countAll([&](double r) { return r <= most ? 1.0 : 0.0; });
+      if (round > 0 && before == fit.weights) break;
+    }
+    work.run(std::max(left, 5), tiny, [] { return false; });
+    if (options.noise <= 0) break;
+  }
+  const auto count =
+      fit.weights.size() -
+      static_cast<std::size_t>(std::count(fit.weights.begin(), fit.weights.end(), 0.0));
+  fit.rms = std::sqrt(work.cost(fit.misses) / static_cast<double>(std::max<std::size_t>(count, 1)));
+  work.normalEquations(scaleOf(points, fit.mesh_from_path));
+  return std::move(work.fit);
+}
+
+} // namespace patina

@@ -1,0 +1,44 @@
+// A path finds its place on a mesh (A10): the nearest good fit, a search where that is none, what
+// counts, and what stays unknown.
+#pragma once
+
+#include "acquisition/registration/coarse_search.h"
+#include "acquisition/registration/free_motions.h"
+
+namespace patina {
+
+struct RegistrationOptions {
+  // Deviation of the points [m]; 0: unknown, and only a fit without any is trusted without a
+  // search.
+  double noise = 0;
+  std::vector<double> pressed; // see FitOptions
+  bool robust = true;          // finds what counts; else all points do
+  bool search = true;          // where the fit from `start` is not as good as the noise lets expect
+  CoarseSearch around;         // how
+};
+
+struct Registration {
+  Pose mesh_from_path = Pose::Identity();
+  double mean_distance = 0, rms = 0; // of what counts, from where it should be [m]
+  // Of a small turn about the path's middle [rad], then of its shift [m], in the mesh's frame; what
+  // is free adds nothing. Errors that neighbouring samples share count once.
+  Mat6 covariance = Mat6::Zero();
+  Vec3 middle = Vec3::Zero();           // [m]
+  std::vector<FreeMotion> free;         // the path stays where it was in these
+  std::vector<Miss> misses;             // one a point
+  std::vector<bool> counts;             // one a point
+  double noise = 0;                     // that the fit shows [m]
+  double last_turn = 0, last_shift = 0; // of the last step [rad, m]
+  int iterations = 0, starts = 1;
+  std::size_t evaluations = 0; // of a point's distance
+  // Neither residual nor pose moved any more, most points count, and the noise, where it was told,
+  // explains the rms.
+  bool converged = false;
+};
+
+// Throws std::invalid_argument: no finite point, `pressed` of another number; Cancelled.
+Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& points,
+                          const Pose& start, const RegistrationOptions& options,
+                          Progress& progress);
+
+} // namespace patina
