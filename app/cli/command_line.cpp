@@ -16,9 +16,15 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const Argument* inputOf(const Command& command) {
-  const auto input = std::ranges::find_if(command.arguments, &Argument::isInput);
-  return input == command.arguments.end() ? nullptr : &*input;
+// The input that the next word is for: the first that may still be given, else the last.
+const Argument* nextInput(const Command& command, const std::set<std::string>& given) {
+  const Argument* last = nullptr;
+  for (const Argument& argument : command.arguments) {
+    if (!argument.isInput()) continue;
+    last = &argument;
+    if (argument.isRepeated() || !given.contains(argument.name())) break;
+  }
+  return last;
 }
 
 Words namesOf(const Argument& argument) {
@@ -56,7 +62,6 @@ void give(const Argument& argument, const std::string& value) {
 // Fills in the command's options from the words after its name; which were given, by name.
 std::set<std::string> parse(const Command& command, const Words& words) {
   const std::string see = "patina " + command.name + " --help";
-  const Argument* input = inputOf(command);
   std::set<std::string> given;
   bool only_inputs = false; // after "--"
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -66,6 +71,7 @@ std::set<std::string> parse(const Command& command, const Words& words) {
       continue;
     }
     if (only_inputs || word.size() < 2 || word[0] != '-') {
+      const Argument* input = nextInput(command, given);
       if (!input) throw Error(command.name + ": '" + word + "' is one word too many; see " + see);
       if (!given.insert(input->name()).second && !input->isRepeated())
         throw Error(command.name + ": one " + input->value + " at a time: '" + word +

@@ -22,6 +22,16 @@ bool lock(int fd) {
 
 } // namespace
 
+void createFile(const std::filesystem::path& path, std::string_view bytes) {
+  const std::string name = path.string();
+  Descriptor file(openRetrying(name.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666));
+  if (file.get() < 0) throw FileError(name, 0, "cannot be written: " + reason(errno));
+  if (writeAllAt(file.get(), bytes, 0) && file.close() == 0) return;
+  const int code = errno;
+  ::unlink(name.c_str());
+  throw FileError(name, 0, "cannot be written: " + reason(code));
+}
+
 AppendFile::AppendFile(const std::filesystem::path& path)
     : name_(path.string()), file_(openRetrying(name_.c_str(), O_RDWR)) {
   if (file_.get() < 0) throw FileError(name_, 0, "cannot be opened for writing: " + reason(errno));

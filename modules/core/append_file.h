@@ -10,6 +10,10 @@
 
 namespace patina {
 
+// A file that is new, without waiting for the disk: a loss of power may take it, the end of the
+// program does not. Where it fails nothing is left of it. Throws FileError, also if it exists.
+void createFile(const std::filesystem::path& path, std::string_view bytes);
+
 // Holds a lock on the file for as long as it lives.
 class AppendFile {
  public:

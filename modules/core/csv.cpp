@@ -1,4 +1,4 @@
-#include "core/csv.h"
+#include "core/csv_rows.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -54,27 +54,6 @@ bool looksLikeDecimalComma(std::string_view line, std::size_t found, std::size_t
 constexpr const char* kDecimalComma =
     "decimal commas: write numbers with a point and separate them with commas";
 
-void parseRow(std::string_view line, std::size_t due, const std::string& name, std::size_t number,
-              std::vector<double>& row) {
-  const std::vector<std::string_view> cells = split(line, ',');
-  if (cells.size() != due) {
-    if (looksLikeDecimalComma(line, cells.size(), due))
-      throw FileError(name, number, kDecimalComma);
-    throw FileError(name, number,
-                    std::to_string(cells.size()) + " values where the header names " +
-                        std::to_string(due));
-  }
-  row.clear();
-  for (const std::string_view cell : cells) {
-    const std::optional<double> value = parseNumber(cell);
-    if (!value) {
-      if (cell.find(';') != std::string_view::npos) throw FileError(name, number, kDecimalComma);
-      throw FileError(name, number, quoted(cell) + " is not a number");
-    }
-    row.push_back(*value);
-  }
-}
-
 constexpr std::size_t kChunk = 1 << 16;
 constexpr std::size_t kLongestLine = 1 << 20;
 
@@ -98,6 +77,27 @@ CsvTable wholeOf(CsvReader reader) {
 }
 
 } // namespace
+
+void parseCsvRow(std::string_view line, std::size_t due, const std::string& name,
+                 std::size_t number, std::vector<double>& row) {
+  const std::vector<std::string_view> cells = split(line, ',');
+  if (cells.size() != due) {
+    if (looksLikeDecimalComma(line, cells.size(), due))
+      throw FileError(name, number, kDecimalComma);
+    throw FileError(name, number,
+                    std::to_string(cells.size()) + " values where the header names " +
+                        std::to_string(due));
+  }
+  row.clear();
+  for (const std::string_view cell : cells) {
+    const std::optional<double> value = parseNumber(cell);
+    if (!value) {
+      if (cell.find(';') != std::string_view::npos) throw FileError(name, number, kDecimalComma);
+      throw FileError(name, number, quoted(cell) + " is not a number");
+    }
+    row.push_back(*value);
+  }
+}
 
 CsvReader::CsvReader(const std::filesystem::path& path, const std::vector<std::string>& expected)
     : CsvReader(sourceOf(path), path.string(), expected) {
@@ -147,7 +147,7 @@ bool CsvReader::next(std::vector<double>& row) {
   do {
     if (!nextLine(line)) return false;
   } while (line.empty());
-  parseRow(line, columns_.size(), name_, line_, row);
+  parseCsvRow(line, columns_.size(), name_, line_, row);
   return true;
 }
 
@@ -155,30 +155,39 @@ double CsvReader::fraction() const {
   return size_ > 0 ? std::min(bytes_ / size_, 1.0) : 0;
 }
 
-CsvTable parseCsv(const std::string& text, const std::string& name,
-                  const std::vector<std::string>& expected) {
-  std::string_view rest = text;
-  const auto source = [&rest](char* buffer, std::size_t room) {
-    const std::size_t count = rest.copy(buffer, room);
-    rest.remove_prefix(count);
+CsvReader::Source sourceOfText(std::string_view text) {
+  return [text](char* buffer, std::size_t room) mutable {
+    const std::size_t count = text.copy(buffer, room);
+    text.remove_prefix(count);
     return count;
   };
-  return wholeOf(CsvReader(source, name, expected));
+}
+
+CsvTable parseCsv(const std::string& text, const std::string& name,
+                  const std::vector<std::string>& expected) {
+  return wholeOf(CsvReader(sourceOfText(text), name, expected));
 }
 
 CsvTable readCsv(const std::filesystem::path& path, const std::vector<std::string>& expected) {
   return wholeOf(CsvReader(path, expected));
 }
 
+std::string csvHeader(const std::vector<std::string>& columns) {
+  return joined(columns) + "\n";
+}
+
+std::string csvRow(const std::vector<double>& row) {
+  std::string text;
+  for (std::size_t i = 0; i < row.size(); ++i)
+    text.append(i > 0 ? "," : "").append(formatNumber(row[i]));
+  return text += '\n';
+}
+
 CsvWriter::CsvWriter(const std::filesystem::path& path, const std::vector<std::string>& columns)
-    : file_(path), text_(joined(columns) + "\n") {}
+    : file_(path), text_(csvHeader(columns)) {}
 
 void CsvWriter::add(const std::vector<double>& row) {
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (i > 0) text_ += ',';
-    text_ += formatNumber(row[i]);
-  }
-  text_ += '\n';
+  text_ += csvRow(row);
   if (text_.size() < kChunk) return;
   file_.append(text_);
   text_.clear();

@@ -10,6 +10,7 @@
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/lens.h"
 #include "core/error.h"
+#include "support/least_time.h"
 #include "support/rendered_rig.h"
 #include "support/shared_data.h"
 
@@ -165,6 +166,33 @@ TEST(MarkerFinder, FindsEachMarkerOfTheSharedBoardOnce) {
   for (const SeenMarker& marker : seen) ids.insert(marker.id);
   EXPECT_EQ(seen.size(), 17u);
   EXPECT_EQ(ids.size(), 17u);
+}
+
+PATINA_TIMED_TEST(MarkerFinder, TakesHardlyLongerWhereThereIsNoiseAndLosesNoMarker) {
+  const test::RenderedRig rig(test::smallCamera(), "4x4_50");
+  std::mt19937 random(5);
+  const Pose pose = test::somePose(random, 0.4);
+  const auto frame = [&](double noise) {
+    FrameLook look;
+    look.noise = noise;
+    return rig.renderer.render({pose}, look, 1);
+  };
+  const GreyFrame clear = frame(2), noisy = frame(8);
+  const auto looking = [&](const GreyFrame& image) {
+    return [&] { (void)findMarkers(image, rig.books, &rig.camera); };
+  };
+  const auto times = test::leastSeconds({looking(clear), looking(noisy)});
+  std::printf("noise of 8 takes %.2f of that of 2\n", times[1] / times[0]);
+  EXPECT_LT(times[1] / times[0], 1.5);
+  int shown = 0;
+  for (const double distance : {0.25, 0.4, 0.6, 0.9}) {
+    const Found clean = findIn(rig, lookOf(0.6, 2, 0.3), distance, 6);
+    const Found found = findIn(rig, lookOf(0.6, 8, 0.3), distance, 6);
+    EXPECT_GE(found.found, clean.found) << distance;
+    EXPECT_EQ(found.wrong, 0);
+    shown += clean.found;
+  }
+  EXPECT_GT(shown, 20);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unistd.h>
 
+#include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/track_frames.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -172,7 +173,7 @@ class Frames : public testing::Test {
   }
   TrackedFrames tracked(const Camera& camera) const {
     Progress progress;
-    return trackFrames(framesOf(folder, 0), camera, rig.markers, {}, progress);
+    return trackFrames(*openFrames(folder.string(), 0), camera, rig.markers, {}, progress);
   }
 
   RenderedRig rig;

@@ -1,4 +1,7 @@
+#include <cmath>
+
 #include "acquisition/calibration/board.h"
+#include "acquisition/calibration/force_fit.h"
 #include "acquisition/calibration/pivot.h"
 #include "acquisition/calibration/still_probe.h"
 #include "acquisition/files/frame_files.h"
@@ -6,6 +9,7 @@
 #include "acquisition/vision_library.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
+#include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
@@ -18,7 +22,7 @@ struct CalibrateOptions {
   std::filesystem::path input, rig, output;
   std::optional<Board> board;
   std::string board_text;
-  bool still = false;
+  bool still = false, force = false;
 };
 
 const Keys kParameterParts = {{"value", "", ""}, {"deviation", "", ""}};
@@ -26,12 +30,14 @@ const Keys kCalibrateKeys = {
     {"rms_px", "px", "corners miss by", "rms of an image's two axes together"},
     {"rms", "m", "tip misses by", "rms of its distance from where it stood"},
     {"rms_acceleration", "m/s^2", "readings miss by", "rms of an axis, of the probe held still"},
-    {"views", "", "used", "views, poses, or half seconds held still"},
-    {"rejected", "", "rejected", "views without the board, or poses that contradict the others"},
+    {"rms_force", "N", "forces miss by", "rms of the readings that were used"},
+    {"views", "", "used", "views, poses, half seconds held still, or readings"},
+    {"rejected", "", "rejected",
+     "views without the board, or poses or readings that contradict the others"},
     {"parameters", "", "parameters",
      "by name: fx fy cx cy k1 k2 p1 p2 k3 of a camera; x y z of a tip [m]; "
      "of a probe held still a1u a1v a2u a2v, the biases [m/s^2] with the deviations of the axes "
-     "[rad], and force_zero [N]",
+     "[rad], and force_zero [N]; force_zero and force_gain of known weights",
      Shown::never, kParameterParts}};
 
 constexpr const char* kCameraNames[] = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
@@ -187,9 +193,52 @@ int calibrateStill(const CalibrateOptions& options, Console& console) {
   return kDone;
 }
 
+int calibrateForce(const CalibrateOptions& options, Console& console) {
+  CsvReader table(options.input, {"force [N]", "reading"});
+  std::vector<KnownForce> readings;
+  std::vector<std::size_t> lines;
+  for (std::vector<double> row; table.next(row);) {
+    if (!std::isfinite(row[0]) || !std::isfinite(row[1]))
+      throw FileError(options.input.string(), table.line(), "is not finite");
+    readings.push_back({row[0], row[1]});
+    lines.push_back(table.line());
+  }
+  Json json = Json::object();
+  if (!options.rig.empty()) {
+    (void)readRig(options.rig);
+    json = parseJson(readFile(options.rig), options.rig.string());
+  }
+  const auto fit = fitForce(readings);
+  if (!fit)
+    throw FileError(options.input.string(), 0,
+                    "the readings do not tell zero and gain: four at least, of three forces, that "
+                    "grow with the force");
+  Report report(kCalibrateKeys);
+  report.set("rms_force", fit->rms).set("views", readings.size() - fit->rejected.size());
+  report.set("rejected", fit->rejected.size());
+  Json parameters = Json::object();
+  tellParameter(parameters, report, "force_zero", fit->zero, fit->zero_deviation, 1, "");
+  tellParameter(parameters, report, "force_gain", fit->gain, fit->gain_deviation, 1, "");
+  report.set("parameters", parameters);
+  if (!json.find("tip")) json.set("tip", vectorJson(ProbeModel().tip));
+  json.set("force_zero", fit->zero).set("force_gain", fit->gain);
+  writeFileAtomically(options.output, json.dump() + "\n");
+  if (!fit->rejected.empty())
+    console.warn(options.input.string() + ":" + std::to_string(lines[fit->rejected[0]]) +
+                 ": contradicts the other readings" +
+                 (fit->rejected.size() > 1
+                      ? ", as do " + formatCount(fit->rejected.size() - 1) + " more"
+                      : ""));
+  console.report(report);
+  return kDone;
+}
+
 int runCalibrate(const CalibrateOptions& options, Console& console) {
   requireWritable(options.output, {options.input});
   if (options.board && options.still) throw Error("--still: not with --board");
+  if (options.force && (options.board || options.still))
+    throw Error("--force: not with --board or --still");
+  if (options.force) return calibrateForce(options, console);
   if (options.board) return calibrateCamera(options, console);
   return options.still ? calibrateStill(options, console) : calibrateTip(options, console);
 }
@@ -215,9 +264,10 @@ Command calibrateCommand() {
       .examples = {"patina calibrate views --board chessboard:9x6:25mm -o camera.yml",
                    "patina calibrate views --board charuco:5x7:40mm:20mm:6x6_250 -o camera.yml",
                    "patina calibrate turning.tum --rig rig.json -o rig-with-tip.json",
-                   "patina calibrate held --still --rig rig-with-tip.json -o rig-of-probe.json"},
+                   "patina calibrate held --still --rig rig-with-tip.json -o rig-of-probe.json",
+                   "patina calibrate weights.csv --force --rig rig.json -o rig-with-force.json"},
       .keys = kCalibrateKeys,
-      .arguments = {input("INPUT", "Folder of pictures, scan folder, or poses as TUM.",
+      .arguments = {input("INPUT", "Folder of pictures, scan folder, poses as TUM, or weights.",
                           into(options->input)),
                     outputTo(options->output, "FILE", "CAMERA.yml, or RIG.json."),
                     {"--board", "BOARD", "", "",
@@ -229,6 +279,9 @@ Command calibrateCommand() {
                      }},
                     {"--still", "", "", "", "The accelerometers of a probe held still.",
                      into(options->still)},
+                    {"--force", "", "", "",
+                     "INPUT is a table of known weights and readings (force [N],reading).",
+                     into(options->force)},
                     {"--rig", "RIG.json", "", "", "What else RIG.json is to hold.",
                      into(options->rig)}},
       .run = [options](Console& console) { return runCalibrate(*options, console); }};

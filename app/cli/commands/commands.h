@@ -19,9 +19,11 @@ Command renderCommand();
 Command exportCommand();
 #ifdef PATINA_HAS_ACQUISITION
 Command simulateScanCommand();
+Command recordCommand();
 Command calibrateCommand();
 Command trackCommand();
 Command filterCommand();
+Command registerCommand();
 #endif
 Command studyCommand();
 Command modelCommand();
@@ -32,13 +34,14 @@ Command manCommand();
 
 // In the order in which --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),         sceneCommand(),     fieldCommand(),   sampleCommand(),
-          feelCommand(),         simulateCommand(),  paintCommand(),   undoCommand(),
-          redoCommand(),         embossCommand(),    renderCommand(),  exportCommand(),
+  return {infoCommand(),         sceneCommand(),    fieldCommand(),     sampleCommand(),
+          feelCommand(),         simulateCommand(), paintCommand(),     undoCommand(),
+          redoCommand(),         embossCommand(),   renderCommand(),    exportCommand(),
 #ifdef PATINA_HAS_ACQUISITION
-          simulateScanCommand(), calibrateCommand(), trackCommand(),   filterCommand(),
+          simulateScanCommand(), recordCommand(),   calibrateCommand(), trackCommand(),
+          filterCommand(),       registerCommand(),
 #endif
-          studyCommand(),        modelCommand(),     devicesCommand(), latencyTestCommand(),
+          studyCommand(),        modelCommand(),    devicesCommand(),   latencyTestCommand(),
           guiCommand(),          manCommand()};
 }
 

@@ -114,7 +114,7 @@ Inputs read(const FilterOptions& options, Console& console) {
     console.warn(options.input.string() +
                  ": no rig.json beside it and no --rig: the path is that of the poses' origin, "
                  "not of a tip");
-  for (ProbeSample& sample : in.samples.values) sample.force -= in.rig.force_zero;
+  for (ProbeSample& sample : in.samples.values) sample.force = forceOf(in.rig, sample.force);
   return in;
 }
 
@@ -193,7 +193,7 @@ int runFilter(FilterOptions options, Console& console) {
     throw Error("--normal: is that of heights; name a file for them with --heights");
   if (!options.heights.empty()) {
     requireWritable(options.heights, inputs);
-    if (options.heights == options.output)
+    if (areOne(options.heights, options.output))
       throw FileError(options.heights.string(), 0, "is the path's file too");
   }
   const Inputs in = read(options, console);
@@ -215,8 +215,10 @@ int runFilter(FilterOptions options, Console& console) {
                     "the probe never touches, its largest force is " + rounded(scan.largest_force) +
                         " N; --lifted keeps what is in the air");
   console.progress().throwIfCancelled();
-  writePath(options.output, scan.path);
-  if (scan.heights) writeHeights(options.heights, scan.heights->heights);
+  if (scan.heights)
+    writePath(options.output, scan.path, options.heights, scan.heights->heights);
+  else
+    writePath(options.output, scan.path);
 
   const std::size_t rejected = in.poses.values.size() - scan.track.used();
   Report report(kFilterKeys);

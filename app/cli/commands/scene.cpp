@@ -18,16 +18,6 @@ struct SceneCommandOptions {
   SceneEdits edits;
 };
 
-Json poseJson(const Pose& pose) {
-  Json rows = Json::array();
-  for (int row = 0; row < 4; ++row) {
-    Json numbers = Json::array();
-    for (int column = 0; column < 4; ++column) numbers.push(pose.matrix()(row, column));
-    rows.push(std::move(numbers));
-  }
-  return rows;
-}
-
 const Keys kSceneKeys = {{"workspace", "", "workspace", "", Shown::never},
                          {"saved", "", "saved", "whether this command wrote it", Shown::never},
                          {"objects",

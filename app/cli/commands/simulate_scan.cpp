@@ -83,14 +83,17 @@ std::vector<Gap> dropouts(int count, double seconds) {
   return gaps;
 }
 
+// Of mesh.obj.
+MeshUnit writtenUnit(const ScanOptions& options) {
+  return options.unit == MeshUnit::fit ? MeshUnit::mm : options.unit;
+}
+
 std::string truthText(const ScanOptions& options, const Pose& camera_from_mesh) {
-  const Eigen::Matrix4d pose = camera_from_mesh.inverse().matrix();
-  Json rows = Json::array();
-  for (int i = 0; i < 4; ++i)
-    rows.push(Json(Json::Array{pose(i, 0), pose(i, 1), pose(i, 2), pose(i, 3)}));
   Json bias(Json::Array(options.probe.bias.begin(), options.probe.bias.end()));
   Json json = Json::object();
-  json.set("mesh_from_camera", rows).set("roughness", options.roughness);
+  json.set("mesh_from_camera", poseJson(camera_from_mesh.inverse()))
+      .set("roughness", options.roughness);
+  json.set("mesh_unit", name(writtenUnit(options)));
   json.set("compliance", SimulatedHand().compliance).set("bias", bias);
   json.set("clock_offset", options.probe.clock_offset).set("clock_skew", options.probe.clock_skew);
   json.set("seed", static_cast<std::int64_t>(options.seed));
@@ -168,8 +171,7 @@ int runSimulateScan(ScanOptions options, Console& console) {
   console.progress().throwIfCancelled();
 
   requireFolder(folder);
-  writeMeshIn(folder / "mesh.obj", mesh,
-              options.unit == MeshUnit::fit ? MeshUnit::mm : options.unit);
+  writeMeshIn(folder / "mesh.obj", mesh, writtenUnit(options));
   std::vector<std::string> files = {"mesh.obj", "probe.csv", "rig.json", "truth.csv", "truth.json"};
   std::size_t frames = 0;
   if (options.frames) {

@@ -2,6 +2,7 @@
 
 #include "acquisition/tracking/track_frames.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/scan_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -12,7 +13,8 @@ namespace patina::cli {
 namespace {
 
 struct TrackOptions {
-  std::filesystem::path scan, camera, rig, output;
+  std::string frames;
+  std::filesystem::path camera, rig, output;
   double rate = 0;
   FinderOptions finder;
 };
@@ -53,19 +55,16 @@ Json sigmaJson(const std::vector<CameraPose>& poses) {
 }
 
 int runTrack(TrackOptions options, Console& console) {
-  const auto orIn = [&](std::filesystem::path& path, const char* name) {
-    if (path.empty()) path = options.scan / name;
-  };
-  orIn(options.camera, "camera.yml");
-  orIn(options.rig, "rig.json");
-  const std::vector<Frame> frames = framesOf(options.scan, options.rate);
+  options.camera = besideFrames(options.camera, "--camera", "camera.yml", options.frames);
+  options.rig = besideFrames(options.rig, "--rig", "rig.json", options.frames);
   const Camera camera = readCamera(options.camera);
   const std::vector<RigMarker> rig = readMarkers(options.rig);
-  requireWritable(options.output, {options.camera, options.rig});
+  requireWritable(options.output, {options.frames, options.camera, options.rig});
+  const std::unique_ptr<FrameSource> frames = openFrames(options.frames, options.rate);
   const auto begin = std::chrono::steady_clock::now();
   TrackedFrames found;
   try {
-    found = trackFrames(frames, camera, rig, options.finder, console.progress());
+    found = trackFrames(*frames, camera, rig, options.finder, console.progress());
   } catch (const FileError&) {
     throw;
   } catch (const Cancelled&) {
@@ -76,7 +75,7 @@ int runTrack(TrackOptions options, Console& console) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
 
   Report report(kTrackKeys);
-  report.set("frames", frames.size()).set("frames_with_pose", found.poses.size());
+  report.set("frames", found.frames).set("frames_with_pose", found.poses.size());
   Json without = Json::array();
   for (const NoPose& gap : found.without)
     without.push(Json::object().set("t", gap.t).set("why", gap.why));
@@ -97,14 +96,14 @@ int runTrack(TrackOptions options, Console& console) {
   }
   report.set("seconds", taken.count());
   if (found.unreadable > 0)
-    console.warn(options.scan.string() + ": " + formatCount(found.unreadable) + " of " +
-                 formatCount(frames.size()) + " frames cannot be read; the first: " +
+    console.warn(options.frames + ": " + formatCount(found.unreadable) + " of " +
+                 formatCount(found.frames) + " frames cannot be read; the first: " +
                  std::find_if(found.without.begin(), found.without.end(), [](const NoPose& gap) {
                    return gap.why.find(": ") != std::string::npos;
                  })->why);
   console.report(report);
   if (!found.poses.empty()) return kDone;
-  console.warn(options.scan.string() + ": no frame shows a pose of the rig, so nothing is written");
+  console.warn(options.frames + ": no frame shows a pose of the rig, so nothing is written");
   return kNotSolved;
 }
 
@@ -116,22 +115,29 @@ Command trackCommand() {
       .name = "track",
       .summary = "frames of a camera become poses of the markers' rig, with error bars",
       .description =
-          "SCAN is a scan folder (frames/, frames.csv, camera.yml, rig.json) or a folder of "
-          "pictures. All markers of the rig that a frame shows give its pose together, from lines "
+          "FRAMES is a scan folder (frames/, frames.csv, camera.yml, rig.json), a folder of "
+          "pictures, a video, or live until Ctrl-C: camera:0 and so on, or replay:SCAN, the frames "
+          "of a scan folder at their own pace. All markers of the rig that a frame shows give its "
+          "pose together, from lines "
           "fitted to their edges. A frame without a pose, by whatever cause, is a comment in "
           "POSES.tum and is listed in the report; one that could be tilted either way is decided "
           "by the frame before it or left out.",
       .examples =
           {"patina track scan -o scan/poses.tum",
-           "patina track pictures --rate 30 --camera camera.yml --rig rig.json -o poses.tum"},
+           "patina track pictures --rate 30 --camera camera.yml --rig rig.json -o poses.tum",
+           "patina track hand.mp4 --camera camera.yml --rig rig.json -o poses.tum"},
       .keys = kTrackKeys,
-      .arguments = {input("SCAN", "Scan folder, or a folder of pictures.", into(options->scan)),
+      .arguments = {input(
+                        "FRAMES",
+                        "Scan folder, folder of pictures, video, camera:N or replay:SCAN.",
+                        parsedInto(options->frames, [](const std::string& text) { return text; })),
                     outputTo(options->output, "POSES.tum", "The poses, with deviations."),
-                    {"--camera", "CAMERA.yml", "", "SCAN/camera.yml",
+                    {"--camera", "CAMERA.yml", "", "FRAMES/camera.yml",
                      "What the camera's calibration says.", into(options->camera)},
-                    {"--rig", "RIG.json", "", "SCAN/rig.json",
+                    {"--rig", "RIG.json", "", "FRAMES/rig.json",
                      "Where the markers are on the probe.", into(options->rig)},
-                    {"--rate", "HZ", "Hz", "", "Frames a second, where there is no frames.csv.",
+                    {"--rate", "HZ", "Hz", "",
+                     "Frames a second, where there is no frames.csv, or other than a video says.",
                      inRange(1e-3, 1e5, [options](double rate) { options->rate = rate; })},
                     {"--thorough", "", "", "",
                      "Look for small, blurred and crowded markers too, ten times as long.",

@@ -12,6 +12,14 @@ Json vectorJson(const Vec3& v) {
   return Json(Json::Array{v.x(), v.y(), v.z()});
 }
 
+Json poseJson(const Pose& pose) {
+  const Eigen::Matrix4d matrix = pose.matrix();
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row)
+    rows.push(Json(Json::Array{matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)}));
+  return rows;
+}
+
 const Keys& fieldKeys() {
   static const Keys keys = {
       {"seconds", "s", "built in", "on the wall", Shown::if_any},
@@ -125,6 +133,13 @@ void requireWritable(const std::filesystem::path& path,
   }
   if (access(folder.c_str(), W_OK) != 0)
     throw FileError(path.string(), 0, "cannot be written: no permission in " + folder.string());
+}
+
+bool areOne(const std::filesystem::path& a, const std::filesystem::path& b) {
+  namespace fs = std::filesystem;
+  std::error_code unknown;
+  return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b)) ||
+         fs::equivalent(a, b, unknown);
 }
 
 void requireFolder(const std::filesystem::path& path) {

@@ -14,6 +14,7 @@
 namespace patina::cli {
 
 Json vectorJson(const Vec3& v);
+Json poseJson(const Pose& pose); // its rows
 
 const Keys& fieldKeys();
 Report fieldReport(const SurfaceField& field, const FieldReport& built);
@@ -43,6 +44,8 @@ Json jsonOf(const std::vector<std::string>& words);
 // `inputs` are not to be replaced by it.
 void requireWritable(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& inputs = {});
+// Links lead to one file by two names, also to one that does not exist yet.
+bool areOne(const std::filesystem::path& a, const std::filesystem::path& b);
 // Makes a folder of that name where there is none; FileError if that cannot be.
 void requireFolder(const std::filesystem::path& path);
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <sstream>
 
-#include "core/csv.h"
+#include "core/csv_rows.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
@@ -18,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::vector<std::string> kFrameColumns = {"frame", "t [s]"};
+
 // Numbers of a key with the line where it stands.
 struct Entry {
   std::vector<double> numbers;
@@ -26,9 +28,8 @@ struct Entry {
 
 // What of OpenCV's YAML a camera needs: `key: number`, and matrices' `data: [numbers]` under
 // theirs.
-std::map<std::string, Entry> entriesIn(const fs::path& path) {
-  const std::string name = path.string();
-  std::istringstream text(readFile(path));
+std::map<std::string, Entry> entriesIn(const std::string& whole, const std::string& name) {
+  std::istringstream text(whole);
   std::map<std::string, Entry> entries;
   std::string key;
   bool listing = false;
@@ -118,8 +119,11 @@ void writeGrey(const fs::path& path, const GreyFrame& image) {
 }
 
 Camera readCamera(const fs::path& path) {
-  const std::string name = path.string();
-  const auto entries = entriesIn(path);
+  return parseCamera(readFile(path), path.string());
+}
+
+Camera parseCamera(const std::string& text, const std::string& name) {
+  const auto entries = entriesIn(text, name);
   const auto entry = [&](const std::string& key, std::size_t least,
                          std::size_t most) -> const Entry& {
     const auto found = entries.find(key);
@@ -181,25 +185,41 @@ std::vector<Frame> framesOf(const fs::path& folder, double rate) {
       frames.push_back({static_cast<double>(frames.size()) / rate, file});
     return frames;
   }
-  CsvReader reader(list, {"frame", "t [s]"});
+  std::map<std::string, fs::path> by_number;
+  for (const fs::path& file : files) by_number.emplace(file.stem().string(), file);
+  for (const FrameRow& row : parseFrameList(readFile(list), list.string())) {
+    const auto file = by_number.find(frameStem(row.number));
+    frames.push_back({row.t, file != by_number.end()
+                                 ? file->second
+                                 : folder / "frames" / (frameStem(row.number) + ".png")});
+  }
+  return frames;
+}
+
+std::vector<FrameRow> parseFrameList(const std::string& text, const std::string& name) {
+  CsvReader reader(sourceOfText(text), name, kFrameColumns);
+  std::vector<FrameRow> rows;
   for (std::vector<double> row; reader.next(row);) {
     if (!(row[0] >= 0 && row[0] < 1e9 && row[0] == std::floor(row[0])))
-      throw FileError(list.string(), reader.line(),
-                      "a frame's number must be whole and not negative");
-    if (!std::isfinite(row[1]))
-      throw FileError(list.string(), reader.line(), "t [s] is not finite");
-    if (!frames.empty() && !(row[1] > frames.back().t))
-      throw FileError(list.string(), reader.line(),
-                      row[1] == frames.back().t ? "time repeats" : "time runs backwards");
-    char stem[16];
-    std::snprintf(stem, sizeof stem, "%06d", static_cast<int>(row[0]));
-    const auto file = std::find_if(files.begin(), files.end(),
-                                   [&](const fs::path& each) { return each.stem() == stem; });
-    frames.push_back(
-        {row[1], file != files.end() ? *file : folder / "frames" / (std::string(stem) + ".png")});
+      throw FileError(name, reader.line(), "a frame's number must be whole and not negative");
+    if (!std::isfinite(row[1])) throw FileError(name, reader.line(), "t [s] is not finite");
+    if (!rows.empty() && !(row[1] > rows.back().t))
+      throw FileError(name, reader.line(),
+                      row[1] == rows.back().t ? "time repeats" : "time runs backwards");
+    rows.push_back({static_cast<int>(row[0]), row[1]});
   }
-  if (frames.empty()) throw FileError(list.string(), 0, "there is no frame in it");
-  return frames;
+  if (rows.empty()) throw FileError(name, 0, "there is no frame in it");
+  return rows;
+}
+
+std::string frameStem(int number) {
+  char stem[16];
+  std::snprintf(stem, sizeof stem, "%06d", number);
+  return stem;
+}
+
+std::string frameListHeader() {
+  return csvHeader(kFrameColumns);
 }
 
 } // namespace patina

@@ -17,6 +17,7 @@ void writeGrey(const std::filesystem::path& path, const GreyFrame& image);
 // OpenCV's YAML: image_width, image_height, camera_matrix, distortion_coefficients of up to five
 // numbers (k1 k2 p1 p2 k3). Throws FileError with the line.
 Camera readCamera(const std::filesystem::path& path);
+Camera parseCamera(const std::string& text, const std::string& name);
 // `more` are lines for people and other programs, whole.
 std::string cameraText(const Camera& camera, const std::string& more = "");
 
@@ -29,5 +30,14 @@ struct Frame {
 // their names' order, `rate` a second. Throws FileError: no frame, time that does not increase, no
 // rate.
 std::vector<Frame> framesOf(const std::filesystem::path& folder, double rate);
+
+// What frames.csv says, and how a frame's file is called.
+struct FrameRow {
+  int number;
+  double t; // [s]
+};
+std::vector<FrameRow> parseFrameList(const std::string& text, const std::string& name);
+std::string frameListHeader();
+std::string frameStem(int number);
 
 } // namespace patina

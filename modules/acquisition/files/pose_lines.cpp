@@ -30,8 +30,12 @@ std::string lineOf(const CameraPose& pose) {
 } // namespace
 
 OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid) {
-  const std::string name = path.string();
-  std::istringstream text(readFile(path));
+  return parsePoses(readFile(path), path.string(), unsaid);
+}
+
+OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
+                              const PoseSigmas& unsaid) {
+  std::istringstream text(whole);
   OnFile<CameraPose> file;
   std::size_t number = 0;
   for (std::string line; std::getline(text, line);) {
@@ -73,20 +77,28 @@ void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>
   writeFileAtomically(path, text);
 }
 
+std::string posesHeader() {
+  return "# t [s] tx ty tz [m] qx qy qz qw sigma [m] sigma_angle [rad]\n";
+}
+
+std::string poseRow(const CameraPose& pose) {
+  return lineOf(pose) + " " + formatNumber(pose.sigma_position) + " " +
+         formatNumber(pose.sigma_angle) + "\n";
+}
+
+std::string poseRow(const NoPose& without) {
+  return "# " + formatNumber(without.t) + " no pose: " + without.why + "\n";
+}
+
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
                 const std::vector<NoPose>& without) {
-  std::string text = "# t [s] tx ty tz [m] qx qy qz qw sigma [m] sigma_angle [rad]\n";
+  std::string text = posesHeader();
   auto gap = without.begin();
-  const auto tellGapsBefore = [&](double t) {
-    for (; gap != without.end() && gap->t < t; ++gap)
-      text += "# " + formatNumber(gap->t) + " no pose: " + gap->why + "\n";
-  };
   for (const CameraPose& pose : poses) {
-    tellGapsBefore(pose.t);
-    text += lineOf(pose) + " " + formatNumber(pose.sigma_position) + " " +
-            formatNumber(pose.sigma_angle) + "\n";
+    for (; gap != without.end() && gap->t < pose.t; ++gap) text += poseRow(*gap);
+    text += poseRow(pose);
   }
-  tellGapsBefore(INFINITY);
+  for (; gap != without.end(); ++gap) text += poseRow(*gap);
   writeFileAtomically(path, text);
 }
 

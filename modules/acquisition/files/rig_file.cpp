@@ -50,6 +50,9 @@ Rig rigIn(const Json& json) {
   setNumber(json, "force_noise", rig.probe.force_noise);
   if (const Json* zero = json.find("force_zero")) rig.force_zero = zero->asNumber();
   if (!std::isfinite(rig.force_zero)) throw Error("'force_zero' is not finite");
+  if (const Json* gain = json.find("force_gain")) rig.force_gain = gain->asNumber();
+  if (!std::isfinite(rig.force_gain) || rig.force_gain == 0)
+    throw Error("'force_gain' must be finite and not 0");
   const Json* axes = json.find("accelerometers");
   if (!axes) return rig;
   for (std::size_t i = 0; i < rig.probe.axes.size(); ++i)
@@ -110,14 +113,15 @@ std::vector<RigMarker> markersIn(const Json& json) {
   return markers;
 }
 
-template <class Read> auto readJson(const std::filesystem::path& path, const Read& read) {
-  const Json json = parseJson(readFile(path), path.string());
+template <class Read>
+auto readJson(const std::string& text, const std::string& name, const Read& read) {
+  const Json json = parseJson(text, name);
   try {
     return read(json);
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
-    throw FileError(path.string(), 0, error.what());
+    throw FileError(name, 0, error.what());
   }
 }
 
@@ -133,11 +137,19 @@ Json jsonOf(const RigMarker& marker) {
 } // namespace
 
 Rig readRig(const std::filesystem::path& path) {
-  return readJson(path, rigIn);
+  return parseRig(readFile(path), path.string());
+}
+
+Rig parseRig(const std::string& text, const std::string& name) {
+  return readJson(text, name, rigIn);
 }
 
 std::vector<RigMarker> readMarkers(const std::filesystem::path& path) {
-  return readJson(path, markersIn);
+  return parseMarkers(readFile(path), path.string());
+}
+
+std::vector<RigMarker> parseMarkers(const std::string& text, const std::string& name) {
+  return readJson(text, name, markersIn);
 }
 
 std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers) {
@@ -150,6 +162,7 @@ std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers) {
   }
   json.set("accelerometers", axes).set("gravity", jsonOf(rig.gravity));
   if (rig.force_zero != 0) json.set("force_zero", rig.force_zero);
+  if (rig.force_gain != 1) json.set("force_gain", rig.force_gain);
   json.set("acceleration_step", rig.probe.acceleration_step);
   json.set("acceleration_noise", rig.probe.acceleration_noise);
   json.set("force_step", rig.probe.force_step).set("force_noise", rig.probe.force_noise);

@@ -29,6 +29,8 @@ struct PoseSigmas {
 // TUM: t tx ty tz qx qy qz qw in seconds and metres, a pose a line; '#' begins a comment. Two more
 // numbers are deviations of the position [m] and the angle [rad].
 OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid = {});
+OnFile<CameraPose> parsePoses(const std::string& text, const std::string& name,
+                              const PoseSigmas& unsaid = {});
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses);
 // With their deviations, and a comment for each time without a pose that says why.
 struct NoPose {
@@ -37,13 +39,38 @@ struct NoPose {
 };
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
                 const std::vector<NoPose>& without);
+// A line of its own of such a file, for what writes them as they come; the first is posesHeader().
+std::string posesHeader();
+std::string poseRow(const CameraPose& pose);
+std::string poseRow(const NoPose& without);
 
 // CSV. `touching` and `gap` of a path are not in it.
 OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path);
+OnFile<ProbeSample> parseProbeStream(const std::string& text, const std::string& name);
+// The same of bytes as they come, in any pieces.
+class ProbeLines {
+ public:
+  explicit ProbeLines(std::string name) : name_(std::move(name)) {}
+  void skipFirst() { headed_ = true; } // half a line perhaps, in place of the header
+  // Appends the samples whose lines are whole; where one is wrong, those before it too.
+  void take(std::string_view bytes, std::vector<ProbeSample>& into);
+  void end() const; // throws FileError in the middle of a line
+
+ private:
+  std::string name_, rest_;
+  std::size_t line_ = 0;
+  bool headed_ = false; // the first line is none
+  std::optional<double> last_;
+};
+// A row of its own, for what writes them as they come; the first is probeHeader().
+std::string probeHeader();
+std::string probeRow(const ProbeSample& sample);
 void writeProbeStream(const std::filesystem::path& path, const std::vector<ProbeSample>& samples);
 std::vector<PathSample> readPath(const std::filesystem::path& path);
 void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples);
-void writeHeights(const std::filesystem::path& path, const std::vector<ScanHeight>& heights);
+// Both files, or neither where the disk has no room for both.
+void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples,
+               const std::filesystem::path& heights_path, const std::vector<ScanHeight>& heights);
 
 // What rig.json says beside its markers.
 struct Rig {
@@ -52,11 +79,18 @@ struct Rig {
   bool accelerometers = false;
   Vec3 gravity = Vec3(0, 0, -9.80665); // in the camera's frame [m/s^2]
   double force_zero = 0;               // what the force shows while nothing is pressed [N]
+  double force_gain = 1;               // of the force that presses to what is shown beyond it
 };
+// What presses, from what the probe shows. Every reader of a stream goes through this.
+inline double forceOf(const Rig& rig, double shown) {
+  return rig.force_gain * (shown - rig.force_zero);
+}
 Rig readRig(const std::filesystem::path& path);
+Rig parseRig(const std::string& text, const std::string& name);
 std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers = {});
 // The markers of rig.json: each with `dictionary`, `id`, `size` [m] and `probe_from_marker`, 4 x 4;
 // one at least, none twice.
 std::vector<RigMarker> readMarkers(const std::filesystem::path& path);
+std::vector<RigMarker> parseMarkers(const std::string& text, const std::string& name);
 
 } // namespace patina

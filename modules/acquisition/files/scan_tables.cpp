@@ -1,8 +1,9 @@
 #include <cmath>
 
 #include "acquisition/files/scan_files.h"
-#include "core/csv.h"
+#include "core/csv_rows.h"
 #include "core/error.h"
+#include "core/file.h"
 
 namespace patina {
 namespace {
@@ -12,74 +13,154 @@ const std::vector<std::string> kProbeColumns = {"t [s]",       "force [N]",   "a
 const std::vector<std::string> kPathColumns = {"t [s]", "x [m]", "y [m]", "z [m]",     "qx",
                                                "qy",    "qz",    "qw",    "sigma [m]", "force [N]"};
 
-// Rows of finite numbers, the first of them a time that increases.
+// Finite numbers, the first of them a time after `last`.
+void requireTimed(const std::vector<double>& row, const std::vector<std::string>& columns,
+                  const std::string& name, std::size_t line, std::optional<double>& last) {
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (!std::isfinite(row[i])) throw FileError(name, line, columns[i] + " is not a finite number");
+  if (last && !(row[0] > *last))
+    throw FileError(name, line, row[0] == *last ? "time repeats" : "time runs backwards");
+  last = row[0];
+}
+
 template <class Take>
-void readTimed(const std::filesystem::path& path, const std::vector<std::string>& columns,
+void readTimed(CsvReader reader, const std::string& name, const std::vector<std::string>& columns,
                const Take& take) {
-  CsvReader reader(path, columns);
-  const std::string name = path.string();
   std::optional<double> last;
   for (std::vector<double> row; reader.next(row);) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      if (!std::isfinite(row[i]))
-        throw FileError(name, reader.line(), columns[i] + " is not a finite number");
-    if (last && !(row[0] > *last))
-      throw FileError(name, reader.line(),
-                      row[0] == *last ? "time repeats" : "time runs backwards");
-    last = row[0];
+    requireTimed(row, columns, name, reader.line(), last);
     take(row, reader.line());
   }
   if (!last) throw FileError(name, 0, "there is no sample in it");
 }
 
+ProbeSample sampleIn(const std::vector<double>& row) {
+  return {row[0], row[1], {row[2], row[3], row[4], row[5]}};
+}
+
+OnFile<ProbeSample> samplesIn(CsvReader reader, const std::string& name) {
+  OnFile<ProbeSample> file;
+  readTimed(std::move(reader), name, kProbeColumns,
+            [&](const std::vector<double>& row, std::size_t line) {
+              file.values.push_back(sampleIn(row));
+              file.lines.push_back(line);
+            });
+  return file;
+}
+
+std::vector<double> numbersOf(const ProbeSample& s) {
+  return {s.t, s.force, s.acceleration[0], s.acceleration[1], s.acceleration[2], s.acceleration[3]};
+}
+
 } // namespace
 
 OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path) {
-  OnFile<ProbeSample> file;
-  readTimed(path, kProbeColumns, [&](const std::vector<double>& row, std::size_t line) {
-    file.values.push_back({row[0], row[1], {row[2], row[3], row[4], row[5]}});
-    file.lines.push_back(line);
-  });
-  return file;
+  return samplesIn(CsvReader(path, kProbeColumns), path.string());
+}
+
+OnFile<ProbeSample> parseProbeStream(const std::string& text, const std::string& name) {
+  return samplesIn(CsvReader(sourceOfText(text), name, kProbeColumns), name);
+}
+
+void ProbeLines::take(std::string_view bytes, std::vector<ProbeSample>& into) {
+  rest_ += bytes;
+  std::vector<double> row;
+  std::size_t begin = 0;
+  // What is done with stays done with where a line is wrong.
+  const auto forget = [&] { rest_.erase(0, begin); };
+  try {
+    for (std::size_t end; (end = rest_.find('\n', begin)) != std::string::npos;) {
+      const std::string line = rest_.substr(begin, end - begin);
+      begin = end + 1;
+      ++line_;
+      if (line_ == 1) {
+        if (!headed_) (void)parseCsv(line, name_, kProbeColumns);
+      } else if (line.find_first_not_of(" \t\r") != std::string::npos) {
+        parseCsvRow(line, kProbeColumns.size(), name_, line_, row);
+        requireTimed(row, kProbeColumns, name_, line_, last_);
+        into.push_back(sampleIn(row));
+      }
+    }
+  } catch (const FileError&) {
+    forget();
+    throw;
+  }
+  forget();
+  if (rest_.size() > 4096) throw FileError(name_, line_ + 1, "is no line of a probe's stream");
+}
+
+void ProbeLines::end() const {
+  if (!rest_.empty()) throw FileError(name_, line_ + 1, "the stream ended within this line");
+}
+
+std::string probeHeader() {
+  return csvHeader(kProbeColumns);
+}
+
+std::string probeRow(const ProbeSample& sample) {
+  return csvRow(numbersOf(sample));
 }
 
 void writeProbeStream(const std::filesystem::path& path, const std::vector<ProbeSample>& samples) {
   CsvWriter writer(path, kProbeColumns);
-  for (const ProbeSample& s : samples)
-    writer.add(
-        {s.t, s.force, s.acceleration[0], s.acceleration[1], s.acceleration[2], s.acceleration[3]});
+  for (const ProbeSample& sample : samples) writer.add(numbersOf(sample));
   writer.commit();
 }
 
 std::vector<PathSample> readPath(const std::filesystem::path& path) {
   std::vector<PathSample> samples;
-  readTimed(path, kPathColumns, [&](const std::vector<double>& row, std::size_t) {
-    PathSample sample;
-    sample.t = row[0];
-    sample.position = {row[1], row[2], row[3]};
-    sample.orientation = Eigen::Quaterniond(row[7], row[4], row[5], row[6]).normalized();
-    sample.sigma = row[8];
-    sample.force = row[9];
-    samples.push_back(sample);
-  });
+  readTimed(CsvReader(path, kPathColumns), path.string(), kPathColumns,
+            [&](const std::vector<double>& row, std::size_t) {
+              PathSample sample;
+              sample.t = row[0];
+              sample.position = {row[1], row[2], row[3]};
+              sample.orientation = Eigen::Quaterniond(row[7], row[4], row[5], row[6]).normalized();
+              sample.sigma = row[8];
+              sample.force = row[9];
+              samples.push_back(sample);
+            });
   return samples;
 }
 
-void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples) {
-  CsvWriter writer(path, kPathColumns);
-  for (const PathSample& s : samples) {
-    const auto& q = s.orientation;
-    writer.add({s.t, s.position.x(), s.position.y(), s.position.z(), q.x(), q.y(), q.z(), q.w(),
-                s.sigma, s.force});
-  }
-  writer.commit();
+namespace {
+
+std::vector<double> numbersOf(const PathSample& s) {
+  const auto& q = s.orientation;
+  return {s.t,   s.position.x(), s.position.y(), s.position.z(), q.x(),
+          q.y(), q.z(),          q.w(),          s.sigma,        s.force};
 }
 
-void writeHeights(const std::filesystem::path& path, const std::vector<ScanHeight>& heights) {
-  CsvWriter writer(path, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"});
-  for (const ScanHeight& h : heights)
-    writer.add({h.t, h.point.along, h.point.height, h.point.sigma, static_cast<double>(h.stretch)});
-  writer.commit();
+std::vector<double> numbersOf(const ScanHeight& h) {
+  return {h.t, h.point.along, h.point.height, h.point.sigma, static_cast<double>(h.stretch)};
+}
+
+template <class Rows>
+void append(AtomicFile& file, const std::vector<std::string>& columns, const Rows& rows) {
+  std::string text = csvHeader(columns);
+  for (const auto& row : rows) {
+    text += csvRow(numbersOf(row));
+    if (text.size() < 1 << 16) continue;
+    file.append(text);
+    text.clear();
+  }
+  file.append(text);
+}
+
+} // namespace
+
+void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples) {
+  AtomicFile file(path);
+  append(file, kPathColumns, samples);
+  file.commit();
+}
+
+void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples,
+               const std::filesystem::path& heights_path, const std::vector<ScanHeight>& heights) {
+  AtomicFile file(path), others(heights_path);
+  append(file, kPathColumns, samples);
+  append(others, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"}, heights);
+  others.commit();
+  file.commit();
 }
 
 } // namespace patina

@@ -14,6 +14,8 @@ std::string sizeOf(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
 
+} // namespace
+
 CameraPose cameraPose(const SeenRig& seen, double t) {
   CameraPose pose;
   pose.t = t;
@@ -24,7 +26,13 @@ CameraPose cameraPose(const SeenRig& seen, double t) {
   return pose;
 }
 
-} // namespace
+void requireSize(const GreyFrame& image, const Camera& camera, const std::string& name) {
+  if (image.width != camera.width || image.height != camera.height)
+    throw FileError(name, 0,
+                    "is " + sizeOf(image.width, image.height) +
+                        ", but the camera was calibrated at " +
+                        sizeOf(camera.width, camera.height));
+}
 
 RigTracker::RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
                        const FinderOptions& options)
@@ -43,8 +51,8 @@ RigTracker::RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
 
 SeenRig RigTracker::track(const GreyFrame& image, double t) {
   const bool lately = last_ && std::abs(t - last_t_) < kLately;
-  const SeenRig seen = poseOf(findMarkers(image, books_, &camera_, options_), rig_, camera_,
-                              lately ? &*last_ : nullptr);
+  markers_ = findMarkers(image, books_, &camera_, options_);
+  const SeenRig seen = poseOf(markers_, rig_, camera_, lately ? &*last_ : nullptr);
   if (seen.verdict == RigVerdict::seen) {
     last_ = seen.camera_from_probe;
     last_t_ = t;
@@ -52,38 +60,38 @@ SeenRig RigTracker::track(const GreyFrame& image, double t) {
   return seen;
 }
 
-TrackedFrames trackFrames(const std::vector<Frame>& frames, const Camera& camera,
+TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
                           const std::vector<RigMarker>& rig, const FinderOptions& options,
-                          Progress& progress) {
+                          Progress& progress, const FrameListener& listener) {
   RigTracker tracker(camera, rig, options);
   TrackedFrames result;
   double squares = 0, corners = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const Frame& frame = frames[i];
+  const std::optional<std::size_t> count = frames.count();
+  const auto goWithout = [&](double t, const SeenRig& seen, const std::string& why) {
+    result.without.push_back({t, why});
+    if (listener) listener(result.frames - 1, seen, why);
+  };
+  while (const std::optional<SourceFrame> frame = frames.next()) {
+    if (progress.cancelled() && frames.isLive()) break;
     progress.throwIfCancelled();
-    progress.report(static_cast<double>(i) / static_cast<double>(frames.size()), "frames");
-    GreyFrame image;
-    try {
-      image = readGrey(frame.file);
-    } catch (const FileError& error) {
-      result.without.push_back({frame.t, error.what()});
+    const double done = static_cast<double>(result.frames++);
+    progress.report(count ? std::min(1., done / static_cast<double>(*count)) : 0, "frames");
+    if (!frame->fault.empty()) {
+      goWithout(frame->t, {}, frame->fault);
       ++result.unreadable;
       continue;
     }
-    if (image.width != camera.width || image.height != camera.height)
-      throw FileError(frame.file.string(), 0,
-                      "is " + sizeOf(image.width, image.height) +
-                          ", but the camera was calibrated at " +
-                          sizeOf(camera.width, camera.height));
-    const SeenRig seen = tracker.track(image, frame.t);
+    requireSize(frame->image, camera, frame->name);
+    const SeenRig seen = tracker.track(frame->image, frame->t);
     result.dropped += seen.dropped;
     if (seen.verdict != RigVerdict::seen) {
-      result.without.push_back({frame.t, std::string(nameOf(seen.verdict))});
+      goWithout(frame->t, seen, std::string(nameOf(seen.verdict)));
       result.ambiguous += seen.verdict == RigVerdict::ambiguous;
       result.misfit += seen.verdict == RigVerdict::misfit;
       continue;
     }
-    result.poses.push_back(cameraPose(seen, frame.t));
+    result.poses.push_back(cameraPose(seen, frame->t));
+    if (listener) listener(result.frames - 1, seen, "");
     const double n = 4 * static_cast<double>(seen.markers);
     squares += n * seen.rms * seen.rms;
     corners += n;

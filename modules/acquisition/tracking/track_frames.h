@@ -1,8 +1,10 @@
 // Frames of a camera become poses of the rig (A04).
 #pragma once
 
-#include "acquisition/files/frame_files.h"
+#include <functional>
+
 #include "acquisition/files/scan_files.h"
+#include "acquisition/sources/sources.h"
 #include "acquisition/tracking/rig_pose.h"
 #include "core/progress.h"
 
@@ -15,17 +17,25 @@ class RigTracker {
              const FinderOptions& options = {});
   // `t` tells how long ago the last pose was.
   SeenRig track(const GreyFrame& image, double t);
+  const std::vector<SeenMarker>& markers() const { return markers_; } // in that image
 
  private:
   Camera camera_;
   std::vector<RigMarker> rig_;
   FinderOptions options_;
   std::vector<CodeBook> books_;
+  std::vector<SeenMarker> markers_;
   std::optional<Pose> last_;
   double last_t_ = 0;
 };
 
+// Of a rig that was seen, with the rms of its deviations.
+CameraPose cameraPose(const SeenRig& seen, double t);
+// Throws FileError unless the image is as large as those that the camera was calibrated with.
+void requireSize(const GreyFrame& image, const Camera& camera, const std::string& name);
+
 struct TrackedFrames {
+  std::size_t frames = 0;
   std::vector<CameraPose> poses;
   std::vector<NoPose> without; // with the reason: the frame is missing, unreadable or shows no pose
   std::size_t unreadable = 0, ambiguous = 0, misfit = 0; // of those
@@ -33,9 +43,14 @@ struct TrackedFrames {
   double rms = 0;                                        // of all corners [px]
 };
 
-// A frame of another size than the camera's throws FileError: its calibration is not theirs.
-TrackedFrames trackFrames(const std::vector<Frame>& frames, const Camera& camera,
+// Each frame once it was looked at, in their order; `why` says why it has no pose, if it has none.
+using FrameListener =
+    std::function<void(std::size_t frame, const SeenRig& seen, const std::string& why)>;
+
+// All frames of a source that ends; a live one until it is cancelled, which then is no error. A
+// frame of another size than the camera's throws FileError: its calibration is not theirs.
+TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
                           const std::vector<RigMarker>& rig, const FinderOptions& options,
-                          Progress& progress);
+                          Progress& progress, const FrameListener& listener = {});
 
 } // namespace patina

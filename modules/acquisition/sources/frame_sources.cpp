@@ -1,0 +1,211 @@
+#include <atomic>
+#include <deque>
+#include <thread>
+#include <utility>
+
+#include "acquisition/files/frame_files.h"
+#include "acquisition/sources/pace.h"
+#include "acquisition/sources/sources.h"
+#include "acquisition/video_library.h"
+#include "core/csv.h"
+#include "core/error.h"
+#include "core/numbers.h"
+
+namespace patina {
+namespace {
+
+SourceFrame readFrame(const Frame& frame) {
+  SourceFrame read{frame.t, frame.file.string(), {}, {}};
+  try {
+    read.image = readGrey(frame.file);
+  } catch (const FileError& error) {
+    read.fault = error.what();
+  }
+  return read;
+}
+
+class FolderFrames : public FrameSource {
+ public:
+  FolderFrames(std::vector<Frame> frames) : frames_(std::move(frames)) {}
+  std::optional<SourceFrame> next() override {
+    if (stopped_ || at_ == frames_.size()) return std::nullopt;
+    return readFrame(frames_[at_++]);
+  }
+  std::optional<std::size_t> count() const override { return frames_.size(); }
+  bool isLive() const override { return false; }
+  void stop() noexcept override { stopped_ = true; }
+
+ private:
+  std::vector<Frame> frames_;
+  std::size_t at_ = 0;
+  std::atomic<bool> stopped_{false};
+};
+
+class ReplayedFrames : public FrameSource {
+ public:
+  ReplayedFrames(std::vector<Frame> frames, double start)
+      : frames_(std::move(frames)), start_(start), ahead_(readFrame(frames_[0])) {}
+  std::optional<SourceFrame> next() override {
+    if (at_ == frames_.size()) return std::nullopt;
+    if (!ahead_) ahead_ = readFrame(frames_[at_]);
+    if (!pace_.waitUntil(ahead_->t - start_)) return std::nullopt;
+    ++at_;
+    return std::exchange(ahead_, std::nullopt);
+  }
+  std::optional<std::size_t> count() const override { return frames_.size(); }
+  bool isLive() const override { return true; }
+  void stop() noexcept override { pace_.stop(); }
+
+ private:
+  std::vector<Frame> frames_;
+  double start_;
+  std::size_t at_ = 0;
+  // Read before it is due, as reading takes its time, and the first as long as loading a library.
+  std::optional<SourceFrame> ahead_;
+  Pace pace_;
+};
+
+class VideoFrames : public FrameSource {
+ public:
+  VideoFrames(const std::string& path, double rate) : path_(path) {
+    const std::string cause = videoLibrary().openFile(path, reader_);
+    if (!cause.empty()) throw FileError(path, 0, cause);
+    rate_ = rate > 0 ? rate : reader_->rate;
+    if (!(rate_ > 0))
+      throw FileError(path, 0, "does not say how many frames there are a second: --rate");
+  }
+  std::optional<SourceFrame> next() override {
+    if (stopped_ || ended_) return std::nullopt;
+    SourceFrame frame{
+        static_cast<double>(at_) / rate_, path_ + " frame " + std::to_string(at_), {}, {}};
+    double stamp = 0;
+    frame.fault = reader_->next(frame.image, stamp, ended_);
+    if (ended_) {
+      // Containers round their count; more than that is a part that is missing.
+      const std::size_t said = static_cast<std::size_t>(reader_->count);
+      if (at_ + 2 + said / 100 >= said) return std::nullopt;
+      frame.fault = path_ + ": ends after frame " + std::to_string(at_) + " of " +
+                    std::to_string(said) + ": damaged, or not whole";
+    }
+    if (!frame.fault.empty()) frame.image = {};
+    ++at_;
+    return frame;
+  }
+  std::optional<std::size_t> count() const override {
+    if (reader_->count == 0) return std::nullopt;
+    return static_cast<std::size_t>(reader_->count);
+  }
+  bool isLive() const override { return false; }
+  void stop() noexcept override { stopped_ = true; }
+
+ private:
+  std::string path_;
+  std::unique_ptr<VideoReader> reader_;
+  double rate_ = 0;
+  std::size_t at_ = 0;
+  bool ended_ = false;
+  std::atomic<bool> stopped_{false};
+};
+
+// A thread of its own waits for the camera, so that who waits for it can be told to stop, and
+// stamps do not wait for who is busy.
+class CameraFrames : public FrameSource {
+ public:
+  CameraFrames(int number) : name_("camera:" + std::to_string(number)) {
+    const std::string cause = videoLibrary().openCamera(number, reader_);
+    if (!cause.empty()) throw DeviceError(name_ + ": " + cause);
+    thread_ = std::thread([this] { grab(); });
+  }
+  ~CameraFrames() override {
+    stop();
+    thread_.join();
+  }
+  std::optional<SourceFrame> next() override {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return stopped_ || !frames_.empty() || !cause_.empty(); });
+    if (stopped_) return std::nullopt;
+    if (frames_.empty()) throw DeviceError(name_ + ": " + cause_);
+    SourceFrame frame = std::move(frames_.front());
+    frames_.pop_front();
+    changed_.notify_all();
+    return frame;
+  }
+  std::optional<std::size_t> count() const override { return std::nullopt; }
+  bool isLive() const override { return true; }
+  void stop() noexcept override {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  static constexpr std::size_t kMost = 32; // frames that wait
+
+  void grab() {
+    for (std::size_t number = 0;; ++number) {
+      SourceFrame frame;
+      bool ended = false;
+      const std::string cause = reader_->next(frame.image, frame.t, ended);
+      frame.name = std::to_string(number);
+      std::unique_lock lock(mutex_);
+      if (ended || !cause.empty()) {
+        cause_ = ended ? "sends no more frames; is it still plugged in?" : cause;
+        changed_.notify_all();
+        return;
+      }
+      changed_.wait(lock, [&] { return stopped_ || frames_.size() < kMost; });
+      if (stopped_) return;
+      frames_.push_back(std::move(frame));
+      changed_.notify_all();
+    }
+  }
+
+  std::string name_;
+  std::unique_ptr<VideoReader> reader_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<SourceFrame> frames_;
+  std::string cause_;
+  bool stopped_ = false;
+  std::thread thread_;
+};
+
+int cameraNumber(const std::string& word) {
+  const auto number = parseNumber(word);
+  if (!number || !(*number >= 0 && *number < 1000) || *number != static_cast<int>(*number))
+    throw Error("camera:" + word + ": a camera has a number, as in camera:0");
+  return static_cast<int>(*number);
+}
+
+} // namespace
+
+double replayStart(const std::string& folder, double first_frame) {
+  const std::filesystem::path probe = std::filesystem::path(folder) / "probe.csv";
+  if (!std::filesystem::exists(probe)) return first_frame;
+  CsvReader reader(probe, {"t [s]"});
+  std::vector<double> row;
+  return reader.next(row) ? std::min(row[0], first_frame) : first_frame;
+}
+
+std::optional<std::filesystem::path> scanFolderOf(const std::string& frames) {
+  if (frames.starts_with("replay:")) return frames.substr(7);
+  if (std::filesystem::is_directory(frames)) return frames;
+  return std::nullopt;
+}
+
+std::unique_ptr<FrameSource> openFrames(const std::string& frames, double rate) {
+  if (frames.starts_with("camera:"))
+    return std::make_unique<CameraFrames>(cameraNumber(frames.substr(7)));
+  if (frames.starts_with("replay:")) {
+    const std::string folder = frames.substr(7);
+    std::vector<Frame> list = framesOf(folder, rate);
+    const double start = replayStart(folder, list[0].t);
+    return std::make_unique<ReplayedFrames>(std::move(list), start);
+  }
+  if (!std::filesystem::exists(frames)) throw FileError(frames, 0, "does not exist");
+  if (std::filesystem::is_directory(frames))
+    return std::make_unique<FolderFrames>(framesOf(frames, rate));
+  return std::make_unique<VideoFrames>(frames, rate);
+}
+
+} // namespace patina

@@ -1,0 +1,60 @@
+// Where frames and the probe's samples come from: files that end, or devices that go on. One thread
+// reads a source; another may stop it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/camera.h"
+#include "acquisition/scan_samples.h"
+
+namespace patina {
+
+struct SourceFrame {
+  double t = 0;      // [s], on the source's own clock
+  std::string name;  // what a person finds it by: a file, or its number
+  GreyFrame image;   // empty where it could not be read; then
+  std::string fault; // says why
+};
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  // The next frame, once it is there; nullopt: no more will come. Throws Error where the source
+  // itself fails (a camera that is pulled out), which a single bad frame does not.
+  virtual std::optional<SourceFrame> next() = 0;
+  // How many there are; nullopt: nobody knows, or it goes on until it is stopped.
+  virtual std::optional<std::size_t> count() const = 0;
+  virtual bool isLive() const = 0;
+  virtual void stop() noexcept = 0; // from any thread: next() returns nullopt within 0.2 s
+};
+
+// FRAMES is a scan folder or folder of pictures (framesOf()), a video file, "camera:0", "camera:1"
+// and so on, a live camera, or "replay:SCAN", the frames of a scan folder at the pace at which they
+// were taken, as if live. `rate` is for what carries no time, and overrules a video's own; 0: not
+// told. Throws FileError or Error.
+std::unique_ptr<FrameSource> openFrames(const std::string& frames, double rate);
+
+// The folder of "replay:SCAN" or of what is a folder; nullopt: a camera, a video.
+std::optional<std::filesystem::path> scanFolderOf(const std::string& frames);
+
+class ProbeSource {
+ public:
+  virtual ~ProbeSource() = default;
+  // Appends what has come since the last call, once there is something; false: no more will come.
+  // Throws Error where the source fails, naming the line that is wrong; what came before it has
+  // been given.
+  virtual bool read(std::vector<ProbeSample>& into) = 0;
+  virtual bool isLive() const = 0;
+  virtual void stop() noexcept = 0; // from any thread: read() returns false within 0.2 s
+};
+
+// PROBE is a probe.csv, "stream:PATH", lines of a probe.csv, its header first, as they arrive at a
+// pipe or a serial device, or "replay:SCAN". A USB probe is another ProbeSource. Throws FileError
+// or Error.
+std::unique_ptr<ProbeSource> openProbe(const std::string& probe);
+
+} // namespace patina

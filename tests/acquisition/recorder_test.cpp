@@ -1,0 +1,280 @@
+#include "acquisition/recording/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "acquisition/files/frame_files.h"
+#include "acquisition/recording/arrival_clock.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "support/rendered_rig.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+using test::RenderedRig;
+
+// A scan of a few frames, repeated for as long as is asked for.
+class Recordings : public testing::Test {
+ protected:
+  static constexpr double kRate = 25;
+
+  Recordings()
+      : rig(test::smallCamera(), "4x4_50"),
+        folder(fs::path(testing::TempDir()) / ("patina_recordings_" + std::to_string(getpid()))),
+        scan(folder / "scan"), made(folder / "made") {
+    fs::create_directories(scan / "frames");
+    writeFileAtomically(scan / "camera.yml", cameraText(rig.camera));
+    writeFileAtomically(scan / "rig.json", rigText({}, rig.markers));
+  }
+  ~Recordings() override { fs::remove_all(folder); }
+
+  void makeScan(double seconds) {
+    std::mt19937 random(8);
+    const int count = static_cast<int>(seconds * kRate);
+    std::string list = frameListHeader();
+    for (int i = 0; i < count; ++i) {
+      const fs::path file = scan / "frames" / (frameStem(i) + ".png");
+      if (i < 3) {
+        poses.push_back(test::somePose(random, 0.4, 0.5));
+        writeGrey(file, rig.renderer.render({poses.back()}, {}, 1));
+      } else {
+        fs::create_symlink(scan / "frames" / (frameStem(i % 3) + ".png"), file);
+      }
+      list += std::to_string(i) + "," + std::to_string(100 + i / kRate) + "\n";
+    }
+    writeFileAtomically(scan / "frames.csv", list);
+    std::vector<ProbeSample> samples;
+    for (int i = 0; i < 500 * seconds; ++i)
+      samples.push_back({100 + 0.002 * i, 0.25, {0, 9.8, 0, 9.8}});
+    writeProbeStream(scan / "probe.csv", samples);
+  }
+  RecordingSetup setup() const {
+    RecordingSetup out;
+    out.folder = made;
+    out.camera = scan / "camera.yml";
+    out.rig = scan / "rig.json";
+    return out;
+  }
+  std::unique_ptr<Recorder> replaying() const {
+    const std::string source = "replay:" + scan.string();
+    return std::make_unique<Recorder>(openFrames(source, 0), openProbe(source), setup());
+  }
+  static RecordingState finished(Recorder& recorder) {
+    RecordingState state = recorder.poll().state;
+    for (; state.running; state = recorder.poll().state)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return state;
+  }
+
+  RenderedRig rig;
+  fs::path folder, scan, made;
+  std::vector<Pose> poses;
+};
+
+TEST_F(Recordings, HoldWhatASourceGaveWithItsTimes) {
+  makeScan(1);
+  const auto recorder = replaying();
+  const RecordingState state = finished(*recorder);
+  EXPECT_EQ(state.error, "");
+  EXPECT_EQ(state.frames, 25u);
+  EXPECT_EQ(state.poses + state.skipped, 25u);
+  EXPECT_EQ(state.dropouts, 0u);
+  const auto frames = framesOf(made, 0);
+  ASSERT_EQ(frames.size(), 25u);
+  for (int i = 0; i < 25; ++i) {
+    EXPECT_NEAR(frames[index(i)].t - frames[0].t, i / kRate, 0.02);
+    EXPECT_EQ(readGrey(frames[index(i)].file).pixel,
+              readGrey(scan / "frames" / (frameStem(i) + ".png")).pixel);
+  }
+  const auto samples = readProbeStream(made / "probe.csv").values;
+  EXPECT_EQ(samples.size(), state.samples);
+  ASSERT_GE(samples.size(), 480u); // it ends with the frames
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    EXPECT_NEAR(samples[i].t - samples[i - 1].t, 0.002, 0.002);
+  // Both clocks began together.
+  EXPECT_NEAR(frames[0].t, samples[0].t, 0.05);
+  for (const CameraPose& pose : readPoses(made / "poses.tum").values) {
+    const auto at = std::lround((pose.t - frames[0].t) * kRate) % 3;
+    EXPECT_LT((pose.position - poses[static_cast<std::size_t>(at)].translation()).norm(), 1e-3);
+  }
+  EXPECT_EQ(readFile(made / "camera.yml"), readFile(scan / "camera.yml"));
+}
+
+TEST_F(Recordings, OfFilesWaitForTheTrackerAndKeepTheirTimes) {
+  makeScan(2);
+  Recorder recorder(openFrames(scan.string(), 0), openProbe((scan / "probe.csv").string()),
+                    setup());
+  const RecordingState state = finished(recorder);
+  EXPECT_EQ(state.error, "");
+  EXPECT_EQ(state.poses, 50u);
+  EXPECT_EQ(state.skipped, 0u);
+  const auto kept = readProbeStream(made / "probe.csv").values,
+             sent = readProbeStream(scan / "probe.csv").values;
+  ASSERT_EQ(kept.size(), sent.size());
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    EXPECT_EQ(kept[i].t, sent[i].t);
+    EXPECT_EQ(kept[i].force, sent[i].force);
+  }
+  EXPECT_EQ(framesOf(made, 0)[49].t, framesOf(scan, 0)[49].t);
+}
+
+TEST_F(Recordings, PauseWithoutRenumbering) {
+  makeScan(1.6);
+  const auto recorder = replaying();
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  recorder->pause();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const RecordingState held = recorder->poll().state;
+  EXPECT_TRUE(held.paused);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const RecordingNews meanwhile = recorder->poll();
+  EXPECT_EQ(meanwhile.state.frames, held.frames);
+  EXPECT_EQ(meanwhile.state.samples, held.samples);
+  EXPECT_FALSE(meanwhile.samples.empty()); // but it is seen
+  recorder->resume();
+  const RecordingState state = finished(*recorder);
+  EXPECT_EQ(state.dropouts, 0u);
+  const auto frames = framesOf(made, 0);
+  ASSERT_EQ(frames.size(), state.frames);
+  double longest = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    longest = std::max(longest, frames[i].t - frames[i - 1].t);
+  EXPECT_GT(longest, 0.3);
+  EXPECT_EQ(frames.back().file.stem(), frameStem(static_cast<int>(frames.size()) - 1));
+}
+
+TEST_F(Recordings, ShowTheNewestFrameWithItsMarkers) {
+  makeScan(1);
+  const auto recorder = replaying();
+  RecordingNews news;
+  for (int i = 0; i < 200 && !news.frame; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    news = recorder->poll();
+  }
+  ASSERT_TRUE(news.frame);
+  EXPECT_EQ(news.frame->image.width, 640);
+  EXPECT_EQ(news.frame->verdict, RigVerdict::seen);
+  EXPECT_FALSE(news.frame->markers.empty());
+  EXPECT_TRUE(news.frame->pose);
+  recorder->stop();
+  EXPECT_FALSE(recorder->poll().state.running);
+}
+
+TEST_F(Recordings, RefuseAFolderThatHoldsAScan) {
+  makeScan(0.2);
+  const std::string before = readFile(scan / "frames.csv");
+  RecordingSetup over = setup();
+  over.folder = scan;
+  EXPECT_THROW(Recorder(openFrames("replay:" + scan.string(), 0), nullptr, over), FileError);
+  EXPECT_EQ(readFile(scan / "frames.csv"), before);
+  EXPECT_THROW(Recorder(openFrames("replay:" + scan.string(), 0),
+                        openProbe((scan / "probe.csv").string()), setup()),
+               Error);
+  EXPECT_FALSE(fs::exists(made));
+}
+
+TEST_F(Recordings, EndWithFramesOfAnotherSize) {
+  makeScan(0.4);
+  writeGrey(scan / "frames" / "000000.png", {320, 240, std::vector<std::uint8_t>(320 * 240, 9)});
+  const auto recorder = replaying();
+  EXPECT_NE(finished(*recorder).error.find("is 320 x 240"), std::string::npos);
+}
+
+// Of a process that records and is killed, or whose disk is full, at some moment.
+class RecordingChild : public Recordings {
+ protected:
+  template <class Prepare> pid_t started(const Prepare& prepare) const {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    prepare();
+    const auto recorder = replaying();
+    const RecordingState state = finished(*recorder);
+    _exit(state.error.find("cannot be written") != std::string::npos ? 7 : 3);
+  }
+  static int statusOf(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return status;
+  }
+};
+
+TEST_F(RecordingChild, KilledAtAnyMomentLeavesAScanThatLacksLessThanASecond) {
+  makeScan(4);
+  std::mt19937 random(5);
+  for (int kill_number = 0; kill_number < 6; ++kill_number) {
+    fs::remove_all(made);
+    const pid_t child = started([] {});
+    const auto has = [&] { return fs::exists(made / "frames" / "000020.pgm"); };
+    for (int i = 0; i < 1000 && !has(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ASSERT_TRUE(has());
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 1000000));
+    kill(child, SIGKILL);
+    ASSERT_TRUE(WIFSIGNALED(statusOf(child)));
+    // Pictures are on disk as they come: how far it had come.
+    std::size_t pictures = 0;
+    for (const auto& file : fs::directory_iterator(made / "frames"))
+      pictures += file.path().extension() == ".pgm";
+    const auto frames = framesOf(made, 0);
+    EXPECT_GE(frames.size() + static_cast<std::size_t>(kRate), pictures);
+    const auto samples = readProbeStream(made / "probe.csv").values;
+    EXPECT_GT(samples.back().t, frames[0].t + static_cast<double>(pictures) / kRate - 1);
+    EXPECT_GT(readPoses(made / "poses.tum").values.size(), 5u);
+    // All that is listed is whole.
+    Progress progress;
+    const TrackedFrames found =
+        trackFrames(*openFrames(made.string(), 0), rig.camera, rig.markers, {}, progress);
+    EXPECT_EQ(found.poses.size(), frames.size());
+    EXPECT_EQ(found.unreadable, 0u);
+  }
+}
+
+TEST_F(RecordingChild, WhoseDiskIsFullSaysSoAndKeepsWhatItWrote) {
+  makeScan(4);
+  // So small that the probe's table is the first file to meet the limit.
+  Camera small = rig.camera;
+  small.width = 64, small.height = 48;
+  writeFileAtomically(scan / "camera.yml", cameraText(small));
+  for (int i = 0; i < 3; ++i)
+    writeGrey(scan / "frames" / (frameStem(i) + ".png"),
+              {64, 48, std::vector<std::uint8_t>(64 * 48, 100)});
+  const pid_t child = started([] {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit least{20000, 20000}; // [bytes] of a file
+    setrlimit(RLIMIT_FSIZE, &least);
+  });
+  const int status = statusOf(child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 7); // said, and at once: it did not go on to the end
+  const auto samples = readProbeStream(made / "probe.csv").values;
+  EXPECT_GT(samples.size(), 250u);
+  EXPECT_LT(samples.size(), 600u); // 385 were, of 2000
+  EXPECT_GT(framesOf(made, 0).size(), 10u);
+}
+
+TEST(ArrivalClock, KeepsTheSourcesEvenStepsAtTheLeastDelay) {
+  ArrivalClock clock;
+  std::mt19937 random(3);
+  std::exponential_distribution<double> late(200); // 5 ms on average
+  double worst = 0, last = -1;
+  for (int i = 0; i < 5000; ++i) {
+    const double stamp = 70 + 0.002 * i, sent = 1 + 0.002 * i * (1 + 5e-5);
+    const double t = clock.timeOf(stamp, sent + late(random));
+    EXPECT_GT(t, last);
+    last = t;
+    if (i > 500) worst = std::max(worst, std::abs(t - sent));
+  }
+  std::printf("worst after a second: %.3f ms\n", 1e3 * worst);
+  EXPECT_LT(worst, 1.5e-3);
+}
+
+} // namespace
+} // namespace patina
