@@ -129,15 +129,15 @@ Vec3 pointInViewPlane(vtkCamera& camera, double x, double y, const Vec3& through
          ray.direction * ((through - ray.origin).dot(normal) / ray.direction.dot(normal));
 }
 
-CameraPose poseOf(vtkCamera& camera) {
-  CameraPose pose;
-  camera.GetPosition(pose.data());
-  camera.GetFocalPoint(pose.data() + 3);
-  camera.GetViewUp(pose.data() + 6);
-  pose[9] = camera.GetViewAngle();
-  pose[10] = camera.GetParallelScale();
-  pose[11] = camera.GetParallelProjection();
-  return pose;
+CameraPlace placeOf(vtkCamera& camera) {
+  CameraPlace place;
+  camera.GetPosition(place.data());
+  camera.GetFocalPoint(place.data() + 3);
+  camera.GetViewUp(place.data() + 6);
+  place[9] = camera.GetViewAngle();
+  place[10] = camera.GetParallelScale();
+  place[11] = camera.GetParallelProjection();
+  return place;
 }
 
 } // namespace patina

@@ -32,8 +32,8 @@ Vec3 viewDirection(vtkCamera& camera); // unit, away from the eye
 
 // Where it stands and how it looks: position, focal point, up, angle, parallel scale, and whether
 // it is parallel. Not its clipping range, which follows what is drawn.
-using CameraPose = std::array<double, 12>;
-CameraPose poseOf(vtkCamera& camera);
+using CameraPlace = std::array<double, 12>;
+CameraPlace placeOf(vtkCamera& camera);
 
 struct Ray {
   Vec3 origin, direction; // direction is unit

@@ -68,7 +68,8 @@ void SceneView::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   my.mesh_box = my.mesh ? bounds(*my.mesh) : Box3();
   auto* mapper = vtkPolyDataMapper::SafeDownCast(my.mesh_actor->GetMapper());
   mapper->SetInputData(my.mesh ? surfaceData(*my.mesh) : vtkSmartPointer<vtkPolyData>::New());
-  my.makeCoarse();
+  my.has_coarse = false;
+  my.coarse_made = {};
   my.left_out.clear();
   my.painted = {}; // of another mesh, until setPaint() says otherwise
   my.choosePaint();
@@ -203,15 +204,17 @@ void SceneView::setView(ViewPreset view) {
 
 void SceneView::setMoving(bool moving) {
   Impl& my = *impl_;
-  const bool shown = my.coarseShown();
+  const bool shown = my.coarseShown(), was = my.moving;
   my.moving = moving;
+  if (moving) my.makeCoarse();
   if (my.coarse_made.valid() &&
       my.coarse_made.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     vtkPolyDataMapper::SafeDownCast(my.coarse_actor->GetMapper())
         ->SetInputData(my.coarse_made.get());
     my.has_coarse = true;
   }
-  my.dirty = my.dirty || my.coarseShown() != shown;
+  my.scene->SetPass(moving ? my.half_size.Get() : nullptr);
+  my.dirty = my.dirty || my.coarseShown() != shown || was != moving;
 }
 
 void SceneView::fit() {
@@ -275,9 +278,9 @@ bool SceneView::prepare() {
   my.applyVisibility();
   my.syncCorner();
   my.scene->ResetCameraClippingRange();
-  const CameraPose pose = poseOf(*camera);
-  const bool changed = my.dirty || pose != my.drawn_from || my.size() != my.drawn_size;
-  my.drawn_from = pose;
+  const CameraPlace place = placeOf(*camera);
+  const bool changed = my.dirty || place != my.drawn_from || my.size() != my.drawn_size;
+  my.drawn_from = place;
   my.drawn_size = my.size();
   my.dirty = false;
   return changed;

@@ -67,8 +67,8 @@ class SceneView {
   bool shown(Layer layer) const;
 
   void setView(ViewPreset view); // and fit
-  // While the camera moves a mesh of very many triangles is shown with fewer, once these are made,
-  // which is done behind the picture.
+  // While the camera moves and that takes long: bodies are drawn at half the resolution, and a mesh
+  // of many triangles with fewer, once these are made, which is done behind the picture.
   void setMoving(bool moving);
   void fit();          // everything in the picture, from the present direction
   Box3 extent() const; // of mesh and field; never empty

@@ -51,11 +51,9 @@ void SceneView::Impl::choosePaint() {
 
 // The mesh is kept by whoever makes it: the view may have another one before it is done.
 void SceneView::Impl::makeCoarse() {
-  has_coarse = false;
-  coarse_made = {};
-  constexpr std::size_t kMany = 300'000;
-  constexpr int kCells = 100; // some 100,000 triangles
-  if (mesh && mesh->triangles.size() > kMany)
+  constexpr std::size_t kMany = 50'000;
+  constexpr int kCells = 80; // some 40,000 triangles
+  if (mesh && mesh->triangles.size() > kMany && !coarse_made.valid() && !has_coarse)
     coarse_made = std::async(std::launch::async,
                              [shown = mesh] { return surfaceData(coarsened(*shown, kCells)); });
 }

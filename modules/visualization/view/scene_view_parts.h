@@ -17,6 +17,7 @@
 #include "visualization/layers/tool_layer.h"
 #include "visualization/values/palette.h"
 #include "visualization/view/camera.h"
+#include "visualization/view/half_size_pass.h"
 #include "visualization/view/scene_furniture.h"
 #include "visualization/view/scene_view.h"
 
@@ -29,6 +30,7 @@ struct SceneView::Impl {
   vtkSmartPointer<vtkActor> coarse_actor = surfaceActor(palette::kSurface); // while it moves
   std::future<vtkSmartPointer<vtkPolyData>> coarse_made;                    // on its way
   bool has_coarse = false, moving = false;
+  vtkNew<HalfSizePass> half_size; // while it moves
   vtkNew<vtkOutlineSource> outline;
   vtkNew<vtkActor> extent_actor;
   SliceLayer slice{*scene, *overlay};
@@ -56,7 +58,7 @@ struct SceneView::Impl {
   bool paint_stale = false, brush_stale = false;
   bool dirty = true, has_stability = false;
   bool cut_keeps_positive = true, cut_on = false;
-  CameraPose drawn_from{};
+  CameraPlace drawn_from{};
   std::array<int, 2> drawn_size{}; // bars and axes are placed by it
 
   Box3 mesh_box; // empty without a mesh

@@ -1,0 +1,200 @@
+#include "visualization/layers/path_layer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkLookupTable.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkSphereSource.h>
+#include <vtkTubeFilter.h>
+
+#include "visualization/values/paint_quantity.h"
+#include "visualization/values/palette.h"
+#include "visualization/values/scalar_bar.h"
+#include "visualization/view/scene_furniture.h"
+
+namespace patina {
+namespace {
+
+constexpr double kThick = 0.007, kMark = 0.016; // radii, of the path's extent
+constexpr double kPalest = 0.22;                // of the colours, that is left out
+constexpr double kStep = 1. / 1200;             // of it: nearer samples look like one
+
+Box3 boxOf(const std::vector<DrawnSample>& samples) {
+  Box3 box;
+  for (const DrawnSample& sample : samples) box.extend(sample.position);
+  return box;
+}
+
+double sizeOf(const Box3& box) {
+  return box.isEmpty() ? 0.1 : std::max(box.diagonal().norm(), 5e-3);
+}
+
+std::vector<DrawnSample> thinned(const std::vector<DrawnSample>& samples) {
+  const double step = kStep * sizeOf(boxOf(samples));
+  std::vector<DrawnSample> kept;
+  bool begins = true;
+  for (const DrawnSample& sample : samples) {
+    begins = begins || sample.begins;
+    const bool same = !kept.empty() && !begins && sample.bridged == kept.back().bridged;
+    const double way = kept.empty() ? 0 : (sample.position - kept.back().position).norm();
+    if ((same && way < step) || (!kept.empty() && !begins && way == 0)) continue;
+    kept.push_back(sample);
+    kept.back().begins = begins;
+    begins = false;
+  }
+  return kept;
+}
+
+// The lines through what is bridged, or through the rest, each with the sample before it.
+vtkSmartPointer<vtkPolyData> linesOf(const std::vector<DrawnSample>& samples, bool bridged) {
+  const vtkNew<vtkPoints> points;
+  const vtkNew<vtkCellArray> lines;
+  const vtkNew<vtkDoubleArray> values;
+  values->SetName("value");
+  std::vector<vtkIdType> line;
+  const auto add = [&](const DrawnSample& sample) {
+    line.push_back(points->InsertNextPoint(sample.position.data()));
+    values->InsertNextValue(sample.value);
+  };
+  const auto end = [&] {
+    if (line.size() > 1) lines->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
+    line.clear();
+  };
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].begins) end();
+    if (samples[i].bridged != bridged) {
+      if (bridged || !line.empty()) {
+        if (bridged && !line.empty()) add(samples[i]);
+        end();
+      }
+      continue;
+    }
+    if (line.empty() && i > 0 && !samples[i].begins) add(samples[i - 1]);
+    add(samples[i]);
+  }
+  end();
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(lines);
+  data->GetPointData()->SetScalars(values);
+  return data;
+}
+
+vtkPolyDataMapper* meshMapper(vtkActor& actor) {
+  return vtkPolyDataMapper::SafeDownCast(actor.GetMapper());
+}
+
+// Dark is much, without the palest, which a thin line would not show.
+vtkSmartPointer<vtkLookupTable> pathColors(const ValueRange& range) {
+  const auto all = paintColors(PaintQuantity::first_channel, range);
+  auto colors = vtkSmartPointer<vtkLookupTable>::New();
+  colors->SetNumberOfTableValues(256);
+  colors->SetRange(range.low, range.high);
+  for (int i = 0; i < 256; ++i) {
+    double color[4];
+    const double part = kPalest + (1 - kPalest) * i / 255;
+    all->GetTableValue(static_cast<vtkIdType>(part * (all->GetNumberOfTableValues() - 1)), color);
+    colors->SetTableValue(i, color);
+  }
+  return colors;
+}
+
+} // namespace
+
+PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
+    : tube_(surfaceActor(palette::kForce)), line_(surfaceActor(palette::kForce)),
+      bridge_(surfaceActor(palette::kQuiet)), mark_actor_(vtkSmartPointer<vtkActor>::New()),
+      mark_mapper_(vtkSmartPointer<vtkGlyph3DMapper>::New()), bar_(scalarBar("")) {
+  tube_->GetProperty()->SetAmbient(0.35);
+  line_->GetProperty()->SetLineWidth(3);
+  bridge_->GetProperty()->SetLineWidth(2);
+  for (const auto& actor : {line_, bridge_}) actor->GetProperty()->LightingOff();
+  const vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(1);
+  mark_mapper_->SetSourceConnection(ball->GetOutputPort());
+  mark_mapper_->ScalarVisibilityOff();
+  mark_mapper_->SetInputData(vtkSmartPointer<vtkPolyData>::New());
+  mark_actor_->SetMapper(mark_mapper_);
+  mark_actor_->GetProperty()->SetColor(palette::forVtk(palette::kForce));
+  for (const auto& actor : {tube_, line_, bridge_, mark_actor_}) scene.AddActor(actor);
+  bar_->SetLabelFormat("%.3g");
+  bar_->SetVisibility(false);
+  overlay.AddActor2D(bar_);
+}
+
+void PathLayer::setPath(const DrawnPath& path) {
+  drawn_ = thinned(path.samples);
+  ValueRange range{INFINITY, -INFINITY};
+  for (const DrawnSample& sample : drawn_) {
+    if (!std::isfinite(sample.value)) continue;
+    range.low = std::min(range.low, sample.value);
+    range.high = std::max(range.high, sample.value);
+  }
+  has_bar_ = range.low <= range.high;
+  bar_->SetVisibility(has_bar_);
+  const vtkNew<vtkTubeFilter> tube;
+  const auto lines = linesOf(drawn_, false);
+  tube->SetInputData(lines);
+  tube->SetRadius(kThick * sizeOf(boxOf(drawn_)));
+  tube->SetNumberOfSides(8);
+  tube->CappingOn();
+  tube->Update();
+  meshMapper(*tube_)->SetInputData(tube->GetOutput());
+  meshMapper(*line_)->SetInputData(lines);
+  meshMapper(*bridge_)->SetInputData(linesOf(drawn_, true));
+  setMarks(marks_);
+  if (!has_bar_) return;
+  const auto colors = pathColors(rounded(range));
+  for (const auto& actor : {tube_, line_}) {
+    meshMapper(*actor)->ScalarVisibilityOn();
+    meshMapper(*actor)->SetLookupTable(colors);
+    meshMapper(*actor)->UseLookupTableScalarRangeOn();
+  }
+  bar_->SetLookupTable(colors);
+  bar_->SetTitle((path.title + "\n").c_str());
+}
+
+void PathLayer::setMarks(const std::vector<DrawnMark>& marks) {
+  marks_ = marks;
+  const vtkNew<vtkPoints> points;
+  for (const DrawnMark& mark : marks) points->InsertNextPoint(mark.position.data());
+  const vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  mark_mapper_->SetInputData(data);
+  mark_mapper_->SetScaleFactor(kMark * sizeOf(boxOf(drawn_)));
+}
+
+void PathLayer::setTextSize(int pixels, int wide) {
+  patina::setTextSize(*bar_, pixels);
+  placeScalarBar(*bar_, 0, scalarBarShare(wide, pixels));
+}
+
+Box3 PathLayer::extent() const {
+  return boxOf(drawn_);
+}
+
+std::optional<double> PathLayer::timeAt(vtkRenderer& scene, double x, double y,
+                                        double reach) const {
+  double nearest = reach * reach;
+  std::optional<double> t;
+  const auto look = [&](const Vec3& position, double when) {
+    scene.SetWorldPoint(position.x(), position.y(), position.z(), 1);
+    scene.WorldToDisplay();
+    const double* pixel = scene.GetDisplayPoint();
+    const double squared = (pixel[0] - x) * (pixel[0] - x) + (pixel[1] - y) * (pixel[1] - y);
+    if (squared >= nearest) return;
+    nearest = squared;
+    t = when;
+  };
+  for (const DrawnSample& sample : drawn_) look(sample.position, sample.t);
+  for (const DrawnMark& mark : marks_) look(mark.position, mark.t);
+  return t;
+}
+
+} // namespace patina

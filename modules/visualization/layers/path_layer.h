@@ -1,0 +1,62 @@
+// The path of a scan: a tube coloured by a value, thin where it only bridges a gap, with what was
+// left out of it beside it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <vtkActor.h>
+#include <vtkGlyph3DMapper.h>
+#include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
+#include <vtkSmartPointer.h>
+
+#include "core/types.h"
+
+namespace patina {
+
+struct DrawnSample {
+  double t = 0;                 // [s]
+  Vec3 position = Vec3::Zero(); // [m]
+  double value = 0;             // in the unit of the title; not finite: none
+  bool bridged = false;         // nobody saw it: a gap's
+  bool begins = false;          // nothing leads here from the sample before
+};
+
+struct DrawnPath {
+  std::vector<DrawnSample> samples; // in the order of time
+  std::string title;                // of the values: "force [N]"
+};
+
+// What was seen and is not part of the path.
+struct DrawnMark {
+  double t = 0;
+  Vec3 position = Vec3::Zero();
+};
+
+class PathLayer {
+ public:
+  // scene: hidden by surfaces in front of it; overlay: where the scalar bar is.
+  PathLayer(vtkRenderer& scene, vtkRenderer& overlay);
+
+  // Of very many samples those are drawn that can be told apart.
+  void setPath(const DrawnPath& path);
+  void setMarks(const std::vector<DrawnMark>& marks);
+  void setTextSize(int pixels, int wide); // of a picture of that width
+  bool hasBar() const { return has_bar_; }
+  Box3 extent() const; // of path and marks; empty without any
+  // When the tip was nearest to a point of the picture, x and y in pixels from its lower left;
+  // nullopt: nothing drawn is within `reach`.
+  std::optional<double> timeAt(vtkRenderer& scene, double x, double y, double reach) const;
+
+ private:
+  std::vector<DrawnSample> drawn_;
+  std::vector<DrawnMark> marks_;
+  vtkSmartPointer<vtkActor> tube_, line_, bridge_, mark_actor_; // a line is seen from afar, too
+  vtkSmartPointer<vtkGlyph3DMapper> mark_mapper_;
+  vtkSmartPointer<vtkScalarBarActor> bar_;
+  bool has_bar_ = false;
+};
+
+} // namespace patina
