@@ -27,9 +27,8 @@ namespace {
 
 constexpr const char* kHelp =
     "Usage: patina-gui [FILE] [options]\n\n"
-    "Opens a mesh (.obj .ply .stl), a volume (.vti) or a workspace folder in a window and lets "
-    "the\n"
-    "mouse feel it. Without FILE: the toy dinosaur.\n\n"
+    "Opens a mesh (.obj .ply .stl), a volume (.vti), a workspace folder or a scan folder in a\n"
+    "window; surfaces are felt with the mouse. Without FILE: the toy dinosaur.\n\n"
     "  --unit UNIT               of a mesh: mm (default), cm, m, in, or fit (longest side 100 mm)\n"
     "  --up AXIS                 of a mesh file: z (default), or y, which is turned to z\n"
     "  --iso VALUE               of a volume from elsewhere: where its surface is\n"
@@ -123,7 +122,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
     std::cout << patina::firstPictureSeconds(window, arguments.request) << '\n';
     return 0;
   }
-  documents.offerRecovery();
+  window.controllers().recovery.begin();
   patina::LoadRequest request = arguments.request;
   if (!arguments.up && documents.asks()) request.options.up = documents.up();
   documents.open(request);

@@ -100,7 +100,7 @@ TEST_F(MouseFeels, EveryMoveOfTheCameraIsDrawnAtOnce) {
       [](vtkObject*, unsigned long, void* into, void*) { ++*static_cast<int*>(into); });
   view().renderWindow()->AddObserver(vtkCommand::EndEvent, count);
   const auto isDrawn = [&](const std::function<void()>& move) {
-    waitUntil([&] { return view().settled(); }, 5000);
+    waitUntil([&] { return view().frames().settled(); }, 5000);
     drawn = 0;
     move();
     return waitUntil([&] { return drawn > 0; }, 500);

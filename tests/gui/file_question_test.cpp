@@ -17,7 +17,7 @@ class FileQuestions : public DrivenWindow {
     DrivenWindow::SetUp();
     if (IsSkipped()) return;
     ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
-    documents().saveTo(text(folder_ / "sphere.patina"));
+    saving().saveTo(text(folder_ / "sphere.patina"));
   }
   static QString text(const std::filesystem::path& path) {
     return QString::fromStdString(path.string());
@@ -77,9 +77,9 @@ TEST_F(FileQuestions, SaveAsSuggestsAFreeNameBesideWhatIsOpen) {
               EXPECT_EQ(dialog.selectedFiles().front(), text(folder_ / "sphere-2.patina"));
               type(kEnter);
             });
-  EXPECT_TRUE(documents().saveDialog());
+  EXPECT_TRUE(saving().saveDialog());
   EXPECT_TRUE(isWorkspace(folder_ / "sphere-2.patina"));
-  EXPECT_EQ(documents().name(), QStringLiteral("sphere-2.patina"));
+  EXPECT_EQ(saving().name(), QStringLiteral("sphere-2.patina"));
 }
 
 TEST_F(FileQuestions, NoWorkspaceIsPutIntoAnother) {
@@ -87,7 +87,7 @@ TEST_F(FileQuestions, NoWorkspaceIsPutIntoAnother) {
             [this](FileQuestion& dialog) {
               enter(dialog, text(folder_ / "sphere.patina" / "inner.patina"));
             });
-  EXPECT_FALSE(documents().saveDialog());
+  EXPECT_FALSE(saving().saveDialog());
   EXPECT_FALSE(std::filesystem::exists(folder_ / "sphere.patina" / "inner.patina"));
 }
 

@@ -159,7 +159,7 @@ TEST_F(Loading, AWorkspaceThatWasSavedOpensAgainWithItsValues) {
   addProperty("Damping");
   setRow("damping", 2.5);
   wait(100);
-  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
+  saving().saveTo(QString::fromStdString((folder_ / "ws").string()));
   ASSERT_TRUE(open(folder_ / "ws"));
   EXPECT_EQ(edits().scene()->scene.haptics.stiffness, 321);
   EXPECT_EQ(edits().scene()->scene.haptics.damping, 2.5);

@@ -374,7 +374,7 @@ TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
   choose("color");
   stroke(middle() - QPoint(40, 0), middle() + QPoint(40, 0), 200);
   ASSERT_TRUE(strokeDone(1));
-  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
+  saving().saveTo(QString::fromStdString((folder_ / "ws").string()));
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("ws")));
   stroke(middle() - QPoint(40, 30), middle() + QPoint(40, -30), 200); // journaled, not saved

@@ -116,10 +116,13 @@ TEST_F(Program, ALogThatCannotBeWrittenIsRefusedBeforeTheWindowOpens) {
   EXPECT_EQ(run("--log" + quoted(folder_), "timeout 20").code, 2);
 }
 
-// Processor time, all threads of the program with its OpenGL, against the reference kernel.
+// Processor time, all threads of the program with its OpenGL: against the picture of a handful of
+// triangles, and against the reference kernel. What libraries do before the first picture has been
+// 8 times the kernel on one machine and 25 on another; the second limit is three times the latter.
 TEST_F(Program, TheFirstPictureOf70000TrianglesTakesLittle) {
   if (!test::hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
   writeMesh(folder_ / "sphere.obj", icosphere(30, 60)); // 72,000 triangles
+  writeMesh(folder_ / "few.obj", icosphere(30, 2));     // 80
   const auto used = [] {
     rusage usage{};
     getrusage(RUSAGE_CHILDREN, &usage);
@@ -128,18 +131,23 @@ TEST_F(Program, TheFirstPictureOf70000TrianglesTakesLittle) {
     };
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
   };
-  double shown = 1e9, work = 1e9;
-  for (int round = 0; round < 4; ++round) {
+  double shown = 1e9, work = 1e9, of_few = 1e9;
+  const auto show = [&](const char* mesh, double& least) {
     const double before = used();
-    const Outcome outcome = run("--first-picture-time" + quoted(folder_ / "sphere.obj"));
+    const Outcome outcome = run("--first-picture-time" + quoted(folder_ / mesh));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    shown = std::min(shown, std::stod(outcome.out));
-    work = std::min(work, used() - before);
+    shown = std::stod(outcome.out);
+    least = std::min(least, used() - before);
+  };
+  for (int round = 0; round < 4; ++round) {
+    ASSERT_NO_FATAL_FAILURE(show("few.obj", of_few));
+    ASSERT_NO_FATAL_FAILURE(show("sphere.obj", work));
   }
   std::printf("first picture of 72,000 triangles: %.2f s\n", shown);
+  EXPECT_TRUE(test::within("first picture, against one of 80 triangles", work, of_few, 1.5)); // 1.1
   test::Reference reference;
   EXPECT_TRUE(test::within("first picture, against 10 bakes", work,
-                           10 * test::leastSeconds({[&] { reference.bake(); }})[0], 20)); // 8.1
+                           10 * test::leastSeconds({[&] { reference.bake(); }})[0], 75));
 }
 
 } // namespace

@@ -132,7 +132,7 @@ TEST_F(Recorded, EditsAreAskedAboutUntilTheyAreSaved) {
   answerWith(QMessageBox::Cancel);
   EXPECT_FALSE(window_->close());
   EXPECT_EQ(asked_, 1);
-  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
+  saving().saveTo(QString::fromStdString((folder_ / "ws").string()));
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(window_->close());
   EXPECT_EQ(asked_, 1);

@@ -65,7 +65,7 @@ std::size_t Recovery::editsAfterAKillIn(int milliseconds) {
   waitpid(child, &status, 0);
   EXPECT_TRUE(WIFSIGNALED(status)) << "it was to be killed";
   documents().setAsks(false);
-  documents().offerRecovery();
+  window_->controllers().recovery.begin();
   if (!bar()->isVisible()) return 0;
   bool ready = false;
   const auto connection =
@@ -104,7 +104,7 @@ TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {
   ASSERT_TRUE(WIFSIGNALED(status)) << "it was to be killed";
 
   EXPECT_FALSE(bar()->isVisible());
-  documents().offerRecovery();
+  window_->controllers().recovery.begin();
   ASSERT_TRUE(bar()->isVisible());
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
@@ -115,7 +115,7 @@ TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {
   EXPECT_TRUE(paint && paint->color);
   EXPECT_TRUE(window_->isWindowModified()) << "it is in no folder of its own";
   EXPECT_FALSE(edits().status().folder.has_value());
-  documents().saveTo(QString::fromStdString((folder_ / "ws").string()));
+  saving().saveTo(QString::fromStdString((folder_ / "ws").string()));
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
 }
@@ -134,7 +134,7 @@ TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
   const fs::path ws = folder_ / "ws";
   paintOne();
   ASSERT_TRUE(editsDone(1));
-  documents().saveTo(QString::fromStdString(ws.string()));
+  saving().saveTo(QString::fromStdString(ws.string()));
   paintOne();
   ASSERT_TRUE(editsDone(2));
   int asked = 0;
@@ -165,7 +165,7 @@ TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
 TEST_F(Recovery, ADamagedWorkspaceIsOfferedWhatCanBeRead) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   const fs::path ws = folder_ / "ws";
-  documents().saveTo(QString::fromStdString(ws.string()));
+  saving().saveTo(QString::fromStdString(ws.string()));
   paintOne();
   ASSERT_TRUE(editsDone(1));
   paintOne();

@@ -126,7 +126,7 @@ class ServoUnderDrawing : public WindowTest {
     int frames = 0;
     while (measuring.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
       orbit(*view().view().renderer().GetActiveCamera(), 0.004, 0);
-      if (view().refresh()) {
+      if (view().frames().refresh()) {
         longest = std::max(longest, frameSeconds());
         sum += frameSeconds();
         ++frames;

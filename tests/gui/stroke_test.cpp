@@ -67,7 +67,7 @@ class Strokes : public DrivenWindow {
     EXPECT_TRUE(waitUntil([&] { return edits().status().edits.size() == 1; }, 20000));
     std::printf("%s: a frame takes %.0f ms\n", name, 1000 * frameSeconds());
     const auto folder = folder_ / (std::string(name) + ".patina");
-    documents().saveTo(QString::fromStdString(folder.string()));
+    saving().saveTo(QString::fromStdString(folder.string()));
     const OpenedWorkspace kept = openWorkspace(folder);
     return kept.journal.empty() ? Stroke{} : std::get<Stroke>(kept.journal.front());
   }

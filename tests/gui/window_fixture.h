@@ -101,6 +101,7 @@ class WindowTest : public ::testing::Test {
   }
 
   // What is no widget: all else is found by its name, and driven as a person does.
+  SaveController& saving() { return window_->controllers().saving; }
   DocumentController& documents() { return window_->controllers().documents; }
   EditController& edits() { return window_->controllers().edits; }
   FeelController& feel() { return window_->controllers().feel; }
@@ -143,7 +144,7 @@ class WindowTest : public ::testing::Test {
 
   // Share of the view's pixels that pass a test of red, green and blue.
   double share(const std::function<bool(int, int, int)>& test) {
-    view().refresh();
+    view().frames().refresh();
     const QImage image = view().grabFramebuffer();
     int hits = 0, all = 0;
     for (int y = 0; y < image.height(); y += 2)

@@ -9,10 +9,11 @@
 namespace patina {
 namespace {
 
-const std::vector<Panel> kPanels{Panel::recovery, Panel::tool,    Panel::brush,  Panel::relief,
-                                 Panel::touch,    Panel::objects, Panel::mesh,   Panel::device,
-                                 Panel::display,  Panel::paint,   Panel::forces, Panel::energy,
-                                 Panel::history,  Panel::messages};
+const std::vector<Panel> kPanels{Panel::recovery, Panel::tool,     Panel::brush,    Panel::relief,
+                                 Panel::touch,    Panel::objects,  Panel::mesh,     Panel::device,
+                                 Panel::display,  Panel::paint,    Panel::forces,   Panel::energy,
+                                 Panel::history,  Panel::messages, Panel::timeline, Panel::findings,
+                                 Panel::scan,     Panel::recorder};
 const std::vector<Command> kCommands{Command::save, Command::save_as, Command::record,
                                      Command::undo, Command::redo,    Command::paint};
 
@@ -123,6 +124,17 @@ TEST(WindowState, WhatACrashLeftIsOfferedOnEveryDesk) {
   }
 }
 
+TEST(WindowState, AScanHasItsPagesOnceItIsOpen) {
+  if (!isBuilt(Desk::scan)) GTEST_SKIP() << "built without PATINA_ACQUISITION";
+  WindowState state;
+  state.desk = Desk::scan;
+  EXPECT_EQ(thereIn(state), (std::vector{Panel::messages, Panel::scan, Panel::recorder}));
+  state.scan = true;
+  EXPECT_EQ(pagesThere(state), (std::vector{Panel::timeline, Panel::findings, Panel::messages}));
+  state.desk = Desk::feel;
+  EXPECT_FALSE(isThere(Panel::timeline, state));
+}
+
 TEST(WindowState, ATabWithNothingToShowLeavesItsPlaceToTheFirst) {
   WindowState state = withScene();
   state.desk = Desk::paint;
@@ -140,7 +152,7 @@ TEST(WindowState, EveryToolIsAtHandOnSomeDeskAndStaysWhereItCan) {
   const ToolChoice feel{Handling::feel, {}}, color{Handling::paint, Tool::color};
   for (const DeskRow& row : deskRows()) {
     EXPECT_TRUE(hasTool(row.desk, row.tool));
-    EXPECT_EQ(deskFor(feel, row.desk), row.desk);
+    EXPECT_EQ(deskFor(feel, row.desk), row.desk == Desk::scan ? Desk::feel : row.desk);
     EXPECT_EQ(deskFor(color, row.desk), Desk::paint);
   }
 }

@@ -4,6 +4,8 @@
 namespace patina {
 
 class DocumentController;
+class SaveController;
+class RecoveryOffer;
 class EditController;
 class FeelController;
 class PaintController;
@@ -12,6 +14,8 @@ class DeskController;
 
 struct Controllers {
   DocumentController& documents;
+  SaveController& saving;
+  RecoveryOffer& recovery;
   EditController& edits;
   FeelController& feel;
   PaintController& paint;

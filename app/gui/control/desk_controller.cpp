@@ -4,18 +4,18 @@ namespace patina {
 
 DeskController::DeskController(const Parts& parts, QObject* parent)
     : QObject(parent), at_(parts), group_(new QActionGroup(this)) {
-  int key = Qt::Key_1;
   for (const DeskRow& row : deskRows()) {
     layouts_[row.desk] = usualLayout(row.desk);
     tools_[row.desk] = row.tool;
     QAction* action = group_->addAction(row.words);
     action->setObjectName(QStringLiteral("desk_") + QString::fromUtf8(row.name));
     action->setCheckable(true);
-    action->setShortcut(Qt::CTRL | key++);
+    action->setData(static_cast<int>(row.desk));
+    action->setChecked(row.desk == desk_);
+    action->setShortcut(Qt::CTRL | row.key);
     action->setToolTip(row.tip);
     connect(action, &QAction::triggered, this, [this, desk = row.desk] { choose(desk); });
   }
-  group_->actions().front()->setChecked(true);
   at_.tools.setDesk(desk_);
   connect(&at_.tools, &ToolBar::chosen, this, &DeskController::takeTool);
   for (QSplitter* splitter : {&at_.across, &at_.down})
@@ -33,7 +33,8 @@ DeskController::DeskController(const Parts& parts, QObject* parent)
 }
 
 void DeskController::choose(Desk desk) {
-  group_->actions()[static_cast<int>(desk)]->setChecked(true);
+  for (QAction* action : group_->actions())
+    if (action->data().toInt() == static_cast<int>(desk)) action->setChecked(true);
   if (desk == desk_) return;
   desk_ = desk;
   at_.tools.setDesk(desk);

@@ -1,14 +1,12 @@
 #include "app/gui/control/document_controller.h"
 
 #include <QDragEnterEvent>
-#include <QMessageBox>
 #include <QMimeData>
 #include <QSettings>
 
 #include "app/gui/loading/file_question.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "core/error.h"
-#include "session/store/autosave.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -32,9 +30,9 @@ DocumentController::DocumentController(const Parts& parts, QObject* parent)
     : QObject(parent), at_(parts), loader_(parts.edits.thread().listener(), this),
       recent_(parts.recent, this), up_(QSettings().value(kYUp).toBool() ? UpAxis::y : UpAxis::z) {
   connectLoader();
-  connectRecovery();
   connect(&recent_, &RecentFiles::chosen, this,
           [this](const QString& path) { openAsked(requestFor(path)); });
+  connect(&at_.saving, &SaveController::saved, &recent_, &RecentFiles::add);
   at_.window.setAcceptDrops(true);
   at_.window.installEventFilter(this);
 }
@@ -81,41 +79,6 @@ void DocumentController::connectLoader() {
   });
 }
 
-void DocumentController::connectRecovery() {
-  const auto next = [this] {
-    left_behind_.erase(left_behind_.begin());
-    emit changed();
-  };
-  connect(&at_.recover, &RecoverBar::laterAsked, this, next);
-  connect(&at_.recover, &RecoverBar::forgetAsked, this, [this, next] {
-    try {
-      Autosave::adopt(left_behind_.front())->own(); // and let it go
-    } catch (const Error&) {                        // another program has taken it meanwhile
-    }
-    next();
-  });
-  connect(&at_.recover, &RecoverBar::recoverAsked, this, [this, next] {
-    LoadRequest request;
-    request.place = left_behind_.front();
-    next();
-    openAsked(request);
-  });
-}
-
-void DocumentController::offerRecovery() {
-  left_behind_ = patina::leftBehind(stateFolder());
-  emit changed();
-}
-
-std::optional<std::filesystem::path> DocumentController::leftBehind() const {
-  return left_behind_.empty() ? std::nullopt : std::optional(left_behind_.front());
-}
-
-QString DocumentController::name() const {
-  const auto& folder = at_.edits.status().folder;
-  return folder ? fileNameOf(*folder) : name_;
-}
-
 QString DocumentController::nameUnderWay() const {
   const LoadRequest& request = loader_.request();
   return !request.place.empty() ? tr("Recovered scene")
@@ -123,7 +86,14 @@ QString DocumentController::nameUnderWay() const {
                                 : fileNameOf(request.path);
 }
 
+bool DocumentController::opensElsewhere(const LoadRequest& request) {
+  if (request.path.empty() || !elsewhere_ || !elsewhere_(request.path)) return false;
+  recent_.add(QString::fromStdString(request.path.string()));
+  return true;
+}
+
 void DocumentController::open(const LoadRequest& request) {
+  if (opensElsewhere(request)) return;
   std::error_code code;
   const auto& folder = at_.edits.status().folder;
   const bool is_open = !request.adds && !request.recover && folder &&
@@ -139,7 +109,8 @@ void DocumentController::open(const LoadRequest& request) {
 }
 
 void DocumentController::openAsked(const LoadRequest& request) {
-  if (!asks_ || settleEdits()) open(request);
+  if (opensElsewhere(request)) return;
+  if (!asks_ || at_.saving.settleEdits()) open(request);
 }
 
 LoadRequest DocumentController::requestFor(const QString& path) const {
@@ -174,7 +145,7 @@ void DocumentController::openDialog(bool adds) {
 
 void DocumentController::take(OpenedEditor& opened) {
   const LoadRequest& request = loader_.request();
-  name_ = nameUnderWay();
+  at_.saving.setName(nameUnderWay());
   if (!request.path.empty()) recent_.add(QString::fromStdString(request.path.string()));
   work_.reset();
   at_.edits.thread().adopt(std::move(opened.editor), std::move(opened.autosave));
@@ -218,88 +189,6 @@ void DocumentController::fail(const QString& message) {
 void DocumentController::cancel() {
   if (loader_.busy()) return loader_.cancel();
   at_.edits.thread().cancel();
-}
-
-bool DocumentController::trySaving(const std::function<void()>& save, const QString& where,
-                                   const QString& advice) {
-  try {
-    save();
-    emit said({tr("Saved %1").arg(where)});
-    return true;
-  } catch (const std::exception& error) {
-    showProblem(&at_.window, tr("The workspace cannot be saved"),
-                QString::fromStdString(error.what()), advice);
-    return false;
-  }
-}
-
-void DocumentController::saveTo(const QString& folder) {
-  if (!at_.edits.scene()) throw Error("there is no scene to save");
-  at_.edits.tryValues(); // what this tick's timer has not asked for yet
-  at_.edits.waitFor([&](EditThread::Done done) {
-    at_.edits.thread().saveAs(folder.toStdString(), std::move(done));
-  });
-  recent_.add(folder);
-}
-
-bool DocumentController::save() {
-  if (!at_.edits.scene()) return false;
-  if (!at_.edits.status().folder) return saveDialog();
-  const auto save = [this] {
-    at_.edits.tryValues();
-    at_.edits.waitFor([this](EditThread::Done done) { at_.edits.thread().save(std::move(done)); });
-  };
-  return trySaving(save, name(), tr("Nothing is lost: make room, or save to another folder."));
-}
-
-bool DocumentController::saveDialog() {
-  FileQuestion dialog(&at_.window, tr("Save the workspace as a folder"), FileQuestion::For::saving);
-  // Beside the workspace that is open, never in it.
-  if (const auto& own = at_.edits.status().folder)
-    dialog.setDirectory(QString::fromStdString(std::filesystem::absolute(*own).parent_path()));
-  dialog.selectFile(freeName(dialog.directory().path().toStdString(), name()));
-  QString folder;
-  connect(&dialog, &FileQuestion::chosen, this, [&](const QString& path) { folder = path; });
-  dialog.exec();
-  if (folder.isEmpty()) return false;
-  if (const auto around = workspaceAround(folder.toStdString()); !around.empty()) {
-    showProblem(&at_.window, tr("The workspace cannot be saved there"),
-                tr("%1 is a workspace itself.").arg(QString::fromStdString(around.string())),
-                tr("Choose a place beside it."));
-    return false;
-  }
-  return trySaving([&] { saveTo(folder); }, folder, tr("Choose a folder that you may write to."));
-}
-
-bool DocumentController::settleEdits() {
-  at_.edits.settle(); // a stroke that was just painted may not be in the history yet
-  while (at_.edits.unsaved()) {
-    const bool has_folder = at_.edits.status().folder.has_value();
-    QMessageBox box(QMessageBox::Question, tr("The edits are not saved"),
-                    has_folder ? tr("%1 was edited since it was saved.").arg(name())
-                               : tr("The scene was edited and is in no workspace yet."),
-                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, &at_.window);
-    box.setObjectName(QStringLiteral("unsaved_edits"));
-    const int answer = box.exec();
-    if (answer == QMessageBox::Save) {
-      save();
-      continue;
-    }
-    if (answer == QMessageBox::Discard) discard();
-    return answer == QMessageBox::Discard;
-  }
-  return true;
-}
-
-void DocumentController::discard() {
-  if (!at_.edits.status().folder) return;
-  try {
-    at_.edits.waitFor(
-        [this](EditThread::Done done) { at_.edits.thread().discard(std::move(done)); });
-  } catch (const std::exception& error) {
-    showProblem(&at_.window, tr("The edits stay in the workspace"),
-                QString::fromStdString(error.what()), tr("They can be undone later."));
-  }
 }
 
 bool DocumentController::close() {

@@ -86,7 +86,7 @@ void ViewController::showStability(const std::shared_ptr<const SurfaceStability>
 }
 
 void ViewController::refresh() {
-  at_.view.refresh();
+  at_.view.frames().refresh();
   if (const auto shown = at_.paint.shown(); shown && *shown != PaintQuantity::color)
     at_.paint.setRange(view().paintRange(*shown));
 }

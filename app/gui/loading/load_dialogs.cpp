@@ -12,7 +12,7 @@
 #include <QRadioButton>
 #include <QVBoxLayout>
 
-#include "core/numbers.h"
+#include "app/gui/widgets/words.h"
 
 namespace patina {
 namespace {
@@ -35,10 +35,6 @@ QDialogButtonBox* addButtons(QDialog* dialog) {
   QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
   QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
   return buttons;
-}
-
-QString inWords(double metres) {
-  return QString::fromStdString(formatLength(metres));
 }
 
 } // namespace

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "app/gui/widgets/words.h"
 #include "app/gui/window/theme.h"
 #include "authoring/relief/relief_limits.h"
-#include "core/numbers.h"
 
 namespace patina {
 namespace {
@@ -25,10 +25,6 @@ bool sameRelief(const CompiledScene& a, const CompiledScene& b) {
     if (image(a) != image(b)) return false;
   }
   return true;
-}
-
-QString inWords(double metres) {
-  return QString::fromStdString(formatLength(metres));
 }
 
 // The object whose relief is nearest to its limit, or the highest one where there is no device.

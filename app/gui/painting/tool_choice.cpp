@@ -8,14 +8,11 @@
 #include <QPainterPath>
 
 #include "app/gui/widgets/drawn_icon.h"
+#include "app/gui/widgets/words.h"
 #include "app/gui/window/theme.h"
 
 namespace patina {
 namespace {
-
-QString tr(const char* words) {
-  return QCoreApplication::translate("ToolBar", words);
-}
 
 // Every picture is drawn in a square of 20 units.
 void drawNavigate(QPainter& p) {
@@ -171,10 +168,6 @@ Draw drawerOf(const ToolChoice& choice) {
 QString capitalized(std::string_view word) {
   QString text = QString::fromUtf8(word.data(), static_cast<int>(word.size()));
   return text.isEmpty() ? text : text.left(1).toUpper() + text.mid(1);
-}
-
-QString tr(std::string_view words) {
-  return tr(std::string(words).c_str());
 }
 
 std::vector<ToolCard> makeCards() {

@@ -5,16 +5,13 @@
 #include <QCoreApplication>
 #include <QStringList>
 
+#include "app/gui/widgets/words.h"
 #include "core/numbers.h"
 #include "scene/scene_values.h"
 #include "scene/stroke.h"
 
 namespace patina {
 namespace {
-
-QString tr(const char* words) {
-  return QCoreApplication::translate("HistoryPanel", words);
-}
 
 QString text(std::string_view utf8) {
   return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));

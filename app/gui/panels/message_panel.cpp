@@ -7,7 +7,7 @@
 
 namespace patina {
 namespace {
-constexpr int kPatience = 8000; // [ms]
+constexpr int kShownFor = 8000; // [ms]
 } // namespace
 
 MessagePanel::MessagePanel(QWidget* parent) : QListWidget(parent) {
@@ -42,7 +42,7 @@ NoticeLine::NoticeLine(QWidget* parent) : QWidget(parent), words_(new ElidedLabe
   line->addWidget(away);
   connect(away, &QToolButton::clicked, this, &QWidget::hide);
   patience_.setSingleShot(true);
-  patience_.setInterval(kPatience);
+  patience_.setInterval(kShownFor);
   connect(&patience_, &QTimer::timeout, this, &QWidget::hide);
   hide();
 }

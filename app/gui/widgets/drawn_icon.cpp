@@ -48,6 +48,14 @@ void drawEye(QPainter& p) {
   p.drawEllipse(QPointF(10, 10), 2.6, 2.6);
 }
 
+void drawScan(QPainter& p) {
+  p.drawRoundedRect(QRectF(2, 5, 12, 10), 2, 2);
+  p.drawPolyline(QPolygonF() << QPointF(14, 9) << QPointF(18, 6) << QPointF(18, 14)
+                             << QPointF(14, 11));
+  p.setPen(QPen(ink("accent"), 1.6));
+  p.drawRect(QRectF(5.5, 7.5, 5, 5));
+}
+
 } // namespace
 
 QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
@@ -67,7 +75,8 @@ QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
 }
 
 QIcon iconOf(Tab tab) {
-  constexpr void (*kDraw[])(QPainter&) = {drawTool, drawSurface, drawObject, drawDevice, drawEye};
+  constexpr void (*kDraw[])(QPainter&) = {drawTool,   drawSurface, drawObject,
+                                          drawDevice, drawEye,     drawScan};
   return drawnIcon(kDraw[static_cast<std::size_t>(tab)]);
 }
 

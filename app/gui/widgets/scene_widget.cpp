@@ -14,12 +14,7 @@
 #include "visualization/view/camera.h"
 
 namespace patina {
-namespace {
-constexpr std::chrono::milliseconds kFrame{16};  // no frame is sooner after another
-constexpr std::chrono::milliseconds kMoves{120}; // after its last event a camera still moves
-} // namespace
-
-SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
+SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent), frames_(view_, *this) {
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
   setRenderWindow(window);
@@ -31,12 +26,7 @@ SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
   QCoreApplication::setAttribute(Qt::AA_CompressHighFrequencyEvents, false); // each one counts
   setFocusPolicy(Qt::StrongFocus);
   setHandling(handling_);
-  soon_.setSingleShot(true);
-  soon_.setTimerType(Qt::PreciseTimer);
-  connect(&soon_, &QTimer::timeout, this, &SceneWidget::refresh);
 }
-
-SceneWidget::~SceneWidget() = default;
 
 void SceneWidget::setHandling(Handling handling) {
   handling_ = handling;
@@ -47,30 +37,6 @@ void SceneWidget::setHandling(Handling handling) {
 void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
   field_ = std::move(field);
   setHandling(handling_);
-}
-
-bool SceneWidget::refresh() {
-  const auto now = std::chrono::steady_clock::now();
-  const bool moves = now - moved_ < kMoves;
-  view_.setMoving(moves);
-  const bool changed = view_.prepare();
-  if (!isVisible()) return false;
-  // Smoothing costs 20 ms of a frame where OpenGL is software: a moving picture goes without it if
-  // it is slow, and is smoothed once it stands still.
-  const bool stands_still = now - drawn_ > std::chrono::milliseconds(150);
-  if (!changed && (smooth_ || !stands_still)) return false;
-  smooth_ = !changed || frame_seconds_ < (smooth_ ? 0.040 : 0.020);
-  view_.renderer().SetUseFXAA(smooth_);
-  renderWindow()->Render();
-  drawn_ = std::chrono::steady_clock::now();
-  if (moves && changed) moved_ = drawn_; // events that the frame held up come now
-  // The one smoothed frame of a picture that stands says nothing about moving ones.
-  if (changed) frame_seconds_ = std::chrono::duration<double>(drawn_ - now).count();
-  return changed;
-}
-
-bool SceneWidget::settled() {
-  return smooth_ && !refresh();
 }
 
 Vec2 SceneWidget::fraction(const QPoint& pixel) const {
@@ -87,12 +53,6 @@ Vec3 SceneWidget::restingPlace() {
       return *hit - gap * ray.direction;
   return Vec3(view_.extent().center()) -
          (0.5 * view_.extent().diagonal().norm() + gap) * viewDirection(camera);
-}
-
-void SceneWidget::drawSoon() {
-  moved_ = std::chrono::steady_clock::now();
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(drawn_ + kFrame - moved_);
-  if (!soon_.isActive()) soon_.start(std::max(0, static_cast<int>(left.count())));
 }
 
 void SceneWidget::moveTip(const Vec3& target) {
@@ -182,13 +142,13 @@ void SceneWidget::drag(QMouseEvent& event) {
     break;
   case Drag::orbit:
     orbit(camera, moved[0], moved[1]);
-    return drawSoon();
+    return frames_.cameraMoved();
   case Drag::pan:
     pan(camera, moved[0], moved[1]);
-    return drawSoon();
+    return frames_.cameraMoved();
   case Drag::zoom:
     zoom(camera, std::exp(3 * moved[1]));
-    return drawSoon();
+    return frames_.cameraMoved();
   case Drag::none:
     break;
   }
@@ -218,7 +178,7 @@ void SceneWidget::wheel(QWheelEvent& event) {
     emit forceTurned(notches);
   } else {
     zoom(camera, std::pow(1.12, notches));
-    drawSoon();
+    frames_.cameraMoved();
   }
 }
 

@@ -1,15 +1,13 @@
 // The 3D view: draws a SceneView, and turns the mouse into tip targets or camera moves.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 
 #include <QInputEvent>
 #include <QPoint>
-#include <QTimer>
-#include <QVTKOpenGLNativeWidget.h>
 
+#include "app/gui/widgets/frame_pacer.h"
 #include "app/gui/window/handling.h"
 #include "core/types.h"
 #include "visualization/view/scene_view.h"
@@ -34,19 +32,14 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
   explicit SceneWidget(QWidget* parent = nullptr);
-  ~SceneWidget() override;
 
   SceneView& view() { return view_; }
+  FramePacer& frames() { return frames_; }
   void setHandling(Handling handling);
   // What a double click looks for the surface in; nullptr = no contact yet, the mouse navigates.
   void setField(std::shared_ptr<const SurfaceField> field);
   void setTarget(const Vec3& target) { target_ = target; }
   const Vec3& target() const { return target_; }
-
-  // Renders if anything changed since the last call; false if nothing did.
-  bool refresh();
-  // What is shown is up to date and smoothed.
-  bool settled();
 
   // The surface under the pointer, while it is over the view and moves no camera.
   std::optional<Vec3> underPointer();
@@ -83,7 +76,6 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   bool escape(const QKeyEvent& event); // false: there is nothing to leave
   void wheel(QWheelEvent& event);
   void moveTip(const Vec3& target);
-  void drawSoon(); // the camera moved: not with the next tick only
 
   enum class Drag { none, tip, orbit, pan, zoom, brush };
   SceneView view_;
@@ -93,10 +85,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   QPoint last_;
   std::optional<QPoint> pointer_; // over the view
   Vec3 target_ = Vec3::Zero();
-  double frame_seconds_ = 0; // that the last frame took in which something had changed
-  bool smooth_ = false;      // the last frame was anti-aliased
-  std::chrono::steady_clock::time_point drawn_, moved_;
-  QTimer soon_;
+  FramePacer frames_;
 };
 
 } // namespace patina

@@ -4,46 +4,62 @@
 
 #include <QCoreApplication>
 
+#include "app/gui/widgets/words.h"
+
 namespace patina {
 namespace {
-
-QString tr(const char* words) {
-  return QCoreApplication::translate("Desk", words);
-}
 
 std::vector<DeskRow> makeDesks() {
   using P = Panel;
   const ToolChoice feel{Handling::feel, {}}, color{Handling::paint, Tool::color};
-  return {{Desk::feel,
-           "feel",
-           tr("Feel"),
-           tr("Touch the surface and set how it feels"),
-           {P::tool, P::relief, P::touch, P::objects, P::mesh, P::device, P::display, P::paint,
-            P::forces, P::energy, P::history, P::messages},
-           feel,
-           Tab::surface,
-           P::forces,
-           false},
-          {Desk::paint,
-           "paint",
-           tr("Paint"),
-           tr("Paint colour, relief and material onto the surface"),
-           {P::tool, P::brush, P::relief, P::touch, P::objects, P::mesh, P::display, P::paint,
-            P::forces, P::history, P::messages},
-           color,
-           Tab::tool,
-           P::history,
-           true},
-          {Desk::analyse,
-           "analyse",
-           tr("Analyse"),
-           tr("Look inside: slices, distances, stability, forces and energy"),
-           {P::touch, P::objects, P::mesh, P::device, P::display, P::paint, P::forces, P::energy,
-            P::messages},
-           feel,
-           Tab::show,
-           P::forces,
-           true}};
+  std::vector<DeskRow> rows;
+#ifdef PATINA_HAS_ACQUISITION
+  rows.push_back({Desk::scan,
+                  "scan",
+                  tr("Scan"),
+                  tr("See what a camera and a probe have recorded, and the path made of it"),
+                  Qt::Key_0,
+                  {P::scan, P::recorder, P::timeline, P::findings, P::messages},
+                  {Handling::navigate, {}},
+                  Tab::scan,
+                  P::timeline,
+                  true,
+                  270});
+#endif
+  rows.insert(rows.end(), {{Desk::feel,
+                            "feel",
+                            tr("Feel"),
+                            tr("Touch the surface and set how it feels"),
+                            Qt::Key_1,
+                            {P::tool, P::relief, P::touch, P::objects, P::mesh, P::device,
+                             P::display, P::paint, P::forces, P::energy, P::history, P::messages},
+                            feel,
+                            Tab::surface,
+                            P::forces,
+                            false},
+                           {Desk::paint,
+                            "paint",
+                            tr("Paint"),
+                            tr("Paint colour, relief and material onto the surface"),
+                            Qt::Key_2,
+                            {P::tool, P::brush, P::relief, P::touch, P::objects, P::mesh,
+                             P::display, P::paint, P::forces, P::history, P::messages},
+                            color,
+                            Tab::tool,
+                            P::history,
+                            true},
+                           {Desk::analyse,
+                            "analyse",
+                            tr("Analyse"),
+                            tr("Look inside: slices, distances, stability, forces and energy"),
+                            Qt::Key_3,
+                            {P::touch, P::objects, P::mesh, P::device, P::display, P::paint,
+                             P::forces, P::energy, P::messages},
+                            feel,
+                            Tab::show,
+                            P::forces,
+                            true}});
+  return rows;
 }
 
 } // namespace
@@ -64,13 +80,16 @@ std::optional<Tab> tabOf(Panel panel) {
   case Panel::display:
   case Panel::paint:
     return Tab::show;
+  case Panel::scan:
+  case Panel::recorder:
+    return Tab::scan;
   default:
     return std::nullopt;
   }
 }
 
 bool inDrawer(Panel panel) {
-  return panel >= Panel::forces;
+  return panel >= Panel::forces && panel <= Panel::findings;
 }
 
 const std::vector<DeskRow>& deskRows() {
@@ -78,12 +97,19 @@ const std::vector<DeskRow>& deskRows() {
   return kRows;
 }
 
+bool isBuilt(Desk desk) {
+  return std::any_of(deskRows().begin(), deskRows().end(),
+                     [desk](const DeskRow& row) { return row.desk == desk; });
+}
+
 const DeskRow& rowOf(Desk desk) {
-  return deskRows()[static_cast<std::size_t>(desk)];
+  return *std::find_if(deskRows().begin(), deskRows().end(),
+                       [desk](const DeskRow& row) { return row.desk == desk; });
 }
 
 const std::vector<TabRow>& tabRows() {
   static const std::vector<TabRow> kRows = {
+      {Tab::scan, "scan", tr("Scan"), tr("What was recorded, and what it came to")},
       {Tab::tool, "tool", tr("Tool"), tr("What the tool in hand does, and its brush")},
       {Tab::surface, "surface", tr("Surface"), tr("How the surface feels")},
       {Tab::object, "object", tr("Object"), tr("What is felt, and where it is")},
@@ -93,12 +119,14 @@ const std::vector<TabRow>& tabRows() {
 }
 
 bool hasTool(Desk desk, const ToolChoice& tool) {
+  if (desk == Desk::scan) return tool.handling == Handling::navigate;
   const bool paints = tool.handling == Handling::paint || tool.handling == Handling::pick;
   return desk == Desk::paint || !paints;
 }
 
 Desk deskFor(const ToolChoice& tool, Desk here) {
-  return hasTool(here, tool) ? here : Desk::paint;
+  if (hasTool(here, tool)) return here;
+  return hasTool(Desk::feel, tool) ? Desk::feel : Desk::paint;
 }
 
 } // namespace patina

@@ -11,7 +11,7 @@
 
 namespace patina {
 
-enum class Desk { feel, paint, analyse };
+enum class Desk { feel, paint, analyse, scan };
 
 enum class Panel {
   recovery, // in the line below the picture
@@ -27,11 +27,15 @@ enum class Panel {
   forces, // pages of the drawer below it
   energy,
   history,
-  messages
+  messages,
+  timeline,
+  findings,
+  scan, // cards again
+  recorder
 };
 
 // The cards of the column, a few at a time.
-enum class Tab { tool, surface, object, device, show };
+enum class Tab { tool, surface, object, device, show, scan };
 std::optional<Tab> tabOf(Panel panel); // nullopt: no card
 bool inDrawer(Panel panel);
 
@@ -39,15 +43,18 @@ struct DeskRow {
   Desk desk;
   const char* name; // of its button and of what is remembered
   QString words, tip;
+  int key; // with Ctrl
   std::vector<Panel> panels;
   // As it is before a person has changed it.
   ToolChoice tool;
   Tab tab;
   Panel page;
   bool drawer_open;
+  int drawer = 170; // its height [px]
 };
 const std::vector<DeskRow>& deskRows(); // in the order of the bar
-const DeskRow& rowOf(Desk desk);
+bool isBuilt(Desk desk);                // a program may be built without some
+const DeskRow& rowOf(Desk desk);        // that is built
 
 struct TabRow {
   Tab tab;

@@ -20,7 +20,7 @@ template <typename Value> Value read(const QString& key, Value usual, int low, i
 
 DeskLayout usualLayout(Desk desk) {
   const DeskRow& row = rowOf(desk);
-  return {row.tab, row.page, 300, 170, false, !row.drawer_open};
+  return {row.tab, row.page, 300, row.drawer, false, !row.drawer_open};
 }
 
 DeskLayout rememberedLayout(Desk desk) {
@@ -29,7 +29,7 @@ DeskLayout rememberedLayout(Desk desk) {
     value = read(keyOf(desk, what), value, low, high);
   };
   take("tab", layout.tab, 0, static_cast<int>(tabRows().size()) - 1);
-  take("page", layout.page, static_cast<int>(Panel::forces), static_cast<int>(Panel::messages));
+  take("page", layout.page, static_cast<int>(Panel::forces), static_cast<int>(Panel::findings));
   take("column", layout.column, 300, 480);
   take("drawer", layout.drawer, 60, 4000);
   take("column_folded", layout.column_folded, 0, 1);
@@ -52,8 +52,9 @@ WindowPlace rememberedPlace() {
   const QSize size = QSettings().value(QStringLiteral("window/size")).toSize();
   if (size.isValid()) place.size = size.expandedTo({640, 480});
   place.maximized = QSettings().value(QStringLiteral("window/maximized")).toBool();
-  place.desk =
-      read(QStringLiteral("window/desk"), place.desk, 0, static_cast<int>(deskRows().size()) - 1);
+  const Desk desk =
+      read(QStringLiteral("window/desk"), place.desk, 0, static_cast<int>(Desk::scan));
+  if (isBuilt(desk)) place.desk = desk;
   return place;
 }
 

@@ -7,6 +7,9 @@
 #include "app/gui/control/touching.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/window/window_menus.h"
+#ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/scanning/scan_desk.h"
+#endif
 
 namespace patina {
 namespace {
@@ -24,12 +27,16 @@ MainWindow::MainWindow(QWidget* parent)
       paint_({*parts_.tools, *parts_.brush, *parts_.tool, *parts_.view, feel_.servo(),
               edits_.thread()},
              this),
-      documents_({*this, *parts_.recover, *parts_.recent, edits_}, this),
+      saving_(*this, edits_, this), documents_({*this, *parts_.recent, edits_, saving_}, this),
+      recovery_(*parts_.recover, this),
       desks_({*parts_.tools, *parts_.across, *parts_.down, *parts_.column, *parts_.drawer}, this) {
   addMenus(*this, parts_, controllers());
   connectFiles();
   connectScene();
   connectTools();
+#ifdef PATINA_HAS_ACQUISITION
+  connectScan();
+#endif
   refresh();
   // One timer draws everything; what did not change is not drawn again.
   timer_.setTimerType(Qt::PreciseTimer);
@@ -43,6 +50,13 @@ void MainWindow::connectFiles() {
   connect(&documents_, &DocumentController::abandoned, this, &MainWindow::showAgain);
   connect(&documents_, &DocumentController::openAlready, this, &MainWindow::sceneReady);
   connect(&documents_, &DocumentController::said, this, &MainWindow::say);
+  connect(&saving_, &SaveController::said, this, &MainWindow::say);
+  connect(&recovery_, &RecoveryOffer::changed, this, &MainWindow::refresh);
+  connect(&recovery_, &RecoveryOffer::taken, &documents_, [this](const auto& place) {
+    LoadRequest request;
+    request.place = place;
+    documents_.openAsked(request);
+  });
   connect(&feel_, &FeelController::said, this, &MainWindow::say);
   connect(parts_.notice, &NoticeLine::opened, &desks_, [this] { desks_.open(Panel::messages); });
   connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
@@ -84,6 +98,26 @@ void MainWindow::connectTools() {
   });
 }
 
+#ifdef PATINA_HAS_ACQUISITION
+void MainWindow::connectScan() {
+  documents_.setElsewhere([this](const std::filesystem::path& path) {
+    if (!isScanFolder(path)) return false;
+    parts_.scan->open(path);
+    return true;
+  });
+  connect(parts_.scan, &ScanDesk::openAsked, &documents_, [this](const QString& folder) {
+    LoadRequest request;
+    request.path = folder.toStdString();
+    documents_.open(request);
+  });
+  connect(parts_.scan, &ScanDesk::opened, &desks_, [this] { desks_.choose(Desk::scan); });
+  connect(parts_.scan, &ScanDesk::changed, this, &MainWindow::refresh);
+  connect(parts_.scan, &ScanDesk::said, this, &MainWindow::say);
+  connect(parts_.load_bar, &LoadBar::cancelled, parts_.scan, &ScanDesk::cancel);
+  connect(&timer_, &QTimer::timeout, parts_.scan, &ScanDesk::refresh);
+}
+#endif
+
 WindowState MainWindow::state() const {
   WindowState state;
   state.content = view_.content();
@@ -98,9 +132,14 @@ WindowState MainWindow::state() const {
   state.redoable = edits_.status().edits.size() - edits_.status().done;
   state.unsaved = edits_.unsaved();
   state.recording = feel_.recording();
-  state.name = state.content == Content::preview ? documents_.nameUnderWay() : documents_.name();
+  state.name = state.content == Content::preview ? documents_.nameUnderWay() : saving_.name();
   state.work = documents_.work() ? documents_.work() : edits_.work();
-  state.left_behind = documents_.leftBehind();
+  state.left_behind = recovery_.present();
+#ifdef PATINA_HAS_ACQUISITION
+  state.scan = parts_.scan->isOpen();
+  if (state.name.isEmpty()) state.name = parts_.scan->name();
+  if (!state.work) state.work = parts_.scan->work();
+#endif
   return state;
 }
 
@@ -154,6 +193,9 @@ void MainWindow::showScene(const SceneChange& change) {
   const bool edited = change.step == SceneChange::Step::edited;
   if (edited && view_.content() == Content::preview) return; // seen if the preview comes to nothing
   view_.showScene(change);
+#ifdef PATINA_HAS_ACQUISITION
+  parts_.scan->setSceneMesh(change.scene->mesh);
+#endif
   if (change.device) {
     const Vec3 start = edited ? feel_.sample().tip : parts_.view->restingPlace();
     parts_.view->setTarget(start);
@@ -177,7 +219,7 @@ void MainWindow::askStability() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (documents_.asks() && !closing_ && !(feel_.settleRecording() && documents_.settleEdits()))
+  if (documents_.asks() && !closing_ && !(feel_.settleRecording() && saving_.settleEdits()))
     return event->ignore();
   closing_ = true;
   timer_.stop();

@@ -11,6 +11,7 @@
 #include "app/gui/control/edit_controller.h"
 #include "app/gui/control/feel_controller.h"
 #include "app/gui/control/view_controller.h"
+#include "app/gui/loading/recovery_offer.h"
 #include "app/gui/painting/paint_controller.h"
 #include "app/gui/window/window_layout.h"
 
@@ -21,7 +22,9 @@ class MainWindow : public QMainWindow {
  public:
   explicit MainWindow(QWidget* parent = nullptr);
 
-  Controllers controllers() { return {documents_, edits_, feel_, paint_, view_, desks_}; }
+  Controllers controllers() {
+    return {documents_, saving_, recovery_, edits_, feel_, paint_, view_, desks_};
+  }
   void restorePlace(); // size and desks as they were left, and again at the next start
 
  signals:
@@ -36,6 +39,7 @@ class MainWindow : public QMainWindow {
   void connectFiles();
   void connectScene();
   void connectTools();
+  void connectScan(); // where it is built
   void tick();
   void say(const Message& message);
   WindowState state() const;
@@ -52,7 +56,9 @@ class MainWindow : public QMainWindow {
   ViewController view_;
   EditController edits_;
   PaintController paint_;
+  SaveController saving_;
   DocumentController documents_;
+  RecoveryOffer recovery_;
   DeskController desks_;
   QTimer timer_;
   bool stages_shown_ = true;

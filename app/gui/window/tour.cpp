@@ -48,7 +48,7 @@ bool isBlank(const QImage& image) {
 
 void grab(MainWindow& window, const std::filesystem::path& path) {
   wait(120);
-  waitUntil([&] { return find<SceneWidget>(window).settled(); }, 5000);
+  waitUntil([&] { return find<SceneWidget>(window).frames().settled(); }, 5000);
   if (isBlank(find<SceneWidget>(window).grabFramebuffer()))
     throw Error("nothing was drawn: OpenGL gave an empty picture");
   if (!window.grab().toImage().save(QString::fromStdString(path.string()), "PNG", 0))

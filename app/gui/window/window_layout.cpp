@@ -3,11 +3,15 @@
 #include <algorithm>
 
 #include <QScrollArea>
+#include <QStackedWidget>
 #include <QVBoxLayout>
 
 #include "app/gui/widgets/drawn_icon.h"
 #include "app/gui/widgets/value_focus.h"
 #include "app/gui/window/theme.h"
+#ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/scanning/scan_desk.h"
+#endif
 
 namespace patina {
 namespace {
@@ -20,7 +24,9 @@ struct Page {
 
 std::vector<Page> pages() {
   const auto tr = [](const char* words) { return QMainWindow::tr(words); };
-  return {{Panel::forces, "page_forces", tr("Forces"), tr("Force on the hand, the last 5 s")},
+  return {{Panel::timeline, "page_timeline", tr("Timeline"), tr("Frames, force and acceleration")},
+          {Panel::findings, "page_findings", tr("Findings"), tr("What is missing, and why")},
+          {Panel::forces, "page_forces", tr("Forces"), tr("Force on the hand, the last 5 s")},
           {Panel::energy, "page_energy", tr("Energy"), tr("Energy taken by the surface")},
           {Panel::history, "page_history", tr("History"), tr("Every edit; a click goes there")},
           {Panel::messages, "page_messages", tr("Messages"), tr("What the window has said")}};
@@ -31,9 +37,10 @@ FoldingTabs* makeColumn(const WindowParts& parts) {
   auto* stack = new QVBoxLayout(side);
   stack->setContentsMargins(8, 0, 4, 8);
   stack->setSpacing(4);
-  for (const Panel card : {Panel::tool, Panel::brush, Panel::relief, Panel::touch, Panel::display,
-                           Panel::device, Panel::objects, Panel::mesh})
-    stack->addWidget(parts.panels.at(card));
+  for (const Panel card :
+       {Panel::scan, Panel::recorder, Panel::tool, Panel::brush, Panel::relief, Panel::touch,
+        Panel::display, Panel::device, Panel::objects, Panel::mesh})
+    if (parts.panels.contains(card)) stack->addWidget(parts.panels.at(card));
   stack->addStretch(1);
   parts.display->layout()->addWidget(parts.paint);
   auto* scroll = new QScrollArea;
@@ -61,6 +68,7 @@ FoldingTabs* makeDrawer(const WindowParts& parts) {
   auto* drawer = new FoldingTabs(FoldingTabs::Folds::down, body);
   drawer->setObjectName(QStringLiteral("drawer"));
   for (const Page& page : pages()) {
+    if (!parts.panels.contains(page.panel)) continue;
     stack->addWidget(parts.panels.at(page.panel));
     drawer->add(static_cast<int>(page.panel), QString::fromUtf8(page.name), {}, page.words,
                 page.tip);
@@ -87,9 +95,19 @@ WindowParts layOut(QMainWindow& window) {
                   {Panel::objects, parts.objects},  {Panel::mesh, parts.mesh},
                   {Panel::forces, parts.force},     {Panel::energy, parts.energy},
                   {Panel::history, parts.history},  {Panel::messages, parts.messages}};
+  parts.cells = new QStackedWidget;
+  parts.cells->addWidget(parts.view);
+#ifdef PATINA_HAS_ACQUISITION
+  parts.scan = new ScanDesk(window);
+  parts.cells->addWidget(parts.scan->cells());
+  parts.panels.insert({{Panel::scan, parts.scan->panel()},
+                       {Panel::recorder, parts.scan->recorder()},
+                       {Panel::timeline, parts.scan->timeline()},
+                       {Panel::findings, parts.scan->findings()}});
+#endif
   parts.column = makeColumn(parts);
   parts.drawer = makeDrawer(parts);
-  parts.down->addWidget(parts.view);
+  parts.down->addWidget(parts.cells);
   parts.down->addWidget(parts.drawer);
   parts.across->addWidget(parts.down);
   parts.across->addWidget(parts.column);
@@ -120,8 +138,11 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
                            std::find(tabs.begin(), tabs.end(), row.tab) != tabs.end());
   const auto there = pagesThere(state);
   for (const Page& page : pages())
-    parts.drawer->setThere(static_cast<int>(page.panel),
-                           std::find(there.begin(), there.end(), page.panel) != there.end());
+    if (parts.panels.contains(page.panel))
+      parts.drawer->setThere(static_cast<int>(page.panel),
+                             std::find(there.begin(), there.end(), page.panel) != there.end());
+  parts.cells->setCurrentIndex(state.desk == Desk::scan ? 1 : 0);
+  parts.tools->setVisible(state.desk != Desk::scan);
   parts.column->setInFront(static_cast<int>(tabInFront(state)));
   parts.drawer->setInFront(static_cast<int>(pageInFront(state)));
   for (const auto& [command, action] : parts.commands)

@@ -29,11 +29,17 @@
 #include "app/gui/window/tool_bar.h"
 #include "app/gui/window/window_state.h"
 
+class QStackedWidget;
+
 namespace patina {
+
+class ScanDesk;
 
 // All belong to the window that they are laid out in.
 struct WindowParts {
   SceneWidget* view = new SceneWidget;
+  QStackedWidget* cells = nullptr; // the view, and what other desks have in its place
+  ScanDesk* scan = nullptr;        // where it is built
   LoadBar* load_bar = new LoadBar;
   RecoverBar* recover = new RecoverBar;
   NoticeLine* notice = new NoticeLine;

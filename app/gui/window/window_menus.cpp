@@ -11,8 +11,12 @@
 #include "app/gui/control/feel_controller.h"
 #include "app/gui/control/view_controller.h"
 #include "app/gui/painting/paint_controller.h"
+#include "app/gui/widgets/words.h"
 #include "app/gui/window/theme.h"
 #include "visualization/view/camera.h"
+#ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/scanning/scan_desk.h"
+#endif
 
 namespace patina {
 namespace {
@@ -35,7 +39,8 @@ QString shortcutsText() {
       "<tr><td><b>M T S I W N B E K</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
       "band, field extent, stability</td></tr>"
       "<tr><td><b>V P H D G X</b></td><td>feel, paint, relief, stiffness, friction, erase</td></tr>"
-      "<tr><td><b>Ctrl + 1, 2, 3</b></td><td>the desks Feel, Paint, Analyse</td></tr>"
+      "<tr><td><b>Ctrl + 0, 1, 2, 3</b></td><td>the desks Scan, Feel, Paint, Analyse</td></tr>"
+      "<tr><td><b>← →, Page up, down</b></td><td>one frame of a scan back or on, ten</td></tr>"
       "<tr><td><b>F8, F9</b></td><td>fold the column, the drawer</td></tr>"
       "<tr><td><b>[ ]</b></td><td>brush smaller, larger; with Shift its fall-off</td></tr>"
       "<tr><td><b>C, Alt + click</b></td><td>take what is painted there into the brush</td></tr>"
@@ -48,10 +53,6 @@ QString signed_(ViewPreset preset) {
   QString words = QString::fromUtf8(name(preset).data(), static_cast<int>(name(preset).size()));
   return words == QStringLiteral("iso") ? QMainWindow::tr("At an angle")
                                         : words.replace('-', QStringLiteral("−"));
-}
-
-QString tr(const char* words) {
-  return QMainWindow::tr(words);
 }
 
 // What it is called, its key, and what there is to say.
@@ -75,6 +76,10 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       tr("&Add object…"), documents, [=] { documents->openDialog(true); },
       Qt::CTRL | Qt::SHIFT | Qt::Key_O);
   add->setToolTip(tr("A mesh or volume that is felt together with what is open"));
+#ifdef PATINA_HAS_ACQUISITION
+  file->addAction(tr("Open s&can…"), parts.scan, &ScanDesk::openDialog)
+      ->setToolTip(tr("A folder of a camera's frames, poses and a probe's stream"));
+#endif
   file->addMenu(parts.recent);
   file->addAction(tr("Open the toy &dinosaur"), documents, [=] { documents->openAsked({}); });
   QAction* y_up = file->addAction(tr("&Y is up in mesh files"));
@@ -88,11 +93,11 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
                    [=] { y_up->setChecked(documents->up() == UpAxis::y); });
   file->addSeparator();
   QAction* save =
-      file->addAction(tr("&Save"), documents, &DocumentController::save, QKeySequence::Save);
+      file->addAction(tr("&Save"), &at.saving, &SaveController::save, QKeySequence::Save);
   save->setToolTip(tr("Into the workspace that is open, or into a new one"));
   parts.commands[Command::save] = save;
   parts.commands[Command::save_as] =
-      file->addAction(tr("Save workspace &as…"), documents, &DocumentController::saveDialog,
+      file->addAction(tr("Save workspace &as…"), &at.saving, &SaveController::saveDialog,
                       Qt::CTRL | Qt::SHIFT | Qt::Key_S);
   file->addAction(tr("&Export picture…"), &at.view, &ViewController::exportPicture);
   QAction* record = file->addAction(tr("&Record forces"));
@@ -164,11 +169,19 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   ViewController* view = &at.view;
   bar.addAction(menu->addAction(
       tr("&Fit"), view, [=] { view->view().fit(); }, Qt::Key_F));
+#ifdef PATINA_HAS_ACQUISITION
+  QObject::connect(menu->actions().back(), &QAction::triggered, parts.scan, &ScanDesk::fit);
+#endif
   QMenu* camera = menu->addMenu(tr("&Camera"));
   int digit = Qt::Key_1;
   for (const ViewPreset preset : allViews())
     camera->addAction(
         signed_(preset), view, [=] { view->view().setView(preset); }, digit++);
+#ifdef PATINA_HAS_ACQUISITION
+  for (const ViewPreset preset : allViews())
+    QObject::connect(camera->actions()[static_cast<int>(preset)], &QAction::triggered, parts.scan,
+                     [scan = parts.scan, preset] { scan->setView(preset); });
+#endif
   camera->addSeparator();
   QAction* parallel = camera->addAction(tr("Orthographic"));
   parallel->setObjectName(QStringLiteral("orthographic"));

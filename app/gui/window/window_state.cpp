@@ -22,7 +22,12 @@ bool isThere(Panel panel, const WindowState& state) {
   const bool paints = state.tool.handling == Handling::paint;
   switch (panel) {
   case Panel::messages:
+  case Panel::scan:
+  case Panel::recorder:
     return true;
+  case Panel::timeline:
+  case Panel::findings:
+    return state.scan;
   case Panel::display:
   case Panel::mesh:
     return state.content != Content::nothing;

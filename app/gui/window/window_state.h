@@ -30,6 +30,7 @@ struct WindowState {
   Panel page = Panel::forces; // of the drawer; the same
   ToolChoice tool;
   bool relief = false, paint = false; // the scene has some
+  bool scan = false;                  // one is open
   std::size_t undoable = 0, redoable = 0;
   bool unsaved = false;
   bool recording = false;

@@ -1,0 +1,38 @@
+// Saves what is open, with the questions that belong to that.
+#pragma once
+
+#include <functional>
+
+#include <QObject>
+
+#include "app/gui/control/edit_controller.h"
+#include "app/gui/panels/message_panel.h"
+
+namespace patina {
+
+class SaveController : public QObject {
+  Q_OBJECT
+ public:
+  SaveController(QWidget& window, EditController& edits, QObject* parent);
+
+  QString name() const;                               // of what is open; empty: nothing is
+  void setName(const QString& name) { name_ = name; } // until it is in a folder
+  bool save();                                        // false: nothing was saved
+  bool saveDialog();                                  // the same, into a folder that is asked for
+  void saveTo(const QString& folder); // events go on until it is there; throws Error
+  bool settleEdits();                 // saved or dropped; false: the person goes on
+
+ signals:
+  void said(const patina::Message& message);
+  void saved(const QString& folder); // a new one
+
+ private:
+  void discard(); // what was edited since it was saved
+  bool trySaving(const std::function<void()>& save, const QString& where, const QString& advice);
+
+  QWidget& window_; // which questions are asked over
+  EditController& edits_;
+  QString name_;
+};
+
+} // namespace patina

@@ -1,0 +1,70 @@
+// A simulated scan with one of each fault, and a window that is driven as a person drives it.
+#pragma once
+
+#include <cstdlib>
+#include <fstream>
+
+#include <QPushButton>
+
+#include "acquisition/files/scan_files.h"
+#include "app/gui/scanning/scan_desk.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "support/places.h"
+
+namespace patina {
+
+inline constexpr std::size_t kUnreadable = 12, kWrong = 25; // frames
+
+class ScanDeskTest : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    scan_ = folder_ / "a scan of a sphere";
+    writeMesh(folder_ / "sphere.obj", icosphere(40, 12)); // mm
+    const std::string command = "'" + (test::programFolder() / "patina").string() +
+                                "' simulate-scan '" + (folder_ / "sphere.obj").string() +
+                                "' --frames --seconds 2 --dropouts 1 -o '" + scan_.string() +
+                                "' > /dev/null 2>&1";
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    std::ofstream(frame(kUnreadable), std::ios::trunc) << "no picture";
+    std::filesystem::copy_file(frame(kWrong - 15), frame(kWrong),
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  std::filesystem::path frame(std::size_t i) const {
+    char name[32];
+    std::snprintf(name, sizeof name, "%06zu.png", i);
+    return scan_ / "frames" / name;
+  }
+  ScanDesk& desk() { return *window_->findChild<ScanDesk*>(); }
+  OpenScan& scan() { return *window_->findChild<OpenScan*>(); }
+  QString why() { return find<QLabel>("frame_why")->text(); }
+  bool openScan() {
+    documents().open(requestFor(scan_));
+    const bool done = waitUntil([&] {
+      return scan().path() != nullptr && !desk().work() && !scan().seen().empty() &&
+             scan().seen().back().looked;
+    });
+    wait(300);
+    return done;
+  }
+  void clickIn(QWidget& widget, const QPoint& place) {
+    pointAt(widget.mapToGlobal(place));
+    press(), release();
+    wait(250);
+  }
+  const Finding* findingOf(Finding::Kind kind) {
+    for (const Finding& finding : scan().path()->findings)
+      if (finding.kind == kind) return &finding;
+    return nullptr;
+  }
+  void keepPicture(const QString& name) {
+    if (const char* folder = std::getenv("PATINA_PICTURES"))
+      window_->grab().save(QStringLiteral("%1/%2.png").arg(QString::fromUtf8(folder), name));
+  }
+
+  std::filesystem::path scan_;
+};
+
+} // namespace patina
