@@ -5,12 +5,20 @@
 
 #include "check_mesh.h"
 #include "core/error.h"
-#include "geometry/io/mesh_io.h"
+#include "geometry/io/textured_obj.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    patina::fuzz::checkMesh(
-        patina::parseObj(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz"));
+    patina::fuzz::checkMesh(patina::parseObj(bytes, "fuzz"));
+    const patina::TexturedMesh read = patina::parseTexturedObj(bytes, "fuzz");
+    std::int32_t last = -1;
+    for (const patina::TexturedFace& face : read.textured) {
+      if (face.face <= last || face.texture < 0 ||
+          static_cast<std::size_t>(face.face) >= read.mesh.triangles.size())
+        __builtin_trap();
+      last = face.face;
+    }
   } catch (const patina::FileError&) {
   }
   return 0;

@@ -1,10 +1,11 @@
 #include <charconv>
 #include <cstring>
+#include <stdexcept>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "geometry/io/mesh_file_type.h"
-#include "geometry/io/mesh_io.h"
+#include "geometry/io/textured_obj.h"
 #include "geometry/io/vertex_weld.h"
 
 namespace patina {
@@ -100,6 +101,32 @@ std::string plyBytes(const TriangleMesh& mesh) {
       for (int k = 0; k < 2; ++k) appendBytes(out, uv[k]);
   }
   return out;
+}
+
+void writeTexturedObj(const std::filesystem::path& path, const TriangleMesh& mesh,
+                      const std::vector<TexturedFace>& textured) {
+  if (meshFileType(path) != MeshFileType::obj)
+    throw FileError(path.string(), 0, "only an .obj holds haptic coordinates");
+  std::string out = objText(mesh);
+  auto next = textured.begin();
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    out += "h ";
+    if (next == textured.end() || static_cast<std::size_t>(next->face) != f) {
+      out += "-1 0 0 0 0 0 0\n";
+      continue;
+    }
+    appendNumber(out, next->texture);
+    for (const Vec2& corner : next->at)
+      for (int k = 0; k < 2; ++k) {
+        out += ' ';
+        appendNumber(out, corner[k]);
+      }
+    out += '\n';
+    ++next;
+  }
+  if (next != textured.end())
+    throw std::invalid_argument("writeTexturedObj: faces out of order, or not of the mesh");
+  writeFileAtomically(path, out);
 }
 
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh) {

@@ -1,8 +1,11 @@
 #include <charconv>
+#include <cmath>
 #include <limits>
 
-#include "geometry/io/mesh_io.h"
+#include "core/file.h"
+#include "geometry/io/mesh_file_type.h"
 #include "geometry/io/text_scan.h"
+#include "geometry/io/textured_obj.h"
 
 namespace patina {
 namespace {
@@ -11,8 +14,10 @@ constexpr std::int64_t kMostIndices = std::numeric_limits<std::int32_t>::max();
 
 class ObjParser {
  public:
-  ObjParser(std::string_view bytes, const std::string& name)
-      : name_(name), lines_(text::withoutByteOrderMark(bytes)) {}
+  // textured: where that lies which is not null, lines of haptic coordinates are read.
+  ObjParser(std::string_view bytes, const std::string& name,
+            std::vector<TexturedFace>* textured = nullptr)
+      : name_(name), lines_(text::withoutByteOrderMark(bytes)), textured_(textured) {}
 
   TriangleMesh parse() {
     std::string_view statement;
@@ -27,6 +32,8 @@ class ObjParser {
         readTexturePoint(words);
       else if (keyword == "vn")
         ++normals_;
+      else if (textured_ && keyword == "h")
+        readHapticCoordinates(words);
       else if (text::hasControl(statement))
         fail("binary data where OBJ text should be");
     }
@@ -36,6 +43,7 @@ class ObjParser {
     checkHighest(highest_normal_, normals_, "normal");
     line_ = lines_.number();
     if (mesh_.triangles.empty()) fail("the file ends without a face");
+    if (haptic_lines_ > 0) checkHapticCoordinates();
     if (all_textured_) gatherTexture();
     return std::move(mesh_);
   }
@@ -105,6 +113,7 @@ class ObjParser {
     polygon_.clear();
     for (auto word = words.next(); !word.empty(); word = words.next())
       polygon_.push_back(readCorner(word));
+    if (polygon_.size() > 3 && polygon_line_ == 0) polygon_line_ = line_;
     if (polygon_.size() < 3)
       fail("a face needs 3 corners or more, this one has " + std::to_string(polygon_.size()));
     for (std::size_t k = 1; k + 1 < polygon_.size(); ++k) {
@@ -113,6 +122,34 @@ class ObjParser {
       all_textured_ = all_textured_ && a.texture >= 0 && b.texture >= 0 && c.texture >= 0;
       if (all_textured_) corner_textures_.push_back({a.texture, b.texture, c.texture});
     }
+  }
+
+  void readHapticCoordinates(text::Words& words) {
+    const std::string_view id = words.next();
+    TexturedFace face;
+    const auto [stop, error] = std::from_chars(id.data(), id.data() + id.size(), face.texture);
+    if (id.empty() || error != std::errc() || stop != id.data() + id.size() || face.texture < -1)
+      fail(text::quoted(id) + " is not a texture's number (0 or more; -1: none)");
+    std::string_view word = words.next();
+    const bool told = face.texture >= 0 || !word.empty();
+    for (Vec2& corner : face.at)
+      for (int k = 0; told && k < 2; ++k, word = words.next()) {
+        corner[k] = text::number(word, name_, line_, "a haptic coordinate");
+        if (!std::isfinite(corner[k])) fail("a haptic coordinate is not finite");
+      }
+    if (!word.empty()) fail("more than three pairs of haptic coordinates");
+    if (haptic_lines_ == kMostIndices) fail("more faces than this program can count");
+    face.face = static_cast<std::int32_t>(haptic_lines_++);
+    if (face.texture >= 0) textured_->push_back(face);
+  }
+
+  void checkHapticCoordinates() const {
+    if (polygon_line_ > 0)
+      throw FileError(name_, polygon_line_,
+                      "a face with more than three corners, but haptic coordinates are three");
+    if (haptic_lines_ != static_cast<std::int64_t>(mesh_.triangles.size()))
+      fail("haptic coordinates (h) for " + std::to_string(haptic_lines_) + " of " +
+           std::to_string(mesh_.triangles.size()) + " faces; each face must have a line");
   }
 
   // "v", "v/t", "v//n" or "v/t/n".
@@ -186,6 +223,9 @@ class ObjParser {
   std::vector<Corner> polygon_;
   std::int64_t normals_ = 0;
   bool all_textured_ = true;
+  std::vector<TexturedFace>* textured_;
+  std::int64_t haptic_lines_ = 0;
+  std::size_t polygon_line_ = 0; // of the first face with more than three corners
   Highest highest_vertex_, highest_texture_, highest_normal_;
 };
 
@@ -193,6 +233,18 @@ class ObjParser {
 
 TriangleMesh parseObj(std::string_view bytes, const std::string& name) {
   return ObjParser(bytes, name).parse();
+}
+
+TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name) {
+  TexturedMesh read;
+  read.mesh = ObjParser(bytes, name, &read.textured).parse();
+  return read;
+}
+
+TexturedMesh readTexturedObj(const std::filesystem::path& path) {
+  if (meshFileType(path) != MeshFileType::obj)
+    throw FileError(path.string(), 0, "only an .obj holds haptic coordinates");
+  return parseTexturedObj(readFile(path), path.string());
 }
 
 } // namespace patina
