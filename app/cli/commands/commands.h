@@ -24,6 +24,7 @@ Command calibrateCommand();
 Command trackCommand();
 Command filterCommand();
 Command registerCommand();
+Command mapTextureCommand();
 #endif
 Command studyCommand();
 Command modelCommand();
@@ -34,14 +35,14 @@ Command manCommand();
 
 // In the order in which --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),         sceneCommand(),    fieldCommand(),     sampleCommand(),
-          feelCommand(),         simulateCommand(), paintCommand(),     undoCommand(),
-          redoCommand(),         embossCommand(),   renderCommand(),    exportCommand(),
+  return {infoCommand(),         sceneCommand(),    fieldCommand(),      sampleCommand(),
+          feelCommand(),         simulateCommand(), paintCommand(),      undoCommand(),
+          redoCommand(),         embossCommand(),   renderCommand(),     exportCommand(),
 #ifdef PATINA_HAS_ACQUISITION
-          simulateScanCommand(), recordCommand(),   calibrateCommand(), trackCommand(),
-          filterCommand(),       registerCommand(),
+          simulateScanCommand(), recordCommand(),   calibrateCommand(),  trackCommand(),
+          filterCommand(),       registerCommand(), mapTextureCommand(),
 #endif
-          studyCommand(),        modelCommand(),    devicesCommand(),   latencyTestCommand(),
+          studyCommand(),        modelCommand(),    devicesCommand(),    latencyTestCommand(),
           guiCommand(),          manCommand()};
 }
 

@@ -1,5 +1,6 @@
 #include <chrono>
 
+#include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/track_frames.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/scan_input.h"

@@ -1,6 +1,12 @@
 #include "acquisition/files/registered_file.h"
 
+#include <cmath>
+
 #include "core/csv.h"
+#include "core/csv_rows.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/percentiles.h"
 
 namespace patina {
 
@@ -21,6 +27,37 @@ void writeRegisteredPath(const std::filesystem::path& path, const std::vector<Pa
                 miss.distance});
   }
   writer.commit();
+}
+
+std::vector<std::vector<Vec3>> readStrokes(const std::filesystem::path& path) {
+  constexpr double kPause = 5; // times the median interval
+  const std::string text = readFile(path);
+  const bool timed = text.substr(0, text.find('\n')).starts_with("t [s]");
+  std::vector<std::string> expected = {"x [m]", "y [m]", "z [m]"};
+  if (timed) expected.insert(expected.begin(), "t [s]");
+  CsvReader reader(sourceOfText(text), path.string(), expected);
+  std::vector<Vec3> points;
+  std::vector<double> times, intervals;
+  for (std::vector<double> row; reader.next(row);) {
+    const std::size_t first = timed ? 1 : 0;
+    const Vec3 p(row[first], row[first + 1], row[first + 2]);
+    if (!p.allFinite()) throw FileError(path.string(), reader.line(), "a point that is not finite");
+    if (timed) {
+      if (!times.empty() && !(row[0] > times.back()))
+        throw FileError(path.string(), reader.line(), "time does not increase");
+      if (!times.empty()) intervals.push_back(row[0] - times.back());
+      times.push_back(row[0]);
+    }
+    points.push_back(p);
+  }
+  if (points.empty()) throw FileError(path.string(), 0, "has no point");
+  const double pause = intervals.empty() ? 0 : kPause * percentiles(intervals).p50;
+  std::vector<std::vector<Vec3>> strokes(1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (timed && i > 0 && times[i] - times[i - 1] > pause) strokes.emplace_back();
+    strokes.back().push_back(points[i]);
+  }
+  return strokes;
 }
 
 } // namespace patina

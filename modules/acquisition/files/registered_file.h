@@ -13,4 +13,9 @@ namespace patina {
 void writeRegisteredPath(const std::filesystem::path& path, const std::vector<PathSample>& samples,
                          const Registration& registration);
 
+// Strokes of such a file, of any path's (t [s],x [m],y [m],z [m], ...) or of points alone (x [m],
+// y [m],z [m], ...): one wherever the time between two samples is more than five times the median.
+// Throws FileError: another header, a bad number, time that does not increase, no point.
+std::vector<std::vector<Vec3>> readStrokes(const std::filesystem::path& path);
+
 } // namespace patina

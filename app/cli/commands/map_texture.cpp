@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/files/registered_file.h"
+#include "acquisition/texture/lay_texture.h"
+#include "app/cli/commands/commands.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "geometry/io/textured_obj.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/mesh_unit.h"
+
+namespace patina::cli {
+
+namespace {
+
+constexpr double kFarOfSize = 0.05; // of the mesh's size: a path so far off is of another unit
+
+struct MapOptions {
+  std::filesystem::path mesh, path, output;
+  MeshUnit unit = MeshUnit::mm;
+  LayOptions lay{1, 1, Neighbours::by_vertex, 2};
+};
+
+const Keys kMapKeys = {
+    {"texture", "", "texture", "its number"},
+    {"strokes", "", "strokes", "that have a length"},
+    {"length", "m", "length", "of the longest stroke"},
+    {"faces", "", "faces", "that got coordinates"},
+    {"replaced", "", "replaced", "of them, faces that had a texture before", Shown::if_any},
+    {"folded", "", "folded", "faces behind the centre of a bend, left without", Shown::if_any},
+    {"ambiguous", "", "ambiguous", "faces between two parts of the path, left without",
+     Shown::if_any},
+    {"stretched", "", "stretched", "faces that would be more than --most-stretch, left without",
+     Shown::if_any},
+    {"stretch",
+     "",
+     "stretch",
+     "of the way along the path over that over the face",
+     Shown::always,
+     {{"least", "", ""}, {"most", "", ""}}},
+    {"farthest", "m", "farthest", "of the path's points from the mesh"}};
+
+bool isObj(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".obj";
+}
+
+int runMapTexture(const MapOptions& options, Console& console) {
+  requireWritable(options.output, {options.path});
+  if (!isObj(options.output))
+    throw FileError(options.output.string(), 0, "only an .obj holds haptic coordinates");
+  TexturedMesh file = isObj(options.mesh) ? readTexturedObj(options.mesh)
+                                          : TexturedMesh{readMesh(options.mesh), {}};
+  ScaledMesh scaled = inMetres(file.mesh, options.unit);
+  if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
+  // Faces that nothing can lie on keep their place in the file.
+  const std::vector<std::int32_t> usable = usableTriangles(scaled.mesh);
+  if (usable.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
+  TriangleMesh usable_mesh;
+  usable_mesh.positions = scaled.mesh.positions;
+  for (const std::int32_t face : usable)
+    usable_mesh.triangles.push_back(scaled.mesh.triangles[static_cast<std::size_t>(face)]);
+  const std::vector<Stroke3> strokes = readStrokes(options.path);
+  const PathGround ground(std::move(usable_mesh));
+  LaidTexture laid;
+  try {
+    laid = layTexture(ground, strokes, options.lay, console.progress());
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    throw FileError(options.path.string(), 0, error.what());
+  }
+  const double size = bounds(ground.mesh).sizes().norm();
+  if (laid.farthest > kFarOfSize * size)
+    throw FileError(options.path.string(), 0,
+                    "lies up to " + formatLength(laid.farthest) + " from a mesh of " +
+                        formatLength(size) + "; is it registered, and --unit right?");
+  if (laid.faces.empty())
+    throw FileError(options.path.string(), 0, "no face on its way can take coordinates");
+
+  for (TexturedFace& face : laid.faces) {
+    face.face = usable[static_cast<std::size_t>(face.face)];
+    for (Vec2& at : face.at) at /= scaled.scale;
+  }
+  const std::vector<TexturedFace> merged = laidOver(laid.faces, file.textured);
+  writeTexturedObj(options.output, file.mesh, merged);
+
+  Report report(kMapKeys);
+  report.set("texture", static_cast<std::size_t>(options.lay.texture))
+      .set("strokes", laid.lengths.size())
+      .set("length", *std::max_element(laid.lengths.begin(), laid.lengths.end()))
+      .set("faces", laid.faces.size())
+      .set("replaced", laid.faces.size() + file.textured.size() - merged.size())
+      .set("folded", laid.folded)
+      .set("ambiguous", laid.ambiguous)
+      .set("stretched", laid.stretched)
+      .set("stretch", Json::object().set("least", laid.least).set("most", laid.most),
+           rounded(laid.least) + " to " + rounded(laid.most))
+      .set("farthest", laid.farthest);
+  console.report(report);
+  return kDone;
+}
+
+} // namespace
+
+Command mapTextureCommand() {
+  auto options = std::make_shared<MapOptions>();
+  LayOptions& lay = options->lay;
+  return {
+      .name = "map-texture",
+      .summary = "lay a texture onto a mesh along a path",
+      .description =
+          "Gives the faces that the path runs over, and rings of their neighbours, coordinates: x "
+          "is the way along the path, y the distance from it, positive to the left. They go into "
+          "an OBJ as a line h TEXTURE x1 y1 x2 y2 x3 y3 a face, which other programs pass over. "
+          "The path is that of `patina register`, or any points on the mesh: a scan that nobody "
+          "made. Each stroke begins anew at x = 0.\n"
+          "Where MESH has coordinates already they stay, but for the faces that this path takes: "
+          "of textures that overlap the last one is felt.",
+      .examples = {"patina map-texture dinosaur.obj registered.csv -o textured.obj --texture 1",
+                   "patina map-texture textured.obj other.csv -o both.obj --texture 2 --rings 3"},
+      .keys = kMapKeys,
+      .arguments = {input("MESH", "Mesh.", into(options->mesh)),
+                    input("PATH", "Path on it.", into(options->path)),
+                    outputTo(options->output, "TEXTURED.obj", "The mesh with coordinates."),
+                    {"--texture", "ID", "", "1", "Number of the texture.",
+                     inRange(
+                         0, 1e9, [&lay](double id) { lay.texture = static_cast<std::int32_t>(id); },
+                         NumberKind::whole)},
+                    {"--rings", "N", "", "1", "Of neighbours beyond the faces on the way.",
+                     inRange(
+                         0, 1000, [&lay](double rings) { lay.rings = static_cast<int>(rings); },
+                         NumberKind::whole)},
+                    {"--by-edge", "", "", "", "Neighbours share an edge, not a corner alone.",
+                     [&lay](const std::string&) { lay.neighbours = Neighbours::by_edge; }},
+                    {"--most-stretch", "RATIO", "", "2",
+                     "Faces whose coordinates are more are left out.",
+                     inRange(1, 100, [&lay](double most) { lay.most_stretch = most; })},
+                    {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",
+                     parsedInto(options->unit, parseMeshUnit)}},
+      .run = [options](Console& console) { return runMapTexture(*options, console); }};
+}
+
+} // namespace patina::cli

@@ -1,0 +1,41 @@
+// A path's strokes lay a texture onto the mesh that they run over (A12 to A16).
+#pragma once
+
+#include "acquisition/texture/texture_coordinates.h"
+#include "core/progress.h"
+
+namespace patina {
+
+using Stroke3 = std::vector<Vec3>; // [m], in the mesh's frame, in order
+
+struct LayOptions {
+  std::int32_t texture = 0;
+  int rings = 1; // of neighbours that are textured too
+  Neighbours neighbours = Neighbours::by_vertex;
+  double most_stretch = 2;
+};
+
+struct LaidTexture {
+  std::vector<TexturedFace> faces; // what was there before included, where nothing replaced it
+  std::vector<double> lengths;     // of each stroke that has one [m]
+  // Faces near the path that got no coordinates (PathCoordinates).
+  std::size_t folded = 0, ambiguous = 0, stretched = 0;
+  double most = 0, least = 0; // stretch along x of the laid faces
+  double farthest = 0;        // of the path's points from the mesh [m]
+};
+
+// Each stroke is brought to the mesh's nearest points and evened over a quarter of the faces' edges
+// that it crosses (median), for finer than that no face can follow it; noise would only lengthen
+// it. A face near several strokes takes the nearest; x begins at zero with each stroke. Throws
+// Error where no stroke has a length, Cancelled.
+LaidTexture layTexture(const PathGround& ground, const std::vector<Stroke3>& strokes,
+                       const LayOptions& options, const Progress& progress);
+
+// Both; a face that has a texture in either gets the one above.
+std::vector<TexturedFace> laidOver(const std::vector<TexturedFace>& above,
+                                   const std::vector<TexturedFace>& below);
+
+// Means of the path's points over each `step` of its way [m]; both ends stay.
+Stroke3 evened(const Stroke3& path, double step);
+
+} // namespace patina
