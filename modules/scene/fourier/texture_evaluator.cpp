@@ -1,0 +1,186 @@
+#include "scene/fourier/texture_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "scene/fourier/exact_phase.h"
+#include "scene/fourier/plane_window.h"
+#include "scene/fourier/series_cells.h"
+#include "scene/fourier/series_sum.h"
+
+namespace patina {
+
+// By the phases.
+struct TextureEvaluator::Form {
+  virtual ~Form() = default;
+  virtual PlaneValue at(double x, double y) const noexcept = 0;
+  virtual std::size_t bytes() const = 0;
+};
+
+namespace {
+
+// Of the tolerance, what a table may leave out; the rest is for rounding.
+constexpr double kOfTable = 0.5;
+
+template <class Series> struct LineForm final : TextureEvaluator::Form {
+  Series series;
+  double mean;
+
+  LineForm(Series of, double without) : series(std::move(of)), mean(without) {}
+  PlaneValue at(double x, double) const noexcept override {
+    const SeriesValue sum = series.at(x);
+    return {sum.value - mean, sum.slope, 0};
+  }
+  std::size_t bytes() const override { return series.bytes(); }
+};
+
+template <class Series> struct ProductsForm final : TextureEvaluator::Form {
+  struct Factors {
+    Series along_x, along_y;
+  };
+  std::vector<Factors> factors;
+  double mean = 0;
+
+  PlaneValue at(double x, double y) const noexcept override {
+    PlaneValue sum{-mean, 0, 0};
+    for (const Factors& f : factors) {
+      const SeriesValue q = f.along_x.at(x), p = f.along_y.at(y);
+      sum.value += p.value * q.value;
+      sum.slope_x += p.value * q.slope;
+      sum.slope_y += p.slope * q.value;
+    }
+    return sum;
+  }
+  std::size_t bytes() const override {
+    std::size_t sum = 0;
+    for (const Factors& f : factors) sum += f.along_x.bytes() + f.along_y.bytes();
+    return sum;
+  }
+};
+
+struct WindowForm final : TextureEvaluator::Form {
+  PlaneWindow window;
+
+  explicit WindowForm(PlaneWindow of) : window(std::move(of)) {}
+  PlaneValue at(double x, double y) const noexcept override { return window.at(x, y); }
+  std::size_t bytes() const override { return window.bytes(); }
+};
+
+// A plane as a series along x for each of its terms along y.
+struct RowsForm final : TextureEvaluator::Form {
+  std::vector<RotatedSeries> rows;
+
+  explicit RowsForm(const FourierTexture& texture) {
+    const auto side = static_cast<std::size_t>(2 * harmonics(texture) + 1);
+    for (std::size_t r = 0; r < side; ++r) {
+      FourierSeries series;
+      const double* row = texture.plane.data() + r * side;
+      series.mean = r == 0 ? 0 : row[0];
+      for (std::size_t c = 1; c < side; c += 2) {
+        series.a.push_back(row[c]);
+        series.b.push_back(row[c + 1]);
+      }
+      rows.emplace_back(series);
+    }
+  }
+  PlaneValue at(double x, double y) const noexcept override {
+    const SeriesValue first = rows[0].at(x);
+    PlaneValue sum{first.value, first.slope, 0};
+    for (std::size_t r = 1; r < rows.size(); r += 2) {
+      const double k = static_cast<double>((r + 1) / 2), c = std::cos(k * y), s = std::sin(k * y);
+      const SeriesValue of_cos = rows[r].at(x), of_sin = rows[r + 1].at(x);
+      sum.value += c * of_cos.value + s * of_sin.value;
+      sum.slope_x += c * of_cos.slope + s * of_sin.slope;
+      sum.slope_y += k * (c * of_sin.value - s * of_cos.value);
+    }
+    return sum;
+  }
+  std::size_t bytes() const override {
+    std::size_t sum = 0;
+    for (const RotatedSeries& row : rows) sum += row.bytes();
+    return sum;
+  }
+};
+
+// What a table may be wrong by.
+struct Errors {
+  double height = 0, slope = 0; // slope by the phase
+};
+
+double amplitudes(const FourierSeries& series, bool of_slope) {
+  double sum = of_slope ? 0 : std::abs(series.mean);
+  for (std::size_t i = 0; i < series.a.size(); ++i)
+    sum += std::hypot(series.a[i], series.b[i]) * (of_slope ? static_cast<double>(i + 1) : 1);
+  return sum;
+}
+
+template <class Series, class Make>
+std::shared_ptr<const TextureEvaluator::Form> productsForm(const FourierTexture& texture,
+                                                           const Make& make) {
+  auto form = std::make_shared<ProductsForm<Series>>();
+  for (const FourierProduct& product : texture.products) {
+    form->mean += product.along_x.mean * product.along_y.mean;
+    form->factors.push_back(
+        {make(product.along_x, product.along_y), make(product.along_y, product.along_x)});
+  }
+  return form;
+}
+
+std::shared_ptr<const TextureEvaluator::Form> exactForm(const FourierTexture& texture) {
+  if (texture.kind == TextureKind::plane) return std::make_shared<RowsForm>(texture);
+  if (texture.kind == TextureKind::products)
+    return productsForm<RotatedSeries>(
+        texture, [](const FourierSeries& own, const FourierSeries&) { return RotatedSeries(own); });
+  const FourierSeries series = seriesOf(texture);
+  return std::make_shared<LineForm<RotatedSeries>>(RotatedSeries(series), series.mean);
+}
+
+std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& texture,
+                                                        const Errors& errors) {
+  if (texture.kind == TextureKind::products) {
+    const double share = 1 / static_cast<double>(2 * texture.products.size());
+    return productsForm<SeriesCells>(
+        texture, [&](const FourierSeries& own, const FourierSeries& other) {
+          // What this factor is wrong by is multiplied by the other one and by its slope.
+          const double most = amplitudes(other, false), steepest = amplitudes(other, true);
+          const double height = share * std::min(most > 0 ? errors.height / most : 0,
+                                                 steepest > 0 ? errors.slope / steepest : 0);
+          return SeriesCells(own, height, most > 0 ? share * errors.slope / most : 0);
+        });
+  }
+  const FourierSeries series = seriesOf(texture);
+  return std::make_shared<LineForm<SeriesCells>>(SeriesCells(series, errors.height, errors.slope),
+                                                 series.mean);
+}
+
+} // namespace
+
+TextureEvaluator::TextureEvaluator(const FourierTexture& texture, double tolerance)
+    : omega_(texture.omega), low_(texture.low) {
+  if (const std::string problem = problemOf(texture); !problem.empty())
+    throw Error("texture '" + texture.name + "': " + problem);
+  if (!(tolerance >= 0 && tolerance < 1))
+    throw Error("a texture's tolerance is from 0 to 1, not " + std::to_string(tolerance));
+  const Errors errors{kOfTable * tolerance * rmsHeight(texture),
+                      kOfTable * tolerance * rmsSlope(texture) / omega_};
+  if (!(errors.height > 0 && errors.slope > 0)) // all terms wanted, or nothing but zeros there
+    form_ = exactForm(texture);
+  else if (texture.kind == TextureKind::plane)
+    form_ = std::make_shared<WindowForm>(
+        PlaneWindow(texture.plane, harmonics(texture), kOfTable * tolerance));
+  else
+    form_ = tableForm(texture, errors);
+}
+
+TextureValue TextureEvaluator::at(double x, double y) const noexcept {
+  const PlaneValue value = form_->at(exactPhase(x, omega_), exactPhase(y, omega_));
+  return {value.value, omega_ * Vec2(value.slope_x, value.slope_y)};
+}
+
+std::size_t TextureEvaluator::bytes() const {
+  return form_->bytes();
+}
+
+} // namespace patina

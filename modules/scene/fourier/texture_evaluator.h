@@ -1,0 +1,39 @@
+// What a tick of the servo asks of a Fourier texture: height and gradient, from a table that is
+// made once.
+#pragma once
+
+#include <memory>
+
+#include "scene/fourier/fourier_texture.h"
+
+namespace patina {
+
+struct TextureValue {
+  double height = 0;            // above the mean [m]
+  Vec2 gradient = Vec2::Zero(); // by x and y
+};
+
+// Copies share their tables, which never change: as many threads as please may ask.
+class TextureEvaluator {
+ public:
+  // Within `tolerance` of the sum of all terms: of the height relative to its rms, of the gradient
+  // relative to its own. 0 adds up all terms. A table takes 30 ns, 40-130 kB for each series of 128
+  // harmonics and 2 MB for a plane of them; planes take a tenth of a second to prepare. Throws
+  // Error naming what is wrong with the texture, or with a tolerance outside of [0, 1).
+  explicit TextureEvaluator(const FourierTexture& texture, double tolerance = 1e-12);
+
+  // x, y [m], of any size: beyond 2^52 rad, or where they are no numbers, the value at 0. Neither
+  // locks nor allocates.
+  TextureValue at(double x, double y = 0) const noexcept;
+
+  double omega() const { return omega_; } // [rad/m]
+  double low() const { return low_; }     // at(...).height - low() >= 0, but for the tolerance [m]
+  std::size_t bytes() const;              // of its tables
+
+  struct Form; // how it is summed
+ private:
+  double omega_ = 0, low_ = 0;
+  std::shared_ptr<const Form> form_;
+};
+
+} // namespace patina
