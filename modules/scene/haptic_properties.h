@@ -33,6 +33,9 @@ struct HapticProperties {
   std::optional<double> tip_radius; // [m]: the tip's centre feels the iso-surface at this value
   std::optional<double> offset;     // delta [m], K12; excludes a magnet
   std::optional<Magnet> magnet;
+  // k_t (A22): Fourier textures are a layer this many times as stiff as the surface, pressed beside
+  // it; absent: they are the surface's own shape, as stiff as their compliance says.
+  std::optional<double> texture_gain;
   // proxy: the nearest point that the tip's proxy can reach over the surface (P01).
   // ray: as in the paper, on the surface along the interpolated gradient, from the tip alone (K05,
   // K06): past the middle of a part the force turns round.

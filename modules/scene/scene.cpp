@@ -71,6 +71,7 @@ void validate(const HapticProperties& haptics) {
   if (haptics.tip_radius) requireBetween("tip.radius", *haptics.tip_radius, 0, 1);
   if (haptics.offset) requireBetween("offset", *haptics.offset, 0, 1);
   if (haptics.magnet) validate(*haptics.magnet);
+  if (haptics.texture_gain) requirePositive("texture.gain", *haptics.texture_gain, 100);
   if (haptics.offset.value_or(0) > 0 && haptics.magnet)
     throw Error("offset and magnet use the same band: set one of them to none");
   requirePositive("force.limit", haptics.force_limit, 1000);
@@ -108,6 +109,12 @@ void validate(const std::vector<SceneObject>& objects) {
       throw Error("object name '" + object.name + "' is used twice");
     if (!object.mesh || object.mesh->triangles.empty())
       throw Error("object '" + object.name + "' has no triangles");
+    try {
+      if (object.paint && object.paint->textures)
+        validate(*object.paint->textures, object.mesh->triangles.size());
+    } catch (const Error& error) {
+      throw Error("object '" + object.name + "': " + error.what());
+    }
     const Eigen::Matrix3d rotation = object.world_from_object.linear();
     const bool rigid =
         object.world_from_object.matrix().allFinite() &&

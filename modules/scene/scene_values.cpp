@@ -242,6 +242,7 @@ const std::vector<Entry>& entries() {
        [](const Scene& s) {
          return s.haptics.magnet && s.haptics.magnet->fades ? onOff(true) : Text();
        }},
+      optionalEntry("texture.gain", "", &HapticProperties::texture_gain, numberFor),
       choiceEntry(
           "contact", kContacts, [](auto&& s) -> auto& { return s.haptics.contact; }),
       optionalEntry("tip.radius", "m", &HapticProperties::tip_radius, lengthFor),

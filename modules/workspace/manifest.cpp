@@ -77,6 +77,7 @@ ManifestPaint paintFrom(const Json& json) {
   paint.color = fileIfAny(json, "color");
   paint.relief = fileIfAny(json, "relief");
   paint.material = fileIfAny(json, "material");
+  paint.textures = fileIfAny(json, "textures");
   if ((paint.color || paint.relief) && !paint.layout)
     throw Error("a painted image has no 'layout'");
   return paint;
@@ -92,6 +93,7 @@ Json toJson(const ManifestPaint& paint) {
   if (paint.color) json.set("color", toJson(*paint.color));
   if (paint.relief) json.set("relief", toJson(*paint.relief));
   if (paint.material) json.set("material", toJson(*paint.material));
+  if (paint.textures) json.set("textures", toJson(*paint.textures));
   return json;
 }
 
@@ -217,6 +219,7 @@ std::vector<ContentFile> filesOf(const std::vector<ManifestObject>& objects) {
     add(object.paint->color);
     add(object.paint->relief);
     add(object.paint->material);
+    add(object.paint->textures);
   }
   return files;
 }

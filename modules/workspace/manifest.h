@@ -30,7 +30,7 @@ struct ManifestLayout {
 
 struct ManifestPaint {
   std::optional<ManifestLayout> layout;
-  std::optional<ContentFile> color, relief, material;
+  std::optional<ContentFile> color, relief, material, textures;
 };
 
 struct ManifestObject {

@@ -5,6 +5,7 @@
 #include "workspace/content_files.h"
 #include "workspace/material_file.h"
 #include "workspace/painted_image.h"
+#include "workspace/texture_file.h"
 
 namespace patina {
 namespace {
@@ -54,6 +55,9 @@ std::optional<ManifestPaint> storePaint(const SceneObject& object, const fs::pat
   if (paint.material)
     stored.material =
         storeValue(folder, prefix + "-material", ".material", paint.material, materialBytes);
+  if (paint.textures)
+    stored.textures =
+        storeValue(folder, prefix + "-textures", ".json", paint.textures, laidTexturesText);
   return stored;
 }
 
@@ -110,6 +114,11 @@ std::shared_ptr<const ObjectPaint> loadPaint(const ManifestObject& object, const
   if (stored.material)
     part("material",
          [&] { paint.material = loadValue<MaterialMap>(folder, *stored.material, parseMaterial); });
+  if (stored.textures)
+    part("textures", [&] {
+      paint.textures = loadValue<LaidTextures>(folder, *stored.textures, parseLaidTextures);
+      validate(*paint.textures, mesh.triangles.size());
+    });
   return std::make_shared<const ObjectPaint>(std::move(paint));
 }
 

@@ -42,6 +42,7 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   const double radius = scene.haptics.tip_radius.value_or(0);
   std::vector<std::unique_ptr<const ForceStage>> neutral;
   neutral.push_back(std::make_unique<MaterialStage>(sampler, objects, false));
+  neutral.push_back(std::make_unique<TextureStiffnessStage>(reliefs, false));
   neutral.push_back(
       std::make_unique<LateralStage>(reliefs, objects, raisedBy(felt), LateralPlan{}));
   neutral.push_back(std::make_unique<ReliefStage>(reliefs, 0, form));
@@ -53,9 +54,10 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
 
   // The order of addForceLaw() and compileStages().
   const char* const order[] = {
-      "contact",   "offset", "owner",  "material", "lateral coupling", "relief",  "roughness",
-      "friction",  "spring", "magnet", "coupling", "velocity filter",  "damping", "stiffness slope",
-      "passivity", "limit"};
+      "contact",          "offset",    "owner",     "material",        "texture stiffness",
+      "lateral coupling", "relief",    "roughness", "texture layer",   "friction",
+      "spring",           "magnet",    "coupling",  "velocity filter", "damping",
+      "stiffness slope",  "passivity", "limit"};
   std::size_t taken = 0;
   for (const std::string_view name : order) {
     if (taken < pruned->stages.size() && pruned->stages[taken]->name() == name) {

@@ -125,7 +125,8 @@ Command sceneCommand() {
           "A workspace is a folder that holds meshes, where they are, what is painted on them, how "
           "they feel, and the history of all that; several meshes are felt as one surface, their "
           "union. Without --add, --move, --remove, --set and --image an existing one is only "
-          "listed. Removals come first, then moves, additions, settings and images; together they "
+          "listed. Removals come first, then moves, additions, textures, settings and images; "
+          "together they "
           "are one edit, which patina undo takes back, and an error leaves the folder as it was. A "
           "mesh added again gets a name of its own: cup, cup-2. Where objects overlap deeply, "
           "merge.redistance=on measures depths to the union's own surface.\n"
@@ -169,6 +170,7 @@ Command sceneCommand() {
            {"--image", "OBJECT=FILE[,color|relief][,mapped|x|y|z]", "", "",
             "Lay a picture onto an object.", into(edits.images), Times::any}},
       .run = [options](Console& console) { return runScene(*options, console); }};
+  addTextureOption(command, edits.textures);
   addOpenOptions(command, options->open);
   return command;
 }

@@ -154,6 +154,7 @@ Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& giv
   open.tip_radius_chosen =
       after.haptics.tip_radius.value_or(0.0) > 0 || setsTipRadius(edits.settings);
   for (const std::string& text : edits.added) addObject(after, readObject(text, open, console));
+  layTextures(after, edits.textures);
   applySettings(after, edits.settings);
   validate(after);
   (void)deviceNamed(after.device);
@@ -168,6 +169,7 @@ Edit editOf(const SceneEdits& edits, const Scene& after) {
   for (const std::string& name : edits.removed) tell("remove " + name);
   for (const std::string& text : edits.moved) tell("move " + text.substr(0, text.find('@')));
   for (const std::string& text : edits.added) tell("add " + nameOnly(text));
+  for (const auto& [number, texture] : edits.textures) tell("texture " + std::to_string(number));
   for (const std::string& text : edits.images) tell("image on " + text.substr(0, text.find('=')));
   if (what.empty()) return values;
   if (!edits.settings.empty()) tell(describe(values));

@@ -15,14 +15,17 @@ struct SceneEdits {
   std::vector<std::string> moved;   // NAME@POSE.txt
   std::vector<std::string> removed; // NAME
   std::vector<std::string> images;  // OBJECT=FILE[,color|relief][,mapped|x|y|z]
+  TextureTable textures{};
   Settings settings;
 
   bool empty() const {
-    return added.empty() && moved.empty() && removed.empty() && images.empty() && settings.empty();
+    return added.empty() && moved.empty() && removed.empty() && images.empty() &&
+           textures.empty() && settings.empty();
   }
 };
 
-// Removals first, then moves, additions, settings, images. Throws Error; `scene` is only read.
+// Removals first, then moves, additions, textures, settings, images. Throws Error; `scene` is only
+// read.
 Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& open,
              Console& console);
 // The one record of all of it; `after` is what edited() gave.

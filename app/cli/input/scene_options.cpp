@@ -1,11 +1,13 @@
 #include "app/cli/input/scene_options.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "core/numbers.h"
 #include "scene/scene_values.h"
 #include "session/build/compile_warnings.h"
+#include "workspace/texture_file.h"
 
 namespace patina::cli {
 
@@ -41,6 +43,23 @@ Argument setting(SceneOptions& options, const SettingEntry& entry) {
           }};
 }
 
+// "ID=T.json"
+void addTexture(const std::string& text, TextureTable& textures) {
+  const std::size_t equals = text.find('=');
+  const auto number = parseNumber(text.substr(0, equals));
+  if (equals == std::string::npos || equals + 1 == text.size() || !number || *number < 0 ||
+      *number > 1e9 || *number != std::floor(*number))
+    throw Error("'" + text + "' is not ID=T.json");
+  const std::string file = text.substr(equals + 1);
+  try {
+    textures[static_cast<std::int32_t>(*number)] = feltTexture(readTexture(file));
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    throw FileError(file, 0, error.what());
+  }
+}
+
 } // namespace
 
 void addSettings(Command& command, SceneOptions& options,
@@ -62,6 +81,13 @@ void addOpenOptions(Command& command, OpenOptions& open) {
   command.arguments.push_back({"--iso", "VALUE", "", "",
                                "Value at which a volume (.vti) from elsewhere is a surface.",
                                into(open.iso)});
+}
+
+void addTextureOption(Command& command, TextureTable& textures) {
+  command.arguments.push_back(
+      {"--texture", "ID=T.json", "", "",
+       "A Fourier texture for the faces that an OBJ or a workspace gives this number.",
+       [&textures](const std::string& text) { addTexture(text, textures); }, Times::any});
 }
 
 void addFieldOptions(Command& command, SceneOptions& options) {
@@ -100,11 +126,14 @@ void addHapticOptions(Command& command, SceneOptions& options) {
        {"magnet.strength", "K", "Pull of the magnet for each metre of distance."},
        {"magnet.fades", "on|off", "The pull falls to zero over the last quarter of its range.",
         "off"},
+       {"texture.gain", "RATIO",
+        "Fourier textures as a layer so many times as stiff as the surface, pressed beside it."},
        {"contact", "proxy|ray",
         "proxy: the nearest point that the tip's proxy reaches over the surface; ray: the "
         "paper's, from the tip alone."},
        {"tip.radius", "LENGTH", "Radius of the tip; its centre feels the surface that far out."},
        {"force.limit", "N", "Largest force."}});
+  addTextureOption(command, options.textures);
 }
 
 void applySettings(Scene& scene, const Settings& settings) {
@@ -127,6 +156,7 @@ OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& op
   open.tip_radius_chosen = setsTipRadius(options.settings);
   OpenedScene opened = openScene(path, open);
   for (const std::string& warning : opened.warnings) console.warn(warning);
+  layTextures(opened.scene, options.textures);
   applySettings(opened.scene, options.settings);
   return opened;
 }

@@ -20,6 +20,7 @@ using Settings = std::vector<std::pair<std::string, std::string>>; // scene key,
 struct SceneOptions {
   OpenOptions open;
   Settings settings;
+  TextureTable textures{};
 };
 
 // An option that stands for a key of the scene: the scene says what is allowed, in which unit, and
@@ -32,6 +33,8 @@ struct SettingEntry {
 void addSettings(Command& command, SceneOptions& options, const std::vector<SettingEntry>& entries);
 // --unit and --iso.
 void addOpenOptions(Command& command, OpenOptions& open);
+// --texture.
+void addTextureOption(Command& command, TextureTable& textures);
 // --resolution --voxel --band.
 void addFieldOptions(Command& command, SceneOptions& options);
 // The same, --sampler, --unit and --iso.

@@ -39,7 +39,7 @@ struct ContactMemory {
   Proxy proxy;
   RayMemory ray;
   LateralMemory lateral;
-  TextureMemory relief, roughness;
+  TextureMemory relief, roughness, layer;
   FrictionMemory friction;
   VelocityFilterMemory filter;
   StiffnessSlopeMemory stiffness_slope;
@@ -63,6 +63,7 @@ struct ContactMemory {
     limit.last.reset();
     relief.last.reset();
     roughness.last.reset();
+    layer.last.reset();
     lateral.aside.setZero();
     coupling.touched = false;
   }

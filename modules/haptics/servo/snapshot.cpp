@@ -65,12 +65,13 @@ double maxSpeed(const FieldGrid& grid) {
 
 // The shell over everything that is pulled, [m] above the field's surface.
 struct Shell {
-  double relief = 0, roughness = 0;
+  double relief = 0, roughness = 0, layer = 0;
+  double whole() const { return relief + roughness + layer; }
 };
 
 Shell shellOf(const PaintedRange& range) {
   const bool rough = range.has(MaterialChannel::roughness);
-  return {range.relief, rough ? kRoughnessPeak * range.most.roughness : 0.0};
+  return {range.relief, rough ? kRoughnessPeak * range.most.roughness : 0.0, range.layer};
 }
 
 std::string namesOf(const PaintedRange& range) {
@@ -95,7 +96,7 @@ FeltReach feltReach(const HapticProperties& haptics, double raised) {
 
 double raisedBy(std::span<const FeltObject> objects) {
   const Shell shell = shellOf(paintedRange({}, objects));
-  return shell.relief + shell.roughness;
+  return shell.whole();
 }
 
 StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects) {
@@ -104,8 +105,10 @@ StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects) {
       range.has(MaterialChannel::damping) ? std::optional(range.most.damping) : std::nullopt;
   // The literal force has no part along the surface.
   const bool leans = scene.relief.form == ForceForm::conservative;
-  return planStabilisers(hardest(scene.haptics, range), scene.device_model, scene.stabilisers,
-                         most_damping, leans ? range.bend : 0);
+  HapticProperties haptics = hardest(scene.haptics, range);
+  if (range.layer > 0) haptics.stiffness *= 1 + *scene.haptics.texture_gain;
+  return planStabilisers(haptics, scene.device_model, scene.stabilisers, most_damping,
+                         leans ? range.bend : 0);
 }
 
 std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
@@ -125,10 +128,10 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   const std::span<const FeltObject> objects = snapshot->objects;
   const PaintedRange range = paintedRange(snapshot->base, objects);
   const Shell shell = shellOf(range);
-  checkField(field.get(), haptics, shell.relief, shell.roughness);
+  checkField(field.get(), haptics, shell.relief + shell.layer, shell.roughness);
   const FieldSampler sampler(*field, scene.sampler);
   const double radius = haptics.tip_radius.value_or(0);
-  const double iso = radius + haptics.offset.value_or(0) + shell.relief + shell.roughness;
+  const double iso = radius + haptics.offset.value_or(0) + shell.whole();
   const std::string why = haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always";
   if (haptics.contact == HapticProperties::Contact::ray)
     snapshot->add(std::make_unique<RayStage>(sampler, iso), why, bytesRead(*field));
@@ -140,13 +143,13 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                   "offset = " + formatNumber(*haptics.offset));
   MagnetRelief raised;
   raised.leans = scene.relief.form == ForceForm::conservative;
-  if (objects.size() > 1 && (range.any() || shell.relief > 0)) {
+  if (objects.size() > 1 && (range.any() || shell.relief + shell.layer > 0)) {
     snapshot->add(std::make_unique<OwnerStage>(sampler, objects),
                   std::to_string(objects.size()) + " objects, some painted");
     if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(sampler, objects);
   }
-  const bool slopes =
-      range.has(MaterialChannel::stiffness) && scene.material_form == ForceForm::conservative;
+  const bool slopes = (range.has(MaterialChannel::stiffness) || range.texture_stiffness > 0) &&
+                      scene.material_form == ForceForm::conservative;
   if (range.any()) {
     std::size_t bytes = 0;
     for (const FeltObject& object : objects)
@@ -154,10 +157,13 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
     snapshot->add(std::make_unique<MaterialStage>(sampler, objects, slopes), namesOf(range), bytes);
   }
   if (shell.relief > 0) raised.reliefs = std::make_shared<const Reliefs>(sampler, objects);
+  if (range.texture_stiffness > 0)
+    snapshot->add(std::make_unique<TextureStiffnessStage>(raised.reliefs, slopes),
+                  "textures of up to " + formatNumber(range.texture_stiffness) + " N/m");
   if (plan.lateral) {
-    snapshot->add(std::make_unique<LateralStage>(raised.reliefs, objects,
-                                                 shell.relief + shell.roughness, *plan.lateral),
-                  plan.lateral_why);
+    snapshot->add(
+        std::make_unique<LateralStage>(raised.reliefs, objects, shell.whole(), *plan.lateral),
+        plan.lateral_why);
   }
   if (raised.reliefs)
     snapshot->add(std::make_unique<ReliefStage>(raised.reliefs, shell.relief, scene.relief.form),
@@ -166,14 +172,21 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
     snapshot->add(
         std::make_unique<RoughnessStage>(sampler, objects, shell.roughness, scene.relief.form),
         "roughness up to " + formatLength(range.most.roughness) + " rms");
+  if (shell.layer > 0) {
+    auto layers = std::make_shared<const Reliefs>(sampler, objects, &FeltObject::layer);
+    const std::size_t bytes = layers->bytes();
+    snapshot->add(std::make_unique<TextureLayerStage>(std::move(layers), shell.layer,
+                                                      *haptics.texture_gain, scene.relief.form),
+                  "texture.gain = " + formatNumber(*haptics.texture_gain), bytes);
+  }
   const bool painted_friction =
       std::max(range.most.static_friction, range.most.dynamic_friction) > 0 && range.any();
   if (haptics.friction || painted_friction) {
     const Friction friction = scene.haptics.friction.value_or(Friction{});
-    snapshot->add(
-        std::make_unique<FrictionStage>(sampler, iso, friction, shell.relief + shell.roughness > 0),
-        haptics.friction ? "friction.static = " + formatNumber(friction.static_coefficient)
-                         : "friction is painted");
+    snapshot->add(std::make_unique<FrictionStage>(sampler, iso, friction, shell.whole() > 0),
+                  haptics.friction
+                      ? "friction.static = " + formatNumber(friction.static_coefficient)
+                      : "friction is painted");
   }
   std::unique_ptr<const ForceStage> magnet;
   if (haptics.magnet) {

@@ -11,7 +11,7 @@ bool PaintedRange::any() const {
 }
 
 double textureBend(const FeltObject& object) {
-  double bend = object.relief ? object.bend : 0;
+  double bend = object.relief || object.layer ? object.bend : 0;
   if (object.material) bend += kRoughnessBend * object.material->most.roughness;
   return bend;
 }
@@ -21,10 +21,15 @@ PaintedRange paintedRange(const Material& base, std::span<const FeltObject> obje
   range.least = range.most = base;
   for (const FeltObject& object : objects) {
     range.bend = std::max(range.bend, textureBend(object));
-    if (object.relief)
+    range.baked = range.baked || object.baked;
+    if (object.relief) {
       range.relief = std::max(range.relief, object.highest);
-    else
-      range.baked = range.baked || object.highest > 0;
+      if (const auto& textures = object.relief->textures) {
+        range.texture_stiffness = std::max(range.texture_stiffness, textures->stiffest());
+        range.most.stiffness = std::max(range.most.stiffness, textures->stiffest());
+      }
+    }
+    if (object.layer) range.layer = std::max(range.layer, 2 * object.layer->textures->highest());
     if (!object.material) continue;
     for (const MaterialChannel channel : kAllMaterialChannels) {
       const auto c = static_cast<std::size_t>(channel);

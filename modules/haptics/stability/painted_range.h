@@ -14,7 +14,9 @@ struct PaintedRange {
   Material least, most;                          // the scene's own values included
   double relief = 0;                             // H [m], of |height| of pulled relief
   bool baked = false;                            // relief is in the field
-  double bend = 0;                               // [1/m], of the sharpest textureBend()
+  double texture_stiffness = 0;                  // [N/m], of textures that have their own; or 0
+  double layer = 0; // [m], of textures that are a layer, over their lowest
+  double bend = 0;  // [1/m], of the sharpest textureBend()
 
   bool has(MaterialChannel channel) const { return painted[static_cast<std::size_t>(channel)]; }
   bool any() const;

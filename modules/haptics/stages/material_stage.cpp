@@ -32,6 +32,19 @@ void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
   contact.stiffness_gradient = pulledBack(sampler_, contact, inWorld(at.stiffness_gradient));
 }
 
+void TextureStiffnessStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  if (!contact.touching || contact.normal.isZero(0)) return;
+  const PatchAt at = reliefs_->at(contact.object, contact.surface, memory.walk).texture;
+  if (!(at.stiffness > 0)) return;
+  const double more = at.stiffness - contact.material.stiffness;
+  if (gradients_ && !at.share_slope.isZero(0))
+    contact.stiffness_gradient = (1 - at.share) * contact.stiffness_gradient +
+                                 more * pulledBack(reliefs_->sampler(), contact, at.share_slope);
+  else
+    contact.stiffness_gradient *= 1 - at.share;
+  contact.material.stiffness += at.share * more;
+}
+
 void StiffnessSlopeStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const double last = std::exchange(memory.stiffness_slope.force, 0);
   if (contact.touching && contact.material.stiffness > 0) {

@@ -5,6 +5,7 @@
 
 #include "field/sampling/field_sampler.h"
 #include "haptics/servo/felt_object.h"
+#include "haptics/stages/relief_stage.h"
 #include "haptics/stages/stage.h"
 
 namespace patina {
@@ -36,6 +37,20 @@ class MaterialStage final : public ForceStage {
  private:
   FieldSampler sampler_;
   std::span<const FeltObject> objects_;
+  bool gradients_;
+};
+
+// Where a Fourier texture lies that was scanned with its compliance, the surface is as stiff as
+// that says (A22); where it fades out, in part. Behind what knows the material.
+class TextureStiffnessStage final : public ForceStage {
+ public:
+  TextureStiffnessStage(std::shared_ptr<const Reliefs> reliefs, bool gradients)
+      : reliefs_(std::move(reliefs)), gradients_(gradients) {}
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "texture stiffness"; }
+
+ private:
+  std::shared_ptr<const Reliefs> reliefs_;
   bool gradients_;
 };
 

@@ -22,17 +22,19 @@ void notTouching(Contact& contact) noexcept {
   contact.walls = 0;
 }
 
-// d -= gap, and the normal leans by `slope` more. n - slope is longer than 1: of a potential, the
-// depth along the leaning normal is not the distance.
-void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
-  const bool leans = !slope.isZero(0);
-  if (gap == 0 && !leans) return;
-  const double steep = std::sqrt(1 + contact.slope.squaredNorm());
-  const double depth = contact.depth / steep - gap;
+// Along n, of the contact as it is.
+double depthOf(const Contact& contact) noexcept {
+  return contact.depth / std::sqrt(1 + contact.slope.squaredNorm());
+}
+
+// `depth` becomes that along n, and the normal leans by `slope` more. n - slope is longer than 1:
+// of a potential, the depth along the leaning normal is not the distance.
+void settle(Contact& contact, double depth, const Vec3& slope) noexcept {
   if (!(depth > 0)) {
     notTouching(contact);
     return;
   }
+  const double steep = std::sqrt(1 + contact.slope.squaredNorm());
   const Vec3 outward = steep * contact.normal - slope; // n - all slopes
   contact.slope += slope;
   const double length = std::sqrt(1 + contact.slope.squaredNorm());
@@ -43,6 +45,12 @@ void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
   if (contact.walls == 1) contact.wall[0].normal = contact.normal;
   contact.candidate = contact.tip + depth * outward;
   contact.vcp = contact.candidate;
+}
+
+// d -= gap.
+void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
+  if (gap == 0 && slope.isZero(0)) return;
+  settle(contact, depthOf(contact) - gap, slope);
 }
 
 // By how much the relief itself has moved the VCP since the last tick, at most.
@@ -60,29 +68,31 @@ void announceStep(Contact& contact, TextureMemory& memory, double height,
 
 } // namespace
 
-Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects)
-    : sampler_(sampler), objects_(objects), lost_(kLostVoxels * sampler.grid().voxel) {}
+Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects, Part part)
+    : sampler_(sampler), objects_(objects), part_(part), lost_(kLostVoxels * sampler.grid().voxel) {
+}
 
 ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
                      Eigen::Matrix3d* bend) const noexcept {
   ReliefAt at;
   if (bend) bend->setZero();
   const auto i = static_cast<std::size_t>(object);
-  if (i >= objects_.size() || !objects_[i].relief) return at;
+  if (i >= objects_.size() || !(objects_[i].*part_)) return at;
   const FeltObject& part = objects_[i];
-  if (walk.object == object) at = reliefAt(*part.relief, c, walk.face, bend);
+  const ReliefSurface& surface = *(part.*part_);
+  if (walk.object == object) at = reliefAt(surface, c, walk.face, bend);
   if (at.face < 0 || at.distance > lost_) {
     const std::int32_t near = sampler_.faceNear(c);
     Eigen::Matrix3d bent;
     const ReliefAt afresh =
-        reliefAt(*part.relief, c, near < 0 ? -1 : near - part.first_face, bend ? &bent : nullptr);
+        reliefAt(surface, c, near < 0 ? -1 : near - part.first_face, bend ? &bent : nullptr);
     if (afresh.face >= 0 && (at.face < 0 || afresh.distance < at.distance)) {
       at = afresh;
       if (bend) *bend = bent;
     }
   }
   walk = {object, at.face};
-  if (std::abs(at.height) > part.highest) { // between texels a cubic overshoots
+  if (surface.image && std::abs(at.height) > part.highest) { // between texels a cubic overshoots
     at.height = std::copysign(part.highest, at.height);
     at.slope.setZero();
     if (bend) bend->setZero();
@@ -93,7 +103,10 @@ ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
 std::size_t Reliefs::bytes() const {
   std::size_t sum = 0;
   for (const FeltObject& object : objects_)
-    if (object.relief) sum += patina::bytes(*object.relief->faces);
+    if (const auto& surface = object.*part_) {
+      sum += patina::bytes(*surface->faces);
+      if (surface->textures) sum += surface->textures->bytes();
+    }
   return sum;
 }
 
@@ -109,6 +122,23 @@ void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
                          : pulledBack(reliefs_->sampler(), contact, at.slope);
   lower(contact, shell_ - at.height, slope);
   announceStep(contact, memory.relief, at.height, slope);
+}
+
+void TextureLayerStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
+  if (!contact.touching || contact.normal.isZero(0)) {
+    memory.layer.last.reset();
+    if (contact.touching) lower(contact, shell_, Vec3::Zero());
+    return;
+  }
+  const PatchAt at = reliefs_->at(contact.object, contact.surface, memory.walk).texture;
+  const double height = at.height - at.share * at.low, depth = depthOf(contact) - shell_,
+               rigid = std::max(depth, 0.0), pressed = gain_ * std::max(depth + height, 0.0);
+  Vec3 slope = Vec3::Zero();
+  if (form_ == ForceForm::conservative && pressed > 0)
+    slope = pressed / (rigid + pressed) *
+            pulledBack(reliefs_->sampler(), contact, at.slope - at.low * at.share_slope);
+  settle(contact, rigid + pressed, slope);
+  announceStep(contact, memory.layer, gain_ * height, slope);
 }
 
 RoughPattern roughPattern(const Vec3& p, Eigen::Matrix3d* bend) noexcept {

@@ -30,7 +30,10 @@ struct TextureMemory {
 // The reliefs of a scene's objects, each |height| <= its `highest`.
 class Reliefs {
  public:
-  Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects);
+  // Which of an object's surfaces.
+  using Part = std::shared_ptr<const ReliefSurface> FeltObject::*;
+  Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects,
+          Part part = &FeltObject::relief);
   // At the closest point c [m, world] of the object, cut off at `highest`; flat where the object
   // has none. The walk over its faces goes on from walk.
   // bend: as of reliefAt().
@@ -42,6 +45,7 @@ class Reliefs {
  private:
   FieldSampler sampler_;
   std::span<const FeltObject> objects_;
+  Part part_;
   double lost_; // [m] from the mesh, where the walk begins afresh
 };
 
@@ -64,6 +68,25 @@ class ReliefStage final : public ForceStage {
  private:
   std::shared_ptr<const Reliefs> reliefs_;
   double shell_;
+  ForceForm form_;
+};
+
+// Fourier textures as a layer over the surface that all else makes (A22, A23): with z the tip's
+// height over it and h the texture's over its own lowest point,
+//   F = K max(0, -z) n + k_t K max(0, h - z) (n - J^T grad h),
+// the last factor n where the form is literal. 0 < z < h: the texture alone is felt. Friction is
+// that of the sum. shell: the highest h there is, by which the contact was found too far out.
+class TextureLayerStage final : public ForceStage {
+ public:
+  TextureLayerStage(std::shared_ptr<const Reliefs> reliefs, double shell, double gain,
+                    ForceForm form)
+      : reliefs_(std::move(reliefs)), shell_(shell), gain_(gain), form_(form) {}
+  void apply(Contact& contact, ContactMemory& memory) const noexcept override;
+  std::string_view name() const noexcept override { return "texture layer"; }
+
+ private:
+  std::shared_ptr<const Reliefs> reliefs_;
+  double shell_, gain_;
   ForceForm form_;
 };
 

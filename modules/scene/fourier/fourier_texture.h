@@ -15,11 +15,13 @@ namespace patina {
 struct FourierSeries {
   double mean = 0;
   std::vector<double> a, b; // equally long
+  bool operator==(const FourierSeries&) const = default;
 };
 
 // p(y) q(x), of which p bears the unit or both do: only their product is a height [m].
 struct FourierProduct {
   FourierSeries along_x, along_y;
+  bool operator==(const FourierProduct&) const = default;
 };
 
 enum class TextureKind {
@@ -43,6 +45,7 @@ struct FourierTexture {
   std::uint64_t seed = 0;           // of the spectrum's phases
   double low = 0;                   // least height over a period [m]: h - low >= 0
   std::optional<double> compliance; // of the material under it [m/N], where it was measured
+  bool operator==(const FourierTexture&) const = default;
 };
 
 // One line each, ending without a stop; empty where all is well: lengths that do not agree, values

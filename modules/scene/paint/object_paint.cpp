@@ -20,7 +20,8 @@ bool same(const ObjectPaint& a, const ObjectPaint& b) {
   const bool layouts = a.layout.uvs == b.layout.uvs ||
                        (a.layout.uvs && b.layout.uvs && *a.layout.uvs == *b.layout.uvs);
   return layouts && a.layout.made == b.layout.made && sameParts(a.color, b.color) &&
-         sameParts(a.relief, b.relief) && sameParts(a.material, b.material);
+         sameParts(a.relief, b.relief) && sameParts(a.material, b.material) &&
+         sameParts(a.textures, b.textures);
 }
 
 } // namespace patina

@@ -1,9 +1,10 @@
-// What a person painted onto one object. Every part is absent until its first stroke.
+// What a person painted or laid onto one object. Every part is absent until it first is.
 #pragma once
 
 #include <memory>
 
 #include "geometry/atlas/texture_layout.h"
+#include "scene/fourier/laid_textures.h"
 #include "scene/paint/material_map.h"
 #include "scene/paint/tiled_image.h"
 
@@ -17,6 +18,7 @@ struct ObjectPaint {
   // One channel g, any sign: the height is relief.height * g [m] outward (K21).
   std::shared_ptr<const TiledImage> relief;
   std::shared_ptr<const MaterialMap> material;
+  std::shared_ptr<const LaidTextures> textures; // scanned ones, along paths over its faces
 };
 
 inline constexpr int kColorChannels = 4;

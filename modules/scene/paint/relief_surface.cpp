@@ -39,7 +39,7 @@ class ReliefFaces {
 };
 
 std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& mesh, const CornerUvs& uvs) {
-  if (uvs.size() != mesh.triangles.size())
+  if (!uvs.empty() && uvs.size() != mesh.triangles.size())
     throw std::invalid_argument("reliefFaces: texture coordinates do not fit the mesh");
   auto packed = std::make_shared<ReliefFaces>();
   const Box3 box = bounds(mesh);
@@ -52,8 +52,10 @@ std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& mesh, const C
       const Vec3 corner = mesh.corner(f, static_cast<int>(k)) - packed->middle;
       for (std::size_t a = 0; a < 3; ++a)
         face.corner[3 * k + a] = static_cast<float>(corner[static_cast<Eigen::Index>(a)]);
-      face.uv[2 * k] = static_cast<float>(uvs[f][k].x());
-      face.uv[2 * k + 1] = static_cast<float>(uvs[f][k].y());
+      if (!uvs.empty()) {
+        face.uv[2 * k] = static_cast<float>(uvs[f][k].x());
+        face.uv[2 * k + 1] = static_cast<float>(uvs[f][k].y());
+      }
       face.neighbour[k] = neighbours.face_neighbours[f][k];
     }
   }
@@ -176,20 +178,8 @@ template <bool kBends> Texels texelsAt(const TiledImage& image, double u, double
   return sum;
 }
 
-} // namespace
-
-ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
-                  Eigen::Matrix3d* bend) noexcept {
-  ReliefAt at;
-  if (bend) bend->setZero();
-  const ReliefFaces& mesh = *relief.faces;
-  if (near_face < 0 || static_cast<std::size_t>(near_face) >= mesh.faces.size() || !c.allFinite())
-    return at;
-  const Foot foot = walk(mesh, c - mesh.middle, near_face);
-  const PackedFace& face = mesh.faces[static_cast<std::size_t>(foot.face)];
-  at.face = foot.face;
-  at.distance = std::sqrt(foot.squared);
-
+void readImage(const ReliefSurface& relief, const PackedFace& face, const Foot& foot, ReliefAt& at,
+               Eigen::Matrix3d* bend) noexcept {
   const Vec2 uv0 = face.uvAt(0), along1 = face.uvAt(1) - uv0, along2 = face.uvAt(2) - uv0;
   const Vec2 uv = uv0 + foot.barycentric[1] * along1 + foot.barycentric[2] * along2;
   const TiledImage& image = *relief.image;
@@ -211,6 +201,34 @@ ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_
     const Vec3 of_v = image.height() * (along1.y() * dual1 + along2.y() * dual2);
     *bend = relief.height * (g.uu * of_u * of_u.transpose() + g.vv * of_v * of_v.transpose() +
                              g.uv * (of_u * of_v.transpose() + of_v * of_u.transpose()));
+  }
+}
+
+} // namespace
+
+ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
+                  Eigen::Matrix3d* bend) noexcept {
+  ReliefAt at;
+  if (bend) bend->setZero();
+  const ReliefFaces& mesh = *relief.faces;
+  if (near_face < 0 || static_cast<std::size_t>(near_face) >= mesh.faces.size() || !c.allFinite())
+    return at;
+  const Foot foot = walk(mesh, c - mesh.middle, near_face);
+  at.face = foot.face;
+  at.distance = std::sqrt(foot.squared);
+  const PackedFace& face = mesh.faces[static_cast<std::size_t>(foot.face)];
+  if (relief.image) readImage(relief, face, foot, at, bend);
+  if (relief.textures) {
+    // Within the face c itself tells where it is, in doubles; beyond an edge the face ends there.
+    Vec3 on_face = c;
+    if (!(foot.barycentric.minCoeff() > 0))
+      on_face = mesh.middle + foot.barycentric[0] * face.at(0) + foot.barycentric[1] * face.at(1) +
+                foot.barycentric[2] * face.at(2);
+    Eigen::Matrix3d bent;
+    at.texture = relief.textures->at(foot.face, on_face, bend ? &bent : nullptr);
+    at.height += at.texture.height;
+    at.slope += at.texture.slope;
+    if (bend) *bend += bent;
   }
   return at;
 }

@@ -1,4 +1,5 @@
-// A mesh with its relief image as the servo reads it: height and slope at the closest point (K21).
+// A mesh with its relief as the servo reads it: height and slope at the closest point, of an image
+// (K21), of Fourier textures (A24), or of both together.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +7,13 @@
 
 #include "geometry/atlas/texture_layout.h"
 #include "geometry/mesh/triangle_mesh.h"
+#include "scene/fourier/texture_patches.h"
 #include "scene/paint/tiled_image.h"
 
 namespace patina {
 
 // Corners, texture coordinates and neighbours of one object's faces, packed. Immutable; made once
-// for an object and a layout, whatever is painted later.
+// for an object and a layout, whatever is painted later. uvs: none where no image is read.
 class ReliefFaces;
 std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& world_mesh,
                                                const CornerUvs& uvs);
@@ -19,8 +21,9 @@ std::size_t bytes(const ReliefFaces& faces);
 
 struct ReliefSurface {
   std::shared_ptr<const ReliefFaces> faces;
-  std::shared_ptr<const TiledImage> image; // as felt: smoothed where the scene asks for it
-  double height = 0;                       // [m] of g = 1
+  std::shared_ptr<const TiledImage> image;          // as felt; absent: no image
+  double height = 0;                                // [m] of g = 1
+  std::shared_ptr<const TexturePatches> textures{}; // absent: none
 };
 
 struct ReliefAt {
@@ -28,6 +31,7 @@ struct ReliefAt {
   Vec3 slope = Vec3::Zero(); // surface gradient of the height, in the face's plane, dimensionless
   std::int32_t face = -1;    // of the object; a good start for the next query nearby
   double distance = 0;       // [m], from c to the mesh
+  PatchAt texture;           // what of it is a texture's
 };
 
 // What cubics may add to the greatest |g| between texels, along both axes.

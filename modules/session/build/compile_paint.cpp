@@ -22,8 +22,9 @@ bool hasRelief(const Scene& scene) {
 
 bool isPainted(const Scene& scene) {
   return hasRelief(scene) ||
-         std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const SceneObject& o) { return o.paint && o.paint->material; });
+         std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& o) {
+           return o.paint && (o.paint->material || o.paint->textures);
+         });
 }
 
 const FeltRelief* knownRelief(const CompiledScene* compiled, std::size_t object) {
@@ -51,6 +52,14 @@ FeltRelief sourceOf(const Scene& scene, std::size_t object, const CompiledScene*
   if (relief.source)
     relief.source_range = rangeOf(relief.source, known->source, known->source_range);
   return relief;
+}
+
+double highestTexture(const Scene& scene) {
+  double most = 0;
+  for (const SceneObject& object : scene.objects)
+    if (object.paint && object.paint->textures)
+      most = std::max(most, highest(*object.paint->textures));
+  return most;
 }
 
 // A pulled image is read through cubics, a baked one bilinearly.
@@ -133,15 +142,38 @@ struct Maker {
            static_cast<double>(*std::max_element(relief.bends.begin(), relief.bends.end()));
   }
 
-  std::shared_ptr<const ReliefSurface> pulled(std::size_t i) const {
+  std::shared_ptr<const TexturePatches> patches(std::size_t i) const {
     const ObjectPaint& paint = *paintOf(compiled.scene, i);
-    auto surface = std::make_shared<ReliefSurface>();
+    if (!paint.textures) return nullptr;
     const FeltObject* old = earlier(i);
     const ObjectPaint* old_paint = before ? paintOf(before->scene, i) : nullptr;
-    if (old && old->relief && old_paint && old_paint->layout.uvs == paint.layout.uvs)
-      surface->faces = old->relief->faces;
+    if (old && old_paint && old_paint->textures == paint.textures)
+      for (const auto& known : {old->relief, old->layer})
+        if (known && known->textures) return known->textures;
+    auto made_now =
+        std::make_shared<const TexturePatches>(*compiled.objects[i]->mesh, *paint.textures);
+    return made_now->highest() > 0 ? made_now : nullptr;
+  }
+
+  // Of its image and its textures what is asked for; null where neither is.
+  std::shared_ptr<const ReliefSurface> pulled(std::size_t i, bool image, bool textures) const {
+    const ObjectPaint* paint = paintOf(compiled.scene, i);
+    if (!paint) return nullptr;
+    auto surface = std::make_shared<ReliefSurface>();
+    if (textures) surface->textures = patches(i);
+    if (!image && !surface->textures) return nullptr;
+    const FeltObject* old = earlier(i);
+    const ReliefSurface* known = old && old->relief  ? old->relief.get()
+                                 : old && old->layer ? old->layer.get()
+                                                     : nullptr;
+    const ObjectPaint* old_paint = before ? paintOf(before->scene, i) : nullptr;
+    const auto uvs = image ? paint->layout.uvs : nullptr;
+    if (known && old_paint && (known->image != nullptr) == image &&
+        (!image || old_paint->layout.uvs == uvs))
+      surface->faces = known->faces;
     else
-      surface->faces = reliefFaces(*compiled.objects[i]->mesh, *paint.layout.uvs);
+      surface->faces = reliefFaces(*compiled.objects[i]->mesh, uvs ? *uvs : CornerUvs());
+    if (!image) return surface;
     surface->image = made.relief[i].felt;
     surface->height = compiled.scene.relief.height;
     return surface;
@@ -238,7 +270,11 @@ std::size_t FeltPaint::bytes() const {
   std::size_t bytes = bake ? bake->bytes() : 0;
   for (const FeltObject& object : objects) {
     if (object.material) bytes += object.material->bytes();
-    if (object.relief) bytes += patina::bytes(*object.relief->faces);
+    for (const auto& surface : {object.relief, object.layer}) {
+      if (!surface) continue;
+      bytes += patina::bytes(*surface->faces);
+      if (surface->textures) bytes += surface->textures->bytes();
+    }
   }
   for (const FeltRelief& image : relief) {
     if (image.grey.grey) bytes += image.grey.grey->bytes();
@@ -255,7 +291,9 @@ FeltReach feltReach(const Scene& scene, const CompiledScene* before) {
     if (const FeltRelief relief = sourceOf(scene, i, before); relief.source)
       most = std::max(most, relief.source_range->all.highest());
   const double relief = std::abs(scene.relief.height) * static_cast<double>(most);
-  return feltReach(scene.haptics, overshoot(scene) * relief + roughnessPeak(scene));
+  // A layer is measured over its lowest point.
+  const double texture = highestTexture(scene) * (scene.haptics.texture_gain ? 2 : 1);
+  return feltReach(scene.haptics, overshoot(scene) * relief + texture + roughnessPeak(scene));
 }
 
 FeltReach reachAfter(const CompiledScene& compiled, const Brush& brush) {
@@ -296,15 +334,25 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
     object.object_from_world = scene.objects[i].world_from_object.inverse();
     object.material = maker.material(i, baseMaterial(scene.haptics));
     if (relief) made.relief[i] = sourceOf(scene, i, before);
+    bool image = false;
     if (relief && made.relief[i].source) {
       maker.smooth(i, made.relief[i]);
-      object.highest = overshoot(scene) * std::abs(scene.relief.height) *
-                       static_cast<double>(made.relief[i].felt_range->all.highest());
-      if (scene.relief.mode == ReliefMode::pulled && object.highest > 0) {
-        object.relief = maker.pulled(i);
+      const double highest = overshoot(scene) * std::abs(scene.relief.height) *
+                             static_cast<double>(made.relief[i].felt_range->all.highest());
+      image = scene.relief.mode == ReliefMode::pulled && highest > 0;
+      object.baked = scene.relief.mode == ReliefMode::baked && highest > 0;
+      if (image) {
+        object.highest = highest;
         object.bend = maker.bend(i, made.relief[i]);
       }
     }
+    const bool layered = scene.haptics.texture_gain.has_value();
+    object.relief = maker.pulled(i, image, !layered);
+    if (layered) object.layer = maker.pulled(i, false, true);
+    if (object.relief && object.relief->textures)
+      object.highest += object.relief->textures->highest();
+    for (const auto& surface : {object.relief, object.layer})
+      if (surface && surface->textures) object.bend += surface->textures->bend();
     made.objects.push_back(std::move(object));
   }
   if (relief && scene.relief.mode == ReliefMode::baked) bake(compiled, same_field, made, progress);

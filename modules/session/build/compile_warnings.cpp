@@ -51,6 +51,21 @@ ThinParts thinParts(const CompiledScene& compiled) {
   return {vanished / all, moved / all, moved > 0 ? by / moved * field.grid.voxel : 0};
 }
 
+// Numbers that faces have and no texture.
+void tellUnknownTextures(const Scene& scene, std::vector<std::string>& lines) {
+  for (const SceneObject& object : scene.objects) {
+    if (!object.paint || !object.paint->textures) continue;
+    const LaidTextures& laid = *object.paint->textures;
+    std::map<std::int32_t, std::size_t> unknown;
+    for (const TexturedFace& face : laid.faces)
+      if (!laid.library.contains(face.texture)) ++unknown[face.texture];
+    for (const auto& [number, faces] : unknown)
+      lines.push_back(object.name + ": " + formatCount(faces) + " faces have the texture " +
+                      std::to_string(number) + ", which is not known: they are felt without; " +
+                      "--texture " + std::to_string(number) + "=T.json names its file");
+  }
+}
+
 std::string percent(double share) {
   return formatNumber(std::round(100 * share)) + " %";
 }
@@ -59,6 +74,7 @@ std::string percent(double share) {
 
 std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
   std::vector<std::string> lines;
+  tellUnknownTextures(compiled.scene, lines);
   const double voxel = compiled.built.field->grid.voxel;
   const ThinParts thin = thinParts(compiled);
   if (thin.vanished > kToldVanished)

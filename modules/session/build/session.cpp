@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/surface/iso_surface.h"
-#include "geometry/io/mesh_io.h"
+#include "geometry/io/textured_obj.h"
 #include "session/store/journal_fold.h"
 #include "session/store/replay.h"
 #include "session/store/workspace_link.h"
@@ -146,8 +146,14 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   }
   bool in_metres = false;
   const bool is_volume = isVolumeFile(path);
-  TriangleMesh mesh =
-      is_volume ? meshOfVolume(path, options, in_metres) : zUp(readMesh(path), options.up);
+  TexturedMesh read;
+  if (is_volume)
+    read.mesh = meshOfVolume(path, options, in_metres);
+  else if (lowerExtension(path) == ".obj")
+    read = readTexturedObj(path);
+  else
+    read.mesh = readMesh(path);
+  TriangleMesh mesh = is_volume ? std::move(read.mesh) : zUp(std::move(read.mesh), options.up);
   if (options.unit_chosen && in_metres) warnOf("--unit", "field");
   if (options.iso && !is_volume) warnOf("--iso", "mesh");
   if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");
@@ -160,7 +166,37 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   }
   if (!scaled.warning.empty()) opened.warnings.push_back(path.string() + ": " + scaled.warning);
   opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
+  if (!read.textured.empty()) {
+    for (TexturedFace& face : read.textured)
+      for (Vec2& at : face.at) at *= scaled.scale;
+    ObjectPaint paint;
+    paint.textures =
+        std::make_shared<const LaidTextures>(LaidTextures{std::move(read.textured), {}});
+    opened.scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
+  }
   return opened;
+}
+
+void layTextures(Scene& scene, const TextureTable& textures) {
+  for (const auto& [number, texture] : textures) {
+    bool lies = false;
+    for (SceneObject& object : scene.objects) {
+      if (!object.paint || !object.paint->textures) continue;
+      const LaidTextures& laid = *object.paint->textures;
+      if (std::none_of(laid.faces.begin(), laid.faces.end(),
+                       [&](const TexturedFace& face) { return face.texture == number; }))
+        continue;
+      lies = true;
+      LaidTextures changed = laid;
+      changed.library[number] = texture;
+      ObjectPaint paint = *object.paint;
+      paint.textures = std::make_shared<const LaidTextures>(std::move(changed));
+      object.paint = std::make_shared<const ObjectPaint>(std::move(paint));
+    }
+    if (!lies)
+      throw Error("texture " + std::to_string(number) +
+                  ": no face has it; patina map-texture lays one onto a mesh");
+  }
 }
 
 Scene sceneOf(TriangleMesh mesh, const std::string& name) {

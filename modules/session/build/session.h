@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,6 +50,12 @@ std::filesystem::path inputPath(const std::filesystem::path& path);
 // FileError; nothing is kept and nothing written. Slow for a workspace that was not saved after its
 // last strokes: they are painted anew.
 OpenedScene openScene(const std::filesystem::path& path, const OpenOptions& options);
+
+using TextureTable = std::map<std::int32_t, std::shared_ptr<const FeltTexture>>; // by number
+
+// Each takes its place in the library of every object that has faces of that number (A17). Throws
+// Error for a number that no face has.
+void layTextures(Scene& scene, const TextureTable& textures);
 
 // A mesh in metres as a scene of one object.
 Scene sceneOf(TriangleMesh mesh, const std::string& name);

@@ -1,0 +1,58 @@
+#include "scene/fourier/felt_texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+constexpr int kLineSamples = 16, kPlaneSamples = 4; // a shortest wavelength
+constexpr double kBetween = 1.05;                   // what lies between samples may be more
+constexpr double kStraight = 1. / 256; // of a shortest wavelength: the gradient is all but straight
+
+bool dependsOnY(const FourierTexture& texture) {
+  return texture.kind == TextureKind::products || texture.kind == TextureKind::plane;
+}
+
+} // namespace
+
+std::shared_ptr<const FeltTexture> feltTexture(FourierTexture texture) {
+  if (const std::string problem = problemOf(texture); !problem.empty()) throw Error(problem);
+  TextureEvaluator at(texture);
+  auto made = std::make_shared<FeltTexture>(FeltTexture{std::move(texture), std::move(at)});
+  const FourierTexture& value = made->value;
+  if (value.compliance) made->stiffness = 1 / *value.compliance;
+  const bool plane = dependsOnY(value);
+  const int n = harmonics(value) * (plane ? kPlaneSamples : kLineSamples);
+  const double step = period(value) / n;
+  std::vector<TextureValue> row(static_cast<std::size_t>(n)), before;
+  for (int j = 0; j <= (plane ? n : 0); ++j) {
+    for (int i = 0; i < n; ++i) {
+      TextureValue& here = row[static_cast<std::size_t>(i)];
+      here = made->at.at(i * step, j * step);
+      made->highest = std::max(made->highest, std::abs(here.height));
+      made->steepest = std::max(made->steepest, here.gradient.norm());
+      const auto bendFrom = [&](const TextureValue& other) {
+        made->bend = std::max(made->bend, (here.gradient - other.gradient).norm() / step);
+      };
+      if (i > 0) bendFrom(row[static_cast<std::size_t>(i - 1)]);
+      if (j > 0) bendFrom(before[static_cast<std::size_t>(i)]);
+    }
+    before = row;
+  }
+  for (double* most : {&made->highest, &made->steepest, &made->bend}) *most *= kBetween;
+  return made;
+}
+
+Eigen::Matrix2d bendAt(const FeltTexture& texture, double x, double y) noexcept {
+  const double d = kStraight * period(texture.value) / harmonics(texture.value);
+  Eigen::Matrix2d bend = Eigen::Matrix2d::Zero();
+  bend.col(0) = (texture.at.at(x + d, y).gradient - texture.at.at(x - d, y).gradient) / (2 * d);
+  if (!dependsOnY(texture.value)) return bend;
+  bend.col(1) = (texture.at.at(x, y + d).gradient - texture.at.at(x, y - d).gradient) / (2 * d);
+  return 0.5 * (bend + bend.transpose());
+}
+
+} // namespace patina

@@ -1,0 +1,164 @@
+#include "scene/fourier/texture_patches.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+namespace {
+
+// Gradient over a triangle of what has these values at its corners.
+Vec3 slopeOver(const std::array<Vec3, 3>& corner, const std::array<double, 3>& value) {
+  const Vec3 along1 = corner[1] - corner[0], along2 = corner[2] - corner[0];
+  const Vec3 normal = along1.cross(along2);
+  const double squared = normal.squaredNorm();
+  if (!(squared > 0)) return Vec3::Zero();
+  return ((value[1] - value[0]) * along2.cross(normal) +
+          (value[2] - value[0]) * normal.cross(along1)) /
+         squared;
+}
+
+constexpr double kAlike = 1e-3; // of the greatest height and slope
+
+} // namespace
+
+// Which corners of the mesh a texture need not fade at: all faces about them have it, and agree on
+// its height there and on how that grows.
+class TexturePatches::InnerCorners {
+ public:
+  explicit InnerCorners(std::size_t corners) : seen_(corners), inner_(corners, 1) {}
+
+  void add(std::int32_t vertex, std::int32_t texture, const Vec2& at, const FeltTexture* of) {
+    const auto v = static_cast<std::size_t>(vertex);
+    if (texture < 0 || (seen_[v].texture >= 0 && seen_[v].texture != texture)) {
+      inner_[v] = 0;
+      return;
+    }
+    if (seen_[v].texture < 0) {
+      seen_[v] = {texture, at};
+      return;
+    }
+    if (seen_[v].at == at || !inner_[v]) return;
+    const TextureValue one = of->at.at(at.x(), at.y()),
+                       other = of->at.at(seen_[v].at.x(), seen_[v].at.y());
+    if (std::abs(one.height - other.height) > kAlike * of->highest ||
+        (one.gradient - other.gradient).norm() > kAlike * of->steepest)
+      inner_[v] = 0;
+  }
+  bool operator[](std::int32_t vertex) const { return inner_[static_cast<std::size_t>(vertex)]; }
+
+ private:
+  struct Seen {
+    std::int32_t texture = -1;
+    Vec2 at = Vec2::Zero();
+  };
+  std::vector<Seen> seen_;
+  std::vector<char> inner_;
+};
+
+TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& laid) {
+  const Box3 box = bounds(mesh);
+  if (!box.isEmpty()) middle_ = box.center();
+  std::map<std::int32_t, std::int32_t> place;
+  for (const auto& [number, texture] : laid.library) {
+    place[number] = static_cast<std::int32_t>(textures_.size());
+    textures_.push_back(texture);
+  }
+  std::vector<std::int32_t> texture_of(mesh.triangles.size(), -1);
+  std::vector<const TexturedFace*> told(mesh.triangles.size());
+  for (const TexturedFace& face : laid.faces)
+    if (const auto known = place.find(face.texture); known != place.end()) {
+      texture_of[static_cast<std::size_t>(face.face)] = known->second;
+      told[static_cast<std::size_t>(face.face)] = &face;
+    }
+  InnerCorners inner(mesh.positions.size());
+  for (std::size_t f = 0; f < told.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool known = texture_of[f] >= 0;
+      inner.add(mesh.triangles[f][k], texture_of[f], known ? told[f]->at[k] : Vec2(0, 0),
+                known ? textures_[static_cast<std::size_t>(texture_of[f])].get() : nullptr);
+    }
+  std::vector<char> has_inner(textures_.size(), 0);
+  for (std::size_t f = 0; f < told.size(); ++f)
+    for (const std::int32_t vertex : mesh.triangles[f])
+      if (texture_of[f] >= 0 && inner[vertex])
+        has_inner[static_cast<std::size_t>(texture_of[f])] = 1;
+
+  patch_of_.assign(mesh.triangles.size(), -1);
+  for (const TexturedFace& face : laid.faces) {
+    const auto f = static_cast<std::size_t>(face.face);
+    if (texture_of[f] < 0) continue;
+    const auto texture = static_cast<std::size_t>(texture_of[f]);
+    std::array<Vec3, 3> corner;
+    std::array<double, 3> x, y, fade;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = mesh.corner(f, static_cast<int>(k)) - middle_;
+      x[k] = face.at[k].x();
+      y[k] = face.at[k].y();
+      fade[k] = inner[mesh.triangles[f][k]] || !has_inner[texture];
+    }
+    Patch patch;
+    patch.texture = texture_of[f];
+    patch.fades = fade[0] + fade[1] + fade[2] < 3;
+    patch.x_slope = slopeOver(corner, x);
+    patch.y_slope = slopeOver(corner, y);
+    patch.fade_slope = slopeOver(corner, fade);
+    patch.x = x[0] - patch.x_slope.dot(corner[0]);
+    patch.y = y[0] - patch.y_slope.dot(corner[0]);
+    patch.fade = fade[0] - patch.fade_slope.dot(corner[0]);
+    patch_of_[f] = static_cast<std::int32_t>(patches_.size());
+    patches_.push_back(patch);
+    const FeltTexture& of = *textures_[texture];
+    highest_ = std::max(highest_, of.highest);
+    const double steep = std::max(patch.x_slope.norm(), patch.y_slope.norm());
+    const double ends = patch.fade_slope.norm(); // of the fade: 1.5 of it, its bend 6 of its square
+    bend_ = std::max(bend_, of.bend * steep * steep + 3 * of.steepest * steep * ends +
+                                6 * of.highest * ends * ends);
+    stiffest_ = std::max(stiffest_, of.stiffness);
+  }
+}
+
+PatchAt TexturePatches::at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend) const noexcept {
+  PatchAt found;
+  if (bend) bend->setZero();
+  if (face < 0 || static_cast<std::size_t>(face) >= patch_of_.size()) return found;
+  const std::int32_t index = patch_of_[static_cast<std::size_t>(face)];
+  if (index < 0) return found;
+  const Patch& patch = patches_[static_cast<std::size_t>(index)];
+  const FeltTexture& texture = *textures_[static_cast<std::size_t>(patch.texture)];
+  const Vec3 q = p - middle_;
+  const double x = patch.x + patch.x_slope.dot(q), y = patch.y + patch.y_slope.dot(q);
+  const TextureValue h = texture.at.at(x, y);
+  found.height = h.height;
+  found.slope = h.gradient.x() * patch.x_slope + h.gradient.y() * patch.y_slope;
+  found.share = 1;
+  if (bend) {
+    Eigen::Matrix<double, 3, 2> along;
+    along << patch.x_slope, patch.y_slope;
+    *bend = along * bendAt(texture, x, y) * along.transpose();
+  }
+  if (patch.fades) {
+    const double w = std::clamp(patch.fade + patch.fade_slope.dot(q), 0.0, 1.0);
+    const double share = w * w * (3 - 2 * w), growth = 6 * w * (1 - w);
+    found.share = share;
+    found.share_slope = growth * patch.fade_slope;
+    if (bend)
+      *bend = share * *bend +
+              growth * (found.slope * patch.fade_slope.transpose() +
+                        patch.fade_slope * found.slope.transpose()) +
+              (6 - 12 * w) * found.height * patch.fade_slope * patch.fade_slope.transpose();
+    found.slope = share * found.slope + found.height * found.share_slope;
+    found.height *= share;
+  }
+  found.stiffness = texture.stiffness;
+  found.low = texture.value.low;
+  return found;
+}
+
+std::size_t TexturePatches::bytes() const {
+  std::size_t sum = sizeof *this + patch_of_.capacity() * sizeof(std::int32_t) +
+                    patches_.capacity() * sizeof(Patch);
+  for (const auto& texture : textures_) sum += texture->at.bytes();
+  return sum;
+}
+
+} // namespace patina

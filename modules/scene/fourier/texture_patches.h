@@ -1,0 +1,56 @@
+// One object's faces with Fourier textures on them, as the servo reads them (A24).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/mesh/triangle_mesh.h"
+#include "scene/fourier/laid_textures.h"
+
+namespace patina {
+
+struct PatchAt {
+  double height = 0;         // [m], outward, of mean zero
+  Vec3 slope = Vec3::Zero(); // its gradient over the face, dimensionless
+  // Of the texture's own stiffness [N/m], and how much of it there is: 1 but where it fades out.
+  double stiffness = 0; // 0: the texture says nothing of it
+  double share = 0;
+  double low = 0;                  // least height of the texture where its share is whole [m]
+  Vec3 share_slope = Vec3::Zero(); // [1/m]
+};
+
+// Coordinates are affine over a face, so that neighbours that agree on an edge's ends agree along
+// it. Towards faces without a known texture, with another one, or with coordinates between which
+// its height jumps (a seam), each texture fades to nothing, smoothly over the faces that touch
+// them; where no corner of its faces is farther in than that, it ends as it is.
+class TexturePatches {
+ public:
+  // mesh: the object's, world frame. Makes room for 4 bytes a face and 160 a textured one.
+  TexturePatches(const TriangleMesh& mesh, const LaidTextures& laid);
+
+  // p [m, world] on or near the face. Servo thread: no allocation. bend, where asked for, becomes
+  // the second derivative of the height over the face [1/m].
+  PatchAt at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend = nullptr) const noexcept;
+
+  double highest() const { return highest_; }   // of |height| anywhere [m]
+  double bend() const { return bend_; }         // of |h''| along any face, by samples [1/m]
+  double stiffest() const { return stiffest_; } // of the textures that say so [N/m]; 0: none does
+  std::size_t bytes() const;
+
+ private:
+  struct Patch {
+    Vec3 x_slope, y_slope, fade_slope; // over the face
+    double x = 0, y = 0, fade = 0;     // at middle_
+    std::int32_t texture = 0;          // place in textures_
+    bool fades = false;
+  };
+  class InnerCorners;
+
+  Vec3 middle_ = Vec3::Zero();
+  std::vector<std::int32_t> patch_of_; // by face; -1: none
+  std::vector<Patch> patches_;
+  std::vector<std::shared_ptr<const FeltTexture>> textures_;
+  double highest_ = 0, bend_ = 0, stiffest_ = 0;
+};
+
+} // namespace patina
