@@ -1,0 +1,287 @@
+// Fourier textures as they are felt (A22 to A25), against closed forms on a plane.
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "geometry/tree/triangle_tree.h"
+#include "haptics/painted_fixture.h"
+#include "haptics/stability/painted_range.h"
+
+namespace patina {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+FourierTexture waves(double length, const std::vector<double>& cosines,
+                     std::optional<double> compliance = {}) {
+  FourierTexture texture;
+  texture.omega = 2 * kPi / length;
+  texture.series.a = cosines;
+  texture.series.b.assign(cosines.size(), 0);
+  texture.low = leastHeight(texture);
+  texture.compliance = compliance;
+  return texture;
+}
+
+// A slab whose top, but for the faces at its rim, has this texture; x goes with the plane's x.
+struct TexturedSlab {
+  Slab slab_;
+  LaidTextures laid;
+  std::shared_ptr<const TexturePatches> patches;
+  FeltObject object;
+
+  TexturedSlab(const FourierTexture& texture, double inside, double voxel = 0.5e-3)
+      : slab_(slab(voxel, 40, 14)) {
+    const TriangleMesh& mesh = *slab_.mesh;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      TexturedFace face;
+      face.face = static_cast<std::int32_t>(f);
+      face.texture = 5;
+      bool top = true;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 p = mesh.corner(f, k);
+        top = top && std::abs(p.z()) < 1e-9 && p.head<2>().cwiseAbs().maxCoeff() < inside;
+        face.at[static_cast<std::size_t>(k)] = p.head<2>();
+      }
+      if (top) laid.faces.push_back(face);
+    }
+    laid.library[5] = feltTexture(texture);
+    patches = std::make_shared<const TexturePatches>(mesh, laid);
+    auto surface = std::make_shared<ReliefSurface>();
+    surface->faces = reliefFaces(mesh, {});
+    surface->textures = patches;
+    object.relief = surface;
+    object.highest = patches->highest();
+    object.bend = patches->bend();
+  }
+  FeltObject layered() const {
+    FeltObject made = object;
+    std::swap(made.relief, made.layer);
+    return made;
+  }
+  std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene) const {
+    const FeltObject felt = scene.haptics.texture_gain ? layered() : object;
+    return compileStages(scene, slab_.field, std::span(&felt, 1));
+  }
+};
+
+Scene layerScene(double stiffness, double gain, ForceForm form = ForceForm::literal) {
+  Scene scene = sceneOf(stiffness);
+  scene.haptics.texture_gain = gain;
+  scene.relief.form = form;
+  return scene;
+}
+
+// T-A22a: a profile of 0.5 mm, pressed where it is highest and flat.
+TEST(TextureLayer, IsPressedBesideTheSurface) {
+  const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
+  for (const ForceForm form : {ForceForm::literal, ForceForm::conservative}) {
+    const auto snapshot = plate.compiled(layerScene(500, 0.4, form));
+    EXPECT_NEAR(touchOnce(*snapshot, Vec3(0, 0, 0.2e-3)).force.z(), 0.06, 2e-6);
+    EXPECT_NEAR(touchOnce(*snapshot, Vec3(0, 0, -1e-3)).force.z(), 0.8, 2e-6);
+    EXPECT_FALSE(touchOnce(*snapshot, Vec3(0, 0, 0.51e-3)).touching);
+    // In the valley, which lies on the plane, there is nothing but the plane.
+    EXPECT_FALSE(touchOnce(*snapshot, Vec3(4e-3, 0, 0.01e-3)).touching);
+    EXPECT_NEAR(touchOnce(*snapshot, Vec3(4e-3, 0, -1e-3)).force.z(), 0.7, 2e-6);
+  }
+}
+
+// T-A22b
+TEST(TextureLayer, ForceIsContinuousAndItsSlopeStepsWhereItShould) {
+  const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
+  const auto snapshot = plate.compiled(layerScene(500, 0.4));
+  const double h = 0.5e-3, d = 1e-5;
+  const auto forceAt = [&](double z) { return touchOnce(*snapshot, Vec3(0, 0, z)).force.z(); };
+  EXPECT_NEAR(forceAt(h - 1e-8), 0, 1e-5);
+  EXPECT_NEAR(forceAt(1e-8), forceAt(-1e-8), 2e-5);
+  EXPECT_NEAR((forceAt(h / 2 - d) - forceAt(h / 2 + d)) / (2 * d), 0.4 * 500, 1);
+  EXPECT_NEAR((forceAt(-h - d) - forceAt(-h + d)) / (2 * d), 1.4 * 500, 2);
+}
+
+// T-A22c: friction is that of both.
+TEST(TextureLayer, FrictionFollowsTheSum) {
+  const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
+  const double mu = 0.3;
+  Scene scene = withFriction(layerScene(500, 0.4), mu, mu);
+  const auto snapshot = plate.compiled(scene);
+  ContactMemory memory;
+  Vec3 tip(-2e-3, 0, 0.3e-3);
+  tick(*snapshot, memory, tip, 1e-3);
+  Contact contact;
+  tip.z() = -0.3e-3;
+  for (int i = 0; i < 2000; ++i) contact = tick(*snapshot, memory, tip += Vec3(1e-6, 0, 0), 1e-3);
+  const double h = 0.25e-3 * (1 + std::cos(2 * kPi * tip.x() / 8e-3));
+  const double normal = 500 * 0.3e-3 + 0.4 * 500 * (0.3e-3 + h);
+  const Vec3 pressed = 500 * (contact.candidate - contact.tip), drag = contact.force - pressed;
+  EXPECT_NEAR(pressed.norm(), normal, 1e-4 * normal);
+  EXPECT_NEAR(drag.norm(), mu * pressed.norm(), 1e-12);
+  EXPECT_LT((drag.normalized() + Vec3::UnitX()).norm(), 0.02); // the stuck point rode up the wave
+  const Contact still = tick(*snapshot, memory, tip, 1e-3);    // v = 0
+  EXPECT_TRUE(still.force.allFinite());
+}
+
+// T-A22e, F6: in at a valley, out at a peak.
+double workOfLoop(const HapticSnapshot& snapshot, double along, double depth) {
+  return loopWork(snapshot, {Vec3(0, 0, -depth), Vec3(along, 0, -depth), Vec3(along, 0, 1.2e-3),
+                             Vec3(0, 0, 1.2e-3)});
+}
+
+TEST(TextureLayer, OnlyTheConservativeFormDoesNoWorkRoundALoop) {
+  const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
+  const double K = 500, gain = 0.4, dz = 1e-3;
+  // In at the peak (x = 0) and out at the valley. Below the plane: k_t K (h1 - h2) dz, and what is
+  // above it as U = k_t K h^2 / 2 has it.
+  const double h = 0.5e-3, due = gain * K * (h * dz + 0.5 * h * h);
+  EXPECT_NEAR(workOfLoop(*plate.compiled(layerScene(K, gain)), 4e-3, dz), -due, 0.01 * due);
+  EXPECT_NEAR(workOfLoop(*plate.compiled(layerScene(K, gain, ForceForm::conservative)), 4e-3, dz),
+              0, 0.01 * due);
+}
+
+// As the surface's own shape: K (d + h) along its normal, and no work round a loop.
+TEST(TextureRelief, IsTheShapeOfTheSurface) {
+  const TexturedSlab plate(waves(8e-3, {0.2e-3, 0, 0.02e-3}), 0.015);
+  const auto snapshot = plate.compiled(sceneOf(500));
+  for (double x = -6e-3; x < 6e-3; x += 0.29e-3) {
+    const double w = 2 * kPi / 8e-3;
+    const double h = 0.2e-3 * std::cos(w * x) + 0.02e-3 * std::cos(3 * w * x),
+                 slope = -w * (0.2e-3 * std::sin(w * x) + 0.06e-3 * std::sin(3 * w * x));
+    const double d = 0.4e-3;
+    const Contact contact = touchOnce(*snapshot, Vec3(x, 1e-3, h - d));
+    EXPECT_NEAR(contact.force.z(), 500 * d, 1e-4);
+    EXPECT_NEAR(contact.force.x(), -500 * d * slope, 1e-4);
+    EXPECT_FALSE(touchOnce(*snapshot, Vec3(x, 1e-3, h + 1e-5)).touching);
+  }
+  EXPECT_NEAR(workOfLoop(*snapshot, 4e-3, 1e-3), 0, 1e-6);
+}
+
+TEST(TextureRelief, IsAsStiffAsItsComplianceSays) {
+  const TexturedSlab plate(waves(8e-3, {0.1e-3}, 1. / 1500), 0.012);
+  const auto snapshot = plate.compiled(sceneOf(400));
+  const double d = 0.3e-3;
+  EXPECT_NEAR(touchOnce(*snapshot, Vec3(0, 0, 0.1e-3 - d)).force.z(), 1500 * d, 1e-3);
+  EXPECT_NEAR(touchOnce(*snapshot, Vec3(0.017, 0.001, -d)).force.z(), 400 * d, 1e-3);
+  // What must be stable is the stiffest.
+  EXPECT_DOUBLE_EQ(
+      paintedRange(baseMaterial(sceneOf(400).haptics), std::span(&plate.object, 1)).most.stiffness,
+      1500);
+  EXPECT_NEAR(workOfLoop(*snapshot, 0.0161, 0.5e-3), 0, 2e-6); // across the fade
+}
+
+// Over the faces where it fades, height and slope are one piece, and the slope is the height's.
+TEST(TexturePatches, FadeSmoothlyAndKeepTheHeightsGradient) {
+  const TexturedSlab plate(waves(8e-3, {0.2e-3, 0.05e-3}), 0.0121);
+  const TriangleTree tree(*plate.slab_.mesh);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> any(-0.015, 0.015);
+  double faded = 0, whole = 0, none = 0;
+  const auto seen = [&](const Vec3& q) {
+    return reliefAt(*plate.object.relief, q, tree.closestPoint(q).surface.face);
+  };
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 p(any(random), any(random), 0);
+    const ReliefAt here = seen(p);
+    const double d = 1e-7;
+    Vec3 slope = Vec3::Zero();
+    for (int k = 0; k < 2; ++k)
+      slope[k] =
+          (seen(p + d * Vec3::Unit(k)).height - seen(p - d * Vec3::Unit(k)).height) / (2 * d);
+    ASSERT_LT((slope - here.slope).norm(), 2e-5) << p.transpose();
+    (here.texture.share == 1 ? whole : here.texture.share > 0 ? faded : none) += 1;
+  }
+  EXPECT_GT(whole, 1000);
+  EXPECT_GT(faded, 200);
+  EXPECT_GT(none, 500);
+  EXPECT_NEAR(seen(Vec3(1e-5, 2e-5, 0)).height, height(plate.laid.library.at(5)->value, 1e-5),
+              1e-12);
+}
+
+// T-A17: a texture is the same on two meshes along equal paths, to the last digits; forces to the
+// field's error.
+TEST(TexturePatches, ATextureIsTheSameOnAnyMesh) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0, 1);
+  FourierTexture texture = waves(20e-3, std::vector<double>(128, 0));
+  for (std::size_t j = 0; j < 128; ++j) {
+    texture.series.a[j] = 2e-5 * normal(random) / static_cast<double>(j + 1);
+    texture.series.b[j] = 2e-5 * normal(random) / static_cast<double>(j + 1);
+  }
+  const TexturedSlab coarse(texture, 0.0191);
+  TriangleMesh fine = box(Vec3(0.04, 0.04, 0.012), 97);
+  for (Vec3& p : fine.positions) p.z() -= 0.006;
+  LaidTextures laid;
+  for (std::size_t f = 0; f < fine.triangles.size(); ++f) {
+    TexturedFace face;
+    face.face = static_cast<std::int32_t>(f);
+    face.texture = 1;
+    bool top = true;
+    for (int k = 0; k < 3; ++k) {
+      top = top && std::abs(fine.corner(f, k).z()) < 1e-9;
+      face.at[static_cast<std::size_t>(k)] = fine.corner(f, k).head<2>();
+    }
+    if (top) laid.faces.push_back(face);
+  }
+  laid.library[1] = feltTexture(texture);
+  const TexturePatches other(fine, laid);
+  const TriangleTree coarse_tree(*coarse.slab_.mesh), fine_tree(fine);
+  const double rms = rmsHeight(texture);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(-0.017 + 1.7e-5 * i, 3e-3 * std::sin(0.01 * i), 0);
+    const PatchAt a = coarse.patches->at(coarse_tree.closestPoint(p).surface.face, p),
+                  b = other.at(fine_tree.closestPoint(p).surface.face, p);
+    ASSERT_NEAR(a.height, b.height, 1e-12 + 1e-9 * rms);
+    ASSERT_NEAR(a.height, height(texture, p.x()), 1e-11);
+  }
+}
+
+// T-A25: where nothing is textured, or by a texture that is not known, no bit is another.
+TEST(TexturePatches, OfUnknownTexturesAreNotThere) {
+  TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
+  LaidTextures unknown = plate.laid;
+  unknown.library.clear();
+  const TexturePatches none(*plate.slab_.mesh, unknown);
+  EXPECT_EQ(none.highest(), 0);
+  EXPECT_EQ(none.bend(), 0);
+  for (std::int32_t f = 0; f < 100; ++f) EXPECT_EQ(none.at(f, Vec3::Zero()).share, 0);
+}
+
+// A seam between coordinates that do not agree is no step: the texture is gone there.
+TEST(TexturePatches, FadeAtASeam) {
+  TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
+  LaidTextures laid = plate.laid;
+  for (TexturedFace& face : laid.faces) {
+    double middle = 0;
+    for (int k = 0; k < 3; ++k)
+      middle += plate.slab_.mesh->corner(static_cast<std::size_t>(face.face), k).x();
+    if (middle < 0)
+      for (Vec2& at : face.at) at.x() += 3e-3; // not a whole period
+  }
+  const TexturePatches patches(*plate.slab_.mesh, laid);
+  const TriangleTree tree(*plate.slab_.mesh);
+  double most = 0;
+  for (double y = -8e-3; y < 8e-3; y += 0.13e-3) {
+    const Vec3 left(-1e-7, y, 0), right(1e-7, y, 0);
+    const double a = patches.at(tree.closestPoint(left).surface.face, left).height,
+                 b = patches.at(tree.closestPoint(right).surface.face, right).height;
+    most = std::max(most, std::abs(a - b));
+  }
+  EXPECT_LT(most, 1e-9);
+}
+
+// The lateral coupling keeps a texture quiet that is too stiff along the surface for the loop (F7),
+// be it of an image or of harmonics: its bend is known.
+TEST(TexturePatches, KnowTheirSharpestBend) {
+  const double length = 1e-3, amplitude = 0.1e-3;
+  const TexturedSlab plate(waves(length, {amplitude}), 0.015);
+  const double due = amplitude * std::pow(2 * kPi / length, 2);
+  EXPECT_GT(plate.patches->bend(), due);
+  EXPECT_LT(plate.patches->bend(), 2.5 * due); // of what fades, too
+  Eigen::Matrix3d bend;
+  const TriangleTree tree(*plate.slab_.mesh);
+  const Vec3 p(0.13e-3, 0.2e-3, 0);
+  plate.patches->at(tree.closestPoint(p).surface.face, p, &bend);
+  EXPECT_NEAR(bend(0, 0), -due * std::cos(2 * kPi * p.x() / length), 1e-3 * due);
+  EXPECT_NEAR(bend(1, 1), 0, 1e-6 * due);
+}
+
+} // namespace
+} // namespace patina
