@@ -24,6 +24,7 @@ Command calibrateCommand();
 Command trackCommand();
 Command filterCommand();
 Command registerCommand();
+Command fitTextureCommand();
 Command mapTextureCommand();
 #endif
 Command studyCommand();
@@ -40,7 +41,7 @@ inline std::vector<Command> allCommands() {
           redoCommand(),         embossCommand(),   renderCommand(),     exportCommand(),
 #ifdef PATINA_HAS_ACQUISITION
           simulateScanCommand(), recordCommand(),   calibrateCommand(),  trackCommand(),
-          filterCommand(),       registerCommand(), mapTextureCommand(),
+          filterCommand(),       registerCommand(), fitTextureCommand(), mapTextureCommand(),
 #endif
           studyCommand(),        modelCommand(),    devicesCommand(),    latencyTestCommand(),
           guiCommand(),          manCommand()};

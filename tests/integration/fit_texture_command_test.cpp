@@ -1,0 +1,79 @@
+// From heights to a texture that is felt, by commands.
+#ifdef PATINA_HAS_ACQUISITION
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/file.h"
+#include "integration/program.h"
+#include "workspace/texture_file.h"
+
+namespace patina::test {
+namespace {
+
+class FittedTextures : public testing::Test {
+ protected:
+  void SetUp() override {
+    profile = folder / "profile.csv";
+    out = folder / "t.json";
+    std::string text = "along [m],height [m]\n";
+    for (int i = 0; i <= 500; ++i) {
+      const double x = 1e-4 * i;
+      text += std::to_string(x) + "," +
+              std::to_string(1e-2 + 1e-4 * std::cos(2 * std::numbers::pi * x / 5e-3)) + "\n";
+    }
+    writeFileAtomically(profile, text);
+  }
+  ScratchFolder folder;
+  std::string profile, out;
+};
+
+TEST_F(FittedTextures, AreOfTheProfilesLengthAndWave) {
+  const Json report =
+      runJson({"fit-texture", profile, "-o", out, "--stiffness", "2000", "--name", "waves"});
+  EXPECT_NEAR(report.at("length").asNumber(), 0.05, 1e-9);
+  EXPECT_NEAR(report.at("wavelength").asNumber(), 5e-3, 1e-9);
+  EXPECT_GT(report.at("variance_explained").asNumber(), 0.999);
+  const FourierTexture texture = readTexture(out);
+  EXPECT_EQ(texture.name, "waves");
+  EXPECT_EQ(texture.kind, TextureKind::line);
+  EXPECT_DOUBLE_EQ(*texture.compliance, 1. / 2000);
+  EXPECT_NEAR(texture.series.a[9], 1e-4, 2e-6);
+  for (const char* kind : {"spectrum", "crossed"}) {
+    EXPECT_EQ(run({"fit-texture", profile, "-o", out, "--kind", kind}).exit, 0);
+    EXPECT_NEAR(rmsHeight(readTexture(out)), rmsHeight(texture), 1e-9);
+  }
+}
+
+TEST_F(FittedTextures, ComeFromAScansHeights) {
+  const std::string plate = folder / "plate.ply", scan = folder / "scan",
+                    heights = folder / "heights.csv";
+  ASSERT_EQ(run({"model", "box", "-o", plate}).exit, 0);
+  ASSERT_EQ(run({"simulate-scan", plate, "-o", scan, "--roughness", "0.05mm"}).exit, 0);
+  ASSERT_EQ(run({"filter", scan, "-o", folder / "path.csv", "--heights", heights}).exit, 0);
+  const Json report = runJson({"fit-texture", heights, "-o", out});
+  EXPECT_GT(report.at("length").asNumber(), 0.01);
+  EXPECT_GT(report.at("rms").asNumber(), 0.02e-3);
+  EXPECT_LT(report.at("rms").asNumber(), 0.2e-3);
+  EXPECT_EQ(problemOf(readTexture(out)), "");
+}
+
+TEST_F(FittedTextures, AreRefusedWithTheFileThatIsWrong) {
+  const std::string bad = folder / "bad.csv";
+  expectOneLineError(run({"fit-texture", folder / "none.csv", "-o", out}), {"none.csv"});
+  writeFileAtomically(bad, "along [m],height [m]\n0,0\n1e-3,1,7\n");
+  expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv:3"});
+  writeFileAtomically(bad, "along [m],height [m]\n0,0\n1e-3,nan\n2e-3,0\n3e-3,0\n");
+  expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv"});
+  writeFileAtomically(bad, "along [m],height [m]\n0,0\n1e-3,0\n2e-3,0\n3e-3,0\n5e-3,0\n");
+  expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv"});
+  expectOneLineError(run({"fit-texture", profile, "-o", profile}), {"profile.csv"});
+  expectOneLineError(run({"fit-texture", profile, "-o", out, "--kind", "cloud"}), {"cloud"});
+  expectOneLineError(run({"fit-texture", profile, "-o", out, "--stretch", "4"}), {"stretch 4"});
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+} // namespace
+} // namespace patina::test
+#endif
