@@ -142,6 +142,21 @@ TEST(FitTexture, FiveWavesAreTheFifthHarmonicOfTheLength) {
   EXPECT_NEAR(fitted.texture.low, -1e-4, 1e-9);
 }
 
+TEST(FitTexture, WavesLongerThanTheCutoffAreLeftOut) {
+  const FourierTexture truth =
+      lineOf({0, {5e-4, 0, 0, 1e-5, 2e-5, 0}, {0, 0, 1e-4, 0, 0, 3e-6}}, 0.04);
+  std::vector<ProfilePoint> points;
+  for (int i = 0; i <= 800; ++i) points.push_back({5e-5 * i, height(truth, 5e-5 * i), 0});
+  // The fourth is as long as the cutoff, and stays.
+  const FittedTexture fitted = fitTexture(points, {6, 0.01, {}, 0.01});
+  for (std::size_t j = 0; j < 6; ++j) {
+    EXPECT_NEAR(fitted.texture.series.a[j], j < 3 ? 0 : truth.series.a[j], 1e-8) << j;
+    EXPECT_NEAR(fitted.texture.series.b[j], j < 3 ? 0 : truth.series.b[j], 1e-8) << j;
+  }
+  EXPECT_NEAR(fitted.left_out, std::sqrt(0.5 * (25e-8 + 1e-8)), 1e-7);
+  EXPECT_THROW(fitTexture(points, {6, 0.01, {}, 1e-3}), Error);
+}
+
 TEST(FitTexture, OfUnevenNoisyPointsIsTheTextureBeneath) {
   const FourierTexture truth =
       lineOf({0, {2e-5, 0, 0, 1e-5, 0, 0, 0, 3e-6}, {0, 1e-5, 0, 0, 0, 5e-6, 0, 0}}, 0.04);

@@ -90,7 +90,7 @@ TEST(PathCoordinates, OfAStraightPathOnAPlaneAreThoseOfThePlane) {
   std::vector<Vec3> path;
   for (int i = 0; i <= 37; ++i) path.push_back(from + (to - from) * (i / 37.0));
   path.insert(path.begin() + 5, path[5]); // one that repeats
-  const PathCoordinates found = pathCoordinates(ground, allFaces(ground.mesh), path, {});
+  const PathCoordinates found = pathCoordinates(ground, allFaces(ground.mesh), {path, {}}, {});
   EXPECT_EQ(found.faces.size(), ground.mesh.triangles.size());
   EXPECT_NEAR(found.length, (to - from).norm(), 1e-12);
   EXPECT_NEAR(found.most, 1, 1e-9);
@@ -126,7 +126,7 @@ TEST(PathCoordinates, OfACircleConvergeAsItsChords) {
   }
   std::vector<double> errors;
   for (const int n : {64, 128, 256, 512}) {
-    const PathCoordinates found = pathCoordinates(ground, near, circle(radius, n), {});
+    const PathCoordinates found = pathCoordinates(ground, near, {circle(radius, n), {}}, {});
     EXPECT_EQ(found.faces.size(), near.size());
     const double length = found.length;
     double most = 0;
@@ -156,11 +156,11 @@ TEST(PathCoordinates, TurnRoundWithThePathAndMoveWithTheMesh) {
     path.push_back(ground.tree.closestPoint(p).point);
   }
   const auto faces = withRings(ground, facesUnder(ground, path), 2);
-  const PathCoordinates found = pathCoordinates(ground, faces, path, {3});
+  const PathCoordinates found = pathCoordinates(ground, faces, {path, {}}, {3});
   ASSERT_GT(found.faces.size(), 150u);
 
   const PathCoordinates back =
-      pathCoordinates(ground, faces, std::vector<Vec3>(path.rbegin(), path.rend()), {3});
+      pathCoordinates(ground, faces, {{path.rbegin(), path.rend()}, {}}, {3});
   ASSERT_EQ(back.faces.size(), found.faces.size());
   Pose pose = Pose::Identity();
   pose.linear() = Eigen::AngleAxisd(1.1, Vec3(1, 2, -1).normalized()).toRotationMatrix();
@@ -168,7 +168,7 @@ TEST(PathCoordinates, TurnRoundWithThePathAndMoveWithTheMesh) {
   std::vector<Vec3> moved;
   for (const Vec3& p : path) moved.push_back(pose * p);
   const PathGround elsewhere(transformed(mesh, Eigen::Affine3d(pose)));
-  const PathCoordinates there = pathCoordinates(elsewhere, faces, moved, {3});
+  const PathCoordinates there = pathCoordinates(elsewhere, faces, {moved, {}}, {3});
   ASSERT_EQ(there.faces.size(), found.faces.size());
   for (std::size_t i = 0; i < found.faces.size(); ++i) {
     EXPECT_EQ(found.faces[i].texture, 3);
@@ -192,7 +192,7 @@ TEST(PathCoordinates, OfTwoLegsHaveASeamAndNoWarp) {
   }
   for (int i = 40; i >= 0; --i) path.emplace_back(0.01, -0.04 + 0.001 * i, 0);
   const auto all = allFaces(ground.mesh);
-  const PathCoordinates found = pathCoordinates(ground, all, path, {});
+  const PathCoordinates found = pathCoordinates(ground, all, {path, {}}, {});
   EXPECT_EQ(found.faces.size() + found.folded + found.ambiguous + found.stretched, all.size());
   EXPECT_GT(found.faces.size(), 0.95 * static_cast<double>(all.size()));
   std::size_t legs = 0;
@@ -223,7 +223,7 @@ TEST(PathCoordinates, LeaveOutWhatABendFoldsAndSaySo) {
     path.emplace_back(0.005 * std::cos(angle), 0.005 * std::sin(angle), 0);
   }
   const auto all = allFaces(ground.mesh);
-  const PathCoordinates found = pathCoordinates(ground, all, path, {});
+  const PathCoordinates found = pathCoordinates(ground, all, {path, {}}, {});
   EXPECT_GT(found.folded + found.ambiguous + found.stretched, 4u);
   for (const TexturedFace& face : found.faces) {
     const auto f = static_cast<std::size_t>(face.face);
@@ -249,8 +249,8 @@ TEST(PathCoordinates, DoNotDependOnTheTriangles) {
                 at.barycentric[2] * face.at[2]);
   };
   const PathGround coarse(unevenSheet(0.1, 7, 1)), fine(unevenSheet(0.1, 90, 2));
-  const PathCoordinates a = pathCoordinates(coarse, allFaces(coarse.mesh), path, {});
-  const PathCoordinates b = pathCoordinates(fine, allFaces(fine.mesh), path, {});
+  const PathCoordinates a = pathCoordinates(coarse, allFaces(coarse.mesh), {path, {}}, {});
+  const PathCoordinates b = pathCoordinates(fine, allFaces(fine.mesh), {path, {}}, {});
   Draw draw(6);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 p(draw.uniform(-0.05, 0.05), draw.uniform(-0.05, 0.05), 0);
@@ -260,7 +260,7 @@ TEST(PathCoordinates, DoNotDependOnTheTriangles) {
 
 TEST(PathCoordinates, NeedAPathWithLength) {
   const PathGround ground(sheet(0.1, 0.1, 4));
-  EXPECT_THROW(pathCoordinates(ground, {0}, {Vec3::Zero(), Vec3::Zero()}, {}), Error);
+  EXPECT_THROW(pathCoordinates(ground, {0}, {{Vec3::Zero(), Vec3::Zero()}, {}}, {}), Error);
   EXPECT_THROW(pathCoordinates(ground, {0}, {}, {}), Error);
 }
 

@@ -53,6 +53,31 @@ TEST_F(MappedTextures, LieAlongThePathInTheUnitOfTheMesh) {
   EXPECT_EQ(run({"info", out}).exit, 0); // any other command reads it as a mesh
 }
 
+TEST_F(MappedTextures, CountTheWayAsTheHeightsDo) {
+  const std::string timed = folder / "timed.csv", heights = folder / "heights.csv";
+  std::string path_rows = "t [s],x [m],y [m],z [m]\n",
+              height_rows = "t [s],along [m],height [m],sigma [m],stretch\n";
+  for (int i = 0; i <= 60; ++i) { // the first half of the way has no heights
+    path_rows += std::to_string(0.01 * i) + "," + std::to_string(-0.03 + 1e-3 * i) + ",0.003,0\n";
+    if (i >= 30)
+      height_rows +=
+          std::to_string(0.01 * i) + "," + std::to_string(1.1e-3 * (i - 30)) + ",0,1,4\n";
+  }
+  writeFileAtomically(timed, path_rows);
+  writeFileAtomically(heights, height_rows);
+  runJson({"map-texture", mesh, timed, "-o", out, "--heights", heights, "--rings", "0"});
+  const TexturedMesh read = readTexturedObj(out);
+  ASSERT_GT(read.textured.size(), 4u);
+  for (const TexturedFace& face : read.textured)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = read.mesh.corner(static_cast<std::size_t>(face.face), k);
+      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].x(), 1.1 * p.x(), 1e-6);
+    }
+  writeFileAtomically(heights, "t [s],along [m],height [m],sigma [m],stretch\n7,0,0,1,0\n");
+  expectOneLineError(run({"map-texture", mesh, timed, "-o", out, "--heights", heights}),
+                     {"heights.csv", "no height"});
+}
+
 TEST_F(MappedTextures, LaterOnesReplaceEarlierOnes) {
   runJson({"map-texture", mesh, path, "-o", out, "--texture", "1", "--rings", "100"});
   const std::string both = folder / "both.obj";

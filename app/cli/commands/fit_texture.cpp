@@ -24,18 +24,20 @@ struct FitTextureOptions {
   std::string name;
 };
 
-const Keys kFitKeys = {{"kind", "", "kind"},
-                       {"harmonics", "", "harmonics"},
-                       {"length", "m", "length", "of the profile, the texture's period"},
-                       {"omega", "rad/m", "fundamental"},
-                       {"samples", "", "samples", "even ones, in a period"},
-                       {"rms", "m", "rms", "of the profile's heights from its best line"},
-                       {"residual", "m", "residual", "rms of what the texture lacks of them"},
-                       {"variance_explained", "", "explained", "of the profile's variance"},
-                       {"blended", "m", "blended", "rms of what was changed so that the ends meet"},
-                       {"wavelength", "m", "wavelength", "of the strongest harmonic"},
-                       {"highest", "m", "highest", "over the lowest point"},
-                       {"compliance", "m/N", "compliance", "", Shown::if_any}};
+const Keys kFitKeys = {
+    {"kind", "", "kind"},
+    {"harmonics", "", "harmonics"},
+    {"length", "m", "length", "of the profile, the texture's period"},
+    {"omega", "rad/m", "fundamental"},
+    {"samples", "", "samples", "even ones, in a period"},
+    {"rms", "m", "rms", "of the profile's heights from its best line"},
+    {"residual", "m", "residual", "rms of what the texture lacks of them"},
+    {"variance_explained", "", "explained", "of the profile's variance"},
+    {"left_out", "m", "left out", "rms of the waves longer than --cutoff", Shown::if_any},
+    {"blended", "m", "blended", "rms of what was changed so that the ends meet"},
+    {"wavelength", "m", "wavelength", "of the strongest harmonic"},
+    {"highest", "m", "highest", "over the lowest point"},
+    {"compliance", "m/N", "compliance", "", Shown::if_any}};
 
 // The stretch that was asked for, or the one that goes farthest.
 std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console& console) {
@@ -118,10 +120,12 @@ int runFitTexture(const FitTextureOptions& options, Console& console) {
       .set("rms", rms)
       .set("residual", fitted.residual)
       .set("variance_explained", 1 - fitted.residual * fitted.residual / fitted.variance)
+      .set("left_out", fitted.left_out)
       .set("blended", fitted.blended)
       .set("wavelength", fitted.length / static_cast<double>(strongest + 1))
       .set("highest", feltTexture(texture)->highest - texture.low);
-  if (texture.compliance) report.set("compliance", *texture.compliance);
+  if (texture.compliance)
+    report.set("compliance", *texture.compliance, formatNumber(*texture.compliance) + " m/N");
   console.report(report);
   return kDone;
 }
@@ -147,7 +151,7 @@ Command fitTextureCommand() {
           "one period a profile.\n"
           "line: a height along x. spectrum: its amplitudes with phases that a seed draws. "
           "crossed: its cross-correlation with itself, a height over x and y.",
-      .examples = {"patina fit-texture heights.csv -o grain.json --stiffness 2900",
+      .examples = {"patina fit-texture heights.csv -o grain.json --cutoff 8mm --stiffness 2900",
                    "patina fit-texture profile.csv -o grain.json --harmonics 64 --kind crossed"},
       .keys = kFitKeys,
       .arguments =
@@ -168,6 +172,11 @@ Command fitTextureCommand() {
            {"--step", "LENGTH", "m", "the points' median", "Of the even samples.",
             inRange(
                 1e-9, 1, [options](double step) { options->fit.step = step; }, NumberKind::length)},
+           {"--cutoff", "LENGTH", "m", "",
+            "Leave out longer waves: the shape of what was scanned, which its mesh has.",
+            inRange(
+                1e-9, 1, [options](double length) { options->fit.cutoff = length; },
+                NumberKind::length)},
            {"--stretch", "N", "", "the longest", "Of contact.",
             inRange(
                 0, 1e9, [options](double n) { options->stretch = static_cast<std::size_t>(n); },

@@ -18,7 +18,7 @@ namespace {
 constexpr double kFarOfSize = 0.05; // of the mesh's size: a path so far off is of another unit
 
 struct MapOptions {
-  std::filesystem::path mesh, path, output;
+  std::filesystem::path mesh, path, heights, output;
   MeshUnit unit = MeshUnit::mm;
   LayOptions lay{1, 1, Neighbours::by_vertex, 2};
 };
@@ -50,7 +50,7 @@ bool isObj(const std::filesystem::path& path) {
 }
 
 int runMapTexture(const MapOptions& options, Console& console) {
-  requireWritable(options.output, {options.path});
+  requireWritable(options.output, {options.path, options.heights});
   if (!isObj(options.output))
     throw FileError(options.output.string(), 0, "only an .obj holds haptic coordinates");
   TexturedMesh file = isObj(options.mesh) ? readTexturedObj(options.mesh)
@@ -64,7 +64,7 @@ int runMapTexture(const MapOptions& options, Console& console) {
   usable_mesh.positions = scaled.mesh.positions;
   for (const std::int32_t face : usable)
     usable_mesh.triangles.push_back(scaled.mesh.triangles[static_cast<std::size_t>(face)]);
-  const std::vector<Stroke3> strokes = readStrokes(options.path);
+  const std::vector<PathOnMesh> strokes = readStrokes(options.path, options.heights);
   const PathGround ground(std::move(usable_mesh));
   LaidTexture laid;
   try {
@@ -121,7 +121,7 @@ Command mapTextureCommand() {
           "made. Each stroke begins anew at x = 0.\n"
           "Where MESH has coordinates already they stay, but for the faces that this path takes: "
           "of textures that overlap the last one is felt.",
-      .examples = {"patina map-texture dinosaur.obj registered.csv -o textured.obj --texture 1",
+      .examples = {"patina map-texture dinosaur.obj registered.csv -o textured.obj --heights heights.csv",
                    "patina map-texture textured.obj other.csv -o both.obj --texture 2 --rings 3"},
       .keys = kMapKeys,
       .arguments = {input("MESH", "Mesh.", into(options->mesh)),
@@ -131,6 +131,10 @@ Command mapTextureCommand() {
                      inRange(
                          0, 1e9, [&lay](double id) { lay.texture = static_cast<std::int32_t>(id); },
                          NumberKind::whole)},
+                    {"--heights", "HEIGHTS.csv", "", "",
+                     "Of this path, by patina filter: what the texture was made of tells how far "
+                     "along each sample lies.",
+                     into(options->heights)},
                     {"--rings", "N", "", "1", "Of neighbours beyond the faces on the way.",
                      inRange(
                          0, 1000, [&lay](double rings) { lay.rings = static_cast<int>(rings); },

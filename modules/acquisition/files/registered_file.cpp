@@ -1,6 +1,8 @@
 #include "acquisition/files/registered_file.h"
 
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "core/csv.h"
 #include "core/csv_rows.h"
@@ -29,10 +31,33 @@ void writeRegisteredPath(const std::filesystem::path& path, const std::vector<Pa
   writer.commit();
 }
 
-std::vector<std::vector<Vec3>> readStrokes(const std::filesystem::path& path) {
+namespace {
+
+struct Place {
+  double along = 0;
+  double stretch = 0;
+};
+
+// By time.
+std::map<double, Place> readPlaces(const std::filesystem::path& heights) {
+  const CsvTable table =
+      readCsv(heights, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"});
+  std::map<double, Place> places;
+  for (const auto& row : table.rows) places[row[0]] = {row[1], row[4]};
+  return places;
+}
+
+} // namespace
+
+std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
+                                    const std::filesystem::path& heights) {
   constexpr double kPause = 5; // times the median interval
   const std::string text = readFile(path);
   const bool timed = text.substr(0, text.find('\n')).starts_with("t [s]");
+  const std::map<double, Place> places =
+      heights.empty() ? std::map<double, Place>() : readPlaces(heights);
+  if (!heights.empty() && !timed)
+    throw FileError(path.string(), 1, "has no times to find the heights' by");
   std::vector<std::string> expected = {"x [m]", "y [m]", "z [m]"};
   if (timed) expected.insert(expected.begin(), "t [s]");
   CsvReader reader(sourceOfText(text), path.string(), expected);
@@ -52,11 +77,26 @@ std::vector<std::vector<Vec3>> readStrokes(const std::filesystem::path& path) {
   }
   if (points.empty()) throw FileError(path.string(), 0, "has no point");
   const double pause = intervals.empty() ? 0 : kPause * percentiles(intervals).p50;
-  std::vector<std::vector<Vec3>> strokes(1);
+  std::vector<PathOnMesh> strokes(1);
+  std::optional<Place> last;
+  double last_time = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (timed && i > 0 && times[i] - times[i - 1] > pause) strokes.emplace_back();
-    strokes.back().push_back(points[i]);
+    std::optional<Place> place;
+    if (!places.empty()) {
+      const auto found = places.find(times[i]);
+      if (found == places.end()) continue;
+      place = found->second;
+    }
+    const bool other = place && last && place->stretch != last->stretch;
+    if (!strokes.back().points.empty() && timed && (other || times[i] - last_time > pause))
+      strokes.emplace_back();
+    strokes.back().points.push_back(points[i]);
+    if (place) strokes.back().along.push_back(place->along);
+    last = place;
+    if (timed) last_time = times[i];
   }
+  if (strokes.back().points.empty())
+    throw FileError(heights.string(), 0, "has no height at a time of " + path.string());
   return strokes;
 }
 

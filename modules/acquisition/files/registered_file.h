@@ -6,6 +6,7 @@
 
 #include "acquisition/registration/register_path.h"
 #include "acquisition/scan_samples.h"
+#include "acquisition/texture/texture_coordinates.h"
 
 namespace patina {
 
@@ -16,6 +17,9 @@ void writeRegisteredPath(const std::filesystem::path& path, const std::vector<Pa
 // Strokes of such a file, of any path's (t [s],x [m],y [m],z [m], ...) or of points alone (x [m],
 // y [m],z [m], ...): one wherever the time between two samples is more than five times the median.
 // Throws FileError: another header, a bad number, time that does not increase, no point.
-std::vector<std::vector<Vec3>> readStrokes(const std::filesystem::path& path);
+// `along` of those that the heights of such a scan have it for (t [s],along [m], ...); others are
+// left out then. Throws FileError for heights of another scan.
+std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
+                                    const std::filesystem::path& heights = {});
 
 } // namespace patina

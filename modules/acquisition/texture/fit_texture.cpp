@@ -177,6 +177,7 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
   if (options.harmonics < 1) throw Error("there must be one harmonic or more");
   if (!(options.blend > 0 && options.blend <= 0.5))
     throw Error("what is blended lies between 0 and half of the profile");
+  if (options.cutoff && !(*options.cutoff > 0)) throw Error("the cutoff is a length above 0");
   const double from = points.front().along, length = points.back().along - from;
   double step = options.step.value_or(medianStep(points));
   if (!(step > 0) || !(length > 3 * step)) throw Error("the profile has fewer than three steps");
@@ -219,6 +220,18 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
   }
   for (double& miss : misses) miss -= mean / static_cast<double>(misses.size());
   fitted.residual = std::sqrt(meanSquare(misses, misses.size()));
+  if (!options.cutoff) return fitted;
+  const auto longer = std::min(static_cast<std::size_t>(std::ceil(length / *options.cutoff)) - 1,
+                               texture.series.a.size());
+  if (longer == texture.series.a.size())
+    throw Error("all of the texture's waves are longer than " + formatLength(*options.cutoff));
+  for (std::size_t j = 0; j < longer; ++j) {
+    fitted.left_out += 0.5 * (texture.series.a[j] * texture.series.a[j] +
+                              texture.series.b[j] * texture.series.b[j]);
+    texture.series.a[j] = texture.series.b[j] = 0;
+  }
+  fitted.left_out = std::sqrt(fitted.left_out);
+  texture.low = leastHeight(texture);
   return fitted;
 }
 

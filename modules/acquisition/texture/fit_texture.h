@@ -13,6 +13,8 @@ struct FitOptions1d {
   int harmonics = 128;
   double blend = 0.1;         // of the profile's length, at its end (seamless())
   std::optional<double> step; // of the even samples [m]; else the median of the points'
+  // Longer waves are the body's shape, which its mesh has, and are left out [m].
+  std::optional<double> cutoff{};
 };
 
 struct FittedTexture {
@@ -22,6 +24,7 @@ struct FittedTexture {
   double tilt = 0;         // of the line that was taken off
   double variance = 0;     // of the profile without it [m^2]
   double residual = 0;     // rms of what the texture lacks of that, where nothing was blended [m]
+  double left_out = 0;     // rms of the waves longer than the cutoff [m]
   double blended = 0;      // rms of what blending changed, over the whole [m]
 };
 
@@ -29,7 +32,7 @@ struct FittedTexture {
 // above 0. A straight line is taken off, the best one beside
 // the lowest harmonics. Harmonics are no more than (samples - 1) / 2.
 // Throws Error: fewer than three places, heights that are not finite or all equal, a gap of more
-// than a twentieth of the length, a harmonic or blend that is out of range.
+// than a twentieth of the length, a harmonic, blend or cutoff that is out of range.
 FittedTexture fitTexture(const std::vector<ProfilePoint>& points, const FitOptions1d& options);
 
 // Heights at even steps, the last of which is the first one of the next period: over the last

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "core/error.h"
 #include "core/percentiles.h"
@@ -11,6 +12,8 @@ namespace patina {
 namespace {
 
 constexpr double kStepOfEdge = 0.25;
+constexpr std::size_t kTurnReach = 8; // steps: two edges
+constexpr double kAlike = 0.5;        // of a face's edges
 
 double medianEdge(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
   std::vector<double> edges;
@@ -22,30 +25,60 @@ double medianEdge(const TriangleMesh& mesh, const std::vector<std::int32_t>& fac
   return percentiles(edges).p50;
 }
 
-double squaredDistance(const TexturedFace& face) { // of its middle from the path
-  const Vec2 middle = (face.at[0] + face.at[1] + face.at[2]) / 3;
-  return middle.y() * middle.y();
+// How far a face's middle lies from the path.
+double distanceOf(const TexturedFace& face) {
+  return std::abs(face.at[0].y() + face.at[1].y() + face.at[2].y()) / 3;
+}
+
+bool hasLength(const std::vector<Vec3>& points) {
+  return std::any_of(points.begin(), points.end(),
+                     [&](const Vec3& p) { return p != points.front(); });
+}
+
+// From one point to another, both included.
+PathOnMesh partOf(const PathOnMesh& path, std::size_t first, std::size_t last) {
+  const auto from = static_cast<std::ptrdiff_t>(first), to = static_cast<std::ptrdiff_t>(last) + 1;
+  PathOnMesh part{{path.points.begin() + from, path.points.begin() + to}, {}};
+  if (!path.along.empty()) part.along.assign(path.along.begin() + from, path.along.begin() + to);
+  return part;
+}
+
+double meanEdge(const TriangleMesh& mesh, std::int32_t face) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k)
+    sum += (mesh.corner(static_cast<std::size_t>(face), (k + 1) % 3) -
+            mesh.corner(static_cast<std::size_t>(face), k))
+               .norm();
+  return sum / 3;
 }
 
 } // namespace
 
-Stroke3 evened(const Stroke3& path, double step) {
-  if (path.size() < 3) return path;
-  Stroke3 out = {path.front()};
+PathOnMesh evened(const PathOnMesh& path, double step) {
+  const std::vector<Vec3>& points = path.points;
+  if (points.size() < 3) return path;
+  PathOnMesh out{{points.front()}, {}};
+  const bool told = !path.along.empty();
+  if (told) out.along.push_back(path.along.front());
   Vec3 sum = Vec3::Zero();
-  double weight = 0, along = 0;
+  double sum_along = 0, weight = 0, along = 0;
   const auto close = [&] {
-    if (weight > 0) out.push_back(sum / weight);
+    if (!(weight > 0)) return;
+    out.points.push_back(sum / weight);
+    if (told) out.along.push_back(sum_along / weight);
     sum.setZero();
-    weight = 0;
+    sum_along = weight = 0;
   };
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    const Vec3 &a = path[i], &b = path[i + 1];
-    const double length = (b - a).norm();
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Vec3 step_on = points[i + 1] - points[i];
+    const double length = step_on.norm();
     // Split where a step ends within the segment.
     for (double done = 0; done < length;) {
-      const double left = std::min(length - done, step - along);
-      sum += left * (a + (b - a) * ((done + 0.5 * left) / length));
+      const double left = std::min(length - done, step - along),
+                   share = (done + 0.5 * left) / length;
+      if (!(left > 0)) break;
+      sum += left * (points[i] + share * step_on);
+      if (told) sum_along += left * (path.along[i] + share * (path.along[i + 1] - path.along[i]));
       weight += left;
       along += left;
       done += left;
@@ -53,55 +86,80 @@ Stroke3 evened(const Stroke3& path, double step) {
         close();
         along = 0;
       }
-      if (!(left > 0)) break;
     }
   }
   if (along > 0.5 * step) close();
-  out.push_back(path.back());
+  out.points.push_back(points.back());
+  if (told) out.along.push_back(path.along.back());
   return out;
 }
 
-LaidTexture layTexture(const PathGround& ground, const std::vector<Stroke3>& strokes,
+std::vector<std::size_t> turnsOf(const std::vector<Vec3>& path, std::size_t reach) {
+  std::vector<std::size_t> turns;
+  double worst = 0;
+  for (std::size_t i = reach; i + reach < path.size(); ++i) {
+    const double on = (path[i] - path[i - reach]).dot(path[i + reach] - path[i]);
+    if (on >= 0) {
+      worst = 0;
+      continue;
+    }
+    if (worst == 0) turns.push_back(i); // one a run of places at which it turns
+    if (on < worst) {
+      worst = on;
+      turns.back() = i;
+    }
+  }
+  return turns;
+}
+
+LaidTexture layTexture(const PathGround& ground, const std::vector<PathOnMesh>& strokes,
                        const LayOptions& options, const Progress& progress) {
   LaidTexture laid;
-  std::vector<TexturedFace> fresh;
+  std::map<std::int32_t, TexturedFace> fresh; // by face
   laid.least = std::numeric_limits<double>::infinity();
-  for (const Stroke3& stroke : strokes) {
+  for (const PathOnMesh& stroke : strokes) {
     progress.throwIfCancelled();
-    Stroke3 path;
+    PathOnMesh path = stroke;
     std::int32_t warm = -1;
-    for (const Vec3& p : stroke) {
+    for (Vec3& p : path.points) {
       const ClosestPoint near = ground.tree.closestPoint(p, warm);
       warm = near.surface.face;
-      if (warm < 0) continue;
-      path.push_back(near.point);
+      if (warm < 0) throw Error("the path has a point that is not finite");
+      p = near.point;
       laid.farthest = std::max(laid.farthest, near.distance);
     }
-    std::vector<std::int32_t> under = facesUnder(ground, path);
+    const std::vector<std::int32_t> under = facesUnder(ground, path.points);
     if (under.empty()) continue;
     path = evened(path, kStepOfEdge * medianEdge(ground.mesh, under));
-    if (path.size() < 2 || !((path.back() - path.front()).norm() > 0 || path.size() > 2)) continue;
-    const PathCoordinates found =
-        pathCoordinates(ground, withRings(ground, under, options.rings, options.neighbours), path,
-                        {options.texture, options.most_stretch});
-    laid.lengths.push_back(found.length);
-    laid.folded += found.folded;
-    laid.ambiguous += found.ambiguous;
-    laid.stretched += found.stretched;
-    laid.most = std::max(laid.most, found.most);
-    laid.least = std::min(laid.least, found.least);
-    fresh.insert(fresh.end(), found.faces.begin(), found.faces.end());
+    if (!hasLength(path.points)) continue;
+    std::vector<std::size_t> ends = turnsOf(path.points, kTurnReach);
+    ends.push_back(path.points.size() - 1);
+    double way = 0;
+    for (std::size_t first = 0; const std::size_t last : ends) {
+      const PathOnMesh leg = partOf(path, first, last);
+      first = last;
+      const PathCoordinates found = pathCoordinates(
+          ground, withRings(ground, facesUnder(ground, leg.points), options.rings, options.neighbours),
+          leg, {options.texture, options.most_stretch});
+      laid.folded += found.folded;
+      laid.ambiguous += found.ambiguous;
+      laid.stretched += found.stretched;
+      laid.most = std::max(laid.most, found.most);
+      laid.least = std::min(laid.least, found.least);
+      for (TexturedFace face : found.faces) {
+        if (leg.along.empty())
+          for (Vec2& at : face.at) at.x() += way;
+        const auto [place, is_new] = fresh.try_emplace(face.face, face);
+        const double closer = distanceOf(place->second) - distanceOf(face);
+        if (!is_new && closer > kAlike * meanEdge(ground.mesh, face.face)) place->second = face;
+      }
+      way += found.length;
+    }
+    laid.lengths.push_back(way);
   }
   if (laid.lengths.empty()) throw Error("the path has no length");
   if (fresh.empty()) laid.least = 0;
-  std::stable_sort(fresh.begin(), fresh.end(), [](const TexturedFace& a, const TexturedFace& b) {
-    return a.face != b.face ? a.face < b.face : squaredDistance(a) < squaredDistance(b);
-  });
-  const auto same_face = [](const TexturedFace& a, const TexturedFace& b) {
-    return a.face == b.face;
-  };
-  fresh.erase(std::unique(fresh.begin(), fresh.end(), same_face), fresh.end());
-  laid.faces = std::move(fresh);
+  for (const auto& [number, face] : fresh) laid.faces.push_back(face);
   return laid;
 }
 

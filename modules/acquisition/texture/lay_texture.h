@@ -6,8 +6,6 @@
 
 namespace patina {
 
-using Stroke3 = std::vector<Vec3>; // [m], in the mesh's frame, in order
-
 struct LayOptions {
   std::int32_t texture = 0;
   int rings = 1; // of neighbours that are textured too
@@ -26,16 +24,22 @@ struct LaidTexture {
 
 // Each stroke is brought to the mesh's nearest points and evened over a quarter of the faces' edges
 // that it crosses (median), for finer than that no face can follow it; noise would only lengthen
-// it. A face near several strokes takes the nearest; x begins at zero with each stroke. Throws
-// Error where no stroke has a length, Cancelled.
-LaidTexture layTexture(const PathGround& ground, const std::vector<Stroke3>& strokes,
+// it. x is what the stroke says, or begins at zero with it and runs on where a hand turns back. A face near several
+// strokes, or near the legs of one that goes there and back, takes the nearest; of those that are
+// alike within half of its edges the first, for legs that cover one another would else share it
+// face by face. Throws Error where no stroke has a length, Cancelled.
+LaidTexture layTexture(const PathGround& ground, const std::vector<PathOnMesh>& strokes,
                        const LayOptions& options, const Progress& progress);
 
 // Both; a face that has a texture in either gets the one above.
 std::vector<TexturedFace> laidOver(const std::vector<TexturedFace>& above,
                                    const std::vector<TexturedFace>& below);
 
+// Where an even path turns back: places in it at which it goes against where it came from, over
+// `reach` steps each.
+std::vector<std::size_t> turnsOf(const std::vector<Vec3>& path, std::size_t reach);
+
 // Means of the path's points over each `step` of its way [m]; both ends stay.
-Stroke3 evened(const Stroke3& path, double step);
+PathOnMesh evened(const PathOnMesh& path, double step);
 
 } // namespace patina

@@ -25,12 +25,20 @@ bool shareEdge(const PathGround& ground, std::int32_t a, std::int32_t b) {
 // the last one, a length earlier.
 class Polyline {
  public:
-  explicit Polyline(const std::vector<Vec3>& given) {
+  explicit Polyline(const PathOnMesh& given) {
+    const bool told = !given.along.empty();
+    if (told && given.along.size() != given.points.size())
+      throw Error("the path has " + std::to_string(given.points.size()) + " points and " +
+                  std::to_string(given.along.size()) + " places along it");
     Box3 box;
-    for (const Vec3& p : given) box.extend(p);
+    for (const Vec3& p : given.points) box.extend(p);
     const double least = box.isEmpty() ? 0 : kRepeated * box.sizes().norm();
-    for (const Vec3& p : given)
-      if (points_.empty() || (p - points_.back()).norm() > least) points_.push_back(p);
+    for (std::size_t i = 0; i < given.points.size(); ++i) {
+      if (!points_.empty() && (given.points[i] - points_.back()).norm() <= least) continue;
+      points_.push_back(given.points[i]);
+      if (told) x_.push_back(given.along[i]);
+    }
+    if (!std::is_sorted(x_.begin(), x_.end())) throw Error("the places along the path fall");
     if (points_.size() < 2) throw Error("the path has no length");
     closed_ = points_.size() > 3 && (points_.back() - points_.front()).norm() <= least;
     along_.push_back(0);
@@ -39,6 +47,7 @@ class Polyline {
       along_.push_back(along_.back() + step.norm());
       direction_.push_back(step.normalized());
     }
+    if (!told) x_ = along_;
     for (int i = 0; i <= segments(); ++i) {
       const Vec3 sum = direction(closed_ || i > 0 ? i - 1 : 0) +
                        direction(closed_ || i < segments() ? i : i - 1);
@@ -47,7 +56,7 @@ class Polyline {
     }
   }
 
-  double length() const { return along_.back(); }
+  double length() const { return along_.back(); } // of the way
   int segments() const { return static_cast<int>(direction_.size()); }
   // Segments as triangles without area, for a tree.
   TriangleMesh asMesh() const {
@@ -63,7 +72,8 @@ class Polyline {
   }
 
   struct Foot {
-    double x = 0;                                             // [m]
+    double way = 0; // from the beginning [m]
+    double x = 0;   // how far along that is said to be [m]
     Vec3 point = Vec3::Zero();                                // nearest
     Vec3 direction = Vec3::Zero();                            // of the path there, unit
     double squared = std::numeric_limits<double>::infinity(); // distance
@@ -82,8 +92,7 @@ class Polyline {
       const Vec3 at = point(i) + t * direction(i);
       const double squared = (p - at).squaredNorm();
       if (!(squared < best.squared)) continue;
-      best = {along(i) + t, at, direction(i),
-              squared,      i,  !(before && i == first) && !(behind && i == last)};
+      best = {along(i) + t, xAt(i, t / whole), at, direction(i), squared, i,  !(before && i == first) && !(behind && i == last)};
     }
     return best;
   }
@@ -108,7 +117,8 @@ class Polyline {
       const double squared = (p - at).squaredNorm();
       if (found && squared >= best.squared) continue;
       found = true;
-      best = {along(i) + s * whole, at, (from + s * turn).normalized(), squared, i, near.inside};
+      best = {along(i) + s * whole, xAt(i, s), at, (from + s * turn).normalized(), squared, i,
+              near.inside};
     }
     return best;
   }
@@ -132,8 +142,15 @@ class Polyline {
     return along_[k] + length() * (i - static_cast<int>(k)) / segments();
   }
 
+  // A share of segment i, or beyond it as it goes on there.
+  double xAt(int i, double share) const {
+    const auto k = at(i);
+    const double whole = x_.back() - x_.front();
+    return x_[k] + share * (x_[k + 1] - x_[k]) + whole * (i - static_cast<int>(k)) / segments();
+  }
+
   std::vector<Vec3> points_, direction_, tangent_; // tangents: at points
-  std::vector<double> along_;
+  std::vector<double> along_, x_;                  // of points: the way, and what it counts as
   bool closed_ = false;
 };
 
@@ -256,7 +273,7 @@ std::vector<std::int32_t> withRings(const PathGround& ground,
 }
 
 PathCoordinates pathCoordinates(const PathGround& ground, const std::vector<std::int32_t>& faces,
-                                const std::vector<Vec3>& given, const CoordinateOptions& options) {
+                                const PathOnMesh& given, const CoordinateOptions& options) {
   const Polyline path(given);
   const TriangleTree segments(path.asMesh());
   PathCoordinates found;
@@ -271,7 +288,7 @@ PathCoordinates pathCoordinates(const PathGround& ground, const std::vector<std:
     warm = segments.closestPoint(middle, warm).surface.face;
     const int segment = warm;
     Judged judged =
-        judge(ground, f, path, path.foot(middle, segment, segment).x, options.most_stretch);
+        judge(ground, f, path, path.foot(middle, segment, segment).way, options.most_stretch);
     judged.face.texture = options.texture;
     switch (judged.verdict) {
     case Verdict::folded:

@@ -17,6 +17,13 @@ struct PathGround {
   Adjacency neighbours;
 };
 
+// A path on or near a mesh, in its frame.
+struct PathOnMesh {
+  std::vector<Vec3> points; // [m]
+  // How far along each lies, as whoever measured a profile over it says [m]; empty: the way itself.
+  std::vector<double> along;
+};
+
 // The faces nearest to the path's points and to what lies between them: a point a quarter of the
 // way is looked at wherever two neighbours' faces share no edge, down to 1e-6 of the mesh's size.
 // Ascending. path: two points or more, each on or near the mesh [m].
@@ -28,9 +35,9 @@ std::vector<std::int32_t> withRings(const PathGround& ground,
                                     const std::vector<std::int32_t>& faces, int rings,
                                     Neighbours neighbours = Neighbours::by_vertex);
 
-// From a path's polyline: x is the way along it to the nearest point [m], y the distance, positive
-// to the left of who walks along it with the surface under the feet. Before the first point and
-// behind the last it goes on straight.
+// From a path's polyline: x is how far along it the nearest point lies [m], y the distance,
+// positive to the left of who walks along it with the surface under the feet. Before the first
+// point and behind the last it goes on straight.
 struct PathCoordinates {
   // None of `face` is counted twice: the first of these that holds is why it got none.
   std::size_t folded = 0;    // x runs backwards, or nowhere: behind the centre of a bend
@@ -48,8 +55,9 @@ struct CoordinateOptions {
 
 // Coordinates of these faces. Each face takes the part of the path that is nearest to its middle,
 // so that where two parts meet there is a seam between faces and no warp within one. Points that
-// repeat are left out. Throws Error for a path without length.
+// repeat are left out. Throws Error for a path without length, and for one whose `along` falls or
+// is not one a point.
 PathCoordinates pathCoordinates(const PathGround& ground, const std::vector<std::int32_t>& faces,
-                                const std::vector<Vec3>& path, const CoordinateOptions& options);
+                                const PathOnMesh& path, const CoordinateOptions& options);
 
 } // namespace patina

@@ -11,6 +11,7 @@ namespace {
 constexpr std::array kCoefficients = {4, 8, 12, 16};
 constexpr std::size_t kCachedCells = 6144; // coefficients that stay near the core
 constexpr int kFewestCells = 8;
+constexpr int kMostCells = 1 << 20; // never with 16 coefficients, whatever the error
 
 struct CellLeft {
   double value = 0, slope = 0;
@@ -30,10 +31,8 @@ CellLeft leftOut(const FourierSeries& series, double half, int count) {
 }
 
 int cellsFor(const FourierSeries& series, double value_error, double slope_error, int count) {
-  // Beyond 64 cells a wavelength rounding is all that is left.
-  const int most = 64 * static_cast<int>(series.a.size() + 1);
   int cells = kFewestCells;
-  for (; cells < most; cells *= 2) {
+  for (; cells < kMostCells; cells *= 2) {
     const CellLeft left = leftOut(series, std::numbers::pi / cells, count);
     if (left.value <= value_error && left.slope <= slope_error) break;
   }
