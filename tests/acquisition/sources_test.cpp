@@ -224,7 +224,24 @@ TEST(SerialStreams, LeaveOutTheLineThatHadBegun) {
   ASSERT_EQ(samples.size(), 2u);
   EXPECT_EQ(samples[0].t, 0.004);
   close(master);
-  EXPECT_FALSE(source->read(samples));
+}
+
+TEST(SerialStreams, SayThatTheDeviceIsGone) {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(master, 0);
+  ASSERT_EQ(grantpt(master) | unlockpt(master), 0);
+  const std::string name = ptsname(master);
+  const auto source = openProbe("stream:" + name);
+  close(master);
+  std::vector<ProbeSample> samples;
+  std::string cause = "nothing";
+  try {
+    source->read(samples);
+  } catch (const Error& error) {
+    cause = error.what();
+  }
+  EXPECT_NE(cause.find(name + ": the probe is gone"), std::string::npos) << cause;
+  EXPECT_TRUE(samples.empty());
 }
 
 class Videos : public Sources {

@@ -40,7 +40,9 @@ void FindingList::fill() {
                                      this);
     item->setToolTip(finding.words);
   }
-  if (count() == 0) addItem(tr("Every frame has a pose, and the path has no gap."));
+  if (count() == 0)
+    addItem(scan_.path()->poses.empty() ? tr("There are no poses yet.")
+                                        : tr("Every frame has a pose, and the path has no gap."));
   follow();
 }
 

@@ -69,6 +69,7 @@ class ProbeStream : public ProbeSource {
     if (wake_.get() < 0) throw FileError(path, 0, "cannot be waited for: " + reason(errno));
     if (std::filesystem::is_directory(path)) throw FileError(path, 0, "is a folder");
     if (termios serial{}; ::tcgetattr(file_.get(), &serial) == 0) {
+      is_serial_ = true;
       ::cfmakeraw(&serial); // a terminal would echo what comes and change its bytes
       ::tcsetattr(file_.get(), TCSANOW, &serial);
       // The device may have begun before.
@@ -89,6 +90,9 @@ class ProbeStream : public ProbeSource {
       if (got < 0 && errno != EIO) // what a terminal says whose other side is gone
         throw FileError(path_, 0, "cannot be read: " + reason(errno));
       if (got <= 0) {
+        // A device has no last line: its end is a fault, where a pipe's is not.
+        if (is_serial_)
+          throw FileError(path_, 0, "the probe is gone: it was pulled out or hung up");
         lines_.end();
         return false;
       }
@@ -106,6 +110,7 @@ class ProbeStream : public ProbeSource {
  private:
   std::string path_;
   Descriptor file_, wake_;
+  bool is_serial_ = false;
   ProbeLines lines_;
 };
 

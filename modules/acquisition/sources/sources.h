@@ -45,8 +45,8 @@ class ProbeSource {
  public:
   virtual ~ProbeSource() = default;
   // Appends what has come since the last call, once there is something; false: no more will come.
-  // Throws Error where the source fails, naming the line that is wrong; what came before it has
-  // been given.
+  // Throws Error where the source fails, naming the line that is wrong, or the serial device that
+  // is gone; what came before it has been given.
   virtual bool read(std::vector<ProbeSample>& into) = 0;
   virtual bool isLive() const = 0;
   virtual void stop() noexcept = 0; // from any thread: read() returns false within 0.2 s
