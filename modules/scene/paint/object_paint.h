@@ -18,7 +18,7 @@ struct ObjectPaint {
   // One channel g, any sign: the height is relief.height * g [m] outward (K21).
   std::shared_ptr<const TiledImage> relief;
   std::shared_ptr<const MaterialMap> material;
-  std::shared_ptr<const LaidTextures> textures; // scanned ones, along paths over its faces
+  std::shared_ptr<const LaidTextures> textures{}; // scanned ones, along paths over its faces
 };
 
 inline constexpr int kColorChannels = 4;
