@@ -13,6 +13,8 @@ namespace patina {
 namespace {
 
 constexpr int kTextureVersion = 1;
+// The time that a table takes grows with their square: seconds at this number.
+constexpr std::int64_t kMostHarmonics = 2048;
 constexpr const char* kFormat = "patina texture";
 constexpr const char* kLaidFormat = "patina laid textures";
 constexpr const char* kConvention =
@@ -120,8 +122,9 @@ FourierTexture textureFrom(const Json& json) {
     }
   if (!known) throw Error("kind '" + kind.substr(0, 32) + "' is not known");
   const std::int64_t count = json.at("harmonics").asInteger();
-  if (count < 1 || count > 100000)
-    throw Error("'harmonics' is " + std::to_string(count) + ", not between 1 and 100000");
+  if (count < 1 || count > kMostHarmonics)
+    throw Error("'harmonics' is " + std::to_string(count) + ", not between 1 and " +
+                std::to_string(kMostHarmonics));
   const auto due = static_cast<std::size_t>(count);
   texture.omega = finite(json, "omega");
   texture.low = finite(json, "low");

@@ -159,7 +159,7 @@ Command fitTextureCommand() {
            outputTo(options->output, "T.json", "The texture."),
            {"--harmonics", "N", "", "128", "At most.",
             inRange(
-                1, 10000, [options](double n) { options->fit.harmonics = static_cast<int>(n); },
+                1, 2048, [options](double n) { options->fit.harmonics = static_cast<int>(n); },
                 NumberKind::whole)},
            {"--kind", "line|spectrum|crossed", "", "line", "What the heights are.",
             parsedInto(options->kind, parseKind)},
