@@ -240,14 +240,15 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
     setValue(scene, "stifness", "5");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
-              "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
-              "magnet.fades contact tip.radius force.limit resolution voxel band sampler "
-              "surface.sides merge.redistance relief.mode relief.source relief.height relief.force "
-              "relief.smoothing material.force paint.size stabiliser device.mass device.damping "
-              "device.coulomb "
-              "device.encoder device.rate device.delay device");
+    EXPECT_EQ(
+        std::string(error.what()),
+        "unknown key 'stifness'; known are: stiffness damping damping.cutoff friction.static "
+        "friction.dynamic friction.depth friction.slip offset magnet.range magnet.strength "
+        "magnet.fades texture.gain contact tip.radius force.limit resolution voxel band sampler "
+        "surface.sides merge.redistance relief.mode relief.source relief.height relief.force "
+        "relief.smoothing material.force paint.size stabiliser device.mass device.damping "
+        "device.coulomb "
+        "device.encoder device.rate device.delay device");
   }
 }
 

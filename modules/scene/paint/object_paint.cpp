@@ -13,7 +13,8 @@ bool sameParts(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>
 
 std::size_t bytes(const ObjectPaint& paint) {
   return (paint.color ? paint.color->bytes() : 0) + (paint.relief ? paint.relief->bytes() : 0) +
-         (paint.material ? paint.material->bytes() : 0);
+         (paint.material ? paint.material->bytes() : 0) +
+         (paint.textures ? paint.textures->faces.capacity() * sizeof(TexturedFace) : 0);
 }
 
 bool same(const ObjectPaint& a, const ObjectPaint& b) {
