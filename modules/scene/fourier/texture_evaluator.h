@@ -17,9 +17,10 @@ struct TextureValue {
 class TextureEvaluator {
  public:
   // Within `tolerance` of the sum of all terms: of the height relative to its rms, of the gradient
-  // relative to its own. 0 adds up all terms. A table takes 30 ns, 40-130 kB for each series of 128
-  // harmonics and 2 MB for a plane of them; planes take a tenth of a second to prepare. Throws
-  // Error naming what is wrong with the texture, or with a tolerance outside of [0, 1).
+  // relative to its own; planes, of the gradient, within twice that. Rounding leaves 2e-13 whatever
+  // is asked for. 0 adds up all terms. Tables of 128 harmonics answer in 21 ns for a line, 0.3 us
+  // for a plane at 1e-12. Throws Error naming what is wrong with the texture, or with a tolerance
+  // outside of [0, 1).
   explicit TextureEvaluator(const FourierTexture& texture, double tolerance = 1e-12);
 
   // x, y [m], of any size: beyond 2^52 rad, or where they are no numbers, the value at 0. Neither
