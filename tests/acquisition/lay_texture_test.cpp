@@ -20,10 +20,11 @@ std::vector<Vec3> line(const Vec3& a, const Vec3& b, int n) {
 TEST(LayTexture, GivesEachFaceTheNearestOfSeveralStrokes) {
   const PathGround ground(sheet(0.1, 0.1, 50));
   const Progress progress;
-  const LaidTexture laid = layTexture(ground,
-                                      {{line({-0.04, -0.01, 0.0003}, {0.04, -0.01, 0.0003}, 40), {}},
-                                       {line({0.04, 0.011, 0}, {-0.04, 0.011, 0}, 500), {}}},
-                                      {7, 6, Neighbours::by_vertex, 2}, progress);
+  const LaidTexture laid =
+      layTexture(ground,
+                 {{line({-0.04, -0.01, 0.0003}, {0.04, -0.01, 0.0003}, 40), {}},
+                  {line({0.04, 0.011, 0}, {-0.04, 0.011, 0}, 500), {}}},
+                 {7, 6, Neighbours::by_vertex, 2}, progress);
   ASSERT_EQ(laid.lengths.size(), 2u);
   EXPECT_NEAR(laid.lengths[0], 0.08, 1e-12);
   EXPECT_NEAR(laid.lengths[1], 0.08, 1e-12);
@@ -72,8 +73,7 @@ TEST(LayTexture, WhatIsAboveReplacesWhatIsBelow) {
 }
 
 TEST(LayTexture, EveningKeepsEndsLinesAndCircles) {
-  const std::vector<Vec3> straight =
-      evened({line({0, 0, 0}, {0.1, 0, 0}, 333), {}}, 0.007).points;
+  const std::vector<Vec3> straight = evened({line({0, 0, 0}, {0.1, 0, 0}, 333), {}}, 0.007).points;
   EXPECT_EQ(straight.front(), Vec3(0, 0, 0));
   EXPECT_EQ(straight.back(), Vec3(0.1, 0, 0));
   for (const Vec3& p : straight) EXPECT_LT(p.tail<2>().norm(), 1e-15);

@@ -258,6 +258,15 @@ TEST(PathCoordinates, DoNotDependOnTheTriangles) {
   }
 }
 
+// Closed, and at its beginning its two directions are opposite.
+TEST(PathCoordinates, OfAWayThereAndBackAreFinite) {
+  const PathGround ground(sheet(0.1, 0.1, 10));
+  const std::vector<Vec3> path = {{0, 0, 0}, {0.02, 0, 0}, {0.04, 0, 0}, {0.02, 0, 0}, {0, 0, 0}};
+  for (const TexturedFace& face :
+       pathCoordinates(ground, allFaces(ground.mesh), {path, {}}, {}).faces)
+    for (const Vec2& at : face.at) EXPECT_TRUE(at.allFinite());
+}
+
 TEST(PathCoordinates, NeedAPathWithLength) {
   const PathGround ground(sheet(0.1, 0.1, 4));
   EXPECT_THROW(pathCoordinates(ground, {0}, {{Vec3::Zero(), Vec3::Zero()}, {}}, {}), Error);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "scene/fourier/felt_texture.h"
 #include "support/least_time.h"
 
 namespace patina {
@@ -142,6 +143,19 @@ TEST(TextureEvaluator, TheGradientIsTheHeightsDerivative) {
     EXPECT_NEAR((at.at(x + d).height - at.at(x - d).height) / (2 * d), at.at(x).gradient.x(),
                 1e-5 * rmsSlope(texture));
   }
+}
+
+TEST(FeltTexture, RefusesALowThatIsNotItsLowest) {
+  FourierTexture texture = lineOf(8, 1);
+  EXPECT_NO_THROW(feltTexture(texture));
+  const double low = texture.low;
+  for (const double wrong : {-1., 2 * low, 0.3 * low, 0.}) {
+    texture.low = wrong;
+    EXPECT_THROW(feltTexture(texture), Error) << wrong;
+  }
+  FourierTexture plane = planeOf(6, 3);
+  plane.low = leastHeight(plane);
+  EXPECT_NO_THROW(feltTexture(plane));
 }
 
 TEST(TextureEvaluator, WhereThereIsNoPlaceThereIsAValue) {

@@ -121,8 +121,9 @@ Command mapTextureCommand() {
           "made. Each stroke begins anew at x = 0.\n"
           "Where MESH has coordinates already they stay, but for the faces that this path takes: "
           "of textures that overlap the last one is felt.",
-      .examples = {"patina map-texture dinosaur.obj registered.csv -o textured.obj --heights heights.csv",
-                   "patina map-texture textured.obj other.csv -o both.obj --texture 2 --rings 3"},
+      .examples =
+          {"patina map-texture dinosaur.obj registered.csv -o textured.obj --heights heights.csv",
+           "patina map-texture textured.obj other.csv -o both.obj --texture 2 --rings 3"},
       .keys = kMapKeys,
       .arguments = {input("MESH", "Mesh.", into(options->mesh)),
                     input("PATH", "Path on it.", into(options->path)),

@@ -139,8 +139,9 @@ LaidTexture layTexture(const PathGround& ground, const std::vector<PathOnMesh>& 
       const PathOnMesh leg = partOf(path, first, last);
       first = last;
       const PathCoordinates found = pathCoordinates(
-          ground, withRings(ground, facesUnder(ground, leg.points), options.rings, options.neighbours),
-          leg, {options.texture, options.most_stretch});
+          ground,
+          withRings(ground, facesUnder(ground, leg.points), options.rings, options.neighbours), leg,
+          {options.texture, options.most_stretch});
       laid.folded += found.folded;
       laid.ambiguous += found.ambiguous;
       laid.stretched += found.stretched;

@@ -24,10 +24,10 @@ struct LaidTexture {
 
 // Each stroke is brought to the mesh's nearest points and evened over a quarter of the faces' edges
 // that it crosses (median), for finer than that no face can follow it; noise would only lengthen
-// it. x is what the stroke says, or begins at zero with it and runs on where a hand turns back. A face near several
-// strokes, or near the legs of one that goes there and back, takes the nearest; of those that are
-// alike within half of its edges the first, for legs that cover one another would else share it
-// face by face. Throws Error where no stroke has a length, Cancelled.
+// it. x is what the stroke says, or begins at zero with it and runs on where a hand turns back. A
+// face near several strokes, or near the legs of one that goes there and back, takes the nearest;
+// of those that are alike within half of its edges the first, for legs that cover one another would
+// else share it face by face. Throws Error where no stroke has a length, Cancelled.
 LaidTexture layTexture(const PathGround& ground, const std::vector<PathOnMesh>& strokes,
                        const LayOptions& options, const Progress& progress);
 

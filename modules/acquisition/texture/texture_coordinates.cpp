@@ -51,7 +51,7 @@ class Polyline {
     for (int i = 0; i <= segments(); ++i) {
       const Vec3 sum = direction(closed_ || i > 0 ? i - 1 : 0) +
                        direction(closed_ || i < segments() ? i : i - 1);
-      tangent_.push_back(sum.isZero(1e-9) ? direction_[static_cast<std::size_t>(i - 1)]
+      tangent_.push_back(sum.isZero(1e-9) ? direction(i - 1) // it turns back
                                           : sum.normalized());
     }
   }
@@ -72,10 +72,10 @@ class Polyline {
   }
 
   struct Foot {
-    double way = 0; // from the beginning [m]
-    double x = 0;   // how far along that is said to be [m]
-    Vec3 point = Vec3::Zero();                                // nearest
-    Vec3 direction = Vec3::Zero();                            // of the path there, unit
+    double way = 0;                // from the beginning [m]
+    double x = 0;                  // how far along that is said to be [m]
+    Vec3 point = Vec3::Zero();     // nearest
+    Vec3 direction = Vec3::Zero(); // of the path there, unit
     double squared = std::numeric_limits<double>::infinity(); // distance
     int segment = 0;
     bool inside = true; // not where the part that was looked at was cut off
@@ -92,7 +92,13 @@ class Polyline {
       const Vec3 at = point(i) + t * direction(i);
       const double squared = (p - at).squaredNorm();
       if (!(squared < best.squared)) continue;
-      best = {along(i) + t, xAt(i, t / whole), at, direction(i), squared, i,  !(before && i == first) && !(behind && i == last)};
+      best = {along(i) + t,
+              xAt(i, t / whole),
+              at,
+              direction(i),
+              squared,
+              i,
+              !(before && i == first) && !(behind && i == last)};
     }
     return best;
   }

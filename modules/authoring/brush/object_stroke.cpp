@@ -72,7 +72,7 @@ std::shared_ptr<const ObjectPaint> ObjectStroke::paint() {
   const bool images = next->color || next->relief;
   if (!images) next->layout = {};
   if (images && !next->layout.uvs) next->layout = surface_->objects[object_].layout;
-  paint_ = images || next->material ? std::move(next) : nullptr;
+  paint_ = images || next->material || next->textures ? std::move(next) : nullptr;
   return paint_;
 }
 

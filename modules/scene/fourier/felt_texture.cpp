@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/numbers.h"
 
 namespace patina {
 namespace {
 
-constexpr int kLineSamples = 16, kPlaneSamples = 4; // a shortest wavelength
-constexpr double kBetween = 1.05;                   // what lies between samples may be more
+constexpr int kLineSamples = 16, kPlaneSamples = 8;    // a shortest wavelength
+constexpr double kBetween = 1.05, kBetweenPlane = 1.2; // what lies between samples may be more
 constexpr double kStraight = 1. / 256; // of a shortest wavelength: the gradient is all but straight
 
 bool dependsOnY(const FourierTexture& texture) {
@@ -27,12 +28,14 @@ std::shared_ptr<const FeltTexture> feltTexture(FourierTexture texture) {
   const bool plane = dependsOnY(value);
   const int n = harmonics(value) * (plane ? kPlaneSamples : kLineSamples);
   const double step = period(value) / n;
+  double lowest = 0;
   std::vector<TextureValue> row(static_cast<std::size_t>(n)), before;
   for (int j = 0; j <= (plane ? n : 0); ++j) {
     for (int i = 0; i < n; ++i) {
       TextureValue& here = row[static_cast<std::size_t>(i)];
       here = made->at.at(i * step, j * step);
       made->highest = std::max(made->highest, std::abs(here.height));
+      lowest = std::min(lowest, here.height);
       made->steepest = std::max(made->steepest, here.gradient.norm());
       const auto bendFrom = [&](const TextureValue& other) {
         made->bend = std::max(made->bend, (here.gradient - other.gradient).norm() / step);
@@ -42,7 +45,12 @@ std::shared_ptr<const FeltTexture> feltTexture(FourierTexture texture) {
     }
     before = row;
   }
-  for (double* most : {&made->highest, &made->steepest, &made->bend}) *most *= kBetween;
+  for (double* most : {&made->highest, &made->steepest, &made->bend})
+    *most *= plane ? kBetweenPlane : kBetween;
+  // A layer stands on its lowest point: one that is not there would be a wall, or a hole.
+  if (-value.low > made->highest || value.low > lowest + (kBetweenPlane - 1) * made->highest)
+    throw Error("low is " + formatLength(value.low) + ", the texture's lowest height about " +
+                formatLength(lowest));
   return made;
 }
 
