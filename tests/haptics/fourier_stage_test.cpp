@@ -205,6 +205,7 @@ TEST(TexturePatches, ATextureIsTheSameOnAnyMesh) {
     texture.series.a[j] = 2e-5 * normal(random) / static_cast<double>(j + 1);
     texture.series.b[j] = 2e-5 * normal(random) / static_cast<double>(j + 1);
   }
+  texture.low = leastHeight(texture);
   const TexturedSlab coarse(texture, 0.0191);
   TriangleMesh fine = box(Vec3(0.04, 0.04, 0.012), 97);
   for (Vec3& p : fine.positions) p.z() -= 0.006;
