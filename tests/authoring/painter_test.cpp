@@ -328,21 +328,6 @@ TEST(Painter, EraserLeavesNothingBehind) {
   EXPECT_NEAR(after / before, 1.0 / 3, 0.03);
 }
 
-TEST(Painter, EraserLeavesLaidTexturesWhereTheyAre) {
-  Scene scene = sceneOf(icosphere(kR, 12));
-  ObjectPaint laid;
-  laid.textures = std::make_shared<const LaidTextures>(LaidTextures{{{3, 1, {}}}, {}});
-  scene.objects[0].paint = std::make_shared<const ObjectPaint>(laid);
-  const auto surface = surfaceOf(scene);
-  const Scene now = painted(surface, scene, strokeAt(brushOf(Tool::color, 0.02), kTop));
-  Brush eraser = brushOf(Tool::erase, 0.03);
-  eraser.falloff = 1000;
-  const Scene erased = painted(surface, now, strokeAt(eraser, kTop));
-  ASSERT_TRUE(erased.objects[0].paint);
-  EXPECT_EQ(erased.objects[0].paint->color, nullptr);
-  EXPECT_EQ(erased.objects[0].paint->textures, laid.textures);
-}
-
 TEST(Painter, SamePaintAgainAndTheEraserOnNothingTakeNoMemory) {
   const Scene scene = sceneOf(icosphere(kR, 12));
   const auto surface = surfaceOf(scene);
