@@ -102,6 +102,21 @@ TEST_F(TexturedFeel, StaysInAWorkspaceAndIsSwappedAndTakenBack) {
   }
 }
 
+// F7: 0.1 mm at 1 mm is 1,300 N/m along the surface at 0.33 N, whatever the stiffness.
+TEST_F(TexturedFeel, ALayerThatTheDeviceCannotHoldIsTold) {
+  const std::string work = folder / "work";
+  writeTexture("sharp.json", 1e-3, 1e-4);
+  const auto told = [&] { return run({"feel", work, "--path", path, "-o", folder / "f.csv"}).err; };
+  ASSERT_EQ(
+      run({"scene", "-o", work, "--add", plane, "--texture", "1=" + (folder / "sharp.json"),
+           "--set", "resolution=80", "--set", "device.mass=0.05", "--set", "device.damping=0.5"})
+          .exit,
+      0);
+  EXPECT_EQ(told().find("as a layer"), std::string::npos);
+  ASSERT_EQ(run({"scene", "-o", work, "--set", "texture.gain=0.4"}).exit, 0);
+  EXPECT_NE(told().find("sharper than this device can hold steady as a layer"), std::string::npos);
+}
+
 TEST_F(TexturedFeel, SaysWhatIsWrong) {
   const std::string out = folder / "none.csv";
   const auto feels = [&](const std::string& texture) {

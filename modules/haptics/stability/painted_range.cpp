@@ -11,7 +11,7 @@ bool PaintedRange::any() const {
 }
 
 double textureBend(const FeltObject& object) {
-  double bend = object.relief || object.layer ? object.bend : 0;
+  double bend = object.relief ? object.bend : 0;
   if (object.material) bend += kRoughnessBend * object.material->most.roughness;
   return bend;
 }

@@ -23,6 +23,7 @@ struct PaintedRange {
 };
 // h'' of an object's pulled relief and roughness at most [1/m]: under a normal force P they are
 // P h'' stiff along the surface (F7). Baked relief is the field's.
+// A texture that is a layer is not in it: the lateral coupling does not act on one.
 double textureBend(const FeltObject& object);
 PaintedRange paintedRange(const Material& base, std::span<const FeltObject> objects);
 

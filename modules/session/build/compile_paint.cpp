@@ -351,8 +351,7 @@ FeltPaint feltPaint(const CompiledScene& compiled, const CompiledScene* before,
     if (layered) object.layer = maker.pulled(i, false, true);
     if (object.relief && object.relief->textures)
       object.highest += object.relief->textures->highest();
-    for (const auto& surface : {object.relief, object.layer})
-      if (surface && surface->textures) object.bend += surface->textures->bend();
+    if (object.relief && object.relief->textures) object.bend += object.relief->textures->bend();
     made.objects.push_back(std::move(object));
   }
   if (relief && scene.relief.mode == ReliefMode::baked) bake(compiled, same_field, made, progress);

@@ -5,6 +5,7 @@
 
 #include "core/numbers.h"
 #include "field/sampling/field_sampler.h"
+#include "haptics/stability/stabilisers.h"
 
 namespace patina {
 namespace {
@@ -66,6 +67,20 @@ void tellUnknownTextures(const Scene& scene, std::vector<std::string>& lines) {
   }
 }
 
+// F7: a layer has no lateral coupling that would keep it quiet.
+void tellStiffLayers(const CompiledScene& compiled, std::vector<std::string>& lines) {
+  if (!compiled.scene.device_model) return;
+  const double steady =
+      steadyBend(compiled.scene.haptics.force_limit, *compiled.scene.device_model);
+  for (std::size_t i = 0; i < compiled.paint.objects.size(); ++i) {
+    const auto& layer = compiled.paint.objects[i].layer;
+    if (layer && layer->textures->bend() > steady)
+      lines.push_back(compiled.scene.objects[i].name +
+                      ": its texture is sharper than this device can hold steady as a layer; "
+                      "without texture.gain it is coupled along the surface");
+  }
+}
+
 std::string percent(double share) {
   return formatNumber(std::round(100 * share)) + " %";
 }
@@ -75,6 +90,7 @@ std::string percent(double share) {
 std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
   std::vector<std::string> lines;
   tellUnknownTextures(compiled.scene, lines);
+  tellStiffLayers(compiled, lines);
   const double voxel = compiled.built.field->grid.voxel;
   const ThinParts thin = thinParts(compiled);
   if (thin.vanished > kToldVanished)
