@@ -13,8 +13,6 @@ namespace patina {
 namespace {
 
 constexpr int kTextureVersion = 1;
-// The time that a table takes grows with their square: seconds at this number.
-constexpr std::int64_t kMostHarmonics = 2048;
 constexpr const char* kFormat = "patina texture";
 constexpr const char* kLaidFormat = "patina laid textures";
 constexpr const char* kConvention =

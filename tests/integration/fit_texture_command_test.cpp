@@ -68,6 +68,10 @@ TEST_F(FittedTextures, AreRefusedWithTheFileThatIsWrong) {
   expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv"});
   writeFileAtomically(bad, "along [m],height [m]\n0,0\n1e-3,0\n2e-3,0\n3e-3,0\n5e-3,0\n");
   expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv"});
+  writeFileAtomically(bad, "t [s],along [m],height [m]\n0,0,0\n1,1e-3,x\n");
+  expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv:3", "x"});
+  expectOneLineError(run({"fit-texture", profile, "-o", out, "--step", "0.00001mm"}),
+                     {"profile.csv", "longer step"});
   expectOneLineError(run({"fit-texture", profile, "-o", profile}), {"profile.csv"});
   expectOneLineError(run({"fit-texture", profile, "-o", out, "--kind", "cloud"}), {"cloud"});
   expectOneLineError(run({"fit-texture", profile, "-o", out, "--stretch", "4"}), {"stretch 4"});

@@ -7,6 +7,7 @@
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/numbers.h"
 #include "workspace/texture_file.h"
 
@@ -36,19 +37,16 @@ const Keys kFitKeys = {
     {"left_out", "m", "left out", "rms of the waves longer than --cutoff", Shown::if_any},
     {"blended", "m", "blended", "rms of what was changed so that the ends meet"},
     {"wavelength", "m", "wavelength", "of the strongest harmonic"},
-    {"highest", "m", "highest", "over the lowest point"},
+    {"low", "m", "lowest point", "of the texture, from its mean"},
     {"compliance", "m/N", "compliance", "", Shown::if_any}};
 
 // The stretch that was asked for, or the one that goes farthest.
 std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console& console) {
-  CsvTable table;
-  std::size_t first = 0;
-  try {
-    table = readCsv(options.profile, {"t [s]", "along [m]", "height [m]"});
-    first = 1;
-  } catch (const FileError&) {
-    table = readCsv(options.profile, {"along [m]", "height [m]"});
-  }
+  const std::string text = readFile(options.profile);
+  const std::size_t first = text.starts_with("t [s]") ? 1 : 0;
+  std::vector<std::string> expected = {"along [m]", "height [m]"};
+  if (first) expected.insert(expected.begin(), "t [s]");
+  const CsvTable table = parseCsv(text, options.profile.string(), expected);
   const auto column = [&](const char* name) {
     const auto found = std::find(table.columns.begin(), table.columns.end(), name);
     return found == table.columns.end()
@@ -123,7 +121,7 @@ int runFitTexture(const FitTextureOptions& options, Console& console) {
       .set("left_out", fitted.left_out)
       .set("blended", fitted.blended)
       .set("wavelength", fitted.length / static_cast<double>(strongest + 1))
-      .set("highest", feltTexture(texture)->highest - texture.low);
+      .set("low", texture.low);
   if (texture.compliance)
     report.set("compliance", *texture.compliance, formatNumber(*texture.compliance) + " m/N");
   console.report(report);
@@ -159,7 +157,8 @@ Command fitTextureCommand() {
            outputTo(options->output, "T.json", "The texture."),
            {"--harmonics", "N", "", "128", "At most.",
             inRange(
-                1, 2048, [options](double n) { options->fit.harmonics = static_cast<int>(n); },
+                1, kMostHarmonics,
+                [options](double n) { options->fit.harmonics = static_cast<int>(n); },
                 NumberKind::whole)},
            {"--kind", "line|spectrum|crossed", "", "line", "What the heights are.",
             parsedInto(options->kind, parseKind)},

@@ -56,6 +56,7 @@ std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
   const bool timed = text.substr(0, text.find('\n')).starts_with("t [s]");
   const std::map<double, Place> places =
       heights.empty() ? std::map<double, Place>() : readPlaces(heights);
+  if (!heights.empty() && places.empty()) throw FileError(heights.string(), 0, "has no height");
   if (!heights.empty() && !timed)
     throw FileError(path.string(), 1, "has no times to find the heights' by");
   std::vector<std::string> expected = {"x [m]", "y [m]", "z [m]"};

@@ -14,6 +14,7 @@ namespace {
 constexpr double kLongestGap = 0.05; // of the length
 constexpr double kRounding = 1e-13;  // of the heights: what less remains is no profile
 constexpr std::size_t kBesideTilt = 16;
+constexpr double kMostSamples = 1e6;
 constexpr double kSamePlace = 1e-3; // of a step
 
 // Sorted by place; those that lie together are one.
@@ -174,7 +175,8 @@ FourierSeries seriesOf(const std::vector<double>& heights, int harmonics) {
 FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOptions1d& options) {
   const std::vector<ProfilePoint> points = inOrder(given);
   if (points.size() < 3) throw Error("the profile has fewer than three points");
-  if (options.harmonics < 1) throw Error("there must be one harmonic or more");
+  if (options.harmonics < 1 || options.harmonics > kMostHarmonics)
+    throw Error("there must be 1 to " + std::to_string(kMostHarmonics) + " harmonics");
   if (!(options.blend > 0 && options.blend <= 0.5))
     throw Error("what is blended lies between 0 and half of the profile");
   if (options.cutoff && !(*options.cutoff > 0)) throw Error("the cutoff is a length above 0");
@@ -186,6 +188,9 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
         gap > std::max(kLongestGap * length, 1.5 * step))
       throw Error("the profile has no height between " + formatLength(points[i - 1].along) +
                   " and " + formatLength(points[i].along));
+  if (length / step > kMostSamples)
+    throw Error("the profile has more than " + formatCount(static_cast<std::size_t>(kMostSamples)) +
+                " steps of " + formatLength(step) + "; choose a longer step");
   const auto m = static_cast<std::size_t>(std::lround(length / step));
   step = length / static_cast<double>(m);
   std::vector<double> heights = evenHeights(points, from, step, m + 1);
@@ -238,6 +243,9 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
 FourierTexture crossCorrelation(const FourierTexture& across, const FourierTexture& along) {
   requireLine(across);
   requireLine(along);
+  if (harmonics(across) > kMostPlaneHarmonics)
+    throw Error("textures of more than " + std::to_string(kMostPlaneHarmonics) +
+                " harmonics are not crossed");
   if (across.omega != along.omega || harmonics(across) != harmonics(along))
     throw Error("two textures that are crossed must have one period and one number of harmonics");
   FourierTexture crossed;

@@ -146,7 +146,7 @@ LaidTexture layTexture(const PathGround& ground, const std::vector<PathOnMesh>& 
       laid.ambiguous += found.ambiguous;
       laid.stretched += found.stretched;
       laid.most = std::max(laid.most, found.most);
-      laid.least = std::min(laid.least, found.least);
+      if (!found.faces.empty()) laid.least = std::min(laid.least, found.least);
       for (TexturedFace face : found.faces) {
         if (leg.along.empty())
           for (Vec2& at : face.at) at.x() += way;

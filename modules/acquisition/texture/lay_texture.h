@@ -14,8 +14,8 @@ struct LayOptions {
 };
 
 struct LaidTexture {
-  std::vector<TexturedFace> faces; // what was there before included, where nothing replaced it
-  std::vector<double> lengths;     // of each stroke that has one [m]
+  std::vector<TexturedFace> faces;
+  std::vector<double> lengths; // of each stroke that has one [m]
   // Faces near the path that got no coordinates (PathCoordinates).
   std::size_t folded = 0, ambiguous = 0, stretched = 0;
   double most = 0, least = 0; // stretch along x of the laid faces

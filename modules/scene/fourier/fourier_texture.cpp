@@ -224,7 +224,11 @@ std::string problemOf(const FourierTexture& texture) {
   if (texture.compliance && (!(*texture.compliance > 0) || !std::isfinite(*texture.compliance)))
     return "the compliance is not a positive number";
   if (!(texture.low <= 0) || !std::isfinite(texture.low)) return "low is not a number below 0";
-  return problemOfTerms(texture);
+  if (std::string problem = problemOfTerms(texture); !problem.empty()) return problem;
+  const bool plane = texture.kind == TextureKind::products || texture.kind == TextureKind::plane;
+  const int most = plane ? kMostPlaneHarmonics : kMostHarmonics;
+  return harmonics(texture) <= most ? ""
+                                    : "there are more than " + std::to_string(most) + " harmonics";
 }
 
 int harmonics(const FourierTexture& texture) {

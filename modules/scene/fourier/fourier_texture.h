@@ -48,8 +48,12 @@ struct FourierTexture {
   bool operator==(const FourierTexture&) const = default;
 };
 
+// More would take seconds and gigabytes to look at.
+inline constexpr int kMostHarmonics = 1024, kMostPlaneHarmonics = 256; // over x; over x and y
+
 // One line each, ending without a stop; empty where all is well: lengths that do not agree, values
-// that are not finite, omega <= 0, compliance <= 0, a low above the mean.
+// that are not finite, omega <= 0, compliance <= 0, a low above the mean, too many
+// harmonics.
 std::string problemOf(const FourierTexture& texture);
 
 // N. Of a texture without a problem, as all that follows.
