@@ -14,10 +14,10 @@ constexpr int kRough = 0, kBias = 4, kShape = 5, kMost = 8;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 
-// Shapes curve to a radius of 50 mm and back within 50 mm, begin anywhere within 0.1 m.
-constexpr double kShapeCurvature = 20; // [1/m]
-constexpr double kShapeLength = 0.05;  // [m]
-constexpr double kShapeHeight = 0.1;   // [m]
+// Shapes curve to a radius of 10 mm and back within 20 mm, begin anywhere within 0.1 m.
+constexpr double kShapeCurvature = 100; // [1/m]
+constexpr double kShapeLength = 0.02;   // [m]
+constexpr double kShapeHeight = 0.1;    // [m]
 
 struct Row {
   Vector h, gain;
@@ -128,6 +128,11 @@ Row use(Vector& x, Square& P, const Vector& h, double measured, double variance)
   return row;
 }
 
+bool hasHeights(const std::vector<TracedSample>& samples) {
+  return std::any_of(samples.begin(), samples.end(),
+                     [](const TracedSample& s) { return s.height.has_value(); });
+}
+
 // Samples that count as one where roughness is looked for: a few, and no farther apart than a tip
 // can tell.
 constexpr std::size_t kMean = 3;
@@ -139,9 +144,9 @@ struct Mean {
 };
 
 // Twice the negative logarithm of the likelihood.
-double surprise(const std::vector<std::vector<Mean>>& stretches, Roughness roughness,
+double surprise(const std::vector<std::vector<Mean>>& stretches, Roughness roughness, bool shaped,
                 const HeightOptions& options) {
-  const Profiler profiler(roughness, options, false);
+  const Profiler profiler(roughness, options, shaped);
   Vector x;
   Square P, A;
   double sum = 0;
@@ -161,7 +166,11 @@ double surprise(const std::vector<std::vector<Mean>>& stretches, Roughness rough
 std::vector<Mean> meansOf(const std::vector<TracedSample>& samples) {
   std::vector<Mean> means;
   for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    while (end < samples.size() && end < begin + kMean &&
+    if (samples[begin].stands) {
+      ++end;
+      continue;
+    }
+    while (end < samples.size() && end < begin + kMean && !samples[end].stands &&
            samples[end].along - samples[begin].along < kTold)
       ++end;
     const double count = static_cast<double>(end - begin);
@@ -169,7 +178,7 @@ std::vector<Mean> meansOf(const std::vector<TracedSample>& samples) {
     mean.sample.acceleration = 0;
     mean.sample.turn = 1;
     for (std::size_t i = begin; i < end; ++i) {
-      mean.sample.acceleration += samples[i].acceleration / count;
+      mean.sample.acceleration += (samples[i].acceleration + samples[i].giving) / count;
       mean.sample.turn *= samples[i].turn;
     }
     means.push_back(mean);
@@ -186,6 +195,7 @@ Roughness likeliestRoughness(const std::vector<std::vector<TracedSample>>& stret
   for (const std::vector<TracedSample>& stretch : stretches) means.push_back(meansOf(stretch));
   std::sort(means.begin(), means.end(),
             [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  const bool shaped = std::any_of(stretches.begin(), stretches.end(), hasHeights);
   std::size_t count = 0, kept = 0;
   for (; kept < means.size() && count < kEnough; ++kept) {
     means[kept].resize(std::min(means[kept].size(), kEnough - count));
@@ -199,7 +209,7 @@ Roughness likeliestRoughness(const std::vector<std::vector<TracedSample>>& stret
     return {std::exp(bend + 2 * length) / 7, std::exp(length)};
   };
   const auto look = [&](double bend, double length) {
-    const double value = surprise(means, roughnessOf(bend, length), options);
+    const double value = surprise(means, roughnessOf(bend, length), shaped, options);
     if (!(value < least)) return false;
     least = value;
     best_bend = bend;
@@ -226,9 +236,7 @@ HeightProfile heightAlong(const std::vector<TracedSample>& samples, const Height
   if (!options.rms || !options.length) roughness = likeliestRoughness({samples}, options);
   profile.rms = roughness.rms;
   profile.length = roughness.length;
-  const bool camera = std::any_of(samples.begin(), samples.end(),
-                                  [](const TracedSample& s) { return s.height.has_value(); });
-  const Profiler profiler(roughness, options, camera);
+  const Profiler profiler(roughness, options, hasHeights(samples));
   std::vector<ProfileStep> steps(samples.size());
   Vector x;
   Square P;
@@ -238,11 +246,13 @@ HeightProfile heightAlong(const std::vector<TracedSample>& samples, const Height
     const TracedSample& sample = samples[i];
     ProfileStep& step = steps[i];
     if (i > 0) profiler.advance(x, P, samples[i - 1], sample, step.A);
-    step.rows[step.count++] = use(x, P, profiler.accelerationRow(sample), sample.acceleration,
-                                  options.acceleration_variance);
-    if (sample.height)
+    if (!sample.stands)
       step.rows[step.count++] =
-          use(x, P, height, *sample.height, sample.height_sigma * sample.height_sigma);
+          use(x, P, profiler.accelerationRow(sample), sample.acceleration + sample.giving,
+              options.acceleration_variance);
+    if (sample.height && !sample.stands)
+      step.rows[step.count++] = use(x, P, height, *sample.height + sample.yielding,
+                                    sample.height_sigma * sample.height_sigma);
     step.x = x;
     step.P = P;
   }
@@ -253,7 +263,7 @@ HeightProfile heightAlong(const std::vector<TracedSample>& samples, const Height
   for (std::size_t i = samples.size(); i-- > 0;) {
     const ProfileStep& step = steps[i];
     const Vector Ph = step.P * height;
-    profile.points[i] = {samples[i].along, height.dot(step.x) - Ph.dot(l) + samples[i].yielding,
+    profile.points[i] = {samples[i].along, height.dot(step.x) - Ph.dot(l),
                          std::sqrt(std::max(height.dot(Ph) - Ph.dot(L * Ph), 0.))};
     for (int k = step.count; k-- > 0;) {
       const Row& row = step.rows[k];

@@ -10,6 +10,10 @@
 
 namespace patina {
 
+// Slower than this along the surface the probe stands: what moves then is the hand's tremor and
+// what the surface yields, and neither is a height [m/s].
+inline constexpr double kStandingSpeed = 5e-3;
+
 // The tip at one time, in contact.
 struct TracedSample {
   double t = 0;            // [s]
@@ -18,7 +22,9 @@ struct TracedSample {
   double speeding = 0;     // its change [m/s^2]
   double turn = 1;         // cosine between the path's direction before and here
   double acceleration = 0; // along the surface's normal, gravity taken off [m/s^2]
+  bool stands = false;     // tells nothing then, and gets the height of the place where it stands
   double yielding = 0;     // how far the surface is pressed in: compliance times force [m]
+  double giving = 0;       // its acceleration: compliance times that of the force [m/s^2]
   // What the camera says of the tip's height, where a frame was; its standard deviation [m].
   std::optional<double> height;
   double height_sigma = 0;

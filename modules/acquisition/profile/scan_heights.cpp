@@ -9,22 +9,23 @@
 namespace patina {
 namespace {
 
-constexpr double kPressed = 5e-3;    // slower than this along the surface it is a press [m/s]
 constexpr double kFlat = 0.5;        // of the way across: beyond it is no plane
 constexpr std::size_t kFewest = 100; // samples of a stretch that tells a height: 0.2 s
 
-std::vector<PressSample> presses(const FusedPath& fused, const Vec3& normal) {
+} // namespace
+
+std::vector<PressSample> pressesOf(const std::vector<PathSample>& path, const CameraTrack& track,
+                                   const std::function<TipOver(const PathSample&)>& over) {
   std::vector<PressSample> samples;
-  for (const PathSample& sample : fused.path) {
+  for (const PathSample& sample : path) {
     if (!sample.touching) continue;
-    const Vec3 velocity = motionAt(fused.track, sample.t).velocity;
-    if ((velocity - normal * normal.dot(velocity)).norm() > kPressed) continue;
-    samples.push_back({sample.t, -normal.dot(sample.position), sample.force});
+    const TipOver here = over(sample);
+    const Vec3 velocity = motionAt(track, sample.t).velocity;
+    if ((velocity - here.normal * here.normal.dot(velocity)).norm() > kStandingSpeed) continue;
+    samples.push_back({sample.t, -here.height, sample.force});
   }
   return samples;
 }
-
-} // namespace
 
 Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip) {
   Vec3 mean = Vec3::Zero(), shaft = Vec3::Zero();
@@ -61,7 +62,11 @@ ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& p
     scan.plane = touchedPlane(fused.path, probe.tip);
   }
   scan.compliance =
-      estimateCompliance(presses(fused, scan.plane.normal), std::sqrt(probe.forceVariance()), true);
+      estimateCompliance(pressesOf(fused.path, fused.track,
+                                   [&normal = scan.plane.normal](const PathSample& sample) {
+                                     return TipOver{normal, normal.dot(sample.position)};
+                                   }),
+                         std::sqrt(probe.forceVariance()), true);
   const double compliance = scan.compliance ? scan.compliance->compliance : 0;
   std::vector<std::vector<TracedSample>> traces;
   for (const Stretch& stretch : touchingStretches(fused.path))

@@ -2,6 +2,7 @@
 // yields where the probe was pressed (A08).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,16 @@ struct ScanHeights {
 // The plane through where the tip touched, outwards where the probe's shaft is. Throws Error where
 // that is more of a line than of a plane, or nowhere.
 Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip);
+
+// Where a surface is felt: outwards and unit, and how far above it the tip is [m].
+struct TipOver {
+  Vec3 normal;
+  double height;
+};
+// Samples of the touching path in which the probe stood and pressed; `over` says of a sample where
+// it is.
+std::vector<PressSample> pressesOf(const std::vector<PathSample>& path, const CameraTrack& track,
+                                   const std::function<TipOver(const PathSample&)>& over);
 
 // `fused.path` knows when it touches; its samples are `samples` by time. `normal`: outwards, in the
 // camera's frame; else that of touchedPlane(). Heights are of the surface as nobody presses it,

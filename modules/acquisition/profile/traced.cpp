@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "acquisition/profile/height_profile.h"
@@ -10,7 +11,29 @@
 namespace patina {
 namespace {
 
-constexpr double kStands = 2e-3; // slower than this a direction means nothing [m/s]
+constexpr double kForceReach = 0.06; // force is a parabola so far before and after a sample [s]
+
+// Second derivative by time of the force at each sample of a stretch [N/s^2].
+std::vector<double> forceAccelerations(const std::vector<PathSample>& path,
+                                       const Stretch& stretch) {
+  std::vector<double> found;
+  std::size_t begin = stretch.begin, end = stretch.begin;
+  for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+    while (path[i].t - path[begin].t > kForceReach) ++begin;
+    while (end < stretch.end && path[end].t - path[i].t <= kForceReach) ++end;
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    Vec3 sums = Vec3::Zero();
+    for (std::size_t k = begin; k < end; ++k) {
+      const double t = (path[k].t - path[i].t) / kForceReach;
+      const Vec3 row(1, t, t * t);
+      squares += row * row.transpose();
+      sums += path[k].force * row;
+    }
+    const bool enough = end - begin >= 3;
+    found.push_back(enough ? 2 / (kForceReach * kForceReach) * squares.ldlt().solve(sums).z() : 0);
+  }
+  return found;
+}
 
 // The tip's acceleration [m/s^2] from what the axes show, where they span space.
 class TipAcceleration {
@@ -57,6 +80,7 @@ std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
   double along = 0;
   Vec3 direction = Vec3::Zero(); // where it last moved
   bool stood = false;
+  const std::vector<double> force_change = forceAccelerations(fused.path, stretch);
   std::size_t next = 0;
   while (next < poses.size() && !(poses[next].t > fused.path[stretch.begin].t &&
                                   fused.track.verdicts[next] == PoseVerdict::used))
@@ -72,12 +96,13 @@ std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
     TracedSample sample;
     sample.t = point.t;
     sample.speed = velocity.norm();
-    if (!trace.empty())
+    sample.stands = sample.speed < kStandingSpeed;
+    if (!trace.empty() && !sample.stands)
       along += 0.5 * (sample.speed + trace.back().speed) * (sample.t - trace.back().t);
     sample.along = along;
     const Vec3 heading = velocity / std::max(sample.speed, 1e-12);
     sample.speeding = heading.dot(motion.acceleration);
-    if (sample.speed > kStands) {
+    if (!sample.stands) {
       if (stood && direction.squaredNorm() > 0) sample.turn = std::min(direction.dot(heading), 1.);
       direction = heading;
       stood = false;
@@ -86,6 +111,7 @@ std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
     }
     sample.acceleration = normal.dot(accelerationOf(*reading, motion, point.orientation, gravity));
     sample.yielding = compliance * point.force;
+    sample.giving = compliance * force_change[i - stretch.begin];
     if (next < poses.size() && poses[next].t <= point.t) {
       const CameraPose& pose = poses[next];
       const Vec3 lever = point.orientation * probe.tip;

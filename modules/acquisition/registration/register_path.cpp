@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace patina {
 namespace {
@@ -45,6 +46,50 @@ Mat6 covarianceOf(const PathFit& fit, const MotionScale& scale, double noise,
   return covariance;
 }
 
+struct Places {
+  std::vector<Vec3> points;
+  std::vector<double> pressed;
+  std::vector<std::size_t> of; // by point, in `points`
+};
+
+Places placesOf(const std::vector<Vec3>& points, const std::vector<double>& pressed, double reach) {
+  Places places;
+  Vec3 first = Vec3::Zero();
+  double count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (count == 0 || !((points[i] - first).norm() < reach)) {
+      first = points[i];
+      count = 0;
+      places.points.push_back(Vec3::Zero());
+      if (!pressed.empty()) places.pressed.push_back(0);
+    }
+    ++count;
+    places.points.back() += (points[i] - places.points.back()) / count;
+    if (!pressed.empty()) places.pressed.back() += (pressed[i] - places.pressed.back()) / count;
+    places.of.push_back(places.points.size() - 1);
+  }
+  return places;
+}
+
+Registration registerPlaces(const SurfaceTarget& target, const std::vector<Vec3>& points,
+                            const Pose& start, RegistrationOptions options, Progress& progress) {
+  Places places = placesOf(points, options.pressed, options.place);
+  const std::vector<double> pressed = std::exchange(options.pressed, std::move(places.pressed));
+  options.place = 0;
+  Registration found = registerPath(target, places.points, start, options, progress);
+  std::vector<Miss> misses;
+  std::vector<bool> counts;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t place = places.of[i];
+    misses.push_back(target.miss(found.mesh_from_path * points[i], found.misses[place].foot.face));
+    if (!pressed.empty()) misses.back().distance += pressed[i];
+    counts.push_back(found.counts[place]);
+  }
+  found.misses = std::move(misses);
+  found.counts = std::move(counts);
+  return found;
+}
+
 } // namespace
 
 Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& points,
@@ -52,6 +97,7 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
                           Progress& progress) {
   if (!options.pressed.empty() && options.pressed.size() != points.size())
     throw std::invalid_argument("registerPath: a depth for each point, or none");
+  if (options.place > 0) return registerPlaces(target, points, start, options, progress);
   const double extent = scaleOf(points, start).radius;
   const double floor = 1e-4 * extent;
   const double good = kExpected * std::max(options.noise, floor);

@@ -15,6 +15,9 @@ struct RegistrationOptions {
   bool robust = true;          // finds what counts; else all points do
   bool search = true;          // where the fit from `start` is not as good as the noise lets expect
   CoarseSearch around;         // how
+  // Points in a row that lie within this of the first of them are one place, their mean, so that
+  // where the probe stood counts no more than where it passed; 0: each point counts [m].
+  double place = 0;
 };
 
 struct Registration {

@@ -76,7 +76,8 @@ HandState handAt(const SimulatedHand& hand, double t) {
   state.surface = hand.relief(place);
   // In the air the tip does not follow the relief.
   const double height = state.surface + lift * (hand.air - state.surface);
-  state.tip = Vec3(place.x(), place.y(), height - hand.compliance * state.force);
+  state.tip = Vec3(place.x(), place.y(), height);
+  if (state.force > 0) state.tip -= hand.compliance * state.force * hand.normal(place);
   const auto angle = [&](std::uint32_t number) {
     return hand.tilt * wave(hand.seed, number, 0.2, 0.8, t) +
            hand.tremor_tilt * wave(hand.seed, number + 3, 8, 11, t);

@@ -26,6 +26,8 @@ struct SimulatedHand {
   std::vector<HandMove> moves;
   std::function<double(const Vec2&)> relief = [](const Vec2&) { return 0.; }; // the surface [m]
   double compliance = 1. / 3000; // how far it yields [m/N]
+  // Against which way it yields, unit.
+  std::function<Vec3(const Vec2&)> normal = [](const Vec2&) { return Vec3(Vec3::UnitZ()); };
   // Sums of sines, of which the seed draws phases and frequencies.
   double tilt = 0.14;         // slow turning of the probe, amplitude about x and y [rad]
   double tremor = 30e-6;      // at 8 to 11 Hz, along the plate [m]

@@ -1,0 +1,27 @@
+// Heights that a scan measured along one direction, as heights over the mesh that its path was
+// registered to: the body's shape is the mesh's, what is left is texture.
+#pragma once
+
+#include "acquisition/profile/scan_heights.h"
+#include "acquisition/registration/surface_target.h"
+#include "acquisition/scan_samples.h"
+
+namespace patina {
+
+// One of each height whose sample lies in `path` and whose place looks along the heights' normal by
+// half or more. `along` is the way over the mesh, from 0 in each stretch; `height` the distance in
+// front of the mesh, of the tip's middle less its radius where the target has an offset [m].
+// `path`: in the scan's frame, its times among those of the heights; both in the order of time.
+std::vector<ScanHeight> heightsOverMesh(const SurfaceTarget& target, const Pose& mesh_from_path,
+                                        const std::vector<PathSample>& path,
+                                        const ScanHeights& heights);
+
+// How far the mesh yields where the probe stood and pressed it, along its own normals; absent where
+// it never did. `path` touches where it says so; `track` is that of the camera alone.
+std::optional<ComplianceEstimate> complianceOverMesh(const SurfaceTarget& target,
+                                                     const Pose& mesh_from_path,
+                                                     const std::vector<PathSample>& path,
+                                                     const CameraTrack& track,
+                                                     const ProbeModel& probe);
+
+} // namespace patina

@@ -1,0 +1,153 @@
+#include "pipeline/demo_object.h"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "core/error.h"
+#include "field/surface/models.h"
+#include "geometry/tree/triangle_tree.h"
+
+namespace patina {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kSpeed = 0.06; // of a stroke, on the mean [m/s]
+
+Vec2 along(const DemoMaterial& material) {
+  return (material.to - material.from).normalized();
+}
+
+// Rounded ridges across the stroke.
+DemoMaterial ribs() {
+  DemoMaterial ribs{"ribs",           {},   3000,   {-0.078, -0.037},
+                    {-0.030, -0.022}, 5e-3, 120e-6, {0.83, 0.42, 0.27}};
+  ribs.height = [middle = ribs.from, heading = along(ribs)](const Vec2& place) {
+    const double x = kTwoPi * heading.dot(place - middle) / 5e-3;
+    return 120e-6 * std::cos(x) + 40e-6 * std::cos(2 * x + 1);
+  };
+  return ribs;
+}
+
+// Threads along and across.
+DemoMaterial weave() {
+  DemoMaterial weave{"weave",        {},   2000,  {0.036, -0.049},
+                     {0.039, 0.002}, 3e-3, 80e-6, {0.36, 0.56, 0.71}};
+  weave.height = [middle = weave.from, heading = along(weave)](const Vec2& place) {
+    const Vec2 at = place - middle;
+    const double x = heading.dot(at), y = heading.x() * at.y() - heading.y() * at.x();
+    return 80e-6 * std::cos(kTwoPi * x / 3e-3) + 30e-6 * std::cos(kTwoPi * y / 3e-3) +
+           30e-6 * std::cos(kTwoPi * x / 2e-3 + 2);
+  };
+  return weave;
+}
+
+// Waves of many lengths, more or less across the stroke.
+DemoMaterial grain() {
+  DemoMaterial grain{"grain",        {},   4000,  {0.051, 0.011},
+                     {0.075, 0.047}, 4e-3, 60e-6, {0.55, 0.62, 0.34}};
+  grain.height = [middle = grain.from, heading = along(grain)](const Vec2& place) {
+    struct Wave {
+      double length, turned, height, phase;
+    };
+    constexpr Wave kWaves[] = {{4e-3, 0, 60e-6, 0},       {3.1e-3, 0.3, 35e-6, 1},
+                               {2.3e-3, -0.25, 25e-6, 4}, {5.7e-3, 0.15, 30e-6, 2.5},
+                               {1.7e-3, 0.1, 15e-6, 5},   {2.7e-3, -0.4, 20e-6, 3}};
+    const Vec2 at = place - middle;
+    double height = 0;
+    for (const Wave& wave : kWaves) {
+      const Vec2 across = Eigen::Rotation2Dd(wave.turned) * heading;
+      height += wave.height * std::cos(kTwoPi * across.dot(at) / wave.length + wave.phase);
+    }
+    return height;
+  };
+  return grain;
+}
+
+// [m]
+const Vec2 kSurvey[] = {{-0.005, -0.046}, {-0.004, -0.008}, {0.032, -0.006},
+                        {0.050, 0.010},   {0.064, 0.038},   {0.086, 0.043}};
+
+constexpr double kAside = 0.5e-3; // the faces' edges [m]
+
+std::function<Vec3(const Vec2&)> normalOf(const std::function<double(const Vec2&)>& ground) {
+  return [ground](const Vec2& place) -> Vec3 {
+    const auto slope = [&](const Vec2& aside) {
+      return (ground(place + aside) - ground(place - aside)) / (2 * kAside);
+    };
+    return Vec3(-slope({kAside, 0}), -slope({0, kAside}), 1).normalized();
+  };
+}
+
+void press(SimulatedHand& hand, const Vec2& place) {
+  for (int i = 0; i < 5; ++i) {
+    hand.moves.push_back({place, 0.5, 0, 4.0, 0});
+    hand.moves.push_back({place, 0.4, 0, 0.6, 0});
+  }
+}
+
+} // namespace
+
+DemoObject demoObject() {
+  DemoObject object;
+  object.mesh = dinosaur();
+  for (Vec3& p : object.mesh.positions) p *= 2;
+  object.plane_from_object.linear() =
+      Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitY(), Vec3::UnitZ()).toRotationMatrix();
+  object.materials = {ribs(), weave(), grain()};
+  return object;
+}
+
+std::function<double(const Vec2&)> groundOf(const DemoObject& object) {
+  const TriangleMesh turned =
+      transformed(object.mesh, Eigen::Affine3d(object.plane_from_object.matrix()));
+  const double top = bounds(turned).max().z() + 1e-3;
+  return [tree = std::make_shared<const TriangleTree>(turned), top](const Vec2& place) {
+    const auto hit = tree->firstHit({place.x(), place.y(), top}, -Vec3::UnitZ(), 2 * top);
+    if (!hit) throw Error("a stroke leaves the surface");
+    return top - hit->t;
+  };
+}
+
+SimulatedHand handOver(const DemoObject& object, const DemoMaterial& material, std::uint32_t seed) {
+  SimulatedHand hand;
+  hand.seed = seed;
+  hand.from = material.from;
+  const auto ground = groundOf(object);
+  hand.relief = [ground, height = material.height](const Vec2& place) {
+    return ground(place) + height(place);
+  };
+  hand.normal = normalOf(ground);
+  hand.air = ground(material.from) + 10e-3;
+  hand.compliance = 1 / material.stiffness;
+  const Vec2 &from = material.from, &to = material.to;
+  hand.moves.push_back({from, 0.5, 0, 0, 0});
+  press(hand, from);
+  hand.moves.push_back({from, 0.3, 0, 1.0, 0});
+  hand.moves.push_back({to, (to - from).norm() / kSpeed, 0, 1.0, 0});
+  hand.moves.push_back({to, 0.2, 0, 0, 0});
+  hand.moves.push_back({to, 0.4, 0, 0, 1});
+  return hand;
+}
+
+SimulatedHand surveyOf(const DemoObject& object, std::uint32_t seed) {
+  SimulatedHand hand;
+  hand.seed = seed;
+  hand.relief = groundOf(object);
+  hand.normal = normalOf(hand.relief);
+  hand.from = kSurvey[0];
+  hand.air = hand.relief(hand.from) + 10e-3;
+  hand.compliance = 1. / 5000;
+  hand.moves.push_back({hand.from, 0.5, 0, 0, 0});
+  Vec2 place = hand.from;
+  for (const Vec2& to : kSurvey) {
+    hand.moves.push_back({to, 0.2 + (to - place).norm() / kSpeed, 0, 1.0, 0});
+    place = to;
+  }
+  press(hand, place);
+  hand.moves.push_back({place, 0.2, 0, 0, 0});
+  hand.moves.push_back({place, 0.4, 0, 0, 1});
+  return hand;
+}
+
+} // namespace patina

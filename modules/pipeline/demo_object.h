@@ -1,0 +1,40 @@
+// What the demonstration scans: a toy with three materials on it, all of whose heights are known.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "acquisition/simulation/simulated_hand.h"
+#include "geometry/mesh/triangle_mesh.h"
+
+namespace patina {
+
+// Heights are over the plane that faces the camera: x along the toy, y up.
+struct DemoMaterial {
+  std::string name;
+  std::function<double(const Vec2&)> height;   // above the mesh, along the view [m]
+  double stiffness = 0;                        // [N/m]
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero(); // of the stroke that scans it [m]
+  double wavelength = 0, amplitude = 0;        // of its strongest wave along the stroke [m]
+  Vec3 color = Vec3::Ones();                   // sRGB, that it is painted with
+};
+
+struct DemoObject {
+  TriangleMesh mesh;                         // the dinosaur, twice as large, object frame [m]
+  Pose plane_from_object = Pose::Identity(); // the scanned side looks up
+  std::vector<DemoMaterial> materials;
+};
+
+DemoObject demoObject();
+
+// Where the mesh is over a place of the plane, without any material. Throws Error beside it.
+std::function<double(const Vec2&)> groundOf(const DemoObject& object);
+
+// A hand that presses the material where its stroke begins, three times, and strokes it once.
+SimulatedHand handOver(const DemoObject& object, const DemoMaterial& material, std::uint32_t seed);
+// A hand that goes from limb to limb over the bare mesh, so that registration sees it from all
+// sides.
+SimulatedHand surveyOf(const DemoObject& object, std::uint32_t seed);
+
+} // namespace patina
