@@ -1,6 +1,8 @@
 #include "pipeline/demo_object.h"
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -68,6 +70,50 @@ DemoMaterial grain() {
 const Vec2 kSurvey[] = {{-0.005, -0.046}, {-0.004, -0.008}, {0.032, -0.006},
                         {0.050, 0.010},   {0.064, 0.038},   {0.086, 0.043}};
 
+// A toy is smooth between the corners of its mesh: heights of the mesh on a grid, through a cubic
+// B-spline, which moves them by some micrometres.
+class SmoothHeights {
+ public:
+  explicit SmoothHeights(const TriangleMesh& mesh) : box_(bounds(mesh)) {
+    const TriangleTree tree(mesh);
+    const double top = box_.max().z() + 1e-3, deep = box_.sizes().z() + 2e-3;
+    for (int k = 0; k < 2; ++k) size_[k] = static_cast<int>(box_.sizes()[k] / kGrid) + 4;
+    for (int j = 0; j < size_[1]; ++j)
+      for (int i = 0; i < size_[0]; ++i) {
+        const Vec2 place = box_.min().head<2>() + kGrid * Vec2(i - 1, j - 1);
+        const auto hit = tree.firstHit({place.x(), place.y(), top}, -Vec3::UnitZ(), deep);
+        heights_.push_back(hit ? top - hit->t : std::numeric_limits<double>::quiet_NaN());
+      }
+  }
+
+  double at(const Vec2& place) const {
+    const Vec2 cell = (place - box_.min().head<2>()) / kGrid + Vec2::Ones();
+    const int i = static_cast<int>(cell.x()), j = static_cast<int>(cell.y());
+    if (!(cell.minCoeff() >= 1 && i + 2 < size_[0] && j + 2 < size_[1]))
+      throw Error("a stroke leaves the surface");
+    const std::array<double, 4> x = weights(cell.x() - i), y = weights(cell.y() - j);
+    double height = 0;
+    for (int b = 0; b < 4; ++b)
+      for (int a = 0; a < 4; ++a)
+        height += x[index(a)] * y[index(b)] * heights_[index((j + b - 1) * size_[0] + i + a - 1)];
+    if (!std::isfinite(height)) throw Error("a stroke leaves the surface");
+    return height;
+  }
+
+ private:
+  static constexpr double kGrid = 0.75e-3; // [m]
+
+  static std::array<double, 4> weights(double u) {
+    const double v = 1 - u;
+    return {v * v * v / 6, (4 - 6 * u * u + 3 * u * u * u) / 6, (4 - 6 * v * v + 3 * v * v * v) / 6,
+            u * u * u / 6};
+  }
+
+  Box3 box_;
+  int size_[2] = {};
+  std::vector<double> heights_;
+};
+
 constexpr double kAside = 0.5e-3; // the faces' edges [m]
 
 std::function<Vec3(const Vec2&)> normalOf(const std::function<double(const Vec2&)>& ground) {
@@ -101,11 +147,8 @@ DemoObject demoObject() {
 std::function<double(const Vec2&)> groundOf(const DemoObject& object) {
   const TriangleMesh turned =
       transformed(object.mesh, Eigen::Affine3d(object.plane_from_object.matrix()));
-  const double top = bounds(turned).max().z() + 1e-3;
-  return [tree = std::make_shared<const TriangleTree>(turned), top](const Vec2& place) {
-    const auto hit = tree->firstHit({place.x(), place.y(), top}, -Vec3::UnitZ(), 2 * top);
-    if (!hit) throw Error("a stroke leaves the surface");
-    return top - hit->t;
+  return [heights = std::make_shared<const SmoothHeights>(turned)](const Vec2& place) {
+    return heights->at(place);
   };
 }
 

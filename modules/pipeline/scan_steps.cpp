@@ -1,0 +1,133 @@
+#include "pipeline/scan_steps.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "session/build/session.h"
+
+namespace patina {
+namespace {
+
+constexpr double kPlaceOfPath = 1. / 200; // of its radius: nearer samples are one place
+
+// Of the mesh under the path, in the scan's frame.
+Vec3 meanNormal(const SurfaceTarget& target, const Pose& mesh_from_scan,
+                const std::vector<PathSample>& path) {
+  Vec3 sum = Vec3::Zero();
+  std::int32_t warm = kNone;
+  for (const PathSample& sample : path) {
+    warm = target.miss(mesh_from_scan * sample.position, warm).foot.face;
+    sum += faceNormal(target.mesh(), index(warm));
+  }
+  if (!(sum.norm() > 0)) throw Error("the path runs around the mesh: no side of it is outwards");
+  return mesh_from_scan.linear().transpose() * sum.normalized();
+}
+
+// Heights of the stretch that goes farthest.
+std::vector<ScanHeight> longestStroke(const std::vector<ScanHeight>& heights) {
+  std::vector<ScanHeight> longest;
+  for (auto begin = heights.begin(); begin != heights.end();) {
+    const auto end = std::find_if(begin, heights.end(), [&](const ScanHeight& height) {
+      return height.stretch != begin->stretch;
+    });
+    if (longest.empty() || (end - 1)->point.along > longest.back().point.along)
+      longest.assign(begin, end);
+    begin = end;
+  }
+  return longest;
+}
+
+PathOnMesh strokeUnder(const std::vector<ScanHeight>& heights, const std::vector<PathSample>& path,
+                       const Pose& mesh_from_scan) {
+  PathOnMesh stroke;
+  auto sample = path.begin();
+  for (const ScanHeight& height : heights) {
+    while (sample->t < height.t) ++sample;
+    // Where the probe stood there is no way.
+    if (!stroke.along.empty() && !(height.point.along > stroke.along.back())) continue;
+    stroke.points.push_back(mesh_from_scan * sample->position);
+    stroke.along.push_back(height.point.along);
+  }
+  return stroke;
+}
+
+} // namespace
+
+FilteredScan touchedPath(const ScanStreams& streams, const ProbeModel& probe, const Vec3& gravity,
+                         Progress& progress) {
+  ScanFilter filter;
+  filter.gravity = gravity;
+  FilteredScan scan = filterScan(streams.poses, streams.samples, probe, filter, progress);
+  if (scan.path.empty()) throw Error("the probe never touches");
+  return scan;
+}
+
+RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<FilteredScan>& scans,
+                              const ProbeModel& probe, const Pose& start,
+                              const RegistrationOptions& options, Progress& progress) {
+  std::vector<Vec3> points;
+  for (const FilteredScan& scan : scans)
+    for (const PathSample& sample : scan.path) points.push_back(sample.position);
+  RegistrationOptions fitting = options;
+  if (fitting.place == 0) fitting.place = kPlaceOfPath * scaleOf(points, start).radius;
+  RegisteredScans found;
+  found.registration = registerPath(target, points, start, fitting, progress);
+  fitting.pressed.clear();
+  for (const FilteredScan& scan : scans) {
+    found.estimates.push_back(complianceOverMesh(target, found.registration.mesh_from_path,
+                                                 scan.path, scan.track, probe));
+    found.compliances.push_back(found.estimates.back() ? found.estimates.back()->compliance : 0);
+    for (const PathSample& sample : scan.path)
+      fitting.pressed.push_back(found.compliances.back() * sample.force);
+  }
+  fitting.search = false;
+  found.registration =
+      registerPath(target, points, found.registration.mesh_from_path, fitting, progress);
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    found.estimates[s] = complianceOverMesh(target, found.registration.mesh_from_path,
+                                            scans[s].path, scans[s].track, probe);
+    found.compliances[s] = found.estimates[s] ? found.estimates[s]->compliance : 0;
+  }
+  return found;
+}
+
+ScannedTexture scannedTexture(const PathGround& ground, const SurfaceTarget& target,
+                              const ScanStreams& streams, const ProbeModel& probe,
+                              const Vec3& gravity, const Pose& mesh_from_scan, double compliance,
+                              const TextureSteps& steps, Progress& progress) {
+  ScanFilter filter;
+  filter.gravity = gravity;
+  const FilteredScan path = filterScan(streams.poses, streams.samples, probe, filter, progress);
+  filter.heights = true;
+  filter.normal = meanNormal(target, mesh_from_scan, path.path);
+  const FilteredScan scan = filterScan(streams.poses, streams.samples, probe, filter, progress);
+  ScannedTexture found;
+  found.heights = longestStroke(heightsOverMesh(target, mesh_from_scan, scan.path, *scan.heights));
+  if (found.heights.empty()) throw Error("nowhere along the path is there a height over the mesh");
+  found.stroke = strokeUnder(found.heights, scan.path, mesh_from_scan);
+  std::vector<ProfilePoint> profile;
+  for (const ScanHeight& height : found.heights) profile.push_back(height.point);
+  found.fitted = fitTexture(profile, steps.fit);
+  if (compliance > 0) found.fitted.texture.compliance = compliance;
+  found.laid = layTexture(ground, {found.stroke}, steps.lay, progress);
+  return found;
+}
+
+Scene texturedScene(TriangleMesh mesh, const std::string& name,
+                    const std::vector<ScannedTexture>& textures) {
+  Scene scene = sceneOf(std::move(mesh), name);
+  LaidTextures laid;
+  for (const ScannedTexture& scanned : textures) {
+    const auto number = static_cast<std::int32_t>(laid.library.size() + 1);
+    std::vector<TexturedFace> faces = scanned.laid.faces;
+    for (TexturedFace& face : faces) face.texture = number;
+    laid.faces = laidOver(faces, laid.faces);
+    laid.library[number] = feltTexture(scanned.fitted.texture);
+  }
+  ObjectPaint paint;
+  paint.textures = std::make_shared<const LaidTextures>(std::move(laid));
+  scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
+  return scene;
+}
+
+} // namespace patina

@@ -1,0 +1,61 @@
+// A scan taken to a feel, step by step: what `patina demo` and the window's guided sequence run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "acquisition/filtering/filtered_scan.h"
+#include "acquisition/registration/register_path.h"
+#include "acquisition/texture/fit_texture.h"
+#include "acquisition/texture/lay_texture.h"
+#include "acquisition/texture/mesh_heights.h"
+#include "scene/scene.h"
+
+namespace patina {
+
+// What came of one scan: its poses and the probe's stream, on one clock.
+struct ScanStreams {
+  std::vector<CameraPose> poses;
+  std::vector<ProbeSample> samples;
+};
+
+// The tip's path where it touched; gravity in the camera's frame [m/s^2]. Throws Error where it
+// never does, Cancelled.
+FilteredScan touchedPath(const ScanStreams& streams, const ProbeModel& probe, const Vec3& gravity,
+                         Progress& progress);
+
+// Several paths in one camera's frame, put on the mesh together: once as if nothing yielded, then
+// with what each was pressed in. Compliances as found over the mesh, 0 where nobody pressed.
+struct RegisteredScans {
+  Registration registration;       // one miss a sample, scan upon scan
+  std::vector<double> compliances; // [m/N], one a scan
+  std::vector<std::optional<ComplianceEstimate>> estimates;
+};
+RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<FilteredScan>& scans,
+                              const ProbeModel& probe, const Pose& start,
+                              const RegistrationOptions& options, Progress& progress);
+
+struct TextureSteps {
+  FitOptions1d fit;
+  LayOptions lay;
+};
+
+struct ScannedTexture {
+  std::vector<ScanHeight> heights; // over the mesh, of the stroke that went farthest
+  PathOnMesh stroke;               // where they are, object frame
+  FittedTexture fitted;            // with the compliance, where it was found
+  LaidTexture laid;
+};
+// From the streams of one scan that is registered: heights along the mesh's mean normal under it,
+// over the mesh, as harmonics, on faces. Throws as scanHeights(), fitTexture() and layTexture().
+ScannedTexture scannedTexture(const PathGround& ground, const SurfaceTarget& target,
+                              const ScanStreams& streams, const ProbeModel& probe,
+                              const Vec3& gravity, const Pose& mesh_from_scan, double compliance,
+                              const TextureSteps& steps, Progress& progress);
+
+// The mesh as a scene of one object with these textures on it, numbered from 1 in their order; of
+// faces that several want the later ones get them. Friction and stiffness as a scene has them.
+Scene texturedScene(TriangleMesh mesh, const std::string& name,
+                    const std::vector<ScannedTexture>& textures);
+
+} // namespace patina
