@@ -67,8 +67,9 @@ DemoMaterial grain() {
 }
 
 // [m]
-const Vec2 kSurvey[] = {{-0.005, -0.046}, {-0.004, -0.008}, {0.032, -0.006},
-                        {0.050, 0.010},   {0.064, 0.038},   {0.086, 0.043}};
+const Vec2 kSurvey[] = {{-0.005, -0.046}, {-0.004, -0.008}, {0.008, 0.003},  {0.012, -0.015},
+                        {0.032, -0.006},  {0.038, -0.040},  {0.040, -0.006}, {0.050, 0.010},
+                        {0.064, 0.038},   {0.086, 0.043},   {0.070, 0.047}};
 
 // A toy is smooth between the corners of its mesh: heights of the mesh on a grid, through a cubic
 // B-spline, which moves them by some micrometres.
@@ -114,21 +115,21 @@ class SmoothHeights {
   std::vector<double> heights_;
 };
 
-constexpr double kAside = 0.5e-3; // the faces' edges [m]
+constexpr double kLook = 0.5e-3; // the faces' edges [m]
 
 std::function<Vec3(const Vec2&)> normalOf(const std::function<double(const Vec2&)>& ground) {
   return [ground](const Vec2& place) -> Vec3 {
     const auto slope = [&](const Vec2& aside) {
-      return (ground(place + aside) - ground(place - aside)) / (2 * kAside);
+      return (ground(place + aside) - ground(place - aside)) / (2 * kLook);
     };
-    return Vec3(-slope({kAside, 0}), -slope({0, kAside}), 1).normalized();
+    return Vec3(-slope({kLook, 0}), -slope({0, kLook}), 1).normalized();
   };
 }
 
 void press(SimulatedHand& hand, const Vec2& place) {
-  for (int i = 0; i < 5; ++i) {
-    hand.moves.push_back({place, 0.5, 0, 4.0, 0});
-    hand.moves.push_back({place, 0.4, 0, 0.6, 0});
+  for (int i = 0; i < 8; ++i) {
+    hand.moves.push_back({place, 0.7, 0, 5.0, 0});
+    hand.moves.push_back({place, 0.3, 0, 0.6, 0});
   }
 }
 
@@ -141,6 +142,10 @@ DemoObject demoObject() {
   object.plane_from_object.linear() =
       Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitY(), Vec3::UnitZ()).toRotationMatrix();
   object.materials = {ribs(), weave(), grain()};
+  object.grip = [ground = groundOf(object)](double part) {
+    const Vec2 place = (1 - part) * Vec2(-0.006, -0.010) + part * Vec2(0.020, -0.006);
+    return Vec3(place.x(), place.y(), ground(place));
+  };
   return object;
 }
 

@@ -24,6 +24,7 @@ struct DemoObject {
   TriangleMesh mesh;                         // the dinosaur, twice as large, object frame [m]
   Pose plane_from_object = Pose::Identity(); // the scanned side looks up
   std::vector<DemoMaterial> materials;
+  std::function<Vec3(double)> grip; // a way over a place without material, from 0 to 1 [m]
 };
 
 DemoObject demoObject();

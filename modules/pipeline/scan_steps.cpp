@@ -91,10 +91,9 @@ RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<Fil
   return found;
 }
 
-ScannedTexture scannedTexture(const PathGround& ground, const SurfaceTarget& target,
-                              const ScanStreams& streams, const ProbeModel& probe,
-                              const Vec3& gravity, const Pose& mesh_from_scan, double compliance,
-                              const TextureSteps& steps, Progress& progress) {
+ScannedTexture fitScan(const SurfaceTarget& target, const ScanStreams& streams,
+                       const ProbeModel& probe, const Vec3& gravity, const Pose& mesh_from_scan,
+                       double compliance, const FitOptions1d& options, Progress& progress) {
   ScanFilter filter;
   filter.gravity = gravity;
   const FilteredScan path = filterScan(streams.poses, streams.samples, probe, filter, progress);
@@ -107,9 +106,8 @@ ScannedTexture scannedTexture(const PathGround& ground, const SurfaceTarget& tar
   found.stroke = strokeUnder(found.heights, scan.path, mesh_from_scan);
   std::vector<ProfilePoint> profile;
   for (const ScanHeight& height : found.heights) profile.push_back(height.point);
-  found.fitted = fitTexture(profile, steps.fit);
+  found.fitted = fitTexture(profile, options);
   if (compliance > 0) found.fitted.texture.compliance = compliance;
-  found.laid = layTexture(ground, {found.stroke}, steps.lay, progress);
   return found;
 }
 

@@ -35,23 +35,18 @@ RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<Fil
                               const ProbeModel& probe, const Pose& start,
                               const RegistrationOptions& options, Progress& progress);
 
-struct TextureSteps {
-  FitOptions1d fit;
-  LayOptions lay;
-};
-
+// Texture that one scan found.
 struct ScannedTexture {
   std::vector<ScanHeight> heights; // over the mesh, of the stroke that went farthest
   PathOnMesh stroke;               // where they are, object frame
   FittedTexture fitted;            // with the compliance, where it was found
-  LaidTexture laid;
+  LaidTexture laid;                // once it is
 };
 // From the streams of one scan that is registered: heights along the mesh's mean normal under it,
-// over the mesh, as harmonics, on faces. Throws as scanHeights(), fitTexture() and layTexture().
-ScannedTexture scannedTexture(const PathGround& ground, const SurfaceTarget& target,
-                              const ScanStreams& streams, const ProbeModel& probe,
-                              const Vec3& gravity, const Pose& mesh_from_scan, double compliance,
-                              const TextureSteps& steps, Progress& progress);
+// over the mesh, as harmonics. Throws as scanHeights() and fitTexture() do.
+ScannedTexture fitScan(const SurfaceTarget& target, const ScanStreams& streams,
+                       const ProbeModel& probe, const Vec3& gravity, const Pose& mesh_from_scan,
+                       double compliance, const FitOptions1d& options, Progress& progress);
 
 // The mesh as a scene of one object with these textures on it, numbered from 1 in their order; of
 // faces that several want the later ones get them. Friction and stiffness as a scene has them.

@@ -26,6 +26,7 @@ Command filterCommand();
 Command registerCommand();
 Command fitTextureCommand();
 Command mapTextureCommand();
+Command demoCommand();
 #endif
 Command studyCommand();
 Command modelCommand();
@@ -42,6 +43,7 @@ inline std::vector<Command> allCommands() {
 #ifdef PATINA_HAS_ACQUISITION
           simulateScanCommand(), recordCommand(),   calibrateCommand(),  trackCommand(),
           filterCommand(),       registerCommand(), fitTextureCommand(), mapTextureCommand(),
+          demoCommand(),
 #endif
           studyCommand(),        modelCommand(),    devicesCommand(),    latencyTestCommand(),
           guiCommand(),          manCommand()};

@@ -4,6 +4,7 @@
 #include "app/cli/input/tip_path.h"
 #include "app/cli/output/reports.h"
 #include "app/cli/output/stability_report.h"
+#include "core/file.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "field/sampling/field_sampler.h"
@@ -62,7 +63,7 @@ int runExport(const ExportOptions& options, Console& console) {
   if (options.stability) stability = requiredStability(*compiled, console.progress());
   console.progress().throwIfCancelled();
 
-  requireFolder(folder);
+  makeFolder(folder);
   std::vector<std::pair<std::string, std::string>> blocks = {
       {"mesh", "mesh.vtp"}, {"surface", "surface.vtp"}, {"field", "field.vti"}};
   writeMeshVtp(folder / "mesh.vtp", *compiled->mesh, {}, objectsOf(*compiled));

@@ -14,7 +14,7 @@ struct ManOptions {
 
 int runMan(const ManOptions& options, Console& console) {
   const std::filesystem::path& folder = options.folder;
-  requireFolder(folder);
+  makeFolder(folder);
   const std::vector<Command> commands = allCommands();
   if (options.markdown) {
     writeFileAtomically(folder / "command_line.md", markdown(commands));

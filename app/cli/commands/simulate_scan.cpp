@@ -1,7 +1,7 @@
 #include "acquisition/files/frame_files.h"
 #include "acquisition/files/scan_files.h"
 #include "acquisition/simulation/mesh_strokes.h"
-#include "acquisition/simulation/simulated_frames.h"
+#include "acquisition/simulation/simulated_scan.h"
 #include "acquisition/simulation/simulated_streams.h"
 #include "acquisition/simulation/simulated_surface.h"
 #include "acquisition/tracking/marker_code.h"
@@ -39,22 +39,6 @@ const Keys kSimulateScanKeys = {{"poses", "", "poses"},
                                 {"seconds", "s", "lasts"},
                                 {"touching", "", "touching", "the part of its time", Shown::never},
                                 {"files", "", "files", "in the folder"}};
-
-constexpr double kCube = 0.036; // [m]
-
-// It looks at a point over the middle from above and from the side, 0.4 m away.
-Pose cameraOver(const Box3& box, double over) {
-  const Vec3 middle = box.center() + over * Vec3::UnitZ(),
-             eye = middle + 0.4 * Vec3(0, -0.5, 0.8).normalized();
-  Eigen::Matrix3d axes; // of the camera: x right, y down, z forward
-  axes.col(2) = (middle - eye).normalized();
-  axes.col(0) = axes.col(2).cross(Vec3::UnitZ()).normalized();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  Pose world_from_camera = Pose::Identity();
-  world_from_camera.linear() = axes;
-  world_from_camera.translation() = eye;
-  return world_from_camera.inverse();
-}
 
 Vec3 parseAxis(const std::string& word) {
   if (word.size() == 2 && (word[0] == '+' || word[0] == '-') && word[1] >= 'x' && word[1] <= 'z')
@@ -100,40 +84,6 @@ std::string truthText(const ScanOptions& options, const Pose& camera_from_mesh) 
   return json.dump() + "\n";
 }
 
-// Wide enough for a hand's breadth at 0.4 m.
-Camera usualCamera() {
-  return {640, 480, 600, 600, 321.5, 238.5, {-0.08, 0.03, 3e-4, -2e-4, 0}};
-}
-
-// frames/, frames.csv and camera.yml; how many frames there are.
-std::size_t writeFrames(const ScanOptions& options, const Camera& camera, const SimulatedHand& hand,
-                        const ProbeModel& probe, const std::vector<RigMarker>& cube,
-                        const MarkerFamily& family, Progress& progress) {
-  std::vector<PrintedMarker> printed;
-  for (const RigMarker& marker : cube)
-    printed.push_back({marker, family.side, family.code[static_cast<std::size_t>(marker.id)]});
-  const FrameRenderer renderer(camera, printed);
-  FrameCourse course;
-  course.camera_from_world = options.camera.camera_from_world;
-  course.covered = options.camera.gaps;
-  course.look = options.look;
-  course.seed = options.seed;
-  CsvTable times{{"frame", "t [s]"}, {}};
-  const int count = frameCount(hand, course);
-  requireFolder(options.output / "frames");
-  for (int i = 0; i < count; ++i) {
-    progress.throwIfCancelled();
-    progress.report(0.1 + 0.8 * i / count, "frames");
-    char name[32];
-    std::snprintf(name, sizeof name, "frames/%06d.png", i);
-    writeGrey(options.output / name, frameAt(renderer, hand, probe, course, i));
-    times.rows.push_back({static_cast<double>(i), i / course.rate});
-  }
-  writeCsv(options.output / "frames.csv", times);
-  writeFileAtomically(options.output / "camera.yml", cameraText(camera));
-  return static_cast<std::size_t>(count);
-}
-
 int runSimulateScan(ScanOptions options, Console& console) {
   const std::filesystem::path& folder = options.output;
   if (std::filesystem::is_directory(folder)) requireWritable(folder / "mesh.obj", {options.mesh});
@@ -153,7 +103,7 @@ int runSimulateScan(ScanOptions options, Console& console) {
   if (!options.lens.empty()) camera = readCamera(options.lens);
   const MarkerFamily* family = options.frames ? &markerFamily(options.family) : nullptr;
   const std::vector<RigMarker> cube =
-      family ? markerCube(options.family, family->side, kCube) : std::vector<RigMarker>();
+      family ? markerCube(options.family, family->side, kCubeEdge) : std::vector<RigMarker>();
   rig.gravity = camera_from_hand.linear() * kGravity;
   console.progress().report(0.1, "poses");
   std::vector<CameraPose> poses;
@@ -170,12 +120,18 @@ int runSimulateScan(ScanOptions options, Console& console) {
   const std::vector<PathSample> truth = truthAt(hand, camera_from_hand, times);
   console.progress().throwIfCancelled();
 
-  requireFolder(folder);
+  makeFolder(folder);
   writeMeshIn(folder / "mesh.obj", mesh, writtenUnit(options));
   std::vector<std::string> files = {"mesh.obj", "probe.csv", "rig.json", "truth.csv", "truth.json"};
   std::size_t frames = 0;
   if (options.frames) {
-    frames = writeFrames(options, camera, hand, rig.probe, cube, *family, console.progress());
+    FrameCourse course;
+    course.camera_from_world = options.camera.camera_from_world;
+    course.covered = options.camera.gaps;
+    course.look = options.look;
+    course.seed = options.seed;
+    frames =
+        writeFrames(folder, camera, hand, rig.probe, options.family, course, console.progress());
     files.insert(files.end(), {"frames", "frames.csv", "camera.yml"});
   } else {
     writePoses(folder / "poses.tum", poses);

@@ -73,7 +73,7 @@ void addRows(const Json& table, Json& rows) {
 int runStudy(const StudyCommandOptions& options, Console& console) {
   const std::vector<Study> list = chosen(options.name);
   const std::filesystem::path& folder = options.output;
-  requireFolder(folder);
+  makeFolder(folder);
   const bool draws = canDraw(console);
 
   Json tables = Json::array(), rows = Json::array(), files = Json::array();

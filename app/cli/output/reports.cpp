@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "scene/scene_values.h"
@@ -140,13 +141,6 @@ bool areOne(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code unknown;
   return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b)) ||
          fs::equivalent(a, b, unknown);
-}
-
-void requireFolder(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (!std::filesystem::is_directory(path))
-    throw FileError(path.string(), 0, "this folder cannot be made");
 }
 
 } // namespace patina::cli

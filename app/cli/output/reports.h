@@ -46,7 +46,5 @@ void requireWritable(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& inputs = {});
 // Links lead to one file by two names, also to one that does not exist yet.
 bool areOne(const std::filesystem::path& a, const std::filesystem::path& b);
-// Makes a folder of that name where there is none; FileError if that cannot be.
-void requireFolder(const std::filesystem::path& path);
 
 } // namespace patina::cli

@@ -120,6 +120,17 @@ double rmsOf(const FourierSeries& series) {
   return std::sqrt(sum);
 }
 
+// Harmonics j + 1 of which `leave(j)` holds become nothing; their rms.
+template <class Leave> double leaveOut(FourierSeries& series, const Leave& leave) {
+  double sum = 0;
+  for (std::size_t j = 0; j < series.a.size(); ++j) {
+    if (!leave(j)) continue;
+    sum += 0.5 * (series.a[j] * series.a[j] + series.b[j] * series.b[j]);
+    series.a[j] = series.b[j] = 0;
+  }
+  return std::sqrt(sum);
+}
+
 void requireLine(const FourierTexture& texture) {
   if (texture.kind != TextureKind::line) throw Error("is not a texture along a line");
 }
@@ -182,6 +193,7 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
   if (options.cutoff && !(*options.cutoff > 0)) throw Error("the cutoff is a length above 0");
   const double from = points.front().along, length = points.back().along - from;
   double step = options.step.value_or(medianStep(points));
+  if (!(options.over_noise >= 0)) throw Error("a harmonic is over the noise by a number above 0");
   if (!(step > 0) || !(length > 3 * step)) throw Error("the profile has fewer than three steps");
   for (std::size_t i = 1; i < points.size(); ++i)
     if (const double gap = points[i].along - points[i - 1].along;
@@ -225,19 +237,37 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
   }
   for (double& miss : misses) miss -= mean / static_cast<double>(misses.size());
   fitted.residual = std::sqrt(meanSquare(misses, misses.size()));
-  if (!options.cutoff) return fitted;
-  const auto longer = std::min(static_cast<std::size_t>(std::ceil(length / *options.cutoff)) - 1,
-                               texture.series.a.size());
-  if (longer == texture.series.a.size())
-    throw Error("all of the texture's waves are longer than " + formatLength(*options.cutoff));
-  for (std::size_t j = 0; j < longer; ++j) {
-    fitted.left_out += 0.5 * (texture.series.a[j] * texture.series.a[j] +
-                              texture.series.b[j] * texture.series.b[j]);
-    texture.series.a[j] = texture.series.b[j] = 0;
+  fitted.noise = noiseOf(texture);
+  if (options.cutoff) {
+    const auto longer = std::min(static_cast<std::size_t>(std::ceil(length / *options.cutoff)) - 1,
+                                 texture.series.a.size());
+    if (longer == texture.series.a.size())
+      throw Error("all of the texture's waves are longer than " + formatLength(*options.cutoff));
+    fitted.left_out = leaveOut(texture.series, [&](std::size_t j) { return j < longer; });
   }
-  fitted.left_out = std::sqrt(fitted.left_out);
+  if (options.over_noise > 0) {
+    leaveOut(texture.series, [&](std::size_t j) {
+      const double wavelength = length / static_cast<double>(j + 1),
+                   amplitude = std::hypot(texture.series.a[j], texture.series.b[j]);
+      const bool quiet = amplitude < options.over_noise * fitted.noise * wavelength * wavelength;
+      fitted.quiet += quiet && amplitude > 0;
+      return quiet;
+    });
+    if (rmsOf(texture.series) == 0) throw Error("no harmonic rises over the noise");
+  }
   texture.low = leastHeight(texture);
   return fitted;
+}
+
+double noiseOf(const FourierTexture& line) {
+  requireLine(line);
+  std::vector<double> heights;
+  for (std::size_t j = 0; j < line.series.a.size(); ++j) {
+    const double amplitude = std::hypot(line.series.a[j], line.series.b[j]);
+    const double wavelength = period(line) / static_cast<double>(j + 1);
+    if (amplitude > 0) heights.push_back(amplitude / (wavelength * wavelength));
+  }
+  return heights.empty() ? 0 : percentiles(heights).p50;
 }
 
 FourierTexture crossCorrelation(const FourierTexture& across, const FourierTexture& along) {

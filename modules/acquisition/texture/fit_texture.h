@@ -15,6 +15,8 @@ struct FitOptions1d {
   std::optional<double> step; // of the even samples [m]; else the median of the points'
   // Longer waves are the body's shape, which its mesh has, and are left out [m].
   std::optional<double> cutoff{};
+  // Harmonics are left out that are not so many times as high as the noise (noiseOf()); 0: none.
+  double over_noise = 0;
 };
 
 struct FittedTexture {
@@ -26,6 +28,8 @@ struct FittedTexture {
   double residual = 0;     // rms of what the texture lacks of that, where nothing was blended [m]
   double left_out = 0;     // rms of the waves longer than the cutoff [m]
   double blended = 0;      // rms of what blending changed, over the whole [m]
+  double noise = 0;        // noiseOf() the texture with all of its harmonics
+  std::size_t quiet = 0;   // harmonics that over_noise left out
 };
 
 // points: in any order along the way; those within a step are one, by their sigmas where these are
@@ -43,6 +47,11 @@ std::vector<double> seamless(std::vector<double> heights, std::size_t blend);
 // Coefficients of heights at even steps over one period, the first not repeated: f = 2/M Re, -2/M
 // Im of their transform, the term at the Nyquist frequency once (A19, F12). The mean is apart.
 FourierSeries seriesOf(const std::vector<double>& heights, int harmonics);
+
+// What a harmonic of wavelength l would be without any texture, over l^2 [1/m]: heights come from
+// two integrations of an even noise, so that it grows as the square, and of the harmonics' heights
+// over l^2 the median is noise as long as fewer than half of them are texture.
+double noiseOf(const FourierTexture& line);
 
 // The cross-correlation of a line with another (A21): h(x, y) = across(y) along(-x), as high as
 // `across` is (rms). Both of the same period and number of harmonics; throws Error.

@@ -44,7 +44,10 @@ void writeWindowPng(vtkRenderWindow& window, const std::filesystem::path& path) 
                                              static_cast<std::size_t>(data->GetNumberOfValues())));
 }
 
-void renderToPng(SceneView& view, const PictureSize& size, const std::filesystem::path& path) {
+namespace {
+
+template <class View>
+void renderView(View& view, const PictureSize& size, const std::filesystem::path& path) {
   checkPictureSize(size);
   requireDisplay();
   const vtkNew<vtkRenderWindow> window;
@@ -52,6 +55,7 @@ void renderToPng(SceneView& view, const PictureSize& size, const std::filesystem
   window->SetMultiSamples(8);
   window->SetSize(size.width, size.height);
   view.attachTo(*window);
+  view.prepare();
   view.fit(); // the picture's own proportions
   view.prepare();
   window->Render();
@@ -59,6 +63,16 @@ void renderToPng(SceneView& view, const PictureSize& size, const std::filesystem
   // The renderers outlive the window and would go on pointing to it.
   while (vtkRenderer* renderer = window->GetRenderers()->GetFirstRenderer())
     window->RemoveRenderer(renderer);
+}
+
+} // namespace
+
+void renderToPng(SceneView& view, const PictureSize& size, const std::filesystem::path& path) {
+  renderView(view, size, path);
+}
+
+void renderToPng(ScanPicture& view, const PictureSize& size, const std::filesystem::path& path) {
+  renderView(view, size, path);
 }
 
 } // namespace patina

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "visualization/view/scan_picture.h"
 #include "visualization/view/scene_view.h"
 
 namespace patina {
@@ -22,5 +23,6 @@ struct PictureSize {
 //   view.setView(ViewPreset::iso);
 //   renderToPng(view, {1280, 960}, "picture.png");
 void renderToPng(SceneView& view, const PictureSize& size, const std::filesystem::path& path);
+void renderToPng(ScanPicture& view, const PictureSize& size, const std::filesystem::path& path);
 
 } // namespace patina
