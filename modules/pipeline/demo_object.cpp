@@ -46,15 +46,15 @@ DemoMaterial weave() {
 
 // Waves of many lengths, more or less across the stroke.
 DemoMaterial grain() {
-  DemoMaterial grain{"grain",        {},   4000,  {0.051, 0.011},
-                     {0.075, 0.047}, 4e-3, 60e-6, {0.55, 0.62, 0.34}};
+  DemoMaterial grain{"grain",        {},   2500,  {0.051, 0.011},
+                     {0.075, 0.047}, 4e-3, 80e-6, {0.55, 0.62, 0.34}};
   grain.height = [middle = grain.from, heading = along(grain)](const Vec2& place) {
     struct Wave {
       double length, turned, height, phase;
     };
-    constexpr Wave kWaves[] = {{4e-3, 0, 60e-6, 0},       {3.1e-3, 0.3, 35e-6, 1},
-                               {2.3e-3, -0.25, 25e-6, 4}, {5.7e-3, 0.15, 30e-6, 2.5},
-                               {1.7e-3, 0.1, 15e-6, 5},   {2.7e-3, -0.4, 20e-6, 3}};
+    constexpr Wave kWaves[] = {{4e-3, 0, 80e-6, 0},       {3.1e-3, 0.3, 45e-6, 1},
+                               {2.3e-3, -0.25, 32e-6, 4}, {5.7e-3, 0.15, 30e-6, 2.5},
+                               {1.7e-3, 0.1, 20e-6, 5},   {2.7e-3, -0.4, 25e-6, 3}};
     const Vec2 at = place - middle;
     double height = 0;
     for (const Wave& wave : kWaves) {

@@ -147,10 +147,10 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
          formatNumber(std::round(stiffnessOf(texture))),
          std::to_string(texture.scanned.laid.faces.size())});
   }
-  text +=
-      "\nNoise grows as the square of the wavelength. Harmonics are compared with the truth where "
-      "that is 6 times\nas high.\n\n## Errors\n\n" +
-      row({"step", "error of", "material", "found", "at most", ""}) + "|---|---|---|---|---|---|\n";
+  text += "\nNoise grows as the square of the wavelength. Compared with the truth are the highest "
+          "harmonic and those\n10 times as high as the noise.\n\n## Errors\n\n" +
+          row({"step", "error of", "material", "found", "at most", ""}) +
+          "|---|---|---|---|---|---|\n";
   for (const DemoFigure& figure : demoFigures(demo))
     text += row({figure.step, figure.what, figure.of, shown(figure.value, figure.unit),
                  shown(figure.most, figure.unit), figure.holds() ? "holds" : "**missed**"});

@@ -10,19 +10,6 @@ namespace {
 
 constexpr double kPlaceOfPath = 1. / 200; // of its radius: nearer samples are one place
 
-// Of the mesh under the path, in the scan's frame.
-Vec3 meanNormal(const SurfaceTarget& target, const Pose& mesh_from_scan,
-                const std::vector<PathSample>& path) {
-  Vec3 sum = Vec3::Zero();
-  std::int32_t warm = kNone;
-  for (const PathSample& sample : path) {
-    warm = target.miss(mesh_from_scan * sample.position, warm).foot.face;
-    sum += faceNormal(target.mesh(), index(warm));
-  }
-  if (!(sum.norm() > 0)) throw Error("the path runs around the mesh: no side of it is outwards");
-  return mesh_from_scan.linear().transpose() * sum.normalized();
-}
-
 // Heights of the stretch that goes farthest.
 std::vector<ScanHeight> longestStroke(const std::vector<ScanHeight>& heights) {
   std::vector<ScanHeight> longest;

@@ -6,18 +6,24 @@
 #include "acquisition/files/scan_files.h"
 #include "acquisition/filtering/filtered_scan.h"
 #include "acquisition/simulation/path_error.h"
+#include "acquisition/texture/mesh_heights.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/pose_file.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/mesh_unit.h"
 
 namespace patina::cli {
 
 namespace {
 
 struct FilterOptions {
-  std::filesystem::path input, probe, rig, truth, output, heights;
+  std::filesystem::path input, probe, rig, truth, output, heights, over, registration;
+  MeshUnit unit = MeshUnit::mm;
   std::optional<Vec3> normal;
   std::optional<PathModel> model;
   bool forward = false, lifted = false;
@@ -184,10 +190,40 @@ void reportHeights(const ScanHeights& scan, Report& report) {
                    formatCount(found->loadings) + " presses");
 }
 
+// Heights over a mesh that the scan was registered to.
+struct Over {
+  Over(TriangleMesh mesh, const Pose& pose)
+      : target(std::move(mesh), 0, true), mesh_from_scan(pose) {}
+  SurfaceTarget target;
+  Pose mesh_from_scan;
+};
+
+std::optional<Over> readOver(const FilterOptions& options, Console& console) {
+  if (options.over.empty() != options.registration.empty())
+    throw Error("--over and --registration go together: the mesh, and where the scan lies on it");
+  if (options.over.empty()) return std::nullopt;
+  if (options.heights.empty()) throw Error("--over: is of heights; name a file with --heights");
+  if (options.normal) throw Error("--normal: over a mesh its own normals count");
+  ScaledMesh scaled = inMetres(readMesh(options.over), options.unit);
+  if (!scaled.warning.empty()) console.warn(options.over.string() + ": " + scaled.warning);
+  return std::optional<Over>(std::in_place, cleaned(std::move(scaled.mesh)).mesh,
+                             readPoseAt(options.registration, "mesh_from_scan"));
+}
+
+void layOver(const Over& over, const ProbeModel& probe, FilteredScan& scan,
+             const std::filesystem::path& mesh) {
+  scan.heights->compliance =
+      complianceOverMesh(over.target, over.mesh_from_scan, scan.path, scan.track, probe);
+  scan.heights->heights =
+      heightsOverMesh(over.target, over.mesh_from_scan, scan.path, *scan.heights);
+  if (scan.heights->heights.empty())
+    throw FileError(mesh.string(), 0, "nowhere on it is there a height of the scan");
+}
+
 int runFilter(FilterOptions options, Console& console) {
   findFiles(options);
-  const std::vector<std::filesystem::path> inputs = {options.input, options.probe, options.rig,
-                                                     options.truth};
+  const std::vector<std::filesystem::path> inputs = {
+      options.input, options.probe, options.rig, options.truth, options.over, options.registration};
   requireWritable(options.output, inputs);
   if (options.normal && options.heights.empty())
     throw Error("--normal: is that of heights; name a file for them with --heights");
@@ -196,6 +232,7 @@ int runFilter(FilterOptions options, Console& console) {
     if (areOne(options.heights, options.output))
       throw FileError(options.heights.string(), 0, "is the path's file too");
   }
+  const std::optional<Over> over = readOver(options, console);
   const Inputs in = read(options, console);
   ScanFilter filter;
   filter.model = chosenModel(options, in);
@@ -207,8 +244,16 @@ int runFilter(FilterOptions options, Console& console) {
   if (filter.heights && filter.model != PathModel::fused)
     throw Error("--heights: come from the accelerometers of the fused --model");
   const auto begin = std::chrono::steady_clock::now();
-  const FilteredScan scan =
-      filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
+  const auto filtered = [&] {
+    return filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
+  };
+  if (over) {
+    filter.heights = false;
+    filter.normal = meanNormal(over->target, over->mesh_from_scan, filtered().path);
+    filter.heights = true;
+  }
+  FilteredScan scan = filtered();
+  if (over) layOver(*over, in.rig.probe, scan, options.over);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   if (scan.path.empty())
     throw FileError(options.probe.string(), 0,
@@ -279,7 +324,9 @@ Command filterCommand() {
           "--heights writes the surface's height along the path, from the accelerometers, with its "
           "sigma: above the plane through where the tip touched, or along --normal; what is below "
           "the camera's noise is found, slow shape is the camera's. Where the probe was pressed "
-          "while it stood, the surface's stiffness is reported and taken off.\n"
+          "while it stood, the surface's stiffness is reported and taken off. With --over and "
+          "--registration heights are those over a mesh, whose shape is then no part of them, and "
+          "the way is that over the mesh.\n"
           "With a probe only samples that touch, by their force, become path. Gaps are bridged, "
           "reported, and sigma grows in them. Where there is a truth, the error against it is "
           "reported.",
@@ -304,6 +351,12 @@ Command filterCommand() {
            {"--normal", "X,Y,Z", "", "of the plane that was touched",
             "Outwards, in the camera's frame.",
             [options](const std::string& word) { options->normal = parseNormal(word); }},
+           {"--over", "MESH", "", "",
+            "Heights over a mesh, along its normals, in place of a plane.", into(options->over)},
+           {"--registration", "R.json", "", "", "Where the scan lies on it: of patina register.",
+            into(options->registration)},
+           {"--unit", "UNIT", "", "mm", "Of that mesh: mm, cm, m, in or fit.",
+            parsedInto(options->unit, parseMeshUnit)},
            {"--lifted", "", "", "", "Keep what the probe did in the air.", into(options->lifted)},
            {"--sigma", "LENGTH", "m", "0.2mm", "Deviation of poses that do not tell their own.",
             inRange(

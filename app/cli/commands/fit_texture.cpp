@@ -35,6 +35,8 @@ const Keys kFitKeys = {
     {"residual", "m", "residual", "rms of what the texture lacks of them"},
     {"variance_explained", "", "explained", "of the profile's variance"},
     {"left_out", "m", "left out", "rms of the waves longer than --cutoff", Shown::if_any},
+    {"noise", "1/m", "noise", "of a harmonic over the square of its wavelength: the median of all"},
+    {"quiet", "", "quiet", "harmonics that --over-noise left out", Shown::if_any},
     {"blended", "m", "blended", "rms of what was changed so that the ends meet"},
     {"wavelength", "m", "wavelength", "of the strongest harmonic"},
     {"low", "m", "lowest point", "of the texture, from its mean"},
@@ -119,6 +121,9 @@ int runFitTexture(const FitTextureOptions& options, Console& console) {
       .set("residual", fitted.residual)
       .set("variance_explained", 1 - fitted.residual * fitted.residual / fitted.variance)
       .set("left_out", fitted.left_out)
+      .set("noise", fitted.noise,
+           formatLength(fitted.noise * 1e-6) + " at a wavelength of 1 mm, growing as its square")
+      .set("quiet", fitted.quiet)
       .set("blended", fitted.blended)
       .set("wavelength", fitted.length / static_cast<double>(strongest + 1))
       .set("low", texture.low);
@@ -176,6 +181,9 @@ Command fitTextureCommand() {
             inRange(
                 1e-9, 1, [options](double length) { options->fit.cutoff = length; },
                 NumberKind::length)},
+           {"--over-noise", "RATIO", "", "0",
+            "Leave out harmonics that are not so many times as high as the noise.",
+            inRange(0, 1e3, [options](double ratio) { options->fit.over_noise = ratio; })},
            {"--stretch", "N", "", "the longest", "Of contact.",
             inRange(
                 0, 1e9, [options](double n) { options->stretch = static_cast<std::size_t>(n); },

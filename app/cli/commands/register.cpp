@@ -22,6 +22,7 @@ enum class Method { distance, loop, literal };
 
 struct RegisterOptions {
   std::filesystem::path mesh, path, output, report, initial, truth;
+  std::vector<std::string> also;
   MeshUnit unit = MeshUnit::mm;
   Method method = Method::distance;
   double tip_radius = 0, compliance = 0;
@@ -70,23 +71,6 @@ Method parseMethod(const std::string& word) {
   if (word == "loop") return Method::loop;
   if (word == "literal") return Method::literal;
   throw Error("'" + word + "' is none of distance, loop, literal");
-}
-
-Pose truePose(const std::filesystem::path& file) try {
-  const Json rows = parseJson(readFile(file), file.string()).at("mesh_from_camera");
-  Eigen::Matrix4d matrix;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j)
-      matrix(i, j) = rows.asArray()
-                         .at(static_cast<std::size_t>(i))
-                         .asArray()
-                         .at(static_cast<std::size_t>(j))
-                         .asNumber();
-  return Pose(matrix);
-} catch (const FileError&) {
-  throw;
-} catch (const std::exception& error) {
-  throw FileError(file.string(), 0, std::string("mesh_from_camera: ") + error.what());
 }
 
 // Where no sample tells a force, all are taken to touch.
@@ -179,8 +163,9 @@ Report reportOf(const Registration& found, const RegisterOptions& options, doubl
 }
 
 int runRegister(RegisterOptions options, Console& console) {
-  const std::vector<std::filesystem::path> inputs = {options.mesh, options.path, options.initial,
-                                                     options.truth};
+  std::vector<std::filesystem::path> inputs = {options.mesh, options.path, options.initial,
+                                               options.truth};
+  inputs.insert(inputs.end(), options.also.begin(), options.also.end());
   requireWritable(options.output, inputs);
   if (!options.report.empty()) {
     requireWritable(options.report, inputs);
@@ -194,11 +179,17 @@ int runRegister(RegisterOptions options, Console& console) {
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
   TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
   if (mesh.triangles.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
-  const std::vector<PathSample> path = inContact(readPath(options.path));
+  std::vector<PathSample> path = inContact(readPath(options.path));
+  const auto own = static_cast<std::ptrdiff_t>(path.size());
+  for (const std::string& file : options.also) {
+    const std::vector<PathSample> other = inContact(readPath(file));
+    path.insert(path.end(), other.begin(), other.end());
+  }
   if (path.size() < 3)
     throw FileError(options.path.string(), 0, "has fewer than three samples in contact");
   const std::optional<Pose> truth =
-      options.truth.empty() ? std::nullopt : std::optional(truePose(options.truth));
+      options.truth.empty() ? std::nullopt
+                            : std::optional(readPoseAt(options.truth, "mesh_from_camera"));
   std::vector<Vec3> points;
   RegistrationOptions fitting;
   for (const PathSample& sample : path) {
@@ -209,6 +200,7 @@ int runRegister(RegisterOptions options, Console& console) {
       options.initial.empty() ? middleOnMiddle(mesh, points) : readPose(options.initial);
   if (!options.noise) options.noise = medianSigma(path);
   fitting.noise = *options.noise;
+  fitting.place = scaleOf(points, Pose::Identity()).radius / 200;
   fitting.search = !options.no_search;
   if (options.initial.empty()) {
     fitting.around = {std::numbers::pi, bounds(mesh).sizes().norm() / 2, 12, 8000};
@@ -228,6 +220,7 @@ int runRegister(RegisterOptions options, Console& console) {
     for (const Vec3& p : points) squares += (found.mesh_from_path * p - *truth * p).squaredNorm();
     report.set("error", std::sqrt(squares / static_cast<double>(points.size())));
   }
+  path.resize(static_cast<std::size_t>(own));
   writeRegisteredPath(options.output, path, found);
   if (!options.report.empty()) writeFileAtomically(options.report, report.json().dump() + "\n");
   console.report(report);
@@ -267,6 +260,9 @@ Command registerCommand() {
           {input("MESH", "Mesh.", into(options->mesh)),
            input("PATH", "Scan path.", into(options->path)),
            outputTo(options->output, "REGISTERED.csv", "The path on the mesh."),
+           {"--also", "PATH.csv", "", "",
+            "Another scan in the same camera's frame, registered with it; its pose is the same.",
+            into(options->also), Times::any},
            {"--report", "R.json", "", "", "The report as a file.", into(options->report)},
            {"--initial", "T.txt", "", "middle on middle", "First guess of mesh_from_scan, 4 x 4.",
             into(options->initial)},

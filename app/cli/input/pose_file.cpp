@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/json.h"
 #include "core/numbers.h"
 
 namespace patina::cli {
@@ -51,6 +52,23 @@ Pose readPose(const std::filesystem::path& path) {
     refuse(line_of[0], "the rotation's rows are not at right angles");
   if (rotation.determinant() < 0) refuse(line_of[0], "a reflection, not a rotation");
   return pose;
+}
+
+Pose readPoseAt(const std::filesystem::path& path, const std::string& key) try {
+  const Json rows = parseJson(readFile(path), path.string()).at(key);
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      matrix(i, j) = rows.asArray()
+                         .at(static_cast<std::size_t>(i))
+                         .asArray()
+                         .at(static_cast<std::size_t>(j))
+                         .asNumber();
+  return Pose(matrix);
+} catch (const FileError&) {
+  throw;
+} catch (const std::exception& error) {
+  throw FileError(path.string(), 0, key + ": " + error.what());
 }
 
 } // namespace patina::cli

@@ -91,10 +91,14 @@ std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
     const bool other = place && last && place->stretch != last->stretch;
     if (!strokes.back().points.empty() && timed && (other || times[i] - last_time > pause))
       strokes.emplace_back();
-    strokes.back().points.push_back(points[i]);
-    if (place) strokes.back().along.push_back(place->along);
+    // Where the probe stood there is no way.
+    const bool stood =
+        place && !strokes.back().along.empty() && !(place->along > strokes.back().along.back());
     last = place;
     if (timed) last_time = times[i];
+    if (stood) continue;
+    strokes.back().points.push_back(points[i]);
+    if (place) strokes.back().along.push_back(place->along);
   }
   if (strokes.back().points.empty())
     throw FileError(heights.string(), 0, "has no height at a time of " + path.string());

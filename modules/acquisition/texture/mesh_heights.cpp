@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/error.h"
+
 namespace patina {
 namespace {
 
@@ -69,6 +71,19 @@ std::vector<ScanHeight> heightsOverMesh(const SurfaceTarget& target, const Pose&
   over.reserve(places.size());
   for (const Placed& place : places) over.push_back(place.height);
   return over;
+}
+
+Vec3 meanNormal(const SurfaceTarget& target, const Pose& mesh_from_path,
+                const std::vector<PathSample>& path) {
+  Vec3 sum = Vec3::Zero();
+  std::int32_t warm = kNone;
+  for (const PathSample& sample : path) {
+    warm = target.miss(mesh_from_path * sample.position, warm).foot.face;
+    sum += faceNormal(target.mesh(), index(warm));
+  }
+  if (!(sum.norm() > 1e-3 * static_cast<double>(path.size())))
+    throw Error("the path runs around the mesh: there is no side from which heights are");
+  return mesh_from_path.linear().transpose() * sum.normalized();
 }
 
 std::optional<ComplianceEstimate> complianceOverMesh(const SurfaceTarget& target,

@@ -16,6 +16,11 @@ std::vector<ScanHeight> heightsOverMesh(const SurfaceTarget& target, const Pose&
                                         const std::vector<PathSample>& path,
                                         const ScanHeights& heights);
 
+// Of the mesh under a path, in the scan's frame, unit: along which heights over it are measured.
+// Throws Error where the path runs around the mesh.
+Vec3 meanNormal(const SurfaceTarget& target, const Pose& mesh_from_path,
+                const std::vector<PathSample>& path);
+
 // How far the mesh yields where the probe stood and pressed it, along its own normals; absent where
 // it never did. `path` touches where it says so; `track` is that of the camera alone.
 std::optional<ComplianceEstimate> complianceOverMesh(const SurfaceTarget& target,
