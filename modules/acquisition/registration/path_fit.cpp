@@ -191,7 +191,7 @@ PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, co
       countAll([&](double r) { return r <= most ? 1.0 : 0.0; });
       if (round > 0 && before == fit.weights) break;
     }
-    work.run(std::max(left, 5), tiny, [] { return false; });
+    work.run(options.noise > 0 ? std::max(left, 5) : left, tiny, [] { return false; });
     if (options.noise <= 0) break;
   }
   const auto count =
