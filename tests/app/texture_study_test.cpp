@@ -51,7 +51,7 @@ TEST(TextureStudy, HarmonicsConvergeAsTheProfileIsSmooth) {
   EXPECT_NEAR(*tables[2].order_fitted, -1.5, 0.4); // corners among waves
   for (std::size_t i = 0; i < 2; ++i)
     for (const WorkPrecisionRow& row : tables[i].rows)
-      EXPECT_NEAR(more(row, "of closed form"), 1, 0.03) << tables[i].title;
+      EXPECT_NEAR(more(row, "of closed form"), 1, 0.05) << tables[i].title;
 }
 
 TEST(TextureStudy, AWideBlendSpoilsMoreThanItCloses) {

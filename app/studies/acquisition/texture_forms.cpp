@@ -36,7 +36,9 @@ double trueSum(const FourierSeries& series, double omega, double x) {
 }
 
 FourierTexture milledTexture(std::uint32_t seed, int harmonics) {
-  return fitTexture(milledPoints(seed), {harmonics, 0.1, {}}).texture;
+  FitOptions1d options;
+  options.harmonics = harmonics;
+  return fitTexture(milledPoints(seed), options).texture;
 }
 
 // By value, so that no form is spared a call that another one takes.

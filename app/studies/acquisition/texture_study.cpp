@@ -86,7 +86,7 @@ std::vector<Profile> profiles(const StudyOptions& options) {
 }
 
 WorkPrecisionTable harmonicsTable(const Profile& profile, Progress& progress) {
-  constexpr double kBlend = 0.1;
+  FitOptions1d fitting;
   WorkPrecisionTable table =
       tableOf(profile.about + ", by harmonics (T-A18): what the texture lacks of it, "
                               "rms and max, where nothing is blended",
@@ -94,14 +94,15 @@ WorkPrecisionTable harmonicsTable(const Profile& profile, Progress& progress) {
   OrderFit order;
   for (const int harmonics : {8, 16, 32, 64, 128, 256}) {
     progress.throwIfCancelled();
+    fitting.harmonics = harmonics;
     WorkPrecisionRow row;
     row.knobs = {{"harmonics", harmonics}};
     const auto count = static_cast<double>(profile.points.size());
     for (const Points& points : profile.points) {
       const double begin = threadSeconds();
-      const FittedTexture fitted = fitTexture(points, {harmonics, kBlend, {}});
+      const FittedTexture fitted = fitTexture(points, fitting);
       row.ns += 1e9 * (threadSeconds() - begin) / count;
-      const Lack lack = lackOf(fitted, points, 1 - kBlend);
+      const Lack lack = lackOf(fitted, points, 1 - fitting.blend);
       row.error += lack.rms * lack.rms / count;
       row.error_max = std::max(row.error_max, lack.most);
     }
@@ -109,7 +110,7 @@ WorkPrecisionTable harmonicsTable(const Profile& profile, Progress& progress) {
     // All of it lies where nothing is blended.
     if (profile.beyond)
       row.more = {
-          {"of closed form", row.error / profile.beyond(harmonics) * std::sqrt(1 - kBlend)}};
+          {"of closed form", row.error / profile.beyond(harmonics) * std::sqrt(1 - fitting.blend)}};
     table.rows.push_back(row);
     if (harmonics >= profile.from) order.add(harmonics, row.error);
   }
