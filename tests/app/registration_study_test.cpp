@@ -70,12 +70,11 @@ TEST(RegistrationStudy, OursIsAsGoodAsTheLoop) {
   }
 }
 
-// Measured: 0.15 from 5 deg; from farther a search may follow.
-PATINA_TIMED_TEST(RegistrationStudy, OursIsFarQuickerWithoutNoise) {
+// Measured: 0.15, 0.28 and 0.63 by noise; from farther a search may follow.
+PATINA_TIMED_TEST(RegistrationStudy, OursIsQuickerWhereAllPointsCount) {
   for (const auto& rows : settings())
-    if (knob(rows[0], "outliers [%]") + knob(rows[0], "noise [mm]") == 0 &&
-        knob(rows[0], "turn [deg]") == 5) {
-      EXPECT_LE(rows[0].ns, 0.4 * rows[1].ns);
+    if (knob(rows[0], "outliers [%]") == 0 && knob(rows[0], "turn [deg]") == 5) {
+      EXPECT_LE(rows[0].ns, (knob(rows[0], "noise [mm]") > 0 ? 0.9 : 0.4) * rows[1].ns);
     }
 }
 

@@ -1,4 +1,4 @@
-// What a row of a study says, by the name of its column; a failure and no number where it has none.
+// What a row of a study says, by the name of its column.
 #pragma once
 
 #include <limits>
@@ -10,10 +10,10 @@
 
 namespace patina::test {
 
+// NaN, which no bound holds for, where there is no such column.
 inline double more(const WorkPrecisionRow& row, const std::string& column) {
   for (const auto& [name, value] : row.more)
     if (name == column) return value;
-  ADD_FAILURE() << "no column " << column;
   return std::numeric_limits<double>::quiet_NaN();
 }
 
