@@ -41,7 +41,6 @@ FourierTexture milledTexture(std::uint32_t seed, int harmonics) {
   return fitTexture(milledPoints(seed), options).texture;
 }
 
-// By value, so that no form is spared a call that another one takes.
 template <class Point, class Form>
 WorkPrecisionRow measured(const std::vector<Point>& places, const std::vector<double>& due,
                           double rms, const Form& form, int passes) {

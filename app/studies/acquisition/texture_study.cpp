@@ -69,8 +69,8 @@ std::vector<Profile> profiles(const StudyOptions& options) {
     milled.push_back(milledPoints(seed));
   return {{"Two jumps", sampled([](double u) { return u < 0.25 || u >= 0.75 ? 1. : -1.; }), -0.5, 8,
            [](int n) {
-             return rootOfSum(n % 2 == 0 ? n + 1 : n + 2, 2,
-                              [](double j) { return 8 / (kPi * kPi * j * j); });
+             // Odd ones alone, of which an even n is none.
+             return rootOfSum(n + 1, 2, [](double j) { return 8 / (kPi * kPi * j * j); });
            }},
           // Bernoulli's third polynomial, its seam in the middle.
           {"A jump of the curvature", sampled([](double u) {
