@@ -2,6 +2,8 @@
 
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/studies/acquisition/filter_study.h"
+#include "app/studies/acquisition/registration_study.h"
+#include "app/studies/acquisition/texture_study.h"
 #include "app/studies/acquisition/tracking_study.h"
 #endif
 #include "app/studies/field/field_study.h"
@@ -31,6 +33,10 @@ const std::vector<Study>& studies() {
        trackingStudy},
       {"filter", "paths of a probe from camera and accelerometers; heights; stiffness",
        filterStudy},
+      {"registration", "a path finds its place on a mesh, by several methods; how they converge",
+       registrationStudy},
+      {"texture", "harmonics and blending of a profile; what an evaluation takes, by its form",
+       textureStudy},
 #endif
   };
   return all;

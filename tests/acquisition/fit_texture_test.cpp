@@ -191,6 +191,17 @@ TEST(FitTexture, ErrorFallsAsHarmonicsAreAdded) {
   EXPECT_LT(before, 0.05 * first);
 }
 
+// Ten times the zone would add a bump of the rms and more where the cubic turns to the slope of the
+// beginning.
+TEST(FitTexture, ByDefaultBlendsLittle) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const std::vector<ProfilePoint> points = pointsOf(milledProfile(seed, 28e-3, 5e-6), 5e-6);
+    const FittedTexture fitted = fitTexture(points, {});
+    EXPECT_LE(fitted.blended, 0.2 * std::sqrt(fitted.variance)) << seed;
+    EXPECT_LE(fitted.residual, 0.15 * std::sqrt(fitted.variance)) << seed;
+  }
+}
+
 TEST(FitTexture, OfTheSharedMilledSurfaceHasTheResidueOfItsSpectrum) {
   const std::filesystem::path path = test::sharedData("profiles/npl_mill.xml");
   PATINA_SKIP_WITHOUT(path);

@@ -8,9 +8,12 @@
 #include <span>
 
 #include "app/studies/haptics/contact_test_path.h"
+#include "support/study_rows.h"
 
 namespace patina {
 namespace {
+
+using test::more;
 
 const std::vector<WorkPrecisionTable>& quickTables() {
   static const std::vector<WorkPrecisionTable> tables = [] {
@@ -18,12 +21,6 @@ const std::vector<WorkPrecisionTable>& quickTables() {
     return contactStudy(StudyOptions{.quick = true}, progress);
   }();
   return tables;
-}
-
-double more(const WorkPrecisionRow& row, const std::string& column) {
-  for (const auto& [name, value] : row.more)
-    if (name == column) return value;
-  return std::nan("");
 }
 
 TEST(ContactStudy, IsRegistered) {

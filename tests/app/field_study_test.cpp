@@ -10,9 +10,12 @@
 #include "app/studies/study_shapes.h"
 #include "field/store/field_grid.h"
 #include "support/node_values.h"
+#include "support/study_rows.h"
 
 namespace patina {
 namespace {
+
+using test::more;
 
 const std::vector<WorkPrecisionTable>& quickTables() {
   static const std::vector<WorkPrecisionTable> tables = [] {
@@ -26,12 +29,6 @@ const WorkPrecisionTable& tableNamed(const std::string& start) {
   for (const WorkPrecisionTable& table : quickTables())
     if (table.title.rfind(start, 0) == 0) return table;
   throw std::runtime_error("no table '" + start + "'");
-}
-
-double more(const WorkPrecisionRow& row, const std::string& column) {
-  for (const auto& [name, value] : row.more)
-    if (name == column) return value;
-  return std::nan("");
 }
 
 // The row of the finest grid.

@@ -8,17 +8,14 @@
 
 #include "app/studies/acquisition/filter_tables.h"
 #include "support/sanitized.h"
+#include "support/study_rows.h"
 
 namespace patina {
 namespace {
 
-const StudyOptions kQuick{.quick = true};
+using test::more;
 
-double more(const WorkPrecisionRow& row, const std::string& column) {
-  for (const auto& [name, value] : row.more)
-    if (name == column) return value;
-  return std::nan("");
-}
+const StudyOptions kQuick{.quick = true};
 
 TEST(FilterStudy, IsRegistered) {
   const auto& all = studies();

@@ -6,8 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/study_rows.h"
+
 namespace patina {
 namespace {
+
+using test::knob;
+using test::more;
 
 const std::vector<WorkPrecisionTable>& quickTables() {
   static const std::vector<WorkPrecisionTable> tables = [] {
@@ -15,18 +20,6 @@ const std::vector<WorkPrecisionTable>& quickTables() {
     return frictionStudy(StudyOptions{.quick = true}, progress);
   }();
   return tables;
-}
-
-double more(const WorkPrecisionRow& row, const std::string& column) {
-  for (const auto& [name, value] : row.more)
-    if (name == column) return value;
-  return std::nan("");
-}
-
-double knob(const WorkPrecisionRow& row, const std::string& name) {
-  for (const auto& [key, value] : row.knobs)
-    if (key == name) return value.asNumber();
-  return std::nan("");
 }
 
 TEST(FrictionStudy, IsRegistered) {

@@ -6,23 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "app/studies/paint/material_study.h"
+#include "support/study_rows.h"
 
 namespace patina {
 namespace {
 
-double knob(const WorkPrecisionRow& row, const std::string& name) {
-  for (const auto& [key, value] : row.knobs)
-    if (key == name) return value.asNumber();
-  ADD_FAILURE() << "no knob " << name;
-  return 0;
-}
-
-double more(const WorkPrecisionRow& row, const std::string& name) {
-  for (const auto& [key, value] : row.more)
-    if (key == name) return value;
-  ADD_FAILURE() << "no column " << name;
-  return 0;
-}
+using test::knob;
+using test::more;
 
 class PaintStudy : public testing::Test {
  protected:

@@ -5,8 +5,12 @@
 #include <cmath>
 #include <random>
 
+#include "support/study_rows.h"
+
 namespace patina {
 namespace {
+
+using test::more;
 
 const std::vector<WorkPrecisionTable>& quickTables() {
   static const std::vector<WorkPrecisionTable> tables = [] {
@@ -14,12 +18,6 @@ const std::vector<WorkPrecisionTable>& quickTables() {
     return surfacesStudy(StudyOptions{.quick = true}, progress);
   }();
   return tables;
-}
-
-double more(const WorkPrecisionRow& row, const std::string& column) {
-  for (const auto& [name, value] : row.more)
-    if (name == column) return value;
-  return std::nan("");
 }
 
 TEST(SurfacesStudy, EveryRowIsMeasured) {

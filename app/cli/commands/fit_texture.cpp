@@ -171,7 +171,7 @@ Command fitTextureCommand() {
             inRange(
                 0, 1e9, [options](double n) { options->seed = static_cast<std::uint64_t>(n); },
                 NumberKind::whole)},
-           {"--blend", "PART", "", "0.1", "Of the profile, at its end.",
+           {"--blend", "PART", "", "0.01", "Of the profile, at its end.",
             inRange(1e-6, 0.5, [options](double part) { options->fit.blend = part; })},
            {"--step", "LENGTH", "m", "the points' median", "Of the even samples.",
             inRange(

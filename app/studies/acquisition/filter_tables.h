@@ -1,20 +1,13 @@
 // The tables of the filter study, and what they have in common.
 #pragma once
 
-#include <ctime>
-
+#include "app/studies/query_timing.h"
 #include "app/studies/study.h"
 
 namespace patina {
 
 inline WorkPrecisionTable filterTable(const std::string& title, const std::string& unit) {
   return {"filter", title, unit, {}, std::nullopt, std::nullopt};
-}
-
-inline double threadSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 WorkPrecisionTable gainTable();

@@ -10,7 +10,7 @@
 #include "acquisition/simulation/simulated_pivot.h"
 #include "acquisition/tracking/lens.h"
 #include "acquisition/tracking/rig_pose.h"
-#include "app/studies/acquisition/filter_tables.h"
+#include "app/studies/query_timing.h"
 
 namespace patina {
 namespace {

@@ -10,6 +10,7 @@ namespace patina {
 namespace {
 
 constexpr double kInlier = 3;      // deviations
+constexpr double kSettled = 1e-2;  // of what the misses leave unknown of the pose: less is no step
 constexpr double kNormal = 1.4826; // of a normal error, deviation over median
 
 struct Working {
@@ -33,6 +34,11 @@ struct Working {
     for (std::size_t i = 0; i < misses.size(); ++i)
       sum += fit.weights[i] * misses[i].distance * misses[i].distance;
     return sum;
+  }
+
+  double counting() const {
+    return static_cast<double>(
+        std::count_if(fit.weights.begin(), fit.weights.end(), [](double w) { return w > 0; }));
   }
 
   // Deviation of the better half.
@@ -69,6 +75,8 @@ struct Working {
       const Eigen::SelfAdjointEigenSolver<Mat6> eigen(fit.normal);
       const double largest = std::max(eigen.eigenvalues()[5], 1e-300);
       const double before = cost(fit.misses);
+      const double enough =
+          std::max(tiny, kSettled * std::sqrt(before) / std::max(counting(), 1.0));
       ++fit.iterations;
       for (;;) {
         Vec6 step = Vec6::Zero();
@@ -81,7 +89,7 @@ struct Working {
         std::vector<Miss> misses = fit.misses;
         evaluate(next, misses);
         const double after = cost(misses);
-        const bool still = step.norm() < tiny;
+        const bool still = step.norm() < enough;
         if (after <= before || free || still) {
           fit.last_turn = step.head<3>().norm() / scale.radius;
           fit.last_shift = step.tail<3>().norm();
@@ -191,13 +199,10 @@ PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, co
       countAll([&](double r) { return r <= most ? 1.0 : 0.0; });
       if (round > 0 && before == fit.weights) break;
     }
-    work.run(std::max(left, 5), tiny, [] { return false; });
+    work.run(options.noise > 0 ? std::max(left, 5) : left, tiny, [] { return false; });
     if (options.noise <= 0) break;
   }
-  const auto count =
-      fit.weights.size() -
-      static_cast<std::size_t>(std::count(fit.weights.begin(), fit.weights.end(), 0.0));
-  fit.rms = std::sqrt(work.cost(fit.misses) / static_cast<double>(std::max<std::size_t>(count, 1)));
+  fit.rms = std::sqrt(work.cost(fit.misses) / std::max(work.counting(), 1.0));
   work.normalEquations(scaleOf(points, fit.mesh_from_path));
   return std::move(work.fit);
 }

@@ -36,7 +36,8 @@ struct PathFit {
   int iterations = 0;
   std::size_t evaluations = 0;          // of a point's distance
   double last_turn = 0, last_shift = 0; // of the last step [rad, m]
-  bool converged = false;               // neither residual nor pose moved any more
+  // Neither residual nor pose moved any more, the pose by less than a hundredth of rms / sqrt(n).
+  bool converged = false;
 };
 
 struct FitOptions {

@@ -13,6 +13,7 @@ namespace {
 constexpr double kExpected = 1.5;      // times the noise: a larger rms says that it lies elsewhere
 constexpr std::size_t kDeciding = 600; // points that decide between places
 constexpr double kEnough = 0.6;        // of the points must count
+constexpr double kBetter = 0.99;       // of the cost: what is better by less is not told apart
 
 double shareThatCounts(const PathFit& fit) {
   return static_cast<double>(std::count_if(fit.weights.begin(), fit.weights.end(),
@@ -134,7 +135,7 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     for (const Pose& guess : guesses) {
       progress.throwIfCancelled();
       PathFit fit = fitFrom(guess, few);
-      if (cappedCost(fit, far) < cappedCost(nearest, far)) nearest = std::move(fit);
+      if (cappedCost(fit, far) < kBetter * cappedCost(nearest, far)) nearest = std::move(fit);
     }
     std::swap(fitting.pressed, few_pressed);
     best = fitFrom(nearest.mesh_from_path, points);

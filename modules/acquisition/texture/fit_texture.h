@@ -11,7 +11,9 @@ namespace patina {
 
 struct FitOptions1d {
   int harmonics = 128;
-  double blend = 0.1;         // of the profile's length, at its end (seamless())
+  // Of the profile's length, at its end (seamless()): no more than its waves are long, as a slope
+  // that turns over a wider zone lifts all of it.
+  double blend = 0.01;
   std::optional<double> step; // of the even samples [m]; else the median of the points'
   // Longer waves are the body's shape, which its mesh has, and are left out [m].
   std::optional<double> cutoff{};

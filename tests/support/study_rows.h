@@ -1,0 +1,34 @@
+// What a row of a study says, by the name of its column.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/work_precision.h"
+
+namespace patina::test {
+
+// NaN, which no bound holds for, where there is no such column.
+inline double more(const WorkPrecisionRow& row, const std::string& column) {
+  for (const auto& [name, value] : row.more)
+    if (name == column) return value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+inline double knob(const WorkPrecisionRow& row, const std::string& column) {
+  for (const auto& [name, value] : row.knobs)
+    if (name == column) return value.asNumber();
+  ADD_FAILURE() << "no knob " << column;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+inline std::string word(const WorkPrecisionRow& row, const std::string& column) {
+  for (const auto& [name, value] : row.knobs)
+    if (name == column) return value.asString();
+  ADD_FAILURE() << "no knob " << column;
+  return {};
+}
+
+} // namespace patina::test
