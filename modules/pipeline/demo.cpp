@@ -24,7 +24,7 @@ namespace {
 const char* const kFamily = "4x4_50";
 constexpr double kCutoff = 8e-3;    // longer waves are shape [m]
 constexpr double kBlend = 0.05;     // of a profile
-constexpr double kOverNoise = 8;    // those that are compared with the truth
+constexpr double kOverNoise = 10;   // those that are compared with the truth
 constexpr int kRings = 2;           // of faces beside a stroke
 constexpr double kMillimetre = 1e3; // of an .obj in a metre
 

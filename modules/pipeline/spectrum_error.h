@@ -13,8 +13,8 @@ struct SpectrumError {
 };
 
 // Both lines of one period; harmonics are compared that in the truth are higher than `floor` [1/m]
-// times the square of their wavelength. A wave may lie between two harmonics. Throws
-// std::invalid_argument for other kinds.
+// times the square of their wavelength, and the highest one in any case. A wave may lie between two
+// harmonics. Throws std::invalid_argument for other kinds.
 SpectrumError spectrumError(const FourierTexture& texture, const FourierTexture& truth,
                             double floor);
 

@@ -3,8 +3,8 @@
 namespace patina {
 namespace {
 
-constexpr int kLooks = 8;          // to each side, before the best one is followed
-constexpr double kFinest = 0.1e-6; // [m]
+constexpr int kLooks = 8;        // to each side, before the best one is followed
+constexpr double kFinest = 1e-9; // [m]
 
 } // namespace
 

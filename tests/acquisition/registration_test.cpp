@@ -37,6 +37,29 @@ TEST(Registration, WithoutNoiseThePathLandsWhereItWas) {
   }
 }
 
+// Ten seconds of standing on a ridge say no more of where the path lies than a second.
+TEST(Registration, StandingCountsOnceWherePlacesDo) {
+  const SurfaceTarget target(test::lumpy(), 0);
+  Draw draw(7);
+  auto path = draw.pathOn(target, 300);
+  const auto truth = path;
+  const Miss under = target.miss(truth[40]);
+  const Vec3 ridge = truth[40] + 0.3e-3 * faceNormal(target.mesh(), index(under.foot.face));
+  for (int i = 0; i < 5000; ++i) path.push_back(ridge);
+  RegistrationOptions options;
+  options.robust = false;
+  const double each =
+      missOf(registered(target, path, Pose::Identity(), options).mesh_from_path, truth);
+  options.place = 0.1e-3;
+  const Registration found = registered(target, path, Pose::Identity(), options);
+  const double once = missOf(found.mesh_from_path, truth);
+  std::printf("each sample %.4f mm, each place %.4f mm\n", 1e3 * each, 1e3 * once);
+  EXPECT_LT(once, 0.1 * each);
+  ASSERT_EQ(found.misses.size(), path.size());
+  EXPECT_EQ(found.counts.size(), path.size());
+  EXPECT_NEAR(std::abs(found.misses.back().distance), 0.3e-3, 0.05e-3);
+}
+
 // T-A10b, F11
 TEST(Registration, ConvergesInSixStepsWhereTheLoopCreeps) {
   const SurfaceTarget target(test::bumpyPatch(), 0);

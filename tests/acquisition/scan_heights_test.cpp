@@ -95,6 +95,38 @@ TEST(ScanHeights, AreThoseThatTheTipWentOver) {
   }
 }
 
+// A press moves the tip by a millimetre where it stands: none of it may become texture.
+TEST(ScanHeights, ArePressedByNothing) {
+  for (const double stiffness : {1000., 3000.}) {
+    Rough rough;
+    rough.hand.seed = 3;
+    rough.hand.relief = roughSurface(3, 50e-6);
+    rough.hand.compliance = 1 / stiffness;
+    rough.hand.moves = {{Vec2::Zero(), 0.5, 0, 0, 0}};
+    for (int i = 0; i < 4; ++i) {
+      rough.hand.moves.push_back({Vec2::Zero(), 0.6, 0, 4, 0});
+      rough.hand.moves.push_back({Vec2::Zero(), 0.4, 0, 0.6, 0});
+    }
+    rough.hand.moves.push_back({Vec2(0.06, 0.01), 1, 0, 1, 0});
+    rough.hand.moves.push_back({Vec2(0.06, 0.01), 0.5, 0, 0, 1});
+    const ProbeModel probe;
+    ScanFilter filter;
+    filter.heights = true;
+    filter.normal = Vec3::UnitZ();
+    Progress progress;
+    rough.found = *filterScan(simulateCamera(rough.hand, probe, {}, 5),
+                              simulateProbe(rough.hand, probe, {}, 6), probe, filter, progress)
+                       .heights;
+    // Where it went.
+    std::vector<ScanHeight>& heights = rough.found.heights;
+    std::erase_if(heights,
+                  [&](const ScanHeight& height) { return height.t < 4.6 || height.t > 5.4; });
+    const double error = errorOf(rough).quick;
+    std::printf("%.0f N/m: %.2f of the truth above 10 Hz\n", stiffness, error);
+    EXPECT_LT(error, 0.3);
+  }
+}
+
 TEST(ScanHeights, KnowThePlaneAndItsOutside) {
   const Rough rough = roughScan(4, 25e-6);
   EXPECT_GT(rough.found.plane.normal.z(), std::cos(0.01));

@@ -28,7 +28,10 @@ const std::map<std::string, Names>& visibleModules() {
       {"workspace", {"core", "geometry", "field", "scene", "pictures"}},
       {"session",
        {"core", "geometry", "field", "scene", "usb", "pictures", "haptics", "authoring",
-        "visualization", "workspace"}}};
+        "visualization", "workspace"}},
+      {"pipeline",
+       {"core", "geometry", "field", "scene", "usb", "pictures", "haptics", "authoring",
+        "visualization", "workspace", "session", "acquisition"}}};
   return kVisible;
 }
 

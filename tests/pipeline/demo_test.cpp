@@ -1,0 +1,52 @@
+// The whole chain on its embedded scan, and that its figures would tell if it were broken.
+#include "pipeline/demo_report.h"
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "geometry/io/textured_obj.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("patina_demo_" + std::to_string(getpid()));
+  Demo demo(folder, 1);
+  Progress progress;
+  while (!isDone(demo)) runNext(demo, progress);
+  double seconds = 0;
+  for (std::size_t i = 0; i < demo.seconds.size(); ++i) {
+    std::printf("%s %.2f s\n", demoSteps()[i].name.c_str(), demo.seconds[i]);
+    seconds += demo.seconds[i];
+  }
+  EXPECT_LT(seconds, 120);
+  const std::vector<DemoFigure> figures = demoFigures(demo);
+  EXPECT_EQ(figures.size(), 1 + 7 * demo.object.materials.size());
+  for (const DemoFigure& figure : figures) {
+    std::printf("%s %s: %.4g of %.4g %s\n", figure.what.c_str(), figure.of.c_str(), figure.value,
+                figure.most, figure.unit.c_str());
+    EXPECT_TRUE(figure.holds()) << figure.what << " " << figure.of;
+  }
+  // What it leaves opens again, with paint and textures.
+  const Scene scene = loadWorkspace(demo.folder / "workspace");
+  ASSERT_TRUE(scene.objects.at(0).paint);
+  EXPECT_EQ(scene.objects[0].paint->textures->library.size(), 3u);
+  EXPECT_TRUE(scene.objects[0].paint->color && scene.objects[0].paint->material);
+  EXPECT_GT(readTexturedObj(demo.folder / "textured.obj").textured.size(), 1000u);
+  EXPECT_TRUE(demoJson(demo).at("holds").asBool());
+  EXPECT_NE(demoMarkdown(demo, {"paths.png"}).find("![paths](paths.png)"), std::string::npos);
+
+  // Without its textures the figures must fail.
+  DemoTexture& first = demo.textures[0];
+  for (FeltPoint& point : first.felt) point.felt = 1.5 * point.outward;
+  first.felt_error = feltError(first.felt);
+  EXPECT_GT(first.felt_error.variation, 0.9);
+  EXPECT_FALSE(demoJson(demo).at("holds").asBool());
+  std::filesystem::remove_all(folder);
+}
+
+} // namespace
+} // namespace patina
