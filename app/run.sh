@@ -1,8 +1,9 @@
 #!/bin/sh
-# Installs what is missing, builds, and runs the main job: a mesh that you see and feel.
+# Installs what is missing, builds, and runs the main job: a surface that you see and feel.
 #   app/run.sh [MESH or WORKSPACE] [--unit mm|cm|m|in|fit]
-# With no argument: a toy dinosaur. With no display the same job runs without a window and leaves
-# pictures and tables in out/ (or in the folder that PATINA_OUT names).
+# With no argument: from a scan to a feel on a toy, step by step in the window. With no display the
+# same job runs without a window and leaves pictures and tables in out/ (or in the folder that
+# PATINA_OUT names).
 set -eu
 here=$(cd "$(dirname "$0")/.." && pwd)
 . "$here/app/packages.sh"
@@ -50,17 +51,24 @@ cmake --build "$here/build" --target patina patina-gui -j "$(build_jobs)" >&2
 bin=$here/build/bin
 
 if [ -n "${DISPLAY:-}" ]; then
+  [ $# -gt 0 ] || set -- --demo
   exec "$bin/patina-gui" "$@"
 fi
 
 out=${PATINA_OUT:-$here/out}
 mkdir -p "$out"
+in_window() { xvfb-run -a -s "-screen 0 1280x800x24" "$@" </dev/null; }
+if [ $# -eq 0 ]; then
+  say "No display: from a scan to a feel without a window"
+  in_window "$bin/patina" demo -o "$out"
+  say "Done. $out/report.md says what each step found"
+  exit 0
+fi
 if [ "$named" = no ]; then
   "$bin/patina" model dinosaur -o "$out/dinosaur.ply"
   set -- "$out/dinosaur.ply"
 fi
 say "No display: the same session without a window"
-in_window() { xvfb-run -a -s "-screen 0 1280x800x24" "$@" </dev/null; }
 in_window "$bin/patina-gui" --tour "$out" "$@"
 "$bin/patina" info "$@" --json >"$out/info.json"
 # The tour's log begins with the columns of a tip path: felt again, tick by tick, as a table.

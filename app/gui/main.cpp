@@ -34,6 +34,7 @@ constexpr const char* kHelp =
     "  --iso VALUE               of a volume from elsewhere: where its surface is\n"
     "  --log FILE.csv            record every tick, written when the window closes\n"
     "  --tour FOLDER             a scripted session: pictures and feel.csv into FOLDER, then quit\n"
+    "  --demo                    from a scan to a feel on the toy, step by step, beside it\n"
     "  --first-picture-time      print the seconds from start to the first picture of FILE\n"
     "  --help, --version\n";
 
@@ -41,7 +42,7 @@ struct Arguments {
   patina::LoadRequest request;
   std::optional<patina::UpAxis> up; // absent: as it was chosen last
   std::optional<std::filesystem::path> log, tour;
-  bool first_picture_time = false;
+  bool first_picture_time = false, demo = false;
   bool help = false, version = false;
 };
 
@@ -71,6 +72,8 @@ Arguments parse(const std::vector<std::string>& words) {
       arguments.log = value();
     } else if (word == "--tour") {
       arguments.tour = value();
+    } else if (word == "--demo") {
+      arguments.demo = true;
     } else if (word == "--first-picture-time") {
       arguments.first_picture_time = true;
     } else if (word.size() > 1 && word[0] == '-') {
@@ -97,6 +100,8 @@ volatile std::sig_atomic_t interrupted = 0;
 
 int run(const Arguments& arguments, int argc, char** argv) {
   if (arguments.log) patina::requireWritable(*arguments.log);
+  if (arguments.demo && !patina::isBuilt(patina::Desk::texture))
+    throw patina::Error("--demo: this program was built without scans (PATINA_ACQUISITION)");
   patina::requireDisplay();
   setenv("QT_QPA_PLATFORM", "xcb", 0);
   giveRuntimeFolder();
@@ -126,6 +131,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
   patina::LoadRequest request = arguments.request;
   if (!arguments.up && documents.asks()) request.options.up = documents.up();
   documents.open(request);
+  if (arguments.demo) window.controllers().desks.choose(patina::Desk::texture);
   if (arguments.log) feel.startLog();
   // Ctrl-C, kill and a lost terminal are ways to close the window: the log is still written.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})

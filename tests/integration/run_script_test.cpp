@@ -43,18 +43,21 @@ class RunScript : public testing::Test {
 };
 
 TEST_F(RunScript, ChoosesTheDinosaurWhenOnlyOptionsAreGiven) {
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{}, std::vector<std::string>{"--unit", "cm"}}) {
-    fs::remove(folder / "log.txt");
-    const Outcome outcome = runScript(words);
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
-    const std::string log = readFile(folder / "log.txt");
-    EXPECT_NE(log.find("patina model dinosaur"), std::string::npos) << log;
-    EXPECT_NE(log.find("patina info " + (folder / "out/dinosaur.ply") + " --json"),
-              std::string::npos)
-        << log;
-    EXPECT_EQ(log.find("--unit"), std::string::npos) << log; // it is in millimetres
-  }
+  const Outcome outcome = runScript({"--unit", "cm"});
+  ASSERT_EQ(outcome.exit, 0) << outcome.err;
+  const std::string log = readFile(folder / "log.txt");
+  EXPECT_NE(log.find("patina model dinosaur"), std::string::npos) << log;
+  EXPECT_NE(log.find("patina info " + (folder / "out/dinosaur.ply") + " --json"), std::string::npos)
+      << log;
+  EXPECT_EQ(log.find("--unit"), std::string::npos) << log; // it is in millimetres
+}
+
+TEST_F(RunScript, TakesAScanToAFeelWithoutAnArgument) {
+  const Outcome outcome = runScript({});
+  ASSERT_EQ(outcome.exit, 0) << outcome.err;
+  const std::string log = readFile(folder / "log.txt");
+  EXPECT_NE(log.find("patina demo -o " + (folder / "out")), std::string::npos) << log;
+  EXPECT_EQ(log.find("--tour"), std::string::npos) << log;
 }
 
 TEST_F(RunScript, TakesAFileWhereverItStandsAndKeepsItsOptions) {

@@ -56,6 +56,15 @@ void drawScan(QPainter& p) {
   p.drawRect(QRectF(5.5, 7.5, 5, 5));
 }
 
+void drawWave(QPainter& p) {
+  p.drawLine(QPointF(2, 16), QPointF(18, 16));
+  QPainterPath wave(QPointF(2, 9));
+  wave.cubicTo(5, 1, 7, 1, 10, 8);
+  wave.cubicTo(13, 15, 15, 12, 18, 6);
+  p.setPen(QPen(ink("accent"), 1.6));
+  p.drawPath(wave);
+}
+
 } // namespace
 
 QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
@@ -75,8 +84,8 @@ QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
 }
 
 QIcon iconOf(Tab tab) {
-  constexpr void (*kDraw[])(QPainter&) = {drawTool,   drawSurface, drawObject,
-                                          drawDevice, drawEye,     drawScan};
+  constexpr void (*kDraw[])(QPainter&) = {drawTool, drawSurface, drawObject, drawDevice,
+                                          drawEye,  drawScan,    drawWave};
   return drawnIcon(kDraw[static_cast<std::size_t>(tab)]);
 }
 

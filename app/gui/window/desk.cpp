@@ -25,6 +25,17 @@ std::vector<DeskRow> makeDesks() {
                   P::timeline,
                   true,
                   270});
+  rows.push_back({Desk::texture,
+                  "texture",
+                  tr("Texture"),
+                  tr("From a scan to a feel: register, fit, map"),
+                  Qt::Key_9,
+                  {P::steps, P::profile, P::messages},
+                  {Handling::navigate, {}},
+                  Tab::steps,
+                  P::profile,
+                  true,
+                  220});
 #endif
   rows.insert(rows.end(), {{Desk::feel,
                             "feel",
@@ -83,13 +94,15 @@ std::optional<Tab> tabOf(Panel panel) {
   case Panel::scan:
   case Panel::recorder:
     return Tab::scan;
+  case Panel::steps:
+    return Tab::steps;
   default:
     return std::nullopt;
   }
 }
 
 bool inDrawer(Panel panel) {
-  return panel >= Panel::forces && panel <= Panel::findings;
+  return panel >= Panel::forces && panel <= Panel::profile;
 }
 
 const std::vector<DeskRow>& deskRows() {
@@ -110,6 +123,7 @@ const DeskRow& rowOf(Desk desk) {
 const std::vector<TabRow>& tabRows() {
   static const std::vector<TabRow> kRows = {
       {Tab::scan, "scan", tr("Scan"), tr("What was recorded, and what it came to")},
+      {Tab::steps, "steps", tr("Steps"), tr("From a scan to a feel, step by step")},
       {Tab::tool, "tool", tr("Tool"), tr("What the tool in hand does, and its brush")},
       {Tab::surface, "surface", tr("Surface"), tr("How the surface feels")},
       {Tab::object, "object", tr("Object"), tr("What is felt, and where it is")},
@@ -119,7 +133,7 @@ const std::vector<TabRow>& tabRows() {
 }
 
 bool hasTool(Desk desk, const ToolChoice& tool) {
-  if (desk == Desk::scan) return tool.handling == Handling::navigate;
+  if (desk == Desk::scan || desk == Desk::texture) return tool.handling == Handling::navigate;
   const bool paints = tool.handling == Handling::paint || tool.handling == Handling::pick;
   return desk == Desk::paint || !paints;
 }

@@ -11,7 +11,7 @@
 
 namespace patina {
 
-enum class Desk { feel, paint, analyse, scan };
+enum class Desk { feel, paint, analyse, scan, texture };
 
 enum class Panel {
   recovery, // in the line below the picture
@@ -30,12 +30,14 @@ enum class Panel {
   messages,
   timeline,
   findings,
+  profile,
   scan, // cards again
-  recorder
+  recorder,
+  steps
 };
 
 // The cards of the column, a few at a time.
-enum class Tab { tool, surface, object, device, show, scan };
+enum class Tab { tool, surface, object, device, show, scan, steps };
 std::optional<Tab> tabOf(Panel panel); // nullopt: no card
 bool inDrawer(Panel panel);
 

@@ -9,6 +9,7 @@
 #include "app/gui/window/window_menus.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/scanning/scan_desk.h"
+#include "app/gui/texturing/texture_desk.h"
 #endif
 
 namespace patina {
@@ -115,6 +116,16 @@ void MainWindow::connectScan() {
   connect(parts_.scan, &ScanDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.scan, &ScanDesk::cancel);
   connect(&timer_, &QTimer::timeout, parts_.scan, &ScanDesk::refresh);
+  connect(parts_.texture, &TextureDesk::openAsked, &documents_, [this](const QString& folder) {
+    LoadRequest request;
+    request.path = folder.toStdString();
+    documents_.openAsked(request);
+    desks_.choose(Desk::feel);
+  });
+  connect(parts_.texture, &TextureDesk::changed, this, &MainWindow::refresh);
+  connect(parts_.texture, &TextureDesk::said, this, &MainWindow::say);
+  connect(parts_.load_bar, &LoadBar::cancelled, parts_.texture, &TextureDesk::cancel);
+  connect(&timer_, &QTimer::timeout, parts_.texture, &TextureDesk::refresh);
 }
 #endif
 
@@ -139,6 +150,8 @@ WindowState MainWindow::state() const {
   state.scan = parts_.scan->isOpen();
   if (state.name.isEmpty()) state.name = parts_.scan->name();
   if (!state.work) state.work = parts_.scan->work();
+  state.texture = parts_.texture->hasTexture();
+  if (!state.work) state.work = parts_.texture->work();
 #endif
   return state;
 }

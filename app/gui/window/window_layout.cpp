@@ -11,6 +11,7 @@
 #include "app/gui/window/theme.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/scanning/scan_desk.h"
+#include "app/gui/texturing/texture_desk.h"
 #endif
 
 namespace patina {
@@ -26,6 +27,7 @@ std::vector<Page> pages() {
   const auto tr = [](const char* words) { return QMainWindow::tr(words); };
   return {{Panel::timeline, "page_timeline", tr("Timeline"), tr("Frames, force and acceleration")},
           {Panel::findings, "page_findings", tr("Findings"), tr("What is missing, and why")},
+          {Panel::profile, "page_profile", tr("Profile"), tr("Heights, harmonics and forces")},
           {Panel::forces, "page_forces", tr("Forces"), tr("Force on the hand, the last 5 s")},
           {Panel::energy, "page_energy", tr("Energy"), tr("Energy taken by the surface")},
           {Panel::history, "page_history", tr("History"), tr("Every edit; a click goes there")},
@@ -38,8 +40,8 @@ FoldingTabs* makeColumn(const WindowParts& parts) {
   stack->setContentsMargins(8, 0, 4, 8);
   stack->setSpacing(4);
   for (const Panel card :
-       {Panel::scan, Panel::recorder, Panel::tool, Panel::brush, Panel::relief, Panel::touch,
-        Panel::display, Panel::device, Panel::objects, Panel::mesh})
+       {Panel::scan, Panel::recorder, Panel::steps, Panel::tool, Panel::brush, Panel::relief,
+        Panel::touch, Panel::display, Panel::device, Panel::objects, Panel::mesh})
     if (parts.panels.contains(card)) stack->addWidget(parts.panels.at(card));
   stack->addStretch(1);
   parts.display->layout()->addWidget(parts.paint);
@@ -104,6 +106,10 @@ WindowParts layOut(QMainWindow& window) {
                        {Panel::recorder, parts.scan->recorder()},
                        {Panel::timeline, parts.scan->timeline()},
                        {Panel::findings, parts.scan->findings()}});
+  parts.texture = new TextureDesk(window);
+  parts.cells->addWidget(parts.texture->cells());
+  parts.panels.insert(
+      {{Panel::steps, parts.texture->steps()}, {Panel::profile, parts.texture->profile()}});
 #endif
   parts.column = makeColumn(parts);
   parts.drawer = makeDrawer(parts);
@@ -141,8 +147,9 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
     if (parts.panels.contains(page.panel))
       parts.drawer->setThere(static_cast<int>(page.panel),
                              std::find(there.begin(), there.end(), page.panel) != there.end());
-  parts.cells->setCurrentIndex(state.desk == Desk::scan ? 1 : 0);
-  parts.tools->setVisible(state.desk != Desk::scan);
+  const bool scans = state.desk == Desk::scan, textures = state.desk == Desk::texture;
+  parts.cells->setCurrentIndex(scans ? 1 : textures ? 2 : 0);
+  parts.tools->setVisible(!scans && !textures);
   parts.column->setInFront(static_cast<int>(tabInFront(state)));
   parts.drawer->setInFront(static_cast<int>(pageInFront(state)));
   for (const auto& [command, action] : parts.commands)

@@ -34,12 +34,14 @@ class QStackedWidget;
 namespace patina {
 
 class ScanDesk;
+class TextureDesk;
 
 // All belong to the window that they are laid out in.
 struct WindowParts {
   SceneWidget* view = new SceneWidget;
   QStackedWidget* cells = nullptr; // the view, and what other desks have in its place
-  ScanDesk* scan = nullptr;        // where it is built
+  ScanDesk* scan = nullptr;        // where they are built
+  TextureDesk* texture = nullptr;
   LoadBar* load_bar = new LoadBar;
   RecoverBar* recover = new RecoverBar;
   NoticeLine* notice = new NoticeLine;

@@ -16,6 +16,7 @@
 #include "visualization/view/camera.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/scanning/scan_desk.h"
+#include "app/gui/texturing/texture_desk.h"
 #endif
 
 namespace patina {
@@ -171,6 +172,7 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       tr("&Fit"), view, [=] { view->view().fit(); }, Qt::Key_F));
 #ifdef PATINA_HAS_ACQUISITION
   QObject::connect(menu->actions().back(), &QAction::triggered, parts.scan, &ScanDesk::fit);
+  QObject::connect(menu->actions().back(), &QAction::triggered, parts.texture, &TextureDesk::fit);
 #endif
   QMenu* camera = menu->addMenu(tr("&Camera"));
   int digit = Qt::Key_1;
@@ -180,7 +182,10 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
 #ifdef PATINA_HAS_ACQUISITION
   for (const ViewPreset preset : allViews())
     QObject::connect(camera->actions()[static_cast<int>(preset)], &QAction::triggered, parts.scan,
-                     [scan = parts.scan, preset] { scan->setView(preset); });
+                     [scan = parts.scan, texture = parts.texture, preset] {
+                       scan->setView(preset);
+                       texture->setView(preset);
+                     });
 #endif
   camera->addSeparator();
   QAction* parallel = camera->addAction(tr("Orthographic"));

@@ -24,10 +24,13 @@ bool isThere(Panel panel, const WindowState& state) {
   case Panel::messages:
   case Panel::scan:
   case Panel::recorder:
+  case Panel::steps:
     return true;
   case Panel::timeline:
   case Panel::findings:
     return state.scan;
+  case Panel::profile:
+    return state.texture;
   case Panel::display:
   case Panel::mesh:
     return state.content != Content::nothing;

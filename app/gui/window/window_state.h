@@ -31,6 +31,7 @@ struct WindowState {
   ToolChoice tool;
   bool relief = false, paint = false; // the scene has some
   bool scan = false;                  // one is open
+  bool texture = false;               // one was fitted
   std::size_t undoable = 0, redoable = 0;
   bool unsaved = false;
   bool recording = false;

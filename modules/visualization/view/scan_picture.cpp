@@ -62,6 +62,7 @@ struct ScanPicture::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
   PathLayer path{*scene, *overlay};
   vtkSmartPointer<vtkActor> mesh = surfaceActor(palette::kSurface);
+  vtkSmartPointer<vtkActor> highlight = surfaceActor(palette::kTool);
   vtkSmartPointer<vtkActor> frustum = lineActor(palette::kToolShaft, 1.6);
   vtkSmartPointer<vtkActor> shaft = lineActor(palette::kToolShaft, 3);
   vtkSmartPointer<vtkActor> ball = surfaceActor(palette::kTool);
@@ -131,7 +132,11 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   auto* mapper = my.mesh->GetMapper();
   mapper->SetResolveCoincidentTopologyToPolygonOffset();
   mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(0, 4000);
-  for (const auto& actor : {my.mesh, my.frustum}) my.scene->AddActor(actor);
+  // In front of the mesh and behind the path.
+  auto* above = my.highlight->GetMapper();
+  above->SetResolveCoincidentTopologyToPolygonOffset();
+  above->SetRelativeCoincidentTopologyPolygonOffsetParameters(0, 3000);
+  for (const auto& actor : {my.mesh, my.highlight, my.frustum}) my.scene->AddActor(actor);
   for (const auto& actor : {my.shaft, my.ball, my.axes[0], my.axes[1], my.axes[2]})
     my.overlay->AddActor(actor);
   my.overlay->SetLayer(1);
@@ -141,7 +146,7 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   my.corner->SetLayer(1);
   my.corner->InteractiveOff();
   my.corner->AddActor(axesActor());
-  for (const auto& each : {my.mesh, my.frustum}) each->SetVisibility(false);
+  for (const auto& each : {my.mesh, my.highlight, my.frustum}) each->SetVisibility(false);
   setProbe(std::nullopt);
 }
 
@@ -163,6 +168,13 @@ void ScanPicture::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   my.mesh_box = mesh ? bounds(*mesh) : Box3();
   my.mesh->SetVisibility(mesh != nullptr);
   setData(*my.mesh, mesh ? surfaceData(*mesh) : vtkSmartPointer<vtkPolyData>::New());
+  my.dirty = true;
+}
+
+void ScanPicture::setHighlight(std::shared_ptr<const TriangleMesh> faces) {
+  Impl& my = *impl_;
+  my.highlight->SetVisibility(faces != nullptr);
+  setData(*my.highlight, faces ? surfaceData(*faces) : vtkSmartPointer<vtkPolyData>::New());
   my.dirty = true;
 }
 

@@ -38,6 +38,8 @@ class ScanPicture {
   vtkRenderer& renderer();
 
   void setMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: none
+  // Faces that lie on the mesh, in another colour; nullptr: none.
+  void setHighlight(std::shared_ptr<const TriangleMesh> faces);
   void setPath(const DrawnPath& path);
   void setMarks(const std::vector<DrawnMark>& marks);
   void setCamera(const std::optional<DrawnCamera>& camera);

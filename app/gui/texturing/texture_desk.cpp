@@ -1,0 +1,185 @@
+#include "app/gui/texturing/texture_desk.h"
+
+#include <unistd.h>
+
+#include <QLabel>
+#include <QVBoxLayout>
+
+#include "app/gui/loading/load_dialogs.h"
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+// Of the toy, all paths that there are: where they lie on it once they are registered, where the
+// camera saw them before.
+DrawnPath pathsOf(const Demo& demo) {
+  DrawnPath path;
+  const bool registered = !demo.registered.registration.misses.empty();
+  path.title = registered ? "distance [mm]" : "force [N]";
+  const Pose object_from_camera =
+      registered ? demo.registered.registration.mesh_from_path : demo.camera_from_object.inverse();
+  std::size_t i = 0;
+  for (std::size_t s = 0; s < demo.scans.size(); ++s) {
+    bool begins = true;
+    for (const PathSample& sample : demo.scans[s].filtered.path) {
+      const double value =
+          registered ? 1e3 * demo.registered.registration.misses[i].distance : sample.force;
+      path.samples.push_back({sample.t + 1e3 * static_cast<double>(s),
+                              object_from_camera * sample.position, value, false, begins});
+      begins = false;
+      ++i;
+    }
+  }
+  return path;
+}
+
+std::shared_ptr<const TriangleMesh> texturedFaces(const Demo& demo) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->positions = demo.object.mesh.positions;
+  for (const DemoTexture& texture : demo.textures)
+    for (const TexturedFace& face : texture.scanned.laid.faces)
+      mesh->triangles.push_back(demo.object.mesh.triangles[index(face.face)]);
+  return mesh->triangles.empty() ? nullptr : mesh;
+}
+
+} // namespace
+
+TextureDesk::TextureDesk(QWidget& window) : QObject(&window), window_(window), job_(this) {
+  auto* empty = new QWidget;
+  auto* column = new QVBoxLayout(empty);
+  auto* words = new QLabel(tr(
+      "From a scan to a feel, on a toy.\n\nA hand scans three materials on a toy dinosaur. Eight "
+      "steps track it, find its place on the mesh, make textures of what it went over, lay them "
+      "onto the mesh and let you feel them. Each step says how far it is from the truth."));
+  words->setWordWrap(true);
+  words->setAlignment(Qt::AlignCenter);
+  column->addStretch(1);
+  column->addWidget(words);
+  column->addStretch(1);
+  cells_->addWidget(empty);
+
+  auto* page = new QVBoxLayout(profile_);
+  page->setContentsMargins(0, 0, 0, 0);
+  page->setSpacing(2);
+  material_->setObjectName(QStringLiteral("texture_choice"));
+  material_->setToolTip(tr("The texture whose heights, harmonics and forces are drawn"));
+  page->addWidget(material_, 0, Qt::AlignLeft);
+  page->addWidget(plot_, 1);
+  connect(material_, qOverload<int>(&QComboBox::currentIndexChanged), this,
+          &TextureDesk::showProfile);
+  connect(steps_, &StepList::nextAsked, this, [this] { run(false); });
+  connect(steps_, &StepList::allAsked, this, [this] { run(true); });
+  connect(steps_, &StepList::feelAsked, this,
+          [this] { emit openAsked(QString::fromStdString((folder_ / "workspace").string())); });
+  connect(&job_, &Background::progressed, this, [this](double fraction, const QString& what) {
+    if (!work_) return;
+    work_->words = tr("From a scan to a feel: %1").arg(what);
+    work_->fraction = fraction;
+    emit changed();
+  });
+}
+
+TextureDesk::~TextureDesk() = default;
+
+void TextureDesk::runAll() {
+  run(true);
+}
+
+void TextureDesk::run(bool all) {
+  if (work_) return;
+  if (!demo_) {
+    folder_ = std::filesystem::temp_directory_path() / ("patina-demo-" + std::to_string(getpid()));
+    demo_ = std::make_shared<Demo>(folder_, 1);
+  }
+  const QString title = tr("From a scan to a feel");
+  work_ = Work{title, title};
+  steps_->show(demo_.get(), false);
+  steps_->show(demo_.get(), true);
+  emit changed();
+  job_.start([this, demo = demo_, all](Progress& progress, const Background::Deliver& deliver) {
+    try {
+      const std::string& name = demoSteps()[demo->seconds.size()].name;
+      Progress part(progress,
+                    [&](double fraction, std::string_view) { progress.report(fraction, name); });
+      progress.report(0, name);
+      runNext(*demo, part);
+      deliver(true, [this, all] {
+        takeStep();
+        if (all && !isDone(*demo_)) run(true);
+      });
+    } catch (const Cancelled&) {
+      deliver(true, [this] {
+        demo_.reset(); // what a step has half done cannot be gone on with
+        takeStep();
+      });
+    } catch (const std::exception& error) {
+      deliver(true, [this, problem = QString::fromStdString(error.what())] {
+        demo_.reset();
+        takeStep();
+        showProblem(&window_, tr("A step has failed"), problem,
+                    tr("The sequence begins anew; what was open is as it was."));
+      });
+    }
+  });
+}
+
+void TextureDesk::takeStep() {
+  work_.reset();
+  steps_->show(demo_.get(), false);
+  has_texture_ = demo_ != nullptr && !demo_->textures.empty();
+  if (has_texture_ && material_->count() == 0)
+    for (const DemoMaterial& material : demo_->object.materials)
+      material_->addItem(QString::fromStdString(material.name));
+  if (!has_texture_) material_->clear();
+  showProfile();
+  draw();
+  if (demo_ && isDone(*demo_))
+    emit said({tr("Every step's files are in %1").arg(QString::fromStdString(folder_.string()))});
+  emit changed();
+}
+
+void TextureDesk::draw() {
+  cells_->setCurrentIndex(demo_ ? 1 : 0);
+  if (!demo_) return;
+  const bool first = view_ == nullptr;
+  if (first) {
+    view_ = new ScanView;
+    view_->setObjectName(QStringLiteral("texture_view"));
+    view_->setToolTip(tr("The toy, the tip's paths on it and the faces that got a texture"));
+    cells_->addWidget(view_);
+    cells_->setCurrentIndex(1);
+  }
+  view_->picture().setMesh(std::make_shared<const TriangleMesh>(demo_->object.mesh));
+  view_->picture().setPath(pathsOf(*demo_));
+  view_->picture().setHighlight(texturedFaces(*demo_));
+  if (first) view_->picture().setView(ViewPreset::minus_y);
+}
+
+void TextureDesk::showProfile() {
+  const int chosen = material_->currentIndex();
+  const bool there = !work_ && has_texture_ && chosen >= 0;
+  if (work_) return;
+  plot_->setTexture(there ? &demo_->textures[static_cast<std::size_t>(chosen)] : nullptr);
+}
+
+void TextureDesk::cancel() {
+  if (!work_) return;
+  job_.silence();
+  demo_.reset();
+  takeStep();
+}
+
+void TextureDesk::fit() {
+  if (view_ != nullptr && view_->isVisible()) view_->picture().fit();
+}
+
+void TextureDesk::setView(ViewPreset view) {
+  if (view_ != nullptr && view_->isVisible()) view_->picture().setView(view);
+}
+
+void TextureDesk::refresh() {
+  if (view_ != nullptr) view_->refresh();
+}
+
+} // namespace patina

@@ -1,0 +1,65 @@
+// The desk on which a scan becomes a feel: the guided sequence on the toy's scan, step by step,
+// with what each step found.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <QComboBox>
+#include <QStackedWidget>
+
+#include "app/gui/panels/message_panel.h"
+#include "app/gui/scanning/scan_view.h"
+#include "app/gui/texturing/profile_plot.h"
+#include "app/gui/texturing/step_list.h"
+#include "app/gui/window/background.h"
+#include "app/gui/window/window_state.h"
+
+namespace patina {
+
+class TextureDesk : public QObject {
+  Q_OBJECT
+ public:
+  explicit TextureDesk(QWidget& window); // to which it belongs
+  ~TextureDesk() override;
+
+  // To be laid out by the window.
+  QStackedWidget* cells() const { return cells_; }
+  QWidget* steps() const { return steps_; }
+  QWidget* profile() const { return profile_; }
+
+  bool hasTexture() const { return has_texture_; }
+  const std::optional<Work>& work() const { return work_; }
+  void runAll(); // the whole sequence
+  void cancel();
+  void fit();
+  void setView(ViewPreset view);
+  void refresh(); // of every tick of the window
+
+ signals:
+  void changed();
+  void said(const patina::Message& message);
+  void openAsked(const QString& workspace);
+
+ private:
+  void run(bool all);
+  void takeStep();
+  void draw();
+  void showProfile();
+
+  QWidget& window_;
+  Background job_;
+  std::shared_ptr<Demo> demo_; // not read while a step runs
+  std::filesystem::path folder_;
+  QStackedWidget* cells_ = new QStackedWidget;
+  StepList* steps_ = new StepList;
+  QWidget* profile_ = new QWidget;
+  QComboBox* material_ = new QComboBox;
+  ProfilePlot* plot_ = new ProfilePlot;
+  ScanView* view_ = nullptr; // made with the first step
+  std::optional<Work> work_;
+  bool has_texture_ = false;
+};
+
+} // namespace patina

@@ -1,0 +1,89 @@
+// From a scan to a feel by pointer alone, as a person who reads nothing does it.
+#ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/texturing/texture_desk.h"
+#include "gui/driven_window.h"
+
+namespace patina {
+namespace {
+
+class TextureDeskTest : public DrivenWindow {
+ protected:
+  TextureDesk& desk() { return *window_->findChild<TextureDesk*>(); }
+  QString found(const QString& step) { return find<QLabel>("found_" + step)->text(); }
+  bool rest() {
+    return waitUntil([&] { return !desk().work(); }, 240000);
+  }
+  void keepPicture(const QString& name) {
+    wait(400);
+    if (const char* folder = std::getenv("PATINA_PICTURES"))
+      window_->grab().save(QStringLiteral("%1/%2.png").arg(QString::fromUtf8(folder), name));
+  }
+};
+
+TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
+  EXPECT_EQ(find<ScanView>("texture_view"), nullptr); // what is absent costs nothing
+  clickAction("desk_texture");
+  EXPECT_FALSE(find<QWidget>("page_profile")->isVisible());
+  clickOn("next_step");
+  ASSERT_TRUE(desk().work());
+  EXPECT_FALSE(find<QPushButton>("next_step")->isEnabled());
+  ASSERT_TRUE(rest());
+  EXPECT_TRUE(found("scan").contains(QStringLiteral("4 scans"))) << found("scan").toStdString();
+  clickOn("next_step");
+  ASSERT_TRUE(rest());
+  EXPECT_TRUE(found("track").contains(QStringLiteral("poses")));
+  clickOn("all_steps");
+  ASSERT_TRUE(waitUntil([&] { return find<QPushButton>("feel_demo")->isVisible(); }, 240000));
+  ASSERT_TRUE(rest());
+  keepPicture("texture_done");
+  EXPECT_TRUE(found("register").contains(QStringLiteral("registration: ")))
+      << found("register").toStdString();
+  EXPECT_TRUE(found("feel").contains(QStringLiteral("variation of the force")));
+  // The textured faces and the paths are in the picture.
+  ASSERT_TRUE(find<ScanView>("texture_view")->isVisible());
+  const QImage picture = find<ScanView>("texture_view")->grabFramebuffer();
+  int faces = 0, tube = 0;
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = picture.width() / 8; x < 7 * picture.width() / 8; ++x) {
+      const QColor color = picture.pixelColor(x, y);
+      faces += color.red() > color.blue() + 60;
+      tube += color.blue() > color.red() + 40;
+    }
+  EXPECT_GT(faces, 300);
+  EXPECT_GT(tube, 200);
+  // Another material is another plot.
+  auto* choice = find<QComboBox>("texture_choice");
+  ASSERT_TRUE(choice->isVisible());
+  ASSERT_EQ(choice->count(), 3);
+  auto* plot = window_->findChild<ProfilePlot*>();
+  const QImage before = plot->grab().toImage();
+  choice->setFocus();
+  constexpr std::uint32_t kDown = 0xff54;
+  type(kDown);
+  wait(100);
+  EXPECT_EQ(choice->currentIndex(), 1);
+  EXPECT_NE(plot->grab().toImage(), before);
+  keepPicture("texture_weave");
+  // What was made opens, and is felt.
+  clickOn("feel_demo");
+  ASSERT_TRUE(waitUntil([&] {
+    return window_->windowTitle().contains(QStringLiteral("workspace")) && view().isVisible();
+  }));
+  wait(500);
+  keepPicture("texture_felt");
+}
+
+TEST_F(TextureDeskTest, AStepThatIsCancelledBeginsAnew) {
+  clickAction("desk_texture");
+  clickOn("next_step");
+  ASSERT_TRUE(desk().work());
+  wait(1500);
+  desk().cancel();
+  EXPECT_FALSE(desk().work());
+  EXPECT_TRUE(find<QPushButton>("next_step")->isEnabled());
+  EXPECT_TRUE(find<QPushButton>("next_step")->text().contains(QStringLiteral("Begin")));
+}
+
+} // namespace
+} // namespace patina
+#endif
