@@ -152,7 +152,8 @@ TEST(WindowState, EveryToolIsAtHandOnSomeDeskAndStaysWhereItCan) {
   const ToolChoice feel{Handling::feel, {}}, color{Handling::paint, Tool::color};
   for (const DeskRow& row : deskRows()) {
     EXPECT_TRUE(hasTool(row.desk, row.tool));
-    EXPECT_EQ(deskFor(feel, row.desk), row.desk == Desk::scan ? Desk::feel : row.desk);
+    EXPECT_EQ(deskFor(feel, row.desk),
+              row.desk == Desk::scan || row.desk == Desk::texture ? Desk::feel : row.desk);
     EXPECT_EQ(deskFor(color, row.desk), Desk::paint);
   }
 }
