@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "geometry/mesh/shapes.h"
+#include "scene/fourier/felt_texture.h"
 #include "support/same_scene.h"
 
 namespace patina {
@@ -278,6 +279,34 @@ TEST_F(Histories, LandmarksGrowApartTowardsThePast) {
   replays.count = 0;
   for (const std::size_t mark : marks) (void)history.sceneAt(mark);
   EXPECT_EQ(replays.count, 0U);
+}
+
+// Fourier textures are held too: faces of each version, a texture that versions share once.
+TEST_F(Histories, CountTexturesThatLieOnFaces) {
+  Scene scene = startScene();
+  FourierTexture texture;
+  texture.omega = 1000;
+  texture.series.a.assign(64, 1e-6);
+  texture.series.b.assign(64, 0);
+  texture.low = leastHeight(texture);
+  const auto felt = feltTexture(texture);
+  const auto laidOn = [&](std::size_t faces) {
+    LaidTextures laid;
+    for (std::size_t f = 0; f < faces; ++f)
+      laid.faces.push_back({static_cast<std::int32_t>(f), 1, {}});
+    laid.library[1] = felt;
+    ObjectPaint paint;
+    paint.textures = std::make_shared<const LaidTextures>(std::move(laid));
+    Scene with = startScene();
+    with.objects[0].mesh = scene.objects[0].mesh;
+    with.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
+    return with;
+  };
+  const std::size_t bare = EditHistory(scene, counted(replays), kAmple).bytes();
+  const std::size_t few = EditHistory(laidOn(50), counted(replays), kAmple).bytes();
+  const std::size_t many = EditHistory(laidOn(150), counted(replays), kAmple).bytes();
+  EXPECT_EQ(many - few, 100 * sizeof(TexturedFace));
+  EXPECT_GE(few - bare, 50 * sizeof(TexturedFace) + bytes(*felt));
 }
 
 } // namespace

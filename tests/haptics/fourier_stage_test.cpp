@@ -1,6 +1,8 @@
 // Fourier textures as they are felt (A22 to A25), against closed forms on a plane.
+#include <array>
 #include <numbers>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "geometry/tree/triangle_tree.h"
@@ -282,6 +284,86 @@ TEST(TexturePatches, KnowTheirSharpestBend) {
   plate.patches->at(tree.closestPoint(p).surface.face, p, &bend);
   EXPECT_NEAR(bend(0, 0), -due * std::cos(2 * kPi * p.x() / length), 1e-3 * due);
   EXPECT_NEAR(bend(1, 1), 0, 1e-6 * due);
+}
+
+// Whatever the coordinates are stretched and sheared by.
+TEST(TexturePatches, BoundTheBendOfStretchedCoordinates) {
+  for (const auto& [xx, xy, yx, yy] : {std::array{1., 0., 0., 1.},
+                                       {1.5, 0.9, 0.9, 1.5},
+                                       {0.4, 1.2, -0.3, 0.5},
+                                       {1., 0.99, 0.99, 1.}}) {
+    FourierTexture texture = waves(4e-3, {0.1e-3});
+    texture.kind = TextureKind::products;
+    texture.products.push_back({{0, {1}, {0}}, texture.series});
+    texture.series = {};
+    texture.low = leastHeight(texture);
+    TexturedSlab plate(texture, 0.015);
+    LaidTextures laid = plate.laid;
+    for (TexturedFace& face : laid.faces)
+      for (Vec2& at : face.at) at = Vec2(xx * at.x() + xy * at.y(), yx * at.x() + yy * at.y());
+    const TexturePatches patches(*plate.slab_.mesh, laid);
+    const TriangleTree tree(*plate.slab_.mesh);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> any(-0.008, 0.008);
+    double most = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p(any(random), any(random), 0);
+      Eigen::Matrix3d bend;
+      patches.at(tree.closestPoint(p).surface.face, p, &bend);
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (bend + bend.transpose()));
+      most = std::max(most, eigen.eigenvalues().cwiseAbs().maxCoeff());
+    }
+    EXPECT_GT(patches.bend(), most) << xx << " " << xy;
+    EXPECT_LT(patches.bend(), 12 * most) << "fades included";
+  }
+}
+
+// A sliver at the rim sets the whole scene's lateral coupling no more than any other face.
+TEST(TexturePatches, ASliverAtTheRimIsLeftWithout) {
+  const TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
+  TriangleMesh mesh = *plate.slab_.mesh;
+  LaidTextures laid = plate.laid;
+  // One face of the rim is cut along an edge into a sliver and the rest.
+  const double usual = TexturePatches(mesh, laid).bend();
+  const TexturedFace first = laid.faces.front();
+  const auto f = static_cast<std::size_t>(first.face);
+  const Triangle corners = mesh.triangles[f];
+  const Vec3 cut = mesh.corner(f, 0) + 1e-3 * (mesh.corner(f, 2) - mesh.corner(f, 0));
+  const Vec2 cut_at = first.at[0] + 1e-3 * (first.at[2] - first.at[0]);
+  const auto added = static_cast<std::int32_t>(mesh.positions.size());
+  mesh.positions.push_back(cut);
+  mesh.triangles[f] = {added, corners[1], corners[2]};
+  mesh.triangles.push_back({corners[0], corners[1], added});
+  laid.faces.front().at[0] = cut_at;
+  laid.faces.push_back({static_cast<std::int32_t>(mesh.triangles.size()) - 1,
+                        first.texture,
+                        {first.at[0], first.at[1], cut_at}});
+  EXPECT_LT(TexturePatches(mesh, laid).bend(), 2 * usual);
+}
+
+// A mesh that is cut into pieces in memory is one on the table.
+TEST(TexturePatches, VerticesInOnePlaceAreOne) {
+  const TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
+  TriangleMesh loose = *plate.slab_.mesh;
+  std::vector<Vec3> positions;
+  for (Triangle& triangle : loose.triangles)
+    for (std::int32_t& vertex : triangle) {
+      positions.push_back(plate.slab_.mesh->positions[static_cast<std::size_t>(vertex)]);
+      vertex = static_cast<std::int32_t>(positions.size()) - 1;
+    }
+  loose.positions = positions;
+  const TexturePatches whole(*plate.slab_.mesh, plate.laid), pieces(loose, plate.laid);
+  const TriangleTree tree(*plate.slab_.mesh);
+  double faded = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(-0.0149 + 1.5e-5 * i, 0.0149 * std::sin(0.02 * i), 0);
+    const std::int32_t face = tree.closestPoint(p).surface.face;
+    const PatchAt a = whole.at(face, p), b = pieces.at(face, p);
+    ASSERT_EQ(a.height, b.height);
+    ASSERT_EQ(a.share, b.share);
+    faded += a.share > 0 && a.share < 1;
+  }
+  EXPECT_GT(faded, 20);
 }
 
 } // namespace

@@ -135,6 +135,89 @@ TEST(TextureEvaluator, OfAPlaneIsTheSumOfItsTerms) {
   }
 }
 
+// Products and drawn spectra through their tables, and a whole plane of 128 harmonics.
+TEST(TextureEvaluator, OfProductsAndSpectraIsTheSumOfTheirTerms) {
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  const auto series = [&](double scale) {
+    FourierSeries drawn;
+    for (int j = 1; j <= 24; ++j) {
+      drawn.a.push_back(scale * normal(random) / j);
+      drawn.b.push_back(scale * normal(random) / j);
+    }
+    return drawn;
+  };
+  FourierTexture products;
+  products.kind = TextureKind::products;
+  products.omega = 300;
+  products.products = {{series(1), series(1e-5)}, {series(1), series(2e-5)}};
+  products.low = leastHeight(products);
+  FourierTexture spectrum;
+  spectrum.kind = TextureKind::spectrum;
+  spectrum.omega = 300;
+  spectrum.seed = 5;
+  for (int j = 1; j <= 24; ++j) spectrum.series.a.push_back(1e-5 / j);
+  spectrum.low = leastHeight(spectrum);
+  for (const FourierTexture& texture : {products, spectrum})
+    for (const double tolerance : {1e-12, 1e-5}) {
+      const TextureEvaluator table(texture, tolerance);
+      const double most = std::max(2 * tolerance, 4e-13);
+      for (int i = 0; i < 500; ++i) {
+        const double x = 0.01 * normal(random), y = 0.01 * normal(random);
+        const TextureValue at = table.at(x, y);
+        ASSERT_NEAR(at.height, height(texture, x, y), most * rmsHeight(texture));
+        ASSERT_LT((at.gradient - gradient(texture, x, y)).norm(), most * rmsSlope(texture));
+      }
+    }
+}
+
+TEST(TextureEvaluator, OfAWholePlaneIsTheSumOfItsTerms) {
+  std::mt19937 random(13);
+  std::normal_distribution<double> normal;
+  FourierTexture plane;
+  plane.kind = TextureKind::plane;
+  plane.omega = 2 * std::numbers::pi / 0.05;
+  plane.plane.resize(257 * 257);
+  for (double& each : plane.plane) each = 1e-7 * normal(random);
+  plane.plane[0] = 0;
+  plane.low = leastHeight(plane);
+  for (const double tolerance : {1e-12, 1e-5}) {
+    const TextureEvaluator table(plane, tolerance);
+    const double most = std::max(2 * tolerance, 4e-12); // rounding of 66,000 terms
+    for (int i = 0; i < 20; ++i) {
+      const double x = 0.02 * normal(random), y = 0.02 * normal(random);
+      const TextureValue at = table.at(x, y);
+      EXPECT_NEAR(at.height, height(plane, x, y), most * rmsHeight(plane));
+      EXPECT_LT((at.gradient - gradient(plane, x, y)).norm(), most * rmsSlope(plane));
+    }
+  }
+}
+
+// A factor that is the same everywhere asks for no finer a table than any other.
+TEST(TextureEvaluator, OfAProductWithAConstantIsSmall) {
+  FourierTexture texture;
+  texture.kind = TextureKind::products;
+  texture.omega = 300;
+  FourierSeries wave, level;
+  for (int j = 1; j <= 64; ++j) {
+    wave.a.push_back(1e-5 / j);
+    wave.b.push_back(0);
+  }
+  level.mean = 1;
+  level.a.assign(64, 0);
+  level.b.assign(64, 0);
+  texture.products = {{wave, level}};
+  texture.low = leastHeight(texture);
+  const TextureEvaluator table(texture);
+  FourierTexture line = texture;
+  line.kind = TextureKind::line;
+  line.series = wave;
+  line.products.clear();
+  EXPECT_LT(table.bytes(), 2 * TextureEvaluator(line).bytes());
+  for (int i = 0; i < 100; ++i)
+    EXPECT_NEAR(table.at(1e-4 * i, 3e-4 * i).height, height(texture, 1e-4 * i, 3e-4 * i), 1e-17);
+}
+
 TEST(TextureEvaluator, TheGradientIsTheHeightsDerivative) {
   const FourierTexture texture = lineOf(128, 9);
   const TextureEvaluator at(texture);

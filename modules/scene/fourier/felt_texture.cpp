@@ -38,10 +38,12 @@ std::shared_ptr<const FeltTexture> feltTexture(FourierTexture texture) {
       lowest = std::min(lowest, here.height);
       made->steepest = std::max(made->steepest, here.gradient.norm());
       const auto bendFrom = [&](const TextureValue& other) {
-        made->bend = std::max(made->bend, (here.gradient - other.gradient).norm() / step);
+        return (here.gradient - other.gradient).norm() / step;
       };
-      if (i > 0) bendFrom(row[static_cast<std::size_t>(i - 1)]);
-      if (j > 0) bendFrom(before[static_cast<std::size_t>(i)]);
+      // No direction bends more than both columns together.
+      made->bend = std::max(made->bend,
+                            std::hypot(i > 0 ? bendFrom(row[static_cast<std::size_t>(i - 1)]) : 0,
+                                       j > 0 ? bendFrom(before[static_cast<std::size_t>(i)]) : 0));
     }
     before = row;
   }
@@ -52,6 +54,19 @@ std::shared_ptr<const FeltTexture> feltTexture(FourierTexture texture) {
     throw Error("low is " + formatLength(value.low) + ", the texture's lowest height about " +
                 formatLength(lowest));
   return made;
+}
+
+std::size_t bytes(const FeltTexture& texture) {
+  std::size_t numbers = texture.value.plane.size();
+  const auto add = [&](const FourierSeries& series) {
+    numbers += series.a.size() + series.b.size();
+  };
+  add(texture.value.series);
+  for (const FourierProduct& product : texture.value.products) {
+    add(product.along_x);
+    add(product.along_y);
+  }
+  return sizeof texture + numbers * sizeof(double) + texture.at.bytes();
 }
 
 Eigen::Matrix2d bendAt(const FeltTexture& texture, double x, double y) noexcept {

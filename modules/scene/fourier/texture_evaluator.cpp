@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/error.h"
@@ -143,11 +144,14 @@ std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& te
     const double share = 1 / static_cast<double>(2 * texture.products.size());
     return productsForm<SeriesCells>(
         texture, [&](const FourierSeries& own, const FourierSeries& other) {
-          // What this factor is wrong by is multiplied by the other one and by its slope.
+          // What this factor is wrong by is multiplied by the other one and by its slope; where
+          // that is nothing, it asks for nothing.
+          const auto over = [&](double error, double factor) {
+            return factor > 0 ? share * error / factor : std::numeric_limits<double>::infinity();
+          };
           const double most = amplitudes(other, false), steepest = amplitudes(other, true);
-          const double height = share * std::min(most > 0 ? errors.height / most : 0,
-                                                 steepest > 0 ? errors.slope / steepest : 0);
-          return SeriesCells(own, height, most > 0 ? share * errors.slope / most : 0);
+          return SeriesCells(own, std::min(over(errors.height, most), over(errors.slope, steepest)),
+                             over(errors.slope, most));
         });
   }
   const FourierSeries series = seriesOf(texture);

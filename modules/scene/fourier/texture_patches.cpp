@@ -1,7 +1,11 @@
 #include "scene/fourier/texture_patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+
+#include "core/percentiles.h"
 
 namespace patina {
 namespace {
@@ -18,6 +22,40 @@ Vec3 slopeOver(const std::array<Vec3, 3>& corner, const std::array<double, 3>& v
 }
 
 constexpr double kAlike = 1e-3; // of the greatest height and slope
+// A face thinner than this part of its texture's usual ones has no room to fade.
+constexpr double kThin = 0.1;
+
+// Of the steepest way over the face, of coordinates with these slopes: the larger singular value.
+double stretchOf(const Vec3& x_slope, const Vec3& y_slope) {
+  const double xx = x_slope.squaredNorm(), yy = y_slope.squaredNorm(), xy = x_slope.dot(y_slope);
+  return std::sqrt(0.5 * (xx + yy + std::hypot(xx - yy, 2 * xy)));
+}
+
+double leastAltitude(const TriangleMesh& mesh, std::size_t f) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k)
+    longest = std::max(longest, (mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k)).norm());
+  const Vec3 a = mesh.corner(f, 0);
+  return (mesh.corner(f, 1) - a).cross(mesh.corner(f, 2) - a).norm() / longest;
+}
+
+// Vertices in one place have one number: across a seam of the mesh its faces are neighbours.
+std::vector<std::int32_t> placesOf(const TriangleMesh& mesh) {
+  const auto key = [&](std::int32_t v) {
+    const Vec3& p = mesh.positions[static_cast<std::size_t>(v)];
+    return std::array{p.x(), p.y(), p.z()};
+  };
+  std::vector<std::int32_t> order(mesh.positions.size()), place(mesh.positions.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && key(order[i]) == key(order[i - 1]);
+    place[static_cast<std::size_t>(order[i])] =
+        same ? place[static_cast<std::size_t>(order[i - 1])] : order[i];
+  }
+  return place;
+}
 
 } // namespace
 
@@ -70,17 +108,44 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
       texture_of[static_cast<std::size_t>(face.face)] = known->second;
       told[static_cast<std::size_t>(face.face)] = &face;
     }
-  InnerCorners inner(mesh.positions.size());
-  for (std::size_t f = 0; f < told.size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const bool known = texture_of[f] >= 0;
-      inner.add(mesh.triangles[f][k], texture_of[f], known ? told[f]->at[k] : Vec2(0, 0),
-                known ? textures_[static_cast<std::size_t>(texture_of[f])].get() : nullptr);
+  const std::vector<std::int32_t> place_of = placesOf(mesh);
+  const auto innerCorners = [&] {
+    InnerCorners inner(mesh.positions.size());
+    for (std::size_t f = 0; f < told.size(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const bool known = texture_of[f] >= 0;
+        inner.add(place_of[static_cast<std::size_t>(mesh.triangles[f][k])], texture_of[f],
+                  known ? told[f]->at[k] : Vec2(0, 0),
+                  known ? textures_[static_cast<std::size_t>(texture_of[f])].get() : nullptr);
+      }
+    return inner;
+  };
+  InnerCorners inner = innerCorners();
+  const auto isInner = [&](std::int32_t vertex) {
+    return inner[place_of[static_cast<std::size_t>(vertex)]];
+  };
+  // Slivers at the rim are left without, so that the faces before them fade instead.
+  std::vector<double> altitudes;
+  for (const TexturedFace& face : laid.faces)
+    altitudes.push_back(leastAltitude(mesh, static_cast<std::size_t>(face.face)));
+  const double thin = altitudes.empty() ? 0 : kThin * percentiles(altitudes).p50;
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t i = 0; i < laid.faces.size(); ++i) {
+      const auto f = static_cast<std::size_t>(laid.faces[i].face);
+      const Triangle& corners = mesh.triangles[f];
+      if (texture_of[f] < 0 || altitudes[i] >= thin ||
+          std::all_of(corners.begin(), corners.end(), isInner))
+        continue;
+      texture_of[f] = -1;
+      again = true;
     }
+    if (again) inner = innerCorners();
+  }
   std::vector<char> has_inner(textures_.size(), 0);
   for (std::size_t f = 0; f < told.size(); ++f)
     for (const std::int32_t vertex : mesh.triangles[f])
-      if (texture_of[f] >= 0 && inner[vertex])
+      if (texture_of[f] >= 0 && isInner(vertex))
         has_inner[static_cast<std::size_t>(texture_of[f])] = 1;
 
   patch_of_.assign(mesh.triangles.size(), -1);
@@ -94,7 +159,7 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
       corner[k] = mesh.corner(f, static_cast<int>(k)) - middle_;
       x[k] = face.at[k].x();
       y[k] = face.at[k].y();
-      fade[k] = inner[mesh.triangles[f][k]] || !has_inner[texture];
+      fade[k] = isInner(mesh.triangles[f][k]) || !has_inner[texture];
     }
     Patch patch;
     patch.texture = texture_of[f];
@@ -109,7 +174,7 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
     patches_.push_back(patch);
     const FeltTexture& of = *textures_[texture];
     highest_ = std::max(highest_, of.highest);
-    const double steep = std::max(patch.x_slope.norm(), patch.y_slope.norm());
+    const double steep = stretchOf(patch.x_slope, patch.y_slope);
     const double ends = patch.fade_slope.norm(); // of the fade: 1.5 of it, its bend 6 of its square
     bend_ = std::max(bend_, of.bend * steep * steep + 3 * of.steepest * steep * ends +
                                 6 * of.highest * ends * ends);

@@ -285,21 +285,31 @@ std::size_t FeltPaint::bytes() const {
   return bytes;
 }
 
+namespace {
+
+double textureShare(const Scene& scene) {
+  // A layer is measured over its lowest point.
+  return highestTexture(scene) * (scene.haptics.texture_gain ? 2 : 1);
+}
+
+} // namespace
+
 FeltReach feltReach(const Scene& scene, const CompiledScene* before) {
   float most = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (const FeltRelief relief = sourceOf(scene, i, before); relief.source)
       most = std::max(most, relief.source_range->all.highest());
   const double relief = std::abs(scene.relief.height) * static_cast<double>(most);
-  // A layer is measured over its lowest point.
-  const double texture = highestTexture(scene) * (scene.haptics.texture_gain ? 2 : 1);
-  return feltReach(scene.haptics, overshoot(scene) * relief + texture + roughnessPeak(scene));
+  return feltReach(scene.haptics,
+                   overshoot(scene) * relief + textureShare(scene) + roughnessPeak(scene));
 }
 
 FeltReach reachAfter(const CompiledScene& compiled, const Brush& brush) {
   const Scene& scene = compiled.scene;
   FeltReach reach = feltReach(scene, &compiled);
   if (brush.mode == StrokeMode::smooth) return reach;
+  // It may be painted where a texture lies, which stays.
+  const double texture = textureShare(scene);
   double value = 0; // no more than all of its layers together
   if (scene.relief.source == ReliefFrom::color) {
     if (const BrushLayer* layer = layerOf(brush, Tool::color))
@@ -309,8 +319,8 @@ FeltReach reachAfter(const CompiledScene& compiled, const Brush& brush) {
   }
   if (const BrushLayer* layer = layerOf(brush, Tool::material(MaterialChannel::roughness)))
     value += kRoughnessPeak * std::abs(layer->value);
-  reach.raised =
-      brush.mode == StrokeMode::add ? reach.raised + value : std::max(reach.raised, value);
+  reach.raised = brush.mode == StrokeMode::add ? reach.raised + value
+                                               : std::max(reach.raised, value + texture);
   return reach;
 }
 

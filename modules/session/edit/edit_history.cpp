@@ -24,6 +24,11 @@ template <typename F> void forEachPart(const Scene& scene, const F& visit) {
         if (const auto& tile = image->sharedTile(i))
           visit(tile.get(), sizeof(TiledImage::Tile) + tile->size() * sizeof(float));
     }
+    if (paint.textures) {
+      visit(paint.textures.get(), paint.textures->faces.size() * sizeof(TexturedFace));
+      for (const auto& [number, texture] : paint.textures->library)
+        visit(texture.get(), bytes(*texture));
+    }
     if (!paint.material) continue;
     visit(paint.material.get(), paint.material->blocks().size() * sizeof(MaterialBlock));
     for (const auto& [index, block] : paint.material->blocks())
