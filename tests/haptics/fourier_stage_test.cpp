@@ -286,6 +286,22 @@ TEST(TexturePatches, KnowTheirSharpestBend) {
   EXPECT_NEAR(bend(1, 1), 0, 1e-6 * due);
 }
 
+// T-A22d: pressed together, layer and surface are as hard for the loop as K (1 + k_t). The default
+// device asks for a coupling above half of its K* = 1000.8 N/m.
+TEST(TextureLayer, IsPlannedForTogetherWithItsSurface) {
+  const TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
+  const FeltObject layered = plate.layered();
+  Scene scene;
+  scene.haptics.stiffness = 400;
+  scene.device_model = DeviceModel{};
+  scene.relief.form = ForceForm::literal;
+  for (const auto& [gain, needed] : {std::pair{0.24, false}, {0.26, true}}) {
+    scene.haptics.texture_gain = gain;
+    EXPECT_EQ(planOf(scene, std::span(&layered, 1)).coupling.has_value(), needed) << gain;
+    EXPECT_FALSE(planOf(scene).coupling) << "where no layer lies";
+  }
+}
+
 // Whatever the coordinates are stretched and sheared by.
 TEST(TexturePatches, BoundTheBendOfStretchedCoordinates) {
   for (const auto& [xx, xy, yx, yy] : {std::array{1., 0., 0., 1.},
