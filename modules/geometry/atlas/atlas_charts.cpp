@@ -7,8 +7,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include "geometry/io/vertex_weld.h"
 #include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/file.h"
 #include "geometry/io/mesh_file_type.h"
 #include "geometry/io/textured_obj.h"
-#include "geometry/io/vertex_weld.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/text_scan.h"
-#include "geometry/io/vertex_weld.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {

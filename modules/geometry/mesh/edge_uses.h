@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/io/vertex_weld.h"
 #include "geometry/mesh/triangle_mesh.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 

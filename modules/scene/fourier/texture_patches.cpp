@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "core/percentiles.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {
@@ -41,20 +41,11 @@ double leastAltitude(const TriangleMesh& mesh, std::size_t f) {
 
 // Vertices in one place have one number: across a seam of the mesh its faces are neighbours.
 std::vector<std::int32_t> placesOf(const TriangleMesh& mesh) {
-  const auto key = [&](std::int32_t v) {
-    const Vec3& p = mesh.positions[static_cast<std::size_t>(v)];
-    return std::array{p.x(), p.y(), p.z()};
-  };
-  std::vector<std::int32_t> order(mesh.positions.size()), place(mesh.positions.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && key(order[i]) == key(order[i - 1]);
-    place[static_cast<std::size_t>(order[i])] =
-        same ? place[static_cast<std::size_t>(order[i - 1])] : order[i];
-  }
-  return place;
+  VertexWeld weld(mesh.positions.size());
+  std::vector<std::int32_t> places;
+  places.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) places.push_back(weld.index(p));
+  return places;
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Gives equal points one index, by a hash of their bits. Internal to the readers and writers.
+// Gives equal points one index, by a hash of their bits.
 #pragma once
 
 #include <bit>
