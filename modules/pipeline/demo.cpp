@@ -22,9 +22,11 @@ namespace patina {
 namespace {
 
 const char* const kFamily = "4x4_50";
-constexpr double kCutoff = 8e-3;    // longer waves are shape [m]
-constexpr double kBlend = 0.05;     // of a profile
-constexpr double kOverNoise = 10;   // those that are compared with the truth
+constexpr double kCutoff = 8e-3; // longer waves are shape [m]
+constexpr double kBlend = 0.05;  // of a profile
+// Harmonics are compared that in the truth are higher than this times the square of their
+// wavelength: 10 times what such a scan leaves of noise [1/m].
+constexpr double kFloor = 5;
 constexpr int kRings = 2;           // of faces beside a stroke
 constexpr double kMillimetre = 1e3; // of an .obj in a metre
 
@@ -144,14 +146,20 @@ void registerAll(Demo& demo, Progress& progress) {
   demo.registration_error = std::sqrt(squares / count);
 }
 
-// What the tip went over, along the same way.
-std::vector<ProfilePoint> trueProfile(const Demo& demo, std::size_t i) {
+// Heights over the true ground along the line that the hand was to follow, by their true way over
+// it: nothing that was measured has a part in it.
+std::vector<ProfilePoint> trueProfile(const DemoObject& object, const DemoMaterial& material) {
+  constexpr double kStep = 0.05e-3; // [m]
+  const double length = (material.to - material.from).norm();
+  const Vec2 heading = (material.to - material.from) / length;
   std::vector<ProfilePoint> profile;
-  for (const ScanHeight& height : demo.textures[i].scanned.heights) {
-    const Vec2 place = handAt(demo.scans[i].hand, height.t).tip.head<2>();
-    profile.push_back(
-        {height.point.along,
-         demo.object.materials[i].height(place) * demo.scans[i].hand.normal(place).z(), 0});
+  double way = 0, last = 0;
+  for (double s = 0; s <= length; s += kStep) {
+    const Vec2 place = material.from + s * heading;
+    const double ground = object.ground(place);
+    if (s > 0) way += std::hypot(kStep, ground - last);
+    last = ground;
+    profile.push_back({way, material.height(place) * object.normal(place).z(), 0});
   }
   return profile;
 }
@@ -176,8 +184,8 @@ void fit(Demo& demo, Progress& progress) {
     }
     writeCsv(demo.folder / ("heights-" + one.name + ".csv"), rows);
     writeTexture(demo.folder / (one.name + ".json"), fitted);
-    texture.spectrum = spectrumError(fitted, fitTexture(trueProfile(demo, i), options).texture,
-                                     kOverNoise * texture.scanned.fitted.noise);
+    texture.spectrum =
+        spectrumError(fitted, trueProfile(demo.object, demo.object.materials[i]), kCutoff, kFloor);
   }
 }
 
@@ -244,7 +252,7 @@ constexpr int kLandingTicks = 100;
 // A tip that comes down, yields to half its depth and back, and goes along the stroke.
 void feelOne(Demo& demo, std::size_t i, Progress& progress) {
   const DemoMaterial& material = demo.object.materials[i];
-  const auto ground = groundOf(demo.object);
+  const auto& ground = demo.object.ground;
   const SimulatedHand& hand = demo.scans[i].hand;
   const Pose object_from_plane = demo.object.plane_from_object.inverse();
   const double length = (material.to - material.from).norm();

@@ -52,7 +52,8 @@ struct Demo {
   std::vector<double> seconds;                   // of each step that ran
 };
 
-// To be run in this order, each once; each leaves its files in the demo's folder.
+// To be run in this order, each once; each leaves its files in the demo's folder. Where one throws
+// the demo is half made: it begins anew.
 struct DemoStep {
   std::string name;  // "track"
   std::string about; // one line, for a person

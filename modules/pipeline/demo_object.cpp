@@ -142,30 +142,28 @@ DemoObject demoObject() {
   object.plane_from_object.linear() =
       Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitY(), Vec3::UnitZ()).toRotationMatrix();
   object.materials = {ribs(), weave(), grain()};
-  object.grip = [ground = groundOf(object)](double part) {
+  const TriangleMesh turned =
+      transformed(object.mesh, Eigen::Affine3d(object.plane_from_object.matrix()));
+  object.ground = [heights = std::make_shared<const SmoothHeights>(turned)](const Vec2& place) {
+    return heights->at(place);
+  };
+  object.normal = normalOf(object.ground);
+  object.grip = [ground = object.ground](double part) {
     const Vec2 place = (1 - part) * Vec2(-0.006, -0.010) + part * Vec2(0.020, -0.006);
     return Vec3(place.x(), place.y(), ground(place));
   };
   return object;
 }
 
-std::function<double(const Vec2&)> groundOf(const DemoObject& object) {
-  const TriangleMesh turned =
-      transformed(object.mesh, Eigen::Affine3d(object.plane_from_object.matrix()));
-  return [heights = std::make_shared<const SmoothHeights>(turned)](const Vec2& place) {
-    return heights->at(place);
-  };
-}
-
 SimulatedHand handOver(const DemoObject& object, const DemoMaterial& material, std::uint32_t seed) {
   SimulatedHand hand;
   hand.seed = seed;
   hand.from = material.from;
-  const auto ground = groundOf(object);
+  const auto& ground = object.ground;
   hand.relief = [ground, height = material.height](const Vec2& place) {
     return ground(place) + height(place);
   };
-  hand.normal = normalOf(ground);
+  hand.normal = object.normal;
   hand.air = ground(material.from) + 10e-3;
   hand.compliance = 1 / material.stiffness;
   const Vec2 &from = material.from, &to = material.to;
@@ -181,8 +179,8 @@ SimulatedHand handOver(const DemoObject& object, const DemoMaterial& material, s
 SimulatedHand surveyOf(const DemoObject& object, std::uint32_t seed) {
   SimulatedHand hand;
   hand.seed = seed;
-  hand.relief = groundOf(object);
-  hand.normal = normalOf(hand.relief);
+  hand.relief = object.ground;
+  hand.normal = object.normal;
   hand.from = kSurvey[0];
   hand.air = hand.relief(hand.from) + 10e-3;
   hand.compliance = 1. / 5000;

@@ -24,15 +24,16 @@ struct DemoObject {
   TriangleMesh mesh;                         // the dinosaur, twice as large, object frame [m]
   Pose plane_from_object = Pose::Identity(); // the scanned side looks up
   std::vector<DemoMaterial> materials;
-  std::function<Vec3(double)> grip; // a way over a place without material, from 0 to 1 [m]
+  // The true toy without materials, over the plane: smooth between the corners of its mesh. Both
+  // throw Error beside it.
+  std::function<double(const Vec2&)> ground; // height [m]
+  std::function<Vec3(const Vec2&)> normal;   // outwards, unit
+  std::function<Vec3(double)> grip;          // a way over a place without material, from 0 to 1 [m]
 };
 
 DemoObject demoObject();
 
-// Where the mesh is over a place of the plane, without any material. Throws Error beside it.
-std::function<double(const Vec2&)> groundOf(const DemoObject& object);
-
-// A hand that presses the material where its stroke begins, three times, and strokes it once.
+// A hand that presses the material where its stroke begins, eight times, and strokes it once.
 SimulatedHand handOver(const DemoObject& object, const DemoMaterial& material, std::uint32_t seed);
 // A hand that goes from limb to limb over the bare mesh, so that registration sees it from all
 // sides.

@@ -147,8 +147,8 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
          formatNumber(std::round(stiffnessOf(texture))),
          std::to_string(texture.scanned.laid.faces.size())});
   }
-  text += "\nNoise grows as the square of the wavelength. Compared with the truth are the highest "
-          "harmonic and those\n10 times as high as the noise.\n\n## Errors\n\n" +
+  text += "\nNoise grows as the square of the wavelength. Compared with the truth are its highest "
+          "harmonic and those\nabove 5 um at 1 mm, growing as the square.\n\n## Errors\n\n" +
           row({"step", "error of", "material", "found", "at most", ""}) +
           "|---|---|---|---|---|---|\n";
   for (const DemoFigure& figure : demoFigures(demo))

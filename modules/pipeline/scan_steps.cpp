@@ -85,6 +85,7 @@ ScannedTexture fitScan(const SurfaceTarget& target, const ScanStreams& streams,
   filter.gravity = gravity;
   const FilteredScan path = filterScan(streams.poses, streams.samples, probe, filter, progress);
   filter.heights = true;
+  filter.compliance = compliance;
   filter.normal = meanNormal(target, mesh_from_scan, path.path);
   const FilteredScan scan = filterScan(streams.poses, streams.samples, probe, filter, progress);
   ScannedTexture found;

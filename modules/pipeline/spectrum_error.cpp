@@ -2,75 +2,105 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 namespace patina {
 namespace {
 
-double amplitude(const FourierSeries& series, std::size_t j) {
-  return j < series.a.size() ? std::hypot(series.a[j], series.b[j]) : 0;
-}
+constexpr double kWholeTurn = 2 * std::numbers::pi;
+constexpr int kSamplesAWave = 8; // of the shortest
 
-std::size_t strongestOf(const FourierSeries& series) {
-  std::size_t most = 0;
-  for (std::size_t j = 1; j < series.a.size(); ++j)
-    if (amplitude(series, j) > amplitude(series, most)) most = j;
-  return most;
-}
+// Heights over one period through a window that is zero and level at both ends.
+class Seen {
+ public:
+  Seen(const std::function<double(double)>& height, double period, int count) : period_(period) {
+    double weights = 0, mean = 0;
+    std::vector<double> weight, heights;
+    for (int i = 0; i < count; ++i) {
+      const double part = (i + 0.5) / count;
+      weight.push_back(1 - std::cos(kWholeTurn * part));
+      heights.push_back(height(part * period));
+      weights += weight.back();
+      mean += weight.back() * heights.back();
+    }
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      windowed_.push_back(2 / weights * weight[i] * (heights[i] - mean / weights));
+  }
 
-struct Wave {
-  double length, height;
+  // Of a wave that fits the period so many times, whole or not.
+  double amplitude(double harmonic) const {
+    double cosine = 0, sine = 0;
+    const double step = kWholeTurn * harmonic / static_cast<double>(windowed_.size());
+    for (std::size_t i = 0; i < windowed_.size(); ++i) {
+      const double angle = step * (static_cast<double>(i) + 0.5);
+      cosine += windowed_[i] * std::cos(angle);
+      sine += windowed_[i] * std::sin(angle);
+    }
+    return std::hypot(cosine, sine);
+  }
+  double wavelength(double harmonic) const { return period_ / harmonic; }
+
+ private:
+  double period_;
+  std::vector<double> windowed_;
 };
 
-// Through a window that is smooth at both ends, so that a wave need not fit the period whole: where
-// between the strongest harmonic and its neighbours it is the highest.
-Wave strongest(const FourierTexture& texture) {
-  const std::size_t most = strongestOf(texture.series);
-  const auto count = static_cast<int>(8 * texture.series.a.size());
-  std::vector<double> windowed;
-  double weights = 0;
-  for (int i = 0; i < count; ++i) {
-    const double part = (i + 0.5) / count, weight = 1 - std::cos(2 * std::numbers::pi * part);
-    windowed.push_back(weight * height(texture, part * period(texture)));
-    weights += weight;
-  }
-  const auto seenAt = [&](double harmonic) {
-    double cosine = 0, sine = 0;
-    for (int i = 0; i < count; ++i) {
-      const double angle = 2 * std::numbers::pi * harmonic * (i + 0.5) / count;
-      cosine += windowed[static_cast<std::size_t>(i)] * std::cos(angle);
-      sine += windowed[static_cast<std::size_t>(i)] * std::sin(angle);
-    }
-    return 2 * std::hypot(cosine, sine) / weights;
+struct Peak {
+  double harmonic = 0, amplitude = 0;
+};
+
+// From the strongest of `first` to `last` to where between it and its neighbours it is highest.
+Peak strongest(const Seen& seen, int first, int last) {
+  Peak peak;
+  const auto look = [&](double harmonic) {
+    const double amplitude = seen.amplitude(harmonic);
+    if (amplitude > peak.amplitude) peak = {harmonic, amplitude};
   };
-  double best = static_cast<double>(most) + 1, highest = seenAt(best);
-  for (double step = 0.5; step > 1e-4; step /= 2)
-    for (const double tried : {best - step, best + step})
-      if (const double seen = seenAt(tried); seen > highest) {
-        highest = seen;
-        best = tried;
-      }
-  return {period(texture) / best, highest};
+  for (int j = first; j <= last; ++j) look(j);
+  for (double step = 0.5; step > 1e-4; step /= 2) {
+    const double here = peak.harmonic;
+    look(here - step);
+    look(here + step);
+  }
+  return peak;
 }
 
 } // namespace
 
-SpectrumError spectrumError(const FourierTexture& texture, const FourierTexture& truth,
-                            double floor) {
-  if (texture.kind != TextureKind::line || truth.kind != TextureKind::line)
-    throw std::invalid_argument("spectrumError: two lines");
-  const Wave found = strongest(texture), real = strongest(truth);
-  SpectrumError error{found.length, real.length, found.height, real.height, 0, 0};
-  const std::size_t most = strongestOf(truth.series);
-  for (std::size_t j = 0; j < truth.series.a.size(); ++j) {
-    const double expected = amplitude(truth.series, j);
-    const double wavelength = period(truth) / static_cast<double>(j + 1);
+SpectrumError spectrumError(const FourierTexture& texture, const std::vector<ProfilePoint>& truth,
+                            double longest, double floor) {
+  if (texture.kind != TextureKind::line) throw std::invalid_argument("spectrumError: no line");
+  if (truth.size() < 2) throw std::invalid_argument("spectrumError: fewer than two heights");
+  const double length = period(texture);
+  const int last = harmonics(texture), count = kSamplesAWave * last,
+            first = static_cast<int>(std::ceil(length / longest));
+  const auto trueHeight = [&](double along) {
+    const auto next =
+        std::lower_bound(truth.begin() + 1, truth.end() - 1, along + truth.front().along,
+                         [](const ProfilePoint& point, double way) { return point.along < way; });
+    const ProfilePoint &a = *(next - 1), &b = *next;
+    const double way = b.along - a.along,
+                 share = way > 0 ? (along + truth.front().along - a.along) / way : 1;
+    return a.height + std::clamp(share, 0., 1.) * (b.height - a.height);
+  };
+  const Seen real(trueHeight, length, count),
+      found([&](double along) { return height(texture, along); }, length, count);
+  const Peak true_peak = strongest(real, first, last), peak = strongest(found, first, last);
+  SpectrumError error{found.wavelength(peak.harmonic),
+                      real.wavelength(true_peak.harmonic),
+                      peak.amplitude,
+                      true_peak.amplitude,
+                      0,
+                      0};
+  const auto most = static_cast<int>(std::lround(true_peak.harmonic));
+  for (int j = first; j <= last; ++j) {
+    const double expected = real.amplitude(j), wavelength = real.wavelength(j);
     if (!(expected > floor * wavelength * wavelength) && j != most) continue;
     ++error.compared;
-    const double ratio = std::max(amplitude(texture.series, j), 1e-12) / expected;
-    error.decibels = std::max(error.decibels, std::abs(20 * std::log10(ratio)));
+    const double off = std::abs(20 * std::log10(found.amplitude(j) / expected));
+    if (!(off <= error.decibels)) error.decibels = std::isfinite(off) ? off : INFINITY;
   }
   return error;
 }

@@ -1,6 +1,9 @@
-// How the harmonics of a texture differ from those of the true profile.
+// How a texture's harmonics differ from those of the true profile.
 #pragma once
 
+#include <vector>
+
+#include "acquisition/profile/height_profile.h"
 #include "scene/fourier/fourier_texture.h"
 
 namespace patina {
@@ -8,14 +11,17 @@ namespace patina {
 struct SpectrumError {
   double wavelength = 0, true_wavelength = 0; // of the strongest wave [m]
   double amplitude = 0, true_amplitude = 0;   // of it [m]
-  double decibels = 0;      // the largest of the harmonics above the floor, without a sign
-  std::size_t compared = 0; // harmonics above it in the truth
+  double decibels = 0;                        // the largest of those compared, without a sign
+  std::size_t compared = 0;                   // harmonics
 };
 
-// Both lines of one period; harmonics are compared that in the truth are higher than `floor` [1/m]
-// times the square of their wavelength, and the highest one in any case. A wave may lie between two
-// harmonics. Throws std::invalid_argument for other kinds.
-SpectrumError spectrumError(const FourierTexture& texture, const FourierTexture& truth,
-                            double floor);
+// texture: a line; truth: heights along its period, in the order of their way, straight between
+// them. Both are seen through one window that is smooth at the ends, so that nothing depends on how
+// these were blended and a wave need not fit whole; nothing of the fit is used. Of the waves no
+// longer than `longest` [m] those are compared that in the truth are higher than `floor` [1/m]
+// times the square of their wavelength, and the highest one in any case. Throws
+// std::invalid_argument: another kind of texture, fewer than two heights.
+SpectrumError spectrumError(const FourierTexture& texture, const std::vector<ProfilePoint>& truth,
+                            double longest, double floor);
 
 } // namespace patina

@@ -335,7 +335,7 @@ TEST(TexturePatches, BoundTheBendOfStretchedCoordinates) {
 }
 
 // A sliver at the rim sets the whole scene's lateral coupling no more than any other face.
-TEST(TexturePatches, ASliverAtTheRimIsLeftWithout) {
+TEST(TexturePatches, ASliverAtTheRimIsNoSharperThanAFaceHalfAsWide) {
   const TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
   TriangleMesh mesh = *plate.slab_.mesh;
   LaidTextures laid = plate.laid;
@@ -354,7 +354,7 @@ TEST(TexturePatches, ASliverAtTheRimIsLeftWithout) {
   laid.faces.push_back({static_cast<std::int32_t>(mesh.triangles.size()) - 1,
                         first.texture,
                         {first.at[0], first.at[1], cut_at}});
-  EXPECT_LT(TexturePatches(mesh, laid).bend(), 2 * usual);
+  EXPECT_LT(TexturePatches(mesh, laid).bend(), 5 * usual); // the fade's square, and room
 }
 
 // A mesh that is cut into pieces in memory is one on the table.

@@ -1,5 +1,7 @@
 // A scan's path onto its mesh, by the command.
 #ifdef PATINA_HAS_ACQUISITION
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/csv.h"
@@ -45,6 +47,67 @@ TEST_F(RegisteredScans, LandOnTheirMeshWithoutAGuess) {
     EXPECT_NEAR(row[11] + row[12] + row[13], 1, 1e-9);
     EXPECT_LT(std::abs(row[14]), 2e-3);
   }
+}
+
+// The body's shape is the mesh's: what is left is as low as the roughness that was laid on.
+TEST_F(RegisteredScans, GiveHeightsOverTheirMesh) {
+  scan("dinosaur", "-y");
+  const std::string report = folder / "r.json", heights = folder / "heights.csv";
+  ASSERT_EQ(
+      run({"register", mesh, path, "-o", out, "--compliance", "3.333e-4", "--report", report}).exit,
+      0);
+  const Json found = runJson({"filter", scanned, "-o", path, "--heights", heights, "--over", mesh,
+                              "--registration", report});
+  const Json& stiffness = found.at("stiffness");
+  EXPECT_NEAR(stiffness.at("value").asNumber(), 3000, 3 * stiffness.at("deviation").asNumber());
+  double squares = 0, count = 0, last = -1, stretch = -1;
+  for (const auto& row :
+       readCsv(heights, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"}).rows) {
+    squares += row[2] * row[2];
+    count += 1;
+    if (row[4] == stretch) {
+      EXPECT_GE(row[1], last);
+    }
+    last = row[1];
+    stretch = row[4];
+  }
+  ASSERT_GT(count, 2000);
+  EXPECT_LT(std::sqrt(squares / count), 0.3e-3) << "of a body of 100 mm";
+  const std::string textured = folder / "textured.obj";
+  EXPECT_EQ(run({"map-texture", mesh, out, "-o", textured, "--heights", heights}).exit, 0);
+}
+
+TEST_F(RegisteredScans, OfSeveralFilesHaveOnePose) {
+  scan("dinosaur", "-y");
+  const std::string again = folder / "again.csv";
+  writeFileAtomically(again, readFile(path));
+  const Json one = runJson({"register", mesh, path, "-o", out}),
+             two = runJson({"register", mesh, path, "-o", out, "--also", again});
+  EXPECT_EQ(two.at("samples").at("all").asInteger(), 2 * one.at("samples").at("all").asInteger());
+  const auto matrix = [](const Json& report) { return report.at("mesh_from_scan").asArray(); };
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(matrix(one)[i].asArray()[3].asNumber(), matrix(two)[i].asArray()[3].asNumber(),
+                0.5e-3);
+  // Of the first one alone the samples are written.
+  EXPECT_LE(readCsv(out, {"t [s]", "x [m]"}).rows.size(),
+            static_cast<std::size_t>(one.at("samples").at("all").asInteger()));
+}
+
+TEST_F(RegisteredScans, OverAMeshAreRefusedWithWhatIsWrong) {
+  scan("sphere", "+z");
+  const std::string heights = folder / "heights.csv", empty = folder.write("r.json", "{}");
+  const auto filter = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"filter", scanned, "-o", path, "--heights", heights};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  expectOneLineError(filter({"--over", mesh}), {"--over", "--registration"});
+  expectOneLineError(filter({"--over", mesh, "--registration", empty}),
+                     {"r.json", "mesh_from_scan"});
+  expectOneLineError(filter({"--over", folder / "none.ply", "--registration", empty}),
+                     {"none.ply"});
+  EXPECT_FALSE(std::filesystem::exists(heights));
+  expectOneLineError(run({"register", mesh, path, "-o", out, "--also", mesh}), {"sphere.ply"});
 }
 
 TEST_F(RegisteredScans, OnABallAreFreeToTurn) {

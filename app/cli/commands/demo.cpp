@@ -81,7 +81,8 @@ int runDemo(const DemoOptions& options, Console& console) {
                 textOf(figure, figure.value) + ", at most " + textOf(figure, figure.most) +
                     (figure.holds() ? "" : ": MISSED"));
   report.set("holds", found.at("holds")).set("pictures", jsonOf(drawn), joined(drawn));
-  report.set("folder", options.output.string());
+  report.set("folder", options.output.string(),
+             options.output.string() + ", where report.md tells and shows each step");
   console.report(report);
   return found.at("holds").asBool() ? kDone : kNotSolved;
 }

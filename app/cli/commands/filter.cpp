@@ -24,6 +24,7 @@ namespace {
 struct FilterOptions {
   std::filesystem::path input, probe, rig, truth, output, heights, over, registration;
   MeshUnit unit = MeshUnit::mm;
+  double tip_radius = 0;
   std::optional<Vec3> normal;
   std::optional<PathModel> model;
   bool forward = false, lifted = false;
@@ -192,8 +193,8 @@ void reportHeights(const ScanHeights& scan, Report& report) {
 
 // Heights over a mesh that the scan was registered to.
 struct Over {
-  Over(TriangleMesh mesh, const Pose& pose)
-      : target(std::move(mesh), 0, true), mesh_from_scan(pose) {}
+  Over(TriangleMesh mesh, double tip_radius, const Pose& pose)
+      : target(std::move(mesh), tip_radius, true), mesh_from_scan(pose) {}
   SurfaceTarget target;
   Pose mesh_from_scan;
 };
@@ -207,13 +208,20 @@ std::optional<Over> readOver(const FilterOptions& options, Console& console) {
   ScaledMesh scaled = inMetres(readMesh(options.over), options.unit);
   if (!scaled.warning.empty()) console.warn(options.over.string() + ": " + scaled.warning);
   return std::optional<Over>(std::in_place, cleaned(std::move(scaled.mesh)).mesh,
+                             options.tip_radius,
                              readPoseAt(options.registration, "mesh_from_scan"));
 }
 
-void layOver(const Over& over, const ProbeModel& probe, FilteredScan& scan,
+void requireTouch(const FilteredScan& scan, const FilterOptions& options) {
+  if (scan.path.empty())
+    throw FileError(options.probe.string(), 0,
+                    "the probe never touches, its largest force is " + rounded(scan.largest_force) +
+                        " N; --lifted keeps what is in the air");
+}
+
+void layOver(const Over& over, const std::optional<ComplianceEstimate>& presses, FilteredScan& scan,
              const std::filesystem::path& mesh) {
-  scan.heights->compliance =
-      complianceOverMesh(over.target, over.mesh_from_scan, scan.path, scan.track, probe);
+  scan.heights->compliance = presses;
   scan.heights->heights =
       heightsOverMesh(over.target, over.mesh_from_scan, scan.path, *scan.heights);
   if (scan.heights->heights.empty())
@@ -247,18 +255,25 @@ int runFilter(FilterOptions options, Console& console) {
   const auto filtered = [&] {
     return filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
   };
+  std::optional<ComplianceEstimate> presses; // over the mesh
   if (over) {
     filter.heights = false;
-    filter.normal = meanNormal(over->target, over->mesh_from_scan, filtered().path);
+    const FilteredScan path = filtered();
+    requireTouch(path, options);
+    try {
+      filter.normal = meanNormal(over->target, over->mesh_from_scan, path.path);
+    } catch (const Error& error) {
+      throw FileError(options.over.string(), 0, error.what());
+    }
+    presses =
+        complianceOverMesh(over->target, over->mesh_from_scan, path.path, path.track, in.rig.probe);
+    filter.compliance = presses ? presses->compliance : 0;
     filter.heights = true;
   }
   FilteredScan scan = filtered();
-  if (over) layOver(*over, in.rig.probe, scan, options.over);
+  requireTouch(scan, options);
+  if (over) layOver(*over, presses, scan, options.over);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  if (scan.path.empty())
-    throw FileError(options.probe.string(), 0,
-                    "the probe never touches, its largest force is " + rounded(scan.largest_force) +
-                        " N; --lifted keeps what is in the air");
   console.progress().throwIfCancelled();
   if (scan.heights)
     writePath(options.output, scan.path, options.heights, scan.heights->heights);
@@ -355,6 +370,10 @@ Command filterCommand() {
             "Heights over a mesh, along its normals, in place of a plane.", into(options->over)},
            {"--registration", "R.json", "", "", "Where the scan lies on it: of patina register.",
             into(options->registration)},
+           {"--tip-radius", "LENGTH", "m", "0", "Of the probe, as in that registration.",
+            inRange(
+                0, 1, [options](double radius) { options->tip_radius = radius; },
+                NumberKind::length)},
            {"--unit", "UNIT", "", "mm", "Of that mesh: mm, cm, m, in or fit.",
             parsedInto(options->unit, parseMeshUnit)},
            {"--lifted", "", "", "", "Keep what the probe did in the air.", into(options->lifted)},

@@ -8,6 +8,7 @@
 #include "core/csv_rows.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/numbers.h"
 #include "core/percentiles.h"
 
 namespace patina {
@@ -92,8 +93,11 @@ std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
     if (!strokes.back().points.empty() && timed && (other || times[i] - last_time > pause))
       strokes.emplace_back();
     // Where the probe stood there is no way.
-    const bool stood =
-        place && !strokes.back().along.empty() && !(place->along > strokes.back().along.back());
+    const bool goes_on = place && !strokes.back().along.empty();
+    const bool stood = goes_on && place->along == strokes.back().along.back();
+    if (goes_on && !(place->along >= strokes.back().along.back()))
+      throw FileError(heights.string(), 0,
+                      "the way falls at " + formatNumber(times[i]) + " s, within one stretch");
     last = place;
     if (timed) last_time = times[i];
     if (stood) continue;

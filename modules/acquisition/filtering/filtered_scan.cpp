@@ -52,7 +52,7 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
     if (filter.heights) {
       markContact(fused.path);
       scan.heights = scanHeights(fused, poses, corrected.empty() ? samples : corrected, probe,
-                                 filter.gravity, filter.normal);
+                                 filter.gravity, filter.normal, filter.compliance);
     }
     scan.path = std::move(fused.path);
     scan.track = std::move(fused.track);

@@ -17,6 +17,7 @@ struct ScanFilter {
   Vec3 gravity = Vec3(0, 0, -9.80665); // in the camera's frame [m/s^2]
   bool heights = false;                // of the surface; fused only
   std::optional<Vec3> normal;          // of scanHeights()
+  std::optional<double> compliance{};  // of scanHeights(); else as is found [m/N]
 };
 
 struct FilteredScan {

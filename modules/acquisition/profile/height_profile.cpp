@@ -130,7 +130,7 @@ Row use(Vector& x, Square& P, const Vector& h, double measured, double variance)
 
 bool hasHeights(const std::vector<TracedSample>& samples) {
   return std::any_of(samples.begin(), samples.end(),
-                     [](const TracedSample& s) { return s.height.has_value(); });
+                     [](const TracedSample& s) { return s.height && !s.stands; });
 }
 
 // Samples that count as one where roughness is looked for: a few, and no farther apart than a tip

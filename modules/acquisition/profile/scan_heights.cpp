@@ -51,7 +51,8 @@ Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip) {
 
 ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& poses,
                         const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                        const Vec3& gravity, const std::optional<Vec3>& normal) {
+                        const Vec3& gravity, const std::optional<Vec3>& normal,
+                        const std::optional<double>& given) {
   ScanHeights scan;
   if (normal) {
     scan.plane.normal = normal->normalized();
@@ -67,7 +68,7 @@ ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& p
                                      return TipOver{normal, normal.dot(sample.position)};
                                    }),
                          std::sqrt(probe.forceVariance()), true);
-  const double compliance = scan.compliance ? scan.compliance->compliance : 0;
+  const double compliance = given.value_or(scan.compliance ? scan.compliance->compliance : 0);
   std::vector<std::vector<TracedSample>> traces;
   for (const Stretch& stretch : touchingStretches(fused.path))
     if (stretch.end - stretch.begin >= kFewest)

@@ -38,11 +38,13 @@ std::vector<PressSample> pressesOf(const std::vector<PathSample>& path, const Ca
                                    const std::function<TipOver(const PathSample&)>& over);
 
 // `fused.path` knows when it touches; its samples are `samples` by time. `normal`: outwards, in the
-// camera's frame; else that of touchedPlane(). Heights are of the surface as nobody presses it,
+// camera's frame; else that of touchedPlane(). compliance [m/N]: what the surface yields by;
+// else what its presses say, if any. Heights are of the surface as nobody presses it,
 // along that normal, from the plane. Throws Error as touchedPlane() does, where nothing touches,
 // and where the accelerometers' axes do not span space.
 ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& poses,
                         const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                        const Vec3& gravity, const std::optional<Vec3>& normal);
+                        const Vec3& gravity, const std::optional<Vec3>& normal,
+                        const std::optional<double>& compliance = {});
 
 } // namespace patina

@@ -246,13 +246,14 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
     fitted.left_out = leaveOut(texture.series, [&](std::size_t j) { return j < longer; });
   }
   if (options.over_noise > 0) {
-    leaveOut(texture.series, [&](std::size_t j) {
+    const double quiet_rms = leaveOut(texture.series, [&](std::size_t j) {
       const double wavelength = length / static_cast<double>(j + 1),
                    amplitude = std::hypot(texture.series.a[j], texture.series.b[j]);
       const bool quiet = amplitude < options.over_noise * fitted.noise * wavelength * wavelength;
       fitted.quiet += quiet && amplitude > 0;
       return quiet;
     });
+    fitted.residual = std::hypot(fitted.residual, quiet_rms);
     if (rmsOf(texture.series) == 0) throw Error("no harmonic rises over the noise");
   }
   texture.low = leastHeight(texture);

@@ -1,6 +1,7 @@
 #include "acquisition/texture/mesh_heights.h"
 
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 
@@ -8,6 +9,7 @@ namespace patina {
 namespace {
 
 constexpr double kSteepest = 0.5; // cosine between the mesh's normal and that of the heights
+constexpr double kApart = 0.5e-3; // places that count for the mean normal [m]
 constexpr double kLook = 0.1;     // before and after a sample: a tremor is no way [s]
 
 struct Placed {
@@ -47,6 +49,8 @@ std::vector<ScanHeight> heightsOverMesh(const SurfaceTarget& target, const Pose&
   const Vec3& up = heights.plane.normal;
   const Vec3 up_on_mesh = mesh_from_path.linear() * up;
   std::vector<Placed> places;
+  std::size_t stretch = 0, last_stretch = 0;
+  bool left_out = false;
   std::int32_t warm = kNone;
   auto sample = path.begin();
   for (const ScanHeight& height : heights.heights) {
@@ -60,9 +64,16 @@ std::vector<ScanHeight> heightsOverMesh(const SurfaceTarget& target, const Pose&
     warm = miss.foot.face;
     Placed found{height, miss.at, faceNormal(target.mesh(), index(miss.foot.face))};
     const double lean = found.normal.dot(up_on_mesh);
-    if (!(lean > kSteepest)) continue;
-    const bool behind = found.normal.dot(miss.direction) < 0;
-    found.height.point.height = behind ? -miss.distance : miss.distance;
+    if (!(lean > kSteepest)) {
+      left_out = true;
+      continue;
+    }
+    // What lies beyond a place without a height is another stretch.
+    if (!places.empty() && (left_out || height.stretch != last_stretch)) ++stretch;
+    left_out = false;
+    last_stretch = height.stretch;
+    found.height.stretch = stretch;
+    found.height.point.height = miss.distance;
     found.height.point.sigma = lean * height.point.sigma;
     places.push_back(found);
   }
@@ -75,14 +86,19 @@ std::vector<ScanHeight> heightsOverMesh(const SurfaceTarget& target, const Pose&
 
 Vec3 meanNormal(const SurfaceTarget& target, const Pose& mesh_from_path,
                 const std::vector<PathSample>& path) {
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum = Vec3::Zero(), last = Vec3::Constant(std::numeric_limits<double>::infinity());
+  double count = 0;
   std::int32_t warm = kNone;
   for (const PathSample& sample : path) {
+    if ((sample.position - last).norm() < kApart) continue; // it stands
+    last = sample.position;
     warm = target.miss(mesh_from_path * sample.position, warm).foot.face;
     sum += faceNormal(target.mesh(), index(warm));
+    count += 1;
   }
-  if (!(sum.norm() > 1e-3 * static_cast<double>(path.size())))
-    throw Error("the path runs around the mesh: there is no side from which heights are");
+  if (!(sum.norm() > kSteepest * count))
+    throw Error(count == 0 ? "the path is empty"
+                           : "the path runs around the mesh: no one side of it is outwards");
   return mesh_from_path.linear().transpose() * sum.normalized();
 }
 
@@ -96,9 +112,7 @@ std::optional<ComplianceEstimate> complianceOverMesh(const SurfaceTarget& target
     const Miss miss = target.miss(mesh_from_path * sample.position, warm);
     warm = miss.foot.face;
     const Vec3 normal = faceNormal(target.mesh(), index(warm));
-    const bool behind = normal.dot(miss.direction) < 0;
-    return TipOver{mesh_from_path.linear().transpose() * normal,
-                   behind ? -miss.distance : miss.distance};
+    return TipOver{mesh_from_path.linear().transpose() * normal, miss.distance};
   };
   return estimateCompliance(pressesOf(path, track, over), std::sqrt(probe.forceVariance()), true);
 }

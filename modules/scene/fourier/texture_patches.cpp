@@ -22,8 +22,9 @@ Vec3 slopeOver(const std::array<Vec3, 3>& corner, const std::array<double, 3>& v
 }
 
 constexpr double kAlike = 1e-3; // of the greatest height and slope
-// A face thinner than this part of its texture's usual ones has no room to fade.
-constexpr double kThin = 0.1;
+// What fades over a face thinner than this part of the usual ones is no sharper for the loop than
+// over one so wide: the tip is past it in less than a tick.
+constexpr double kThin = 0.5;
 
 // Of the steepest way over the face, of coordinates with these slopes: the larger singular value.
 double stretchOf(const Vec3& x_slope, const Vec3& y_slope) {
@@ -100,39 +101,21 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
       told[static_cast<std::size_t>(face.face)] = &face;
     }
   const std::vector<std::int32_t> place_of = placesOf(mesh);
-  const auto innerCorners = [&] {
-    InnerCorners inner(mesh.positions.size());
-    for (std::size_t f = 0; f < told.size(); ++f)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const bool known = texture_of[f] >= 0;
-        inner.add(place_of[static_cast<std::size_t>(mesh.triangles[f][k])], texture_of[f],
-                  known ? told[f]->at[k] : Vec2(0, 0),
-                  known ? textures_[static_cast<std::size_t>(texture_of[f])].get() : nullptr);
-      }
-    return inner;
-  };
-  InnerCorners inner = innerCorners();
+  InnerCorners inner(mesh.positions.size());
+  for (std::size_t f = 0; f < told.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool known = texture_of[f] >= 0;
+      inner.add(place_of[static_cast<std::size_t>(mesh.triangles[f][k])], texture_of[f],
+                known ? told[f]->at[k] : Vec2(0, 0),
+                known ? textures_[static_cast<std::size_t>(texture_of[f])].get() : nullptr);
+    }
   const auto isInner = [&](std::int32_t vertex) {
     return inner[place_of[static_cast<std::size_t>(vertex)]];
   };
-  // Slivers at the rim are left without, so that the faces before them fade instead.
   std::vector<double> altitudes;
   for (const TexturedFace& face : laid.faces)
     altitudes.push_back(leastAltitude(mesh, static_cast<std::size_t>(face.face)));
   const double thin = altitudes.empty() ? 0 : kThin * percentiles(altitudes).p50;
-  for (bool again = true; again;) {
-    again = false;
-    for (std::size_t i = 0; i < laid.faces.size(); ++i) {
-      const auto f = static_cast<std::size_t>(laid.faces[i].face);
-      const Triangle& corners = mesh.triangles[f];
-      if (texture_of[f] < 0 || altitudes[i] >= thin ||
-          std::all_of(corners.begin(), corners.end(), isInner))
-        continue;
-      texture_of[f] = -1;
-      again = true;
-    }
-    if (again) inner = innerCorners();
-  }
   std::vector<char> has_inner(textures_.size(), 0);
   for (std::size_t f = 0; f < told.size(); ++f)
     for (const std::int32_t vertex : mesh.triangles[f])
@@ -166,7 +149,8 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
     const FeltTexture& of = *textures_[texture];
     highest_ = std::max(highest_, of.highest);
     const double steep = stretchOf(patch.x_slope, patch.y_slope);
-    const double ends = patch.fade_slope.norm(); // of the fade: 1.5 of it, its bend 6 of its square
+    // Of the fade: 1.5 of it, its bend 6 of its square.
+    const double ends = std::min(patch.fade_slope.norm(), 1 / thin);
     bend_ = std::max(bend_, of.bend * steep * steep + 3 * of.steepest * steep * ends +
                                 6 * of.highest * ends * ends);
     stiffest_ = std::max(stiffest_, of.stiffness);
