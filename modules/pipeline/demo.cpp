@@ -34,6 +34,15 @@ Pose objectFromCamera(const Demo& demo) {
   return demo.registered.registration.mesh_from_path;
 }
 
+// As `patina register --truth` reads it.
+std::string truthText(const Demo& demo) {
+  const Eigen::Matrix4d matrix = demo.camera_from_object.inverse().matrix();
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i)
+    rows.push(Json(Json::Array{matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)}));
+  return Json::object().set("mesh_from_camera", rows).dump() + "\n";
+}
+
 // Each scan as a folder that every command and the Scan desk open.
 void scan(Demo& demo, Progress& progress) {
   const TriangleMesh turned =
@@ -63,6 +72,7 @@ void scan(Demo& demo, Progress& progress) {
     one.streams.samples = simulateProbe(one.hand, demo.rig.probe, {}, ++seed);
     writeProbeStream(folder / "probe.csv", one.streams.samples);
     writeFileAtomically(folder / "rig.json", rigText(demo.rig, cube));
+    writeFileAtomically(folder / "truth.json", truthText(demo));
     std::vector<double> times;
     for (const ProbeSample& sample : one.streams.samples) times.push_back(sample.t);
     writePath(folder / "truth.csv", truthAt(one.hand, camera_from_plane, times));
@@ -280,6 +290,10 @@ void feelOne(Demo& demo, std::size_t i, Progress& progress) {
     add(above(begin, -kDepth * (0.5 + 0.5 * k / kLandingTicks)));
   const std::size_t first = tips.size();
   for (double s = begin; s < end; s += kStep) add(above(s, -kDepth));
+  CsvTable path{{"t [s]", "x [m]", "y [m]", "z [m]"}, {}};
+  for (const TimedTip& tip : tips)
+    path.rows.push_back({tip.t, tip.tip.x(), tip.tip.y(), tip.tip.z()});
+  writeCsv(demo.folder / ("tip-" + material.name + ".csv"), path);
   const std::vector<ToolSample> samples = feel(*demo.compiled->snapshot, tips, progress);
 
   DemoTexture& texture = demo.textures[i];

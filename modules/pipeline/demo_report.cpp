@@ -162,13 +162,14 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
           "    patina track scan-ribs -o scan-ribs/poses.tum\n"
           "    patina filter scan-ribs -o path-ribs.csv\n"
           "    patina register textured.obj path-ribs.csv --also path-weave.csv --also "
-          "path-grain.csv \\\n        --also path-survey.csv --compliance 0.0004 --noise 0.1mm -o "
+          "path-grain.csv \\\n        --also path-survey.csv --compliance 0.0004 --noise 0.1mm "
+          "--truth scan-ribs/truth.json -o "
           "registered.csv --report r.json\n"
           "    patina filter scan-ribs -o path.csv --heights heights.csv --over textured.obj "
           "--registration r.json\n"
           "    patina fit-texture heights.csv -o texture.json --cutoff 8mm --stiffness 3000\n"
           "    patina map-texture textured.obj registered.csv -o mine.obj --heights heights.csv\n"
-          "    patina feel mine.obj --texture 1=texture.json --path tip.csv -o forces.csv\n"
+          "    patina feel mine.obj --texture 1=texture.json --path tip-ribs.csv -o forces.csv\n"
           "    patina gui workspace\n";
   return text;
 }

@@ -110,6 +110,24 @@ TEST_F(RegisteredScans, OverAMeshAreRefusedWithWhatIsWrong) {
   expectOneLineError(run({"register", mesh, path, "-o", out, "--also", mesh}), {"sphere.ply"});
 }
 
+// A09: a first guess by hand, as shift and turns, is the same as one by a matrix.
+TEST_F(RegisteredScans, AreLaidByHandFirst) {
+  scan("dinosaur", "+x");
+  const std::string pose =
+      folder.write("pose.txt", "0 0 1 0.01\n1 0 0 -0.02\n0 1 0 0.4\n0 0 0 1\n");
+  // y to z and z to x, x to y: about x by 90 degrees, then about the fixed z.
+  const auto found = [&](const std::string& option, const std::string& value) {
+    const Outcome outcome =
+        run({"register", mesh, path, "-o", out, "--no-search", option, value, "--json"});
+    return parseJson(outcome.out, "report").at("mesh_from_scan").dump();
+  };
+  EXPECT_EQ(found("--align", "10mm,-20mm,0.4,90,0,90"), found("--initial", pose));
+  expectOneLineError(run({"register", mesh, path, "-o", out, "--align", "1,2,3"}), {"--align"});
+  expectOneLineError(
+      run({"register", mesh, path, "-o", out, "--align", "0,0,0,0,0,0", "--initial", pose}),
+      {"--initial"});
+}
+
 TEST_F(RegisteredScans, OnABallAreFreeToTurn) {
   scan("sphere", "+z");
   const Json report = runJson({"register", mesh, path, "-o", out, "--compliance", "3.333e-4"});

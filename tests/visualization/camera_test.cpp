@@ -55,6 +55,35 @@ TEST(Camera, PresetsLookAlongTheirAxis) {
   EXPECT_NEAR((viewDirection(*camera) - Vec3::UnitZ()).norm(), 0, 1e-12);
 }
 
+// T-A09: top, bottom, front and back without perspective; each corner of a box is where a person
+// who stands there has it.
+TEST(Camera, FourViewsShowACornerWhereItIs) {
+  struct View {
+    ViewPreset preset;
+    Vec3 right, up;
+  };
+  for (const View& view : {View{ViewPreset::plus_z, Vec3::UnitX(), Vec3::UnitY()},
+                           View{ViewPreset::minus_z, -Vec3::UnitX(), Vec3::UnitY()},
+                           View{ViewPreset::minus_y, Vec3::UnitX(), Vec3::UnitZ()},
+                           View{ViewPreset::plus_y, -Vec3::UnitX(), Vec3::UnitZ()}}) {
+    const vtkNew<vtkCamera> camera;
+    turnCamera(*camera, view.preset);
+    setParallel(*camera, true);
+    const vtkMatrix4x4& matrix = *camera->GetViewTransformMatrix();
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 corner(i & 1 ? 3 : -1, i & 2 ? 2 : -2, i & 4 ? 1 : -4);
+      Vec3 seen;
+      for (int row = 0; row < 3; ++row) {
+        seen[row] = matrix.GetElement(row, 3);
+        for (int k = 0; k < 3; ++k) seen[row] += matrix.GetElement(row, k) * corner[k];
+      }
+      const Vec3 middle(matrix.GetElement(0, 3), matrix.GetElement(1, 3), 0);
+      EXPECT_NEAR(seen.x() - middle.x(), corner.dot(view.right), 1e-12) << name(view.preset);
+      EXPECT_NEAR(seen.y() - middle.y(), corner.dot(view.up), 1e-12) << name(view.preset);
+    }
+  }
+}
+
 TEST(Camera, APointInTheViewPlaneProjectsBackToItsPlaceInThePicture) {
   const vtkNew<vtkCamera> camera;
   turnCamera(*camera, ViewPreset::iso);

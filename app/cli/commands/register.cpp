@@ -13,6 +13,7 @@
 #include "core/numbers.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/pose_values.h"
 
 namespace patina::cli {
 
@@ -23,6 +24,7 @@ enum class Method { distance, loop, literal };
 struct RegisterOptions {
   std::filesystem::path mesh, path, output, report, initial, truth;
   std::vector<std::string> also;
+  std::optional<PoseValues> align;
   MeshUnit unit = MeshUnit::mm;
   Method method = Method::distance;
   double tip_radius = 0, compliance = 0;
@@ -65,6 +67,21 @@ const Keys kRegisterKeys = {
     {"starts", "", "starts", "poses that were fitted from", Shown::if_any},
     {"error", "m", "error", "against the truth: of the samples, rms", Shown::if_any},
     {"seconds", "s", "registered in"}};
+
+// X,Y,Z as lengths, then degrees about the fixed axes x, y and z (A09).
+PoseValues parseAlignment(const std::string& text) {
+  std::size_t third = 0;
+  for (int commas = 0; commas < 3 && third != std::string::npos; ++commas)
+    third = text.find(',', third + (commas > 0));
+  if (third == std::string::npos || third == 0)
+    throw Error("'" + text + "' is not X,Y,Z,A,B,C: a shift and three turns");
+  PoseValues values;
+  values.position_mm = 1000 * parsePoint(text.substr(0, third));
+  values.angles_deg = parsePoint(text.substr(third + 1));
+  if (values.angles_deg.cwiseAbs().maxCoeff() > 360)
+    throw Error("'" + text + "': turns are -360 to 360 degrees");
+  return values;
+}
 
 Method parseMethod(const std::string& word) {
   if (word == "distance") return Method::distance;
@@ -172,6 +189,8 @@ int runRegister(RegisterOptions options, Console& console) {
     if (areOne(options.report, options.output))
       throw FileError(options.report.string(), 0, "is the path's file too");
   }
+  if (options.align && !options.initial.empty())
+    throw Error("--align: --initial is a first guess too; one of them");
   if (options.method != Method::distance &&
       (options.tip_radius > 0 || options.compliance > 0 || options.noise || options.no_search))
     throw Error("--method: --tip-radius, --compliance, --noise and --no-search are of 'distance'");
@@ -196,13 +215,14 @@ int runRegister(RegisterOptions options, Console& console) {
     points.push_back(sample.position);
     if (options.compliance > 0) fitting.pressed.push_back(options.compliance * sample.force);
   }
-  const Pose start =
-      options.initial.empty() ? middleOnMiddle(mesh, points) : readPose(options.initial);
+  const Pose start = options.align             ? poseOf(*options.align)
+                     : options.initial.empty() ? middleOnMiddle(mesh, points)
+                                               : readPose(options.initial);
   if (!options.noise) options.noise = medianSigma(path);
   fitting.noise = *options.noise;
   fitting.place = scaleOf(points, Pose::Identity()).radius / 200;
   fitting.search = !options.no_search;
-  if (options.initial.empty()) {
+  if (options.initial.empty() && !options.align) {
     fitting.around = {std::numbers::pi, bounds(mesh).sizes().norm() / 2, 12, 8000};
   }
   const SurfaceTarget target(std::move(mesh), options.tip_radius, options.compliance > 0);
@@ -266,6 +286,10 @@ Command registerCommand() {
            {"--report", "R.json", "", "", "The report as a file.", into(options->report)},
            {"--initial", "T.txt", "", "middle on middle", "First guess of mesh_from_scan, 4 x 4.",
             into(options->initial)},
+           {"--align", "X,Y,Z,A,B,C", "", "",
+            "First guess by hand: a shift [m] or as 1mm, then degrees about the fixed axes x, y, "
+            "z.",
+            [options](const std::string& word) { options->align = parseAlignment(word); }},
            {"--method", "distance|loop|literal", "", "distance", "How it is found.",
             parsedInto(options->method, parseMethod)},
            {"--tip-radius", "LENGTH", "m", "0", "Of the probe: its middle stays that far off.",

@@ -6,7 +6,7 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
-#include "app/gui/panels/pose_values.h"
+#include "geometry/mesh/pose_values.h"
 #include "app/gui/window/theme.h"
 
 namespace patina {

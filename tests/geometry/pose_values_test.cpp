@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/gui/panels/pose_values.h"
+#include "geometry/mesh/pose_values.h"
 
 namespace patina {
 namespace {
@@ -36,6 +36,16 @@ TEST(PoseValues, ReadBackToTheSamePose) {
     EXPECT_EQ(back.angles_deg[2], 0);
     EXPECT_LT((poseOf(back).matrix() - pose.matrix()).norm(), 1e-12);
   }
+}
+
+// T-A09: the axes stay where they are while the turns are made.
+TEST(PoseValues, TurnAboutAxesThatAreFixed) {
+  const Pose once = poseOf({Vec3::Zero(), Vec3(90, 0, 0)});
+  EXPECT_EQ(once * Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ()));
+  // About x, y goes to z; about the fixed y, z then goes to x. Turned axes would leave it at z.
+  const Pose twice = poseOf({Vec3::Zero(), Vec3(90, 90, 0)});
+  EXPECT_EQ(twice * Vec3(Vec3::UnitY()), Vec3(Vec3::UnitX()));
+  EXPECT_EQ(twice * Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitY()));
 }
 
 TEST(PoseValues, QuarterTurnsAndNothingAtAllAreExact) {

@@ -1,4 +1,4 @@
-// A pose as six numbers that a person can type.
+// A pose as six numbers that a person can type (A09).
 #pragma once
 
 #include "core/types.h"

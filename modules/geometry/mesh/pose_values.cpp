@@ -1,4 +1,4 @@
-#include "app/gui/panels/pose_values.h"
+#include "geometry/mesh/pose_values.h"
 
 #include <algorithm>
 #include <cmath>
