@@ -2,8 +2,8 @@
 
 #include <unistd.h>
 
-#include "core/file.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/numbers.h"
 #include "scene/scene_values.h"
 

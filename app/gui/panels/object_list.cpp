@@ -6,8 +6,8 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
-#include "geometry/mesh/pose_values.h"
 #include "app/gui/window/theme.h"
+#include "geometry/mesh/pose_values.h"
 
 namespace patina {
 
