@@ -1,7 +1,8 @@
+#include "pipeline/demo_pictures.h"
+
 #include <cmath>
 
 #include "acquisition/files/frame_files.h"
-#include "pipeline/demo_report.h"
 #include "visualization/plots/plot.h"
 #include "visualization/view/picture.h"
 
@@ -17,24 +18,10 @@ PlotSeries lineOf(const std::string& name) {
   return series;
 }
 
-// All paths on the mesh, coloured by how far off it they are.
 void drawPaths(const Demo& demo, const std::filesystem::path& file) {
-  DrawnPath path;
-  path.title = "distance [mm]";
-  const Registration& found = demo.registered.registration;
-  std::size_t i = 0;
-  for (const DemoScan& scan : demo.scans) {
-    bool begins = true;
-    for (const PathSample& sample : scan.filtered.path) {
-      path.samples.push_back({sample.t + 1e3 * static_cast<double>(&scan - demo.scans.data()),
-                              found.mesh_from_path * sample.position,
-                              kMilli * found.misses[i++].distance, false, begins});
-      begins = false;
-    }
-  }
   ScanPicture picture;
   picture.setMesh(std::make_shared<const TriangleMesh>(demo.object.mesh));
-  picture.setPath(path);
+  picture.setPath(demoPaths(demo));
   picture.setView(ViewPreset::minus_y);
   renderToPng(picture, {1280, 860}, file);
 }
@@ -89,6 +76,27 @@ void drawFelt(const DemoTexture& texture, const std::string& name,
 }
 
 } // namespace
+
+DrawnPath demoPaths(const Demo& demo) {
+  DrawnPath path;
+  const bool registered = !demo.registered.registration.misses.empty();
+  path.title = registered ? "distance [mm]" : "force [N]";
+  const Pose object_from_camera =
+      registered ? demo.registered.registration.mesh_from_path : demo.camera_from_object.inverse();
+  std::size_t i = 0;
+  for (std::size_t s = 0; s < demo.scans.size(); ++s) {
+    bool begins = true;
+    for (const PathSample& sample : demo.scans[s].filtered.path) {
+      const double value =
+          registered ? 1e3 * demo.registered.registration.misses[i].distance : sample.force;
+      path.samples.push_back({sample.t + 1e3 * static_cast<double>(s),
+                              object_from_camera * sample.position, value, false, begins});
+      begins = false;
+      ++i;
+    }
+  }
+  return path;
+}
 
 std::vector<std::string> drawDemo(const Demo& demo) {
   std::vector<std::string> names;

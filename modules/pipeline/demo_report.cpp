@@ -20,12 +20,6 @@ double stiffnessOf(const DemoTexture& texture) {
   return 1 / texture.scanned.fitted.texture.compliance.value_or(INFINITY);
 }
 
-std::string shown(double value, const std::string& unit) {
-  if (unit == "m") return formatLength(value);
-  if (unit == "dB") return formatNumber(std::round(value * 100) / 100) + " dB";
-  return formatNumber(std::round(value * 1000) / 10) + " %";
-}
-
 std::string row(const std::vector<std::string>& cells) {
   std::string text = "|";
   for (const std::string& cell : cells) text += " " + cell + " |";
@@ -37,6 +31,12 @@ double millimetres(double length) {
 }
 
 } // namespace
+
+std::string figureText(double value, const std::string& unit) {
+  if (unit == "m") return formatLength(value);
+  if (unit == "dB") return formatNumber(std::round(value * 100) / 100) + " dB";
+  return formatNumber(std::round(value * 1000) / 10) + " %";
+}
 
 std::vector<DemoFigure> demoFigures(const Demo& demo) {
   std::vector<DemoFigure> figures;
@@ -152,8 +152,8 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
           row({"step", "error of", "material", "found", "at most", ""}) +
           "|---|---|---|---|---|---|\n";
   for (const DemoFigure& figure : demoFigures(demo))
-    text += row({figure.step, figure.what, figure.of, shown(figure.value, figure.unit),
-                 shown(figure.most, figure.unit), figure.holds() ? "holds" : "**missed**"});
+    text += row({figure.step, figure.what, figure.of, figureText(figure.value, figure.unit),
+                 figureText(figure.most, figure.unit), figure.holds() ? "holds" : "**missed**"});
   if (!pictures.empty()) text += "\n## Pictures\n";
   for (const std::string& picture : pictures)
     text += "\n![" + picture.substr(0, picture.find('.')) + "](" + picture + ")\n";

@@ -15,13 +15,12 @@ struct DemoFigure {
   std::string unit;                            // "m", "dB", "" for a ratio
   bool holds() const { return value <= most; } // not where it is no number
 };
+// "0.08 mm", "0.52 dB", "14.9 %" for a value in the unit of a figure.
+std::string figureText(double value, const std::string& unit);
 // Errors against the truth, of the steps that ran.
 std::vector<DemoFigure> demoFigures(const Demo& demo);
 
 Json demoJson(const Demo& demo);
 std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictures);
-
-// Pictures of every step into the demo's folder; their names. Throws Error without a display.
-std::vector<std::string> drawDemo(const Demo& demo);
 
 } // namespace patina

@@ -4,7 +4,7 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/numbers.h"
+#include "pipeline/demo_pictures.h"
 #include "pipeline/demo_report.h"
 #include "visualization/view/display.h"
 
@@ -37,12 +37,6 @@ const Keys kDemoKeys = {
     {"holds", "", "all hold"},
     {"pictures", "", "pictures", "", Shown::if_any},
     {"folder", "", "folder"}};
-
-std::string textOf(const DemoFigure& figure, double value) {
-  if (figure.unit == "m") return formatLength(value);
-  if (figure.unit == "dB") return rounded(value) + " dB";
-  return rounded(100 * value) + " %";
-}
 
 std::vector<std::string> pictures(const Demo& demo, Console& console) {
   try {
@@ -78,8 +72,8 @@ int runDemo(const DemoOptions& options, Console& console) {
     report.tell(demoSteps()[i].name, rounded(demo.seconds[i]) + " s: " + demoSteps()[i].about);
   for (const DemoFigure& figure : demoFigures(demo))
     report.tell(figure.what + (figure.of.empty() ? "" : ", " + figure.of),
-                textOf(figure, figure.value) + ", at most " + textOf(figure, figure.most) +
-                    (figure.holds() ? "" : ": MISSED"));
+                figureText(figure.value, figure.unit) + ", at most " +
+                    figureText(figure.most, figure.unit) + (figure.holds() ? "" : ": MISSED"));
   report.set("holds", found.at("holds")).set("pictures", jsonOf(drawn), joined(drawn));
   report.set("folder", options.output.string(),
              options.output.string() + ", where report.md tells and shows each step");

@@ -5,15 +5,11 @@
 #include <QGridLayout>
 #include <QVBoxLayout>
 
-#include "core/numbers.h"
-
 namespace patina {
 namespace {
 
 QString valueWords(double value, const std::string& unit) {
-  if (unit == "m") return QString::fromStdString(formatLength(value));
-  if (unit == "dB") return QStringLiteral("%1 dB").arg(value, 0, 'f', 2);
-  return QStringLiteral("%1 %").arg(100 * value, 0, 'f', 1);
+  return QString::fromStdString(figureText(value, unit));
 }
 
 // The worst of each figure of a step, over the materials.

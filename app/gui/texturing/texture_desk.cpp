@@ -7,32 +7,10 @@
 
 #include "app/gui/loading/load_dialogs.h"
 #include "core/error.h"
+#include "pipeline/demo_pictures.h"
 
 namespace patina {
 namespace {
-
-// Of the toy, all paths that there are: where they lie on it once they are registered, where the
-// camera saw them before.
-DrawnPath pathsOf(const Demo& demo) {
-  DrawnPath path;
-  const bool registered = !demo.registered.registration.misses.empty();
-  path.title = registered ? "distance [mm]" : "force [N]";
-  const Pose object_from_camera =
-      registered ? demo.registered.registration.mesh_from_path : demo.camera_from_object.inverse();
-  std::size_t i = 0;
-  for (std::size_t s = 0; s < demo.scans.size(); ++s) {
-    bool begins = true;
-    for (const PathSample& sample : demo.scans[s].filtered.path) {
-      const double value =
-          registered ? 1e3 * demo.registered.registration.misses[i].distance : sample.force;
-      path.samples.push_back({sample.t + 1e3 * static_cast<double>(s),
-                              object_from_camera * sample.position, value, false, begins});
-      begins = false;
-      ++i;
-    }
-  }
-  return path;
-}
 
 std::shared_ptr<const TriangleMesh> texturedFaces(const Demo& demo) {
   auto mesh = std::make_shared<TriangleMesh>();
@@ -151,7 +129,7 @@ void TextureDesk::draw() {
     cells_->setCurrentIndex(1);
   }
   view_->picture().setMesh(std::make_shared<const TriangleMesh>(demo_->object.mesh));
-  view_->picture().setPath(pathsOf(*demo_));
+  view_->picture().setPath(demoPaths(*demo_));
   view_->picture().setHighlight(texturedFaces(*demo_));
   if (first) view_->picture().setView(ViewPreset::minus_y);
 }

@@ -22,8 +22,8 @@ Vec3 slopeOver(const std::array<Vec3, 3>& corner, const std::array<double, 3>& v
 }
 
 constexpr double kAlike = 1e-3; // of the greatest height and slope
-// What fades over a face thinner than this part of the usual ones is no sharper for the loop than
-// over one so wide: the tip is past it in less than a tick.
+// A fade over a face thinner than this part of the usual ones counts as one over so wide a face, so
+// that a single sliver does not set the whole scene's lateral coupling.
 constexpr double kThin = 0.5;
 
 // Of the steepest way over the face, of coordinates with these slopes: the larger singular value.

@@ -32,8 +32,10 @@ class TexturePatches {
   // the second derivative of the height over the face [1/m].
   PatchAt at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend = nullptr) const noexcept;
 
-  double highest() const { return highest_; }   // of |height| anywhere [m]
-  double bend() const { return bend_; }         // of |h''| along any face, by samples [1/m]
+  double highest() const { return highest_; } // of |height| anywhere [m]
+  double bend() const {
+    return bend_;
+  } // of |h''| along any face, by samples; of a sliver's fade less [1/m]
   double stiffest() const { return stiffest_; } // of the textures that say so [N/m]; 0: none does
   std::size_t bytes() const;
 
