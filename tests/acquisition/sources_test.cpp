@@ -181,6 +181,17 @@ TEST_F(Streams, GiveLinesAsTheyArriveInWhateverPieces) {
   EXPECT_FALSE(source->read(none));
 }
 
+TEST_F(Streams, MayHaveMoreColumnsAndThenHaveThemInEachLine) {
+  std::string header = probeHeader();
+  header.insert(header.find_first_of("\r\n"), ",battery [V]");
+  push(header + "0,1.5,0,9.8,0,1,3.3\n");
+  EXPECT_EQ(read().at(0).acceleration[3], 1);
+  push("0.002,1.5,0,9.8,0,1\n");
+  std::vector<ProbeSample> samples;
+  const std::string cause = causeOf([&] { source->read(samples); });
+  EXPECT_NE(cause.find("pipe:3: 6 values where the header names 7"), std::string::npos) << cause;
+}
+
 TEST_F(Streams, NameALineThatIsWrongAfterThoseBeforeIt) {
   push(probeHeader() + row(0) + row(1) + "0,006;1;2\n" + row(4));
   std::vector<ProbeSample> samples;

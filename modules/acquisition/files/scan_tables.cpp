@@ -74,9 +74,10 @@ void ProbeLines::take(std::string_view bytes, std::vector<ProbeSample>& into) {
       begin = end + 1;
       ++line_;
       if (line_ == 1) {
-        if (!headed_) (void)parseCsv(line, name_, kProbeColumns);
+        columns_ =
+            headed_ ? kProbeColumns.size() : parseCsv(line, name_, kProbeColumns).columns.size();
       } else if (line.find_first_not_of(" \t\r") != std::string::npos) {
-        parseCsvRow(line, kProbeColumns.size(), name_, line_, row);
+        parseCsvRow(line, columns_, name_, line_, row);
         requireTimed(row, kProbeColumns, name_, line_, last_);
         into.push_back(sampleIn(row));
       }
