@@ -58,8 +58,9 @@ class ProbeLines {
 
  private:
   std::string name_, rest_;
-  std::size_t line_ = 0, columns_ = 0; // as many a row as the header names
-  bool headed_ = false;                // the first line is none
+  std::size_t line_ = 0;
+  std::size_t columns_ = 0; // that the header names, or the six where it was missed
+  bool headed_ = false;     // the first line is none
   std::optional<double> last_;
 };
 // A row of its own, for what writes them as they come; the first is probeHeader().
