@@ -67,7 +67,9 @@ void TextureDesk::runAll() {
 void TextureDesk::run(bool all) {
   if (work_) return;
   if (!demo_) {
-    folder_ = std::filesystem::temp_directory_path() / ("patina-demo-" + std::to_string(getpid()));
+    // Never the last one's: a step that was cancelled may still be writing there.
+    folder_ = std::filesystem::temp_directory_path() /
+              ("patina-demo-" + std::to_string(getpid()) + "-" + std::to_string(++begun_));
     demo_ = std::make_shared<Demo>(folder_, 1);
   }
   const QString title = tr("From a scan to a feel");

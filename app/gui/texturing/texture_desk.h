@@ -52,6 +52,7 @@ class TextureDesk : public QObject {
   Background job_;
   std::shared_ptr<Demo> demo_; // not read while a step runs
   std::filesystem::path folder_;
+  int begun_ = 0; // sequences
   QStackedWidget* cells_ = new QStackedWidget;
   StepList* steps_ = new StepList;
   QWidget* profile_ = new QWidget;
