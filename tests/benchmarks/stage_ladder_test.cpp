@@ -1,5 +1,6 @@
 // MATH 3: what a scene does not have costs neither bytes nor nanoseconds.
 #include <cstdio>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -136,6 +137,51 @@ PATINA_TIMED_TEST(StageLadder, PaintAddsToATickThatStaysCheap) {
               bytes(*object.relief->faces) / 1024);
   // 0.53, and 1.77 where memory is slow to get: 20 of them stay below half a servo period.
   EXPECT_TRUE(test::within("20 snapshots, against 2000 ticks", made[0], made[1], 4));
+}
+
+// A scanned surface as it is felt: 128 harmonics on every face, friction, painted stiffness.
+PATINA_TIMED_TEST(StageLadder, ATextureCostsAboutATick) {
+  const double R = 0.03;
+  const TriangleMesh mesh = icosphere(R, 100);
+  FieldSpec spec;
+  spec.resolution = 150;
+  Progress progress;
+  const Field sphere = withSamples(buildField(mesh, spec, progress).field);
+  FourierTexture texture;
+  texture.omega = 2 * std::numbers::pi / 0.04;
+  for (int j = 1; j <= 128; ++j) {
+    texture.series.a.push_back(5e-6 / j * std::cos(j * j));
+    texture.series.b.push_back(5e-6 / j * std::sin(j * j));
+  }
+  texture.low = leastHeight(texture);
+  LaidTextures laid;
+  laid.library[0] = feltTexture(texture);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    TexturedFace face;
+    face.face = static_cast<std::int32_t>(f);
+    for (int c = 0; c < 3; ++c) face.at[static_cast<std::size_t>(c)] = mesh.corner(f, c).head<2>();
+    laid.faces.push_back(face);
+  }
+  auto surface = std::make_shared<ReliefSurface>();
+  surface->faces = reliefFaces(mesh, {});
+  surface->textures = std::make_shared<const TexturePatches>(mesh, laid);
+  Scene scene = withFriction(sceneOf(500), 0.5, 0.3);
+  Ladder ladder;
+  FeltObject object;
+  const auto rung = [&](const char* what) {
+    ladder.add(what, compileStages(scene, sphere, std::span(&object, 1)));
+  };
+  rung("contact, friction");
+  object.relief = surface;
+  object.highest = surface->textures->highest();
+  rung("+ texture");
+  const auto map = coveredMap(sphere->grid.voxel, cube(R + 2e-3), MaterialChannel::stiffness,
+                              [](const Vec3& p) { return 600 + 5e3 * p.x(); });
+  object.material = feltMaterial(*map, scene).material;
+  rung("+ stiffness painted");
+  const std::vector<double> seconds = ladder.seconds();
+  EXPECT_TRUE(test::within("texture, maps and friction, against friction", seconds[2], seconds[0],
+                           2.7)); // 2.2
 }
 
 TEST(StageLadder, AbsentLayersAndStagesHoldNoBytes) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "core/types.h"
 #include "scene/paint/material_map.h"
@@ -53,6 +54,9 @@ struct Contact {
   // nothing is near. MagnetStage where it pulls, as normal and vcp.
   Vec3 surface = Vec3::Zero();
   Vec3 vcp = Vec3::Zero(); // p, after FrictionStage; the tip if not touching
+
+  // pulledBack(), for whichever stage asks first: how surface moves with the tip
+  std::optional<Eigen::Matrix3d> jacobian;
 
   // OwnerStage
   std::int32_t object = 0; // that surface belongs to, where that matters

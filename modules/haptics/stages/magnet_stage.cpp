@@ -32,7 +32,8 @@ void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
       const ReliefAt raised = relief_.reliefs->at(object, c, memory.walk);
       above = std::max(0.0, above - per_voxel_ * raised.height);
       if (relief_.leans)
-        leaning = pulledBack(sampler_, per_voxel_ * (c - grid.origin), n, at.phi, raised.slope);
+        leaning = closestPointJacobian(sampler_, per_voxel_ * (c - grid.origin), n, at.phi) *
+                  raised.slope;
     }
     if (at.region == FieldRegion::band && slope > 0 && above < range_) {
       double pull = above;

@@ -22,9 +22,14 @@ void notTouching(Contact& contact) noexcept {
   contact.walls = 0;
 }
 
+// Length of n - slope.
+double steepnessOf(const Contact& contact) noexcept {
+  return contact.slope.isZero(0) ? 1 : std::sqrt(1 + contact.slope.squaredNorm());
+}
+
 // Along n, of the contact as it is.
 double depthOf(const Contact& contact) noexcept {
-  return contact.depth / std::sqrt(1 + contact.slope.squaredNorm());
+  return contact.depth / steepnessOf(contact);
 }
 
 // `depth` becomes that along n, and the normal leans by `slope` more. n - slope is longer than 1:
@@ -34,14 +39,13 @@ void settle(Contact& contact, double depth, const Vec3& slope) noexcept {
     notTouching(contact);
     return;
   }
-  const double steep = std::sqrt(1 + contact.slope.squaredNorm());
-  const Vec3 outward = steep * contact.normal - slope; // n - all slopes
+  const Vec3 outward = steepnessOf(contact) * contact.normal - slope; // n - all slopes
   contact.slope += slope;
-  const double length = std::sqrt(1 + contact.slope.squaredNorm());
-  for (int i = 0; i < contact.walls; ++i)
-    contact.wall[static_cast<std::size_t>(i)].load *= depth * length / contact.depth;
-  contact.depth = depth * length;
-  contact.normal = outward / length;
+  const double length = steepnessOf(contact), deep = depth * length, per_length = 1 / length;
+  const double more = deep / contact.depth;
+  for (int i = 0; i < contact.walls; ++i) contact.wall[static_cast<std::size_t>(i)].load *= more;
+  contact.depth = deep;
+  contact.normal = per_length * outward;
   if (contact.walls == 1) contact.wall[0].normal = contact.normal;
   contact.candidate = contact.tip + depth * outward;
   contact.vcp = contact.candidate;

@@ -162,7 +162,8 @@ std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& te
 } // namespace
 
 TextureEvaluator::TextureEvaluator(const FourierTexture& texture, double tolerance)
-    : omega_(texture.omega), low_(texture.low) {
+    : omega_(texture.omega), low_(texture.low),
+      line_(texture.kind != TextureKind::products && texture.kind != TextureKind::plane) {
   if (const std::string problem = problemOf(texture); !problem.empty())
     throw Error("texture '" + texture.name + "': " + problem);
   if (!(tolerance >= 0 && tolerance < 1))
@@ -179,7 +180,7 @@ TextureEvaluator::TextureEvaluator(const FourierTexture& texture, double toleran
 }
 
 TextureValue TextureEvaluator::at(double x, double y) const noexcept {
-  const PlaneValue value = form_->at(exactPhase(x, omega_), exactPhase(y, omega_));
+  const PlaneValue value = form_->at(exactPhase(x, omega_), line_ ? 0 : exactPhase(y, omega_));
   return {value.value, omega_ * Vec2(value.slope_x, value.slope_y)};
 }
 

@@ -34,6 +34,7 @@ class TextureEvaluator {
   struct Form; // how it is summed
  private:
   double omega_ = 0, low_ = 0;
+  bool line_ = true; // nothing along y
   std::shared_ptr<const Form> form_;
 };
 

@@ -156,7 +156,6 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
 } // namespace
 
 std::size_t MaterialSamples::bytes() const {
-  const std::size_t channels = countOf(painted);
   return sizeof *this + top.size() * sizeof(top[0]) +
          block.size() * (sizeof(block[0]) + sizeof(Extremes) + sizeof(Index) +
                          sizeof(MaterialSampleBlock) + kNodes * channels * sizeof(double));
@@ -178,6 +177,7 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   samples->first = table.first;
   samples->blocks = table.count;
   samples->painted = painted;
+  samples->channels = countOf(painted);
   samples->base = samples->least = samples->most = base;
   samples->top.assign(table.cells.size(), -1);
   Table<char> old;
@@ -232,8 +232,7 @@ MaterialAt materialAt(const MaterialSamples& samples, const Vec3& p) noexcept {
   }
   const std::int32_t slot = samples.top[cell];
   if (slot < 0) return at;
-  std::size_t channels = 0;
-  for (const bool painted : samples.painted) channels += painted;
+  const std::size_t channels = samples.channels;
   const double* low =
       samples.block[static_cast<std::size_t>(slot)]->values.data() +
       channels * static_cast<std::size_t>((node[2] * kSide + node[1]) * kSide + node[0]);

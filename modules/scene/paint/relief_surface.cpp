@@ -29,6 +29,7 @@ struct PackedFace {
 constexpr int kMostSteps = 64;
 // Steps across edges that bring the point no nearer: half way round a vertex they may be needed.
 constexpr int kMostStalls = 8;
+constexpr double kWellWithin = 1e-3; // of a barycentric coordinate
 
 } // namespace
 
@@ -74,8 +75,21 @@ struct Foot {
   double squared = std::numeric_limits<double>::infinity(); // distance
 };
 
+// Of a point above the face; else a weight that is not above 0. Less exact on needles than
+// closestBarycentric, from which it takes what is not well within.
+Foot footWithin(const PackedFace& face, std::int32_t f, const Vec3& p) noexcept {
+  const Vec3 a = face.at(0), r = p - a, along1 = face.at(1) - a, along2 = face.at(2) - a;
+  const Vec3 normal = along1.cross(along2);
+  const double squared = normal.squaredNorm(), one = r.cross(along2).dot(normal),
+               two = along1.cross(r).dot(normal), least = kWellWithin * squared;
+  if (!(one > least && two > least && squared - one - two > least)) return {};
+  const double per = 1 / squared, above = r.dot(normal);
+  return {f, Vec3((squared - one - two) * per, one * per, two * per), above * above * per};
+}
+
 Foot footOn(const ReliefFaces& mesh, std::int32_t f, const Vec3& p) noexcept {
   const PackedFace& face = mesh.faces[static_cast<std::size_t>(f)];
+  if (const Foot within = footWithin(face, f, p); within.face >= 0) return within;
   const Vec3 a = face.at(0), b = face.at(1), c = face.at(2);
   Foot foot{f, closestBarycentric(p, a, b, c)};
   const Vec3& w = foot.barycentric;
@@ -97,6 +111,7 @@ std::int32_t beyond(const PackedFace& face, const Vec3& barycentric, std::int32_
 
 Foot walk(const ReliefFaces& mesh, const Vec3& p, std::int32_t start) noexcept {
   Foot best = footOn(mesh, start, p);
+  if (best.barycentric.minCoeff() > 0) return best;
   Foot at = best;
   std::int32_t from = -1;
   for (int step = 0, stalls = 0; step < kMostSteps && stalls <= kMostStalls; ++step) {
