@@ -118,7 +118,7 @@ TEST(Stabilisers, CouplingIsSofterWithACoarseEncoder) {
   DeviceModel fine, coarse;
   coarse.encoder_step = 1e-4;
   const CouplingPlan a = planCoupling({}, fine), b = planCoupling({}, coarse);
-  EXPECT_DOUBLE_EQ(a.damping, 2);
+  EXPECT_DOUBLE_EQ(a.damping, 1.7);
   EXPECT_DOUBLE_EQ(b.damping, .3);
   EXPECT_LT(b.stiffness, a.stiffness);
   for (const int delay : {0, 1, 2, 5, 20})

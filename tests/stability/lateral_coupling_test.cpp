@@ -110,7 +110,7 @@ TEST(LateralCoupling, NoLoopOverTextureGivesEnergy) {
 // Without hops nothing is lost but to the damper, in proportion to the speed.
 TEST(LateralCoupling, ASlowLoopWithoutHopsLosesNothing) {
   const Scene scene = automatic(500);
-  const FeltObject object = waves(50e-6);
+  const FeltObject object = waves(40e-6);
   const auto snapshot = compileStages(scene, fineSlab().field, std::span(&object, 1));
   const std::vector<Vec3> corners{Vec3(1.3e-3, 1e-4, -2e-3), Vec3(1.3e-3, 1e-4, -1.2e-3),
                                   Vec3(0, 1e-4, -1.2e-3), Vec3(0, 1e-4, -2e-3)};

@@ -11,7 +11,7 @@ namespace patina {
 namespace {
 
 constexpr double kMargin = 2;           // of K* over the stiffness
-constexpr double kDampingShare = 0.02;  // B T/m: far from where B itself buzzes
+constexpr double kDampingShare = 0.017; // B T/m: far from where B itself buzzes
 constexpr double kSettlingRate = 12;    // B/m [1/s] at least: what is left of a touch fades so fast
 constexpr double kDampingMargin = 5;    // of the damping that buzzes over B
 constexpr double kPassivityNoise = 0.3; // [N] a step of the encoder, of the passivity controller

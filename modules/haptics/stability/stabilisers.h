@@ -44,7 +44,7 @@ struct StabiliserPlan {
 SampledLoop sceneLoop(const HapticProperties& haptics, const DeviceModel& device,
                       const HandModel& hand = {});
 
-// The coupling for a device, whatever the surface: B = 0.02 m/T and at least 12 m/s, less where the
+// The coupling for a device, whatever the surface: B = 0.017 m/T and at least 12 m/s, less where the
 // encoder would make it felt as noise (0.03 N a step), more where the scene itself has more, at
 // most a fifth of the damping that buzzes by itself; k_c half of K* with that B, but no less than
 // 0.4 of the rule of thumb, where the margin is below two.
