@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "core/error.h"
-#include "pictures/loaded_library.h"
+#include "core/loaded_library.h"
 
 namespace patina {
 

@@ -1,7 +1,7 @@
 #include "acquisition/vision_library.h"
 
 #include "core/error.h"
-#include "pictures/loaded_library.h"
+#include "core/loaded_library.h"
 
 namespace patina {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "pictures/loaded_library.h"
+#include "core/loaded_library.h"
 
 namespace patina {
 

@@ -1,10 +1,14 @@
-// What hangs on the USB bus, and which of it is a haptic device by vendor and product.
+// What hangs on the USB bus, which of it is a haptic device, and how one is opened.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "usb/usb_library.h"
+#include "usb/usb_transport.h"
 
 namespace patina {
 
@@ -15,19 +19,24 @@ struct UsbDevice {
   std::string haptic;    // "Force Dimension", "Novint Falcon" ...; empty if it is none that we know
   bool openable = false; // by this user
   std::string advice;    // what to do if not: permissions, a driver that holds it
+  int bus = 0, address = 0; // as in /dev/bus/usb
+  double megabits = 0;      // of its cable: 12 is full speed; 0 if unknown
 };
 
 // Every device on the bus; an empty list if there is a bus with nothing on it. Throws DeviceError
-// if the bus cannot be read at all, as in a container without /dev/bus/usb. Any thread; slow.
+// if the bus cannot be read at all, as in a container without /dev/bus/usb, or without libusb. Any
+// thread; slow.
 std::vector<UsbDevice> listUsbDevices();
+
+// The first device of these numbers that may be opened; nothing of it is claimed yet. Throws
+// DeviceError with what to do where there is none. Any thread; slow.
+std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product);
 
 // The maker or model of a haptic device; empty if vendor and product are none that we know.
 std::string_view hapticName(std::uint16_t vendor, std::uint16_t product);
 
-// Why a device could not be opened, as libusb sees it.
-enum class UsbRefusal : std::uint8_t { permission, held_by_driver, gone, other };
-
 // One line for a person; for a missing permission it holds the udev rule to add.
 std::string usbAdvice(UsbRefusal refusal, std::uint16_t vendor, std::uint16_t product);
+std::string usbNumbers(std::uint16_t vendor, std::uint16_t product); // "0403:cb48"
 
 } // namespace patina

@@ -28,6 +28,10 @@ std::string hex4(std::uint16_t value) {
 
 } // namespace
 
+std::string usbNumbers(std::uint16_t vendor, std::uint16_t product) {
+  return hex4(vendor) + ":" + hex4(product);
+}
+
 std::string_view hapticName(std::uint16_t vendor, std::uint16_t product) {
   for (const Known& known : kKnown) {
     if (known.vendor == vendor && (known.product == 0 || known.product == product))

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "workspace/sha256.h"
+#include "core/sha256.h"
 
 namespace patina {
 namespace {

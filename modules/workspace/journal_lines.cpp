@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "workspace/sha256.h"
+#include "core/sha256.h"
 
 namespace patina {
 namespace {

@@ -67,7 +67,7 @@ TEST(Architecture, TheCheckerSeesForbiddenEdges) {
            {"modules/session/a.cpp", "#include <QString>"},
            {"app/gui/a.cpp", "#include <nlohmann/json.hpp>"},
            {"app/cli/a.h", "#include <libusb.h>"},
-           {"modules/workspace/sha256.h", "#include <openssl/evp.h>"},
+           {"modules/core/sha256.h", "#include <openssl/evp.h>"},
            {"modules/haptics/a.cpp", "#include <libusb.h>"},
            {"modules/field/a.cpp", "#include <openvdb/openvdb.h>"},
            {"modules/core/a.cpp", "#include <gtest/gtest.h>"}}) {

@@ -11,7 +11,7 @@
 #include "integration/program.h"
 #include "scene/stroke.h"
 #include "support/same_scene.h"
-#include "workspace/sha256.h"
+#include "core/sha256.h"
 #include "workspace/workspace.h"
 
 namespace patina::test {

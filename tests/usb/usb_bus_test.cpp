@@ -20,6 +20,19 @@ TEST(UsbBus, IsListedOrSaysWhyNot) {
   }
 }
 
+TEST(UsbBus, WhatIsNotAttachedIsNotOpenedAndSaysWhatToDo) {
+  try {
+    (void)openUsb(0x0403, 0xffff); // a number that nobody was given
+    ADD_FAILURE();
+  } catch (const DeviceError& error) {
+    const std::string cause = error.what();
+    EXPECT_TRUE(cause.starts_with("the USB bus cannot be ") ||
+                cause == "the device (USB 0403:ffff) is not attached: plug it in, and its power "
+                         "supply too")
+        << cause;
+  }
+}
+
 TEST(UsbBus, KnowsHapticDevicesAndNothingElse) {
   EXPECT_EQ(hapticName(0x0403, 0xcb48), "Novint Falcon");
   EXPECT_EQ(hapticName(0x0403, 0x6001), ""); // the same chip maker's plain serial adapter

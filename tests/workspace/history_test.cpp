@@ -2,7 +2,7 @@
 // said.
 #include <chrono>
 
-#include "workspace/sha256.h"
+#include "core/sha256.h"
 #include "workspace/workspace_support.h"
 
 namespace patina {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
@@ -7,9 +6,7 @@
 #include "core/numbers.h"
 #include "haptics/devices/device_catalog.h"
 #include "haptics/servo/latency.h"
-#ifdef PATINA_HAS_USB
 #include "usb/usb_bus.h"
-#endif
 
 namespace patina::cli {
 
@@ -55,17 +52,8 @@ void addBuiltIn(Json& list, Report& report) {
   }
 }
 
-#ifdef PATINA_HAS_USB
-std::string usbId(const UsbDevice& device) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%04x:%04x", device.vendor, device.product);
-  return text;
-}
-#endif
-
 // Haptic devices always, everything else on the bus only when asked.
 void addUsb(bool diagnose, Json& list, Report& report) {
-#ifdef PATINA_HAS_USB
   std::vector<UsbDevice> devices;
   try {
     devices = listUsbDevices();
@@ -78,7 +66,9 @@ void addUsb(bool diagnose, Json& list, Report& report) {
     any = any || !device.haptic.empty();
     if (device.haptic.empty() && !diagnose) continue;
     Json entry = Json::object();
-    entry.set("name", device.name).set("kind", "usb").set("id", usbId(device));
+    entry.set("name", device.name)
+        .set("kind", "usb")
+        .set("id", usbNumbers(device.vendor, device.product));
     entry.set("haptic", device.haptic).set("openable", device.openable);
     entry.set("advice", device.advice);
     const auto driver = std::ranges::find(deviceCatalog(), device.haptic, &DeviceEntry::usb);
@@ -92,14 +82,9 @@ void addUsb(bool diagnose, Json& list, Report& report) {
                       : "recognised; this version renders no force on it") +
               ")";
     if (!device.advice.empty()) text += "; " + device.advice;
-    report.tell(usbId(device), text);
+    report.tell(usbNumbers(device.vendor, device.product), text);
   }
   if (!any) report.tell("USB", "no haptic device is attached");
-#else
-  (void)diagnose;
-  (void)list;
-  report.tell("USB", "this build cannot look: it was configured with PATINA_USB=OFF");
-#endif
 }
 
 int runDevices(const DevicesOptions& options, Console& console) {

@@ -1,4 +1,4 @@
-#include "pictures/loaded_library.h"
+#include "core/loaded_library.h"
 
 #include <dlfcn.h>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "workspace/sha256.h"
+#include "core/sha256.h"
 
 #include <array>
 #include <openssl/evp.h>
