@@ -177,8 +177,8 @@ WorkPrecisionTable planeForms(const StudyOptions& options, Progress& progress) {
     };
     addTable("rows, rotated", plane, 0);
     addTable("products, table 1e-12", products, 1e-12);
-    addTable("grid 1e-12", plane, 1e-12);
-    addTable("grid 1e-5", plane, 1e-5);
+    addTable("window 1e-12", plane, 1e-12);
+    addTable("cells 1e-5", plane, 1e-5);
   }
   return table;
 }

@@ -12,6 +12,8 @@ namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+using Long = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+
 constexpr int kSamplesPerHarmonic = 4;
 constexpr int kFewestSamples = 16;
 
@@ -24,9 +26,9 @@ struct Window {
   int width;
   double beta = 0.98 * std::numbers::pi * width * (1 - 0.5 / (kSamplesPerHarmonic / 2.0));
 
-  double at(double z) const { // samples from its middle
-    const double inside = 1 - 4 * z * z / (width * width);
-    return std::cyl_bessel_i(0.0, beta * std::sqrt(std::max(0.0, inside)));
+  long double at(long double z) const { // samples from its middle
+    const long double inside = 1 - 4 * z * z / (width * width);
+    return std::cyl_bessel_i(0.0L, beta * std::sqrt(std::max(0.0L, inside)));
   }
   // Its spectrum at a frequency in radians a sample.
   double spectrum(double frequency) const {
@@ -53,28 +55,29 @@ double likeness(const Window& window, int harmonics, int samples) {
   return most;
 }
 
-// Polynomials by t = -1 .. 1 through Chebyshev's points: rows are powers, columns samples.
+// Polynomials by t = -1 .. 1 through Chebyshev's points: rows are powers, columns samples. Their
+// slopes show the rounding of the points a hundredfold.
 Rows weightsOf(const Window& window) {
   const int count = coefficientsOf(window.width);
   Rows weights(count, window.width);
   for (int k = 0; k < window.width; ++k) {
-    Eigen::VectorXd chebyshev = Eigen::VectorXd::Zero(count);
+    Long chebyshev = Long::Zero(count);
     for (int i = 0; i < count; ++i) {
-      const double angle = std::numbers::pi * (i + 0.5) / count;
-      const double z = (std::cos(angle) + 1) / 2 + window.width / 2 - 1 - k;
+      const long double angle = std::numbers::pi_v<long double> * (i + 0.5L) / count;
+      const long double z = (std::cos(angle) + 1) / 2 + window.width / 2 - 1 - k;
       for (int d = 0; d < count; ++d)
-        chebyshev[d] += (d == 0 ? 1.0 : 2.0) / count * window.at(z) * std::cos(d * angle);
+        chebyshev[d] += (d == 0 ? 1.0L : 2.0L) / count * window.at(z) * std::cos(d * angle);
     }
-    Eigen::VectorXd before = Eigen::VectorXd::Zero(count), now = before, sum = before;
+    Long before = Long::Zero(count), now = before, sum = before;
     now[0] = 1; // T0, of which T1 = t T0
     for (int d = 0; d < count; ++d) {
       sum += chebyshev[d] * now;
-      Eigen::VectorXd next = -before;
-      next.tail(count - 1) += (d == 0 ? 1.0 : 2.0) * now.head(count - 1);
+      Long next = -before;
+      next.tail(count - 1) += (d == 0 ? 1.0L : 2.0L) * now.head(count - 1);
       before = now;
       now = next;
     }
-    weights.col(k) = sum;
+    weights.col(k) = sum.cast<double>();
   }
   return weights;
 }
@@ -99,58 +102,49 @@ template <int kWidth> struct Weights {
   }
 };
 
-// The sample before a place, and how far the place lies beyond it, as -1 .. 1.
-struct GridPlace {
-  int sample;
-  double t;
-  GridPlace(double phase, double samples_per_turn, int samples) noexcept {
-    const double at = (phase < 0 ? phase + 2 * std::numbers::pi : phase) * samples_per_turn;
-    sample = std::clamp(static_cast<int>(at), 0, samples - 1);
-    t = 2 * (at - sample) - 1;
-  }
-};
-
 } // namespace
 
-PlaneWindow::PlaneWindow(const std::vector<double>& plane, int harmonics, double tolerance)
-    : samples_(std::max(kFewestSamples, kSamplesPerHarmonic * harmonics)),
-      samples_per_turn_(samples_ / (2 * std::numbers::pi)) {
-  for (const int width : {4, 8, 12, 16}) {
+PlaneWindow::PlaneWindow(const std::vector<double>& plane, int harmonics, double omega,
+                         double tolerance)
+    : ring_(omega, std::max(kFewestSamples, kSamplesPerHarmonic * harmonics)) {
+  const int samples = ring_.steps();
+  for (const int width : {4, 8, 12, 14, 16}) {
     width_ = width;
-    if (likeness({width}, harmonics, samples_) <= tolerance) break;
+    if (likeness({width}, harmonics, samples) <= tolerance) break;
   }
   const Window window{width_};
   const Rows weights = weightsOf(window);
   weights_.assign(weights.data(), weights.data() + weights.size());
 
   const int side = 2 * harmonics + 1;
-  Rows terms(samples_, side), slopes(1, side);
-  for (int i = 0; i < samples_; ++i)
-    fillTerms(2 * std::numbers::pi * i / samples_, harmonics, terms.row(i).data(), slopes.data());
+  Rows terms(samples, side), slopes(1, side);
+  for (int i = 0; i < samples; ++i)
+    fillTerms(2 * std::numbers::pi * i / samples, harmonics, terms.row(i).data(), slopes.data());
   Eigen::VectorXd divided(side);
   for (int r = 0; r < side; ++r)
-    divided[r] = 1 / window.spectrum((r + 1) / 2 * 2 * std::numbers::pi / samples_);
+    divided[r] = 1 / window.spectrum((r + 1) / 2 * 2 * std::numbers::pi / samples);
   terms *= divided.asDiagonal();
   Rows coefficients = Eigen::Map<const Rows>(plane.data(), side, side);
   coefficients(0, 0) = 0;
   const Rows grid = terms * coefficients * terms.transpose();
 
-  const int around = samples_ + width_;
+  const int around = samples + width_;
   stride_ = static_cast<std::size_t>(around);
   grid_.resize(stride_ * stride_);
   const int before = width_ / 2 - 1;
   for (int r = 0; r < around; ++r)
     for (int c = 0; c < around; ++c)
       grid_[static_cast<std::size_t>(r) * stride_ + static_cast<std::size_t>(c)] =
-          grid((r - before + samples_) % samples_, (c - before + samples_) % samples_);
+          grid((r - before + samples) % samples, (c - before + samples) % samples);
 }
 
 template <int kWidth> PlaneValue PlaneWindow::through(double x, double y) const noexcept {
-  const GridPlace column(x, samples_per_turn_, samples_), row(y, samples_per_turn_, samples_);
-  const Weights<kWidth> along_x(weights_.data(), column.t), along_y(weights_.data(), row.t);
+  const RingPlace column = ring_.at(x), row = ring_.at(y);
+  const Weights<kWidth> along_x(weights_.data(), 2 * column.beyond - 1),
+      along_y(weights_.data(), 2 * row.beyond - 1);
   alignas(32) std::array<double, kWidth> value{}, slope{};
-  const double* samples = grid_.data() + static_cast<std::size_t>(row.sample) * stride_ +
-                          static_cast<std::size_t>(column.sample);
+  const double* samples = grid_.data() + static_cast<std::size_t>(row.step) * stride_ +
+                          static_cast<std::size_t>(column.step);
   for (std::size_t r = 0; r < kWidth; ++r, samples += stride_)
     for (std::size_t k = 0; k < kWidth; ++k) {
       value[k] += along_y.value[r] * samples[k];
@@ -162,8 +156,9 @@ template <int kWidth> PlaneValue PlaneWindow::through(double x, double y) const 
     sum.slope_x += along_x.slope[k] * value[k];
     sum.slope_y += along_x.value[k] * slope[k];
   }
-  sum.slope_x *= 2 * samples_per_turn_;
-  sum.slope_y *= 2 * samples_per_turn_;
+  const double by_phase = ring_.steps() / std::numbers::pi;
+  sum.slope_x *= by_phase;
+  sum.slope_y *= by_phase;
   return sum;
 }
 
@@ -175,6 +170,8 @@ PlaneValue PlaneWindow::at(double x, double y) const noexcept {
     return through<8>(x, y);
   case 12:
     return through<12>(x, y);
+  case 14:
+    return through<14>(x, y);
   default:
     return through<16>(x, y);
   }

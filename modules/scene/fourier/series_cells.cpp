@@ -116,8 +116,12 @@ SeriesCells::SeriesCells(const FourierSeries& series, double value_error, double
 SeriesValue SeriesCells::at(double phase) const noexcept {
   const double turn = phase < 0 ? phase + 2 * std::numbers::pi : phase;
   const int cell = std::clamp(static_cast<int>(turn * cells_per_turn_), 0, last_);
-  const double* c = table_.data() + static_cast<std::size_t>(cell * degree_);
-  const double t = (turn - (cell + 0.5) * width_) * slope_scale_;
+  return at(RingPlace{cell, (turn - cell * width_) * cells_per_turn_});
+}
+
+SeriesValue SeriesCells::at(const RingPlace& place) const noexcept {
+  const double* c = table_.data() + static_cast<std::size_t>(place.step * degree_);
+  const double t = 2 * place.beyond - 1;
   SeriesValue sum;
   switch (degree_) {
   case 4:

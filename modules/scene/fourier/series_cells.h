@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "scene/fourier/exact_phase.h"
 #include "scene/fourier/series_sum.h"
 
 namespace patina {
@@ -14,7 +15,9 @@ class SeriesCells {
   // Taylor's polynomial leaves out is bounded by the next derivative of all terms.
   SeriesCells(const FourierSeries& series, double value_error, double slope_error);
 
-  SeriesValue at(double phase) const noexcept; // phase in [-pi, pi]
+  SeriesValue at(double phase) const noexcept;           // in [-pi, pi]
+  SeriesValue at(const RingPlace& place) const noexcept; // of a ring of as many steps
+  int cells() const { return last_ + 1; }
   std::size_t bytes() const { return sizeof(double) * table_.size(); }
 
  private:

@@ -7,16 +7,16 @@
 
 #include "core/error.h"
 #include "scene/fourier/exact_phase.h"
+#include "scene/fourier/plane_cells.h"
 #include "scene/fourier/plane_window.h"
 #include "scene/fourier/series_cells.h"
 #include "scene/fourier/series_sum.h"
 
 namespace patina {
 
-// By the phases.
 struct TextureEvaluator::Form {
   virtual ~Form() = default;
-  virtual PlaneValue at(double x, double y) const noexcept = 0;
+  virtual PlaneValue at(double x, double y) const noexcept = 0; // x, y [m]
   virtual std::size_t bytes() const = 0;
 };
 
@@ -25,21 +25,39 @@ namespace {
 // Of the tolerance, what a table may leave out; the rest is for rounding.
 constexpr double kOfTable = 0.5;
 
-template <class Series> struct LineForm final : TextureEvaluator::Form {
-  Series series;
-  double mean;
+// A series at places [m].
+struct RotatedLine {
+  RotatedSeries series;
+  double omega;
 
-  LineForm(Series of, double without) : series(std::move(of)), mean(without) {}
-  PlaneValue at(double x, double) const noexcept override {
-    const SeriesValue sum = series.at(x);
-    return {sum.value - mean, sum.slope, 0};
-  }
-  std::size_t bytes() const override { return series.bytes(); }
+  RotatedLine(const FourierSeries& of, double fundamental) : series(of), omega(fundamental) {}
+  SeriesValue at(double x) const noexcept { return series.at(exactPhase(x, omega)); }
+  std::size_t bytes() const { return series.bytes(); }
+};
+struct TabledLine {
+  SeriesCells series;
+  ExactRing ring;
+
+  TabledLine(SeriesCells of, double omega) : series(std::move(of)), ring(omega, series.cells()) {}
+  SeriesValue at(double x) const noexcept { return series.at(ring.at(x)); }
+  std::size_t bytes() const { return series.bytes(); }
 };
 
-template <class Series> struct ProductsForm final : TextureEvaluator::Form {
+template <class Line> struct LineForm final : TextureEvaluator::Form {
+  Line line;
+  double mean;
+
+  LineForm(Line of, double without) : line(std::move(of)), mean(without) {}
+  PlaneValue at(double x, double) const noexcept override {
+    const SeriesValue sum = line.at(x);
+    return {sum.value - mean, sum.slope, 0};
+  }
+  std::size_t bytes() const override { return line.bytes(); }
+};
+
+template <class Line> struct ProductsForm final : TextureEvaluator::Form {
   struct Factors {
-    Series along_x, along_y;
+    Line along_x, along_y;
   };
   std::vector<Factors> factors;
   double mean = 0;
@@ -61,19 +79,20 @@ template <class Series> struct ProductsForm final : TextureEvaluator::Form {
   }
 };
 
-struct WindowForm final : TextureEvaluator::Form {
-  PlaneWindow window;
+template <class Table> struct TableForm final : TextureEvaluator::Form {
+  Table table;
 
-  explicit WindowForm(PlaneWindow of) : window(std::move(of)) {}
-  PlaneValue at(double x, double y) const noexcept override { return window.at(x, y); }
-  std::size_t bytes() const override { return window.bytes(); }
+  explicit TableForm(Table of) : table(std::move(of)) {}
+  PlaneValue at(double x, double y) const noexcept override { return table.at(x, y); }
+  std::size_t bytes() const override { return table.bytes(); }
 };
 
 // A plane as a series along x for each of its terms along y.
 struct RowsForm final : TextureEvaluator::Form {
   std::vector<RotatedSeries> rows;
+  double omega;
 
-  explicit RowsForm(const FourierTexture& texture) {
+  explicit RowsForm(const FourierTexture& texture) : omega(texture.omega) {
     const auto side = static_cast<std::size_t>(2 * harmonics(texture) + 1);
     for (std::size_t r = 0; r < side; ++r) {
       FourierSeries series;
@@ -86,7 +105,8 @@ struct RowsForm final : TextureEvaluator::Form {
       rows.emplace_back(series);
     }
   }
-  PlaneValue at(double x, double y) const noexcept override {
+  PlaneValue at(double x_place, double y_place) const noexcept override {
+    const double x = exactPhase(x_place, omega), y = exactPhase(y_place, omega);
     const SeriesValue first = rows[0].at(x);
     PlaneValue sum{first.value, first.slope, 0};
     for (std::size_t r = 1; r < rows.size(); r += 2) {
@@ -117,10 +137,10 @@ double amplitudes(const FourierSeries& series, bool of_slope) {
   return sum;
 }
 
-template <class Series, class Make>
+template <class Line, class Make>
 std::shared_ptr<const TextureEvaluator::Form> productsForm(const FourierTexture& texture,
                                                            const Make& make) {
-  auto form = std::make_shared<ProductsForm<Series>>();
+  auto form = std::make_shared<ProductsForm<Line>>();
   for (const FourierProduct& product : texture.products) {
     form->mean += product.along_x.mean * product.along_y.mean;
     form->factors.push_back(
@@ -132,17 +152,18 @@ std::shared_ptr<const TextureEvaluator::Form> productsForm(const FourierTexture&
 std::shared_ptr<const TextureEvaluator::Form> exactForm(const FourierTexture& texture) {
   if (texture.kind == TextureKind::plane) return std::make_shared<RowsForm>(texture);
   if (texture.kind == TextureKind::products)
-    return productsForm<RotatedSeries>(
-        texture, [](const FourierSeries& own, const FourierSeries&) { return RotatedSeries(own); });
+    return productsForm<RotatedLine>(texture, [&](const FourierSeries& own, const FourierSeries&) {
+      return RotatedLine(own, texture.omega);
+    });
   const FourierSeries series = seriesOf(texture);
-  return std::make_shared<LineForm<RotatedSeries>>(RotatedSeries(series), series.mean);
+  return std::make_shared<LineForm<RotatedLine>>(RotatedLine(series, texture.omega), series.mean);
 }
 
 std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& texture,
                                                         const Errors& errors) {
   if (texture.kind == TextureKind::products) {
     const double share = 1 / static_cast<double>(2 * texture.products.size());
-    return productsForm<SeriesCells>(
+    return productsForm<TabledLine>(
         texture, [&](const FourierSeries& own, const FourierSeries& other) {
           // What this factor is wrong by is multiplied by the other one and by its slope; where
           // that is nothing, it asks for nothing.
@@ -150,20 +171,31 @@ std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& te
             return factor > 0 ? share * error / factor : std::numeric_limits<double>::infinity();
           };
           const double most = amplitudes(other, false), steepest = amplitudes(other, true);
-          return SeriesCells(own, std::min(over(errors.height, most), over(errors.slope, steepest)),
-                             over(errors.slope, most));
+          return TabledLine(
+              SeriesCells(own, std::min(over(errors.height, most), over(errors.slope, steepest)),
+                          over(errors.slope, most)),
+              texture.omega);
         });
   }
   const FourierSeries series = seriesOf(texture);
-  return std::make_shared<LineForm<SeriesCells>>(SeriesCells(series, errors.height, errors.slope),
-                                                 series.mean);
+  return std::make_shared<LineForm<TabledLine>>(
+      TabledLine(SeriesCells(series, errors.height, errors.slope), texture.omega), series.mean);
+}
+
+std::shared_ptr<const TextureEvaluator::Form> planeForm(const FourierTexture& texture,
+                                                        const Errors& errors, double tolerance) {
+  if (tolerance >= PlaneCells::kFinest)
+    if (auto cells = PlaneCells::of(texture.plane, harmonics(texture), texture.omega, errors.height,
+                                    errors.slope))
+      return std::make_shared<TableForm<PlaneCells>>(std::move(*cells));
+  return std::make_shared<TableForm<PlaneWindow>>(
+      PlaneWindow(texture.plane, harmonics(texture), texture.omega, kOfTable * tolerance));
 }
 
 } // namespace
 
 TextureEvaluator::TextureEvaluator(const FourierTexture& texture, double tolerance)
-    : omega_(texture.omega), low_(texture.low),
-      line_(texture.kind != TextureKind::products && texture.kind != TextureKind::plane) {
+    : omega_(texture.omega), low_(texture.low) {
   if (const std::string problem = problemOf(texture); !problem.empty())
     throw Error("texture '" + texture.name + "': " + problem);
   if (!(tolerance >= 0 && tolerance < 1))
@@ -173,14 +205,13 @@ TextureEvaluator::TextureEvaluator(const FourierTexture& texture, double toleran
   if (!(errors.height > 0 && errors.slope > 0)) // all terms wanted, or nothing but zeros there
     form_ = exactForm(texture);
   else if (texture.kind == TextureKind::plane)
-    form_ = std::make_shared<WindowForm>(
-        PlaneWindow(texture.plane, harmonics(texture), kOfTable * tolerance));
+    form_ = planeForm(texture, errors, tolerance);
   else
     form_ = tableForm(texture, errors);
 }
 
 TextureValue TextureEvaluator::at(double x, double y) const noexcept {
-  const PlaneValue value = form_->at(exactPhase(x, omega_), line_ ? 0 : exactPhase(y, omega_));
+  const PlaneValue value = form_->at(x, y);
   return {value.value, omega_ * Vec2(value.slope_x, value.slope_y)};
 }
 
