@@ -53,4 +53,11 @@ std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t produc
                             : who + " is not attached: plug it in, and its power supply too");
 }
 
+std::unique_ptr<UsbTransport> openUsb(std::string_view haptic) {
+  for (const UsbDevice& device : listUsbDevices())
+    if (device.haptic == haptic) return openUsb(device.vendor, device.product);
+  throw DeviceError("no " + std::string(haptic) +
+                    " is attached: plug it in, and its power supply too");
+}
+
 } // namespace patina

@@ -28,9 +28,10 @@ struct UsbDevice {
 // thread; slow.
 std::vector<UsbDevice> listUsbDevices();
 
-// The first device of these numbers that may be opened; nothing of it is claimed yet. Throws
-// DeviceError with what to do where there is none. Any thread; slow.
+// The first device of these numbers, or of this hapticName(), that may be opened; nothing of it is
+// claimed yet. Throws DeviceError with what to do where there is none. Any thread; slow.
 std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product);
+std::unique_ptr<UsbTransport> openUsb(std::string_view haptic);
 
 // The maker or model of a haptic device; empty if vendor and product are none that we know.
 std::string_view hapticName(std::uint16_t vendor, std::uint16_t product);

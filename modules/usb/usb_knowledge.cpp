@@ -14,11 +14,23 @@ struct Known {
 };
 
 // The Falcon answers with the vendor number of its serial chip, so its product counts too.
-constexpr std::array<Known, 3> kKnown{{
+constexpr Known kKnown[] = {
     {0x0403, 0xcb48, "Novint Falcon"},
     {0x1451, 0, "Force Dimension"},
     {0x2988, 0, "3D Systems Touch"},
-}};
+    {0x256f, 0, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc603, "3Dconnexion SpaceMouse"}, // from here on under its first maker's number
+    {0x046d, 0xc605, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc606, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc621, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc623, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc625, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc626, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc627, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc628, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc629, "3Dconnexion SpaceMouse"},
+    {0x046d, 0xc62b, "3Dconnexion SpaceMouse"},
+};
 
 std::string hex4(std::uint16_t value) {
   std::array<char, 8> text{};

@@ -64,7 +64,7 @@ const std::vector<Library>& libraries() {
        {"opencv2/"},
        {{"modules/acquisition/vision/", false}, {"modules/acquisition/video/", false}}},
       {"OpenSSL", {"openssl/"}, {{"modules/core/sha256.cpp", false}}},
-      {"pthread", {"pthread.h"}, {{"modules/haptics/", false}}},
+      {"pthread", {"pthread.h", "semaphore.h"}, {{"modules/haptics/", false}}},
       {"Qt", {"Q", "qt"}, {{"app/gui/", true}}},
       {"VTK", {"vtk"}, {{"modules/visualization/", true}, {"app/", true}}},
       {"X11", {"X11/"}, {{"modules/visualization/", false}}},

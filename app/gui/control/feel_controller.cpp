@@ -29,8 +29,11 @@ void FeelController::place(const Scene& scene, const Vec3& start) {
   const auto target = std::make_shared<TipTarget>(start);
   const DeviceModel model =
       entry.takes_numbers ? scene.device_model.value_or(entry.model) : entry.model;
+  const DeviceSetup setup{.target = target, .model = model};
+  notes_ = entry.linked ? setup.notes : nullptr;
+  look();
   try {
-    servo_.open(openDevice(entry, {.target = target, .model = model}), target, model.rate);
+    servo_.open(openDevice(entry, setup, mountAt(entry, start)), target, model.rate);
   } catch (const DeviceError& error) {
     emit failed(QString::fromUtf8(error.what()));
   }
@@ -42,7 +45,16 @@ void FeelController::close() {
   collect();
 }
 
+void FeelController::look() {
+  if (notes_) notes_->looked_at = clock_->now();
+  const QString held_back = notes_ ? QString::fromStdString(patina::heldBack(*notes_)) : QString();
+  if (held_back == held_back_) return;
+  held_back_ = held_back;
+  if (!held_back.isEmpty()) emit said({held_back, true});
+}
+
 void FeelController::collect() {
+  look();
   const std::vector<ToolSample> samples = servo_.drain();
   recording_.add(samples, servo_.dropped());
   log_.add(samples, servo_.dropped());

@@ -10,6 +10,8 @@
 #include "app/gui/servo/live_plots.h"
 #include "app/gui/servo/recording.h"
 #include "app/gui/servo/stability_job.h"
+#include "haptics/devices/link/device_clock.h"
+#include "haptics/devices/link/link_notes.h"
 #include "haptics/servo/tip_servo.h"
 #include "scene/scene.h"
 
@@ -28,6 +30,10 @@ class FeelController : public QObject {
 
   TipServo& servo() { return servo_; }
   StabilityJob& stability() { return stability_; }
+  // What the device's own thread tells; null for a device that has none. And what of it keeps the
+  // force back, in one line.
+  const LinkNotes* notes() const { return notes_.get(); }
+  const QString& heldBack() const { return held_back_; }
   const ToolSample& sample() const { return sample_; } // the last one
   void open(const Scene& scene, const Vec3& start);
   void place(const Scene& scene, const Vec3& tip); // there, as if it had never been elsewhere
@@ -47,10 +53,14 @@ class FeelController : public QObject {
   void said(const patina::Message& message);
 
  private:
+  void look();          // at the device, which gives no force to one that nobody watches
   bool saveRecording(); // false: not written, the samples are kept
 
   Parts at_;
   TipServo servo_;
+  std::shared_ptr<LinkNotes> notes_;
+  std::shared_ptr<DeviceClock> clock_ = systemClock(); // that the notes are in
+  QString held_back_;
   StabilityJob stability_;
   ToolSample sample_;
   Recording recording_, log_;

@@ -49,13 +49,14 @@ void StatusLine::showPicked(const QString& words) {
   picked_->setText(words);
 }
 
-void StatusLine::showTiming(const ServoTiming& timing, bool running) {
+void StatusLine::showTiming(const ServoTiming& timing, bool running, const QString& held_back) {
   for (QLabel* label : {late_, missed_, policy_}) label->setVisible(running);
   if (!running) {
     rate_->setText(tr("servo rests"));
     return;
   }
-  rate_->setText(timing.device == DeviceStatus::ok
+  rate_->setText(!held_back.isEmpty() ? held_back
+                 : timing.device == DeviceStatus::ok
                      ? tr("%1 Hz").arg(timing.rate_hz, 0, 'f', 0)
                      : tr("no force: the device %1").arg(tr(text(timing.device))));
   late_->setText(tr("p99 late %1 µs").arg(timing.late_p99, 0, 'f', 0));

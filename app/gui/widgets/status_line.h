@@ -14,7 +14,8 @@ class StatusLine : public QObject {
  public:
   explicit StatusLine(QStatusBar* bar);
   void showScene(const CompiledScene* scene); // nullptr: no scene, no stage
-  void showTiming(const ServoTiming& timing, bool running);
+  // held_back: why a device gives no force; empty: it does.
+  void showTiming(const ServoTiming& timing, bool running, const QString& held_back = {});
   void showFault(bool on);               // the force jumped and was faded to zero (F13)
   void showPicked(const QString& words); // what is under the pointer; empty: nothing
 

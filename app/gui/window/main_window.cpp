@@ -175,7 +175,7 @@ void MainWindow::tick() {
   parts_.energy->refresh();
   if (ticks_++ % 10 != 0) return;
   if (!std::exchange(stages_shown_, true)) parts_.status->showScene(edits_.scene().get());
-  parts_.status->showTiming(feel_.servo().timing(), feel_.servo().running());
+  parts_.status->showTiming(feel_.servo().timing(), feel_.servo().running(), feel_.heldBack());
   parts_.status->showFault(feel_.servo().running() && feel_.sample().fault);
 }
 

@@ -10,7 +10,9 @@ namespace patina {
 
 enum class DeviceStatus : std::uint8_t {
   ok,
-  calibrating, // its position means nothing yet: the loop holds, without force, until it does
+  // The loop holds, without force, until its position means something (again).
+  calibrating, // its axes are being homed
+  away,        // unplugged, or it has stopped answering; it is being opened anew
   // What follows is final: the loop ends without force.
   silent,  // no answer for longer than kOldestAge
   garbled, // an answer that is none
@@ -18,6 +20,10 @@ enum class DeviceStatus : std::uint8_t {
 };
 // "answers", "is being calibrated", "has stopped answering" ...: after "the device".
 const char* text(DeviceStatus status) noexcept;
+// Neither ok nor final.
+constexpr bool holds(DeviceStatus status) noexcept {
+  return status == DeviceStatus::calibrating || status == DeviceStatus::away;
+}
 
 // What is older is not felt: the force would be that of another place. [s]
 inline constexpr double kOldestAge = 0.02;

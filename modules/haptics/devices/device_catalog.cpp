@@ -4,13 +4,37 @@
 #include <string>
 
 #include "core/error.h"
+#include "haptics/devices/emulated_devices.h"
+#include "haptics/devices/falcon/falcon_device.h"
 #include "haptics/devices/replayed_hand.h"
 #include "haptics/devices/simulated_hand.h"
+#include "haptics/devices/spacemouse/spacemouse.h"
+#include "usb/usb_bus.h"
 
 namespace patina {
 namespace {
 
 constexpr DeviceLimits kNoForce{.max_force = 0, .max_stiffness = 0};
+constexpr std::string_view kFalcon = "Novint Falcon", kSpaceMouse = "3Dconnexion SpaceMouse";
+
+const DeviceLimits kFalconLimits{.workspace = kFalconWorkspace,
+                                 .max_force = falconGuard().max_force};
+// Of handle and hand together, as they are emulated; the maker states none of them.
+constexpr DeviceModel kFalconModel{.mass = 0.25, .damping = 3, .encoder_step = 4e-5, .delay = 1};
+
+std::unique_ptr<Device> openFalcon(const DeviceSetup& setup) {
+  const LinkedSpec spec{.guard = falconGuard(), .notes = setup.notes};
+  return makeLinkedDevice(
+      makeFalconLink([] { return openUsb(kFalcon); }, falconFirmwareSource(), spec.clock), spec);
+}
+
+std::unique_ptr<Device> openSpaceMouse(const DeviceSetup& setup) {
+  const LinkedSpec spec{.notes = setup.notes};
+  const GlidingTip tip(setup.target);
+  return makeLinkedDevice(makeSpaceMouseLink([] { return openUsb(kSpaceMouse); },
+                                             {.start = tip.position()}, spec.clock),
+                          spec);
+}
 
 // A row a device; the order is the one that a person is shown.
 const DeviceEntry kCatalog[] = {
@@ -28,6 +52,39 @@ const DeviceEntry kCatalog[] = {
      .open =
          [](const DeviceSetup& setup) {
            return makeSimulatedHand(setup.target, HandSpec{.device = setup.model});
+         }},
+    {.name = "falcon",
+     .caption = "Novint Falcon",
+     .note = "three motors on a delta robot; its firmware is a file of its maker's, named by "
+             "PATINA_FALCON_FIRMWARE",
+     .usb = kFalcon,
+     .linked = true,
+     .model = kFalconModel,
+     .limits = kFalconLimits,
+     .open = &openFalcon},
+    {.name = "spacemouse",
+     .caption = "SpaceMouse",
+     .note = "seen, not felt: the tip moves as fast as the cap is pushed",
+     .usb = kSpaceMouse,
+     .linked = true,
+     .limits = kNoForce,
+     .open = &openSpaceMouse},
+    {.name = "sim:falcon",
+     .caption = "Emulated Falcon",
+     .note = "the Falcon's driver over an emulated wire, its handle led by the pointer",
+     .linked = true,
+     .model = kFalconModel,
+     .limits = kFalconLimits,
+     .open =
+         [](const DeviceSetup& setup) { return makeEmulatedFalcon(setup.target, setup.notes); }},
+    {.name = "sim:spacemouse",
+     .caption = "Emulated SpaceMouse",
+     .note = "the SpaceMouse's driver over an emulated wire, its cap led by the pointer",
+     .linked = true,
+     .limits = kNoForce,
+     .open =
+         [](const DeviceSetup& setup) {
+           return makeEmulatedSpaceMouse(setup.target, setup.notes);
          }},
     {.name = "replay",
      .caption = "Replayed hand",
@@ -51,6 +108,12 @@ const DeviceEntry& deviceNamed(std::string_view name) {
     known += (known.empty() ? "" : " or ") + std::string(entry.name);
   }
   throw Error("device = " + std::string(name) + ": it must be " + known);
+}
+
+MountSpec mountAt(const DeviceEntry& entry, const Vec3& place) {
+  MountSpec mount;
+  if (entry.limits.workspace) mount.world_from_device.translation() = place;
+  return mount;
 }
 
 std::unique_ptr<Device> openDevice(const DeviceEntry& entry, const DeviceSetup& setup,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptics/devices/device_mount.h"
+#include "haptics/devices/link/link_notes.h"
 #include "haptics/devices/tip_target.h"
 #include "haptics/servo/feel.h"
 #include "scene/device_model.h"
@@ -26,6 +27,8 @@ struct DeviceSetup {
   std::shared_ptr<const TipTarget> target{}; // of what a pointer moves
   DeviceModel model{};                       // of what is simulated
   std::vector<TimedTip> path{};              // of what is replayed
+  // What a device with a thread of its own tells of itself.
+  std::shared_ptr<LinkNotes> notes = std::make_shared<LinkNotes>();
 };
 
 struct DeviceEntry {
@@ -35,6 +38,7 @@ struct DeviceEntry {
   // Makers' name of it on the bus (usb_bus.h); empty: built in.
   std::string_view usb{};
   bool in_scenes = true;      // false: it needs more than a scene holds
+  bool linked = false;        // has a thread of its own, and tells DeviceSetup::notes
   bool takes_numbers = false; // the scene's device.* are its own, and it is opened anew with them
   double hand_compliance = 0; // [m/N], of a simulated hand that holds it
   DeviceModel model{};        // where a scene has no numbers
@@ -45,6 +49,9 @@ struct DeviceEntry {
 std::span<const DeviceEntry> deviceCatalog();
 // Of those that a scene may name. Throws Error that lists them.
 const DeviceEntry& deviceNamed(std::string_view name);
+
+// Where the middle of the device's own workspace, if it has one, lies in the world.
+MountSpec mountAt(const DeviceEntry& entry, const Vec3& place);
 
 // Mounted, its force held to what the device renders. Throws DeviceError, and
 // std::invalid_argument where the setup lacks what the device takes.

@@ -24,6 +24,11 @@ class CrossFade {
   void turnTo(const HapticSnapshot* next) noexcept;
   // As tick() of snapshot.h. The record is the new law's, its force the mixture.
   Contact tick(const Vec3& tip, double dt) noexcept;
+  // Nobody has followed the tip: the next tick is as the first, under whichever law.
+  void lose() noexcept {
+    memory_.reset();
+    next_memory_.reset();
+  }
   // The field that the record of the last tick speaks of; null where nothing is felt.
   const SurfaceField* field() const noexcept {
     const HapticSnapshot* law = fading_ ? next_ : felt_;

@@ -49,7 +49,8 @@ struct ServoLoop::Impl {
       device_status.store(status, std::memory_order_relaxed);
       if (status != DeviceStatus::ok) {
         force.setZero();
-        if (status != DeviceStatus::calibrating) break;
+        if (!holds(status)) break;
+        law.lose(); // it may be anywhere when it is felt again
         continue;
       }
       if (!law.fading()) {

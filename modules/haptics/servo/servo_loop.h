@@ -20,7 +20,7 @@ struct ServoTiming {
   std::uint64_t missed = 0; // deadlines that passed by more than a period
   double late_p99 = 0;      // [us], exact, of the last 8192 ticks at least
   double rate_hz = 0;
-  // Calibrating: the loop holds, without force. Any failure: it has ended, without force.
+  // Calibrating or away: the loop holds, without force. Any failure: it has ended, without force.
   DeviceStatus device = DeviceStatus::ok;
 };
 

@@ -1,0 +1,273 @@
+// Everything that can go wrong between servo and motors, free, in contact and in a stroke: the
+// force at the wire, in simulated time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "haptics/contact/plane.h"
+#include "haptics/falcon_support.h"
+#include "haptics/servo/cross_fade.h"
+#include "support/longer.h"
+
+namespace patina::test {
+namespace {
+
+constexpr double kTick = 1e-3;
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+enum class Situation { free, contact, stroke };
+const char* name(Situation situation) {
+  return situation == Situation::free      ? "free"
+         : situation == Situation::contact ? "contact"
+                                           : "stroke";
+}
+
+// The servo's loop, as ServoLoop has it, on the plane z = 0 and an emulated Falcon.
+class FeltFalcon {
+ public:
+  explicit FeltFalcon(Situation situation, const FalconBenchSpec& spec = bench())
+      : rig(spec), situation_(situation), snapshot_(plane()) {
+    law_.turnTo(snapshot_.get());
+  }
+  static FalconBenchSpec bench() {
+    return {.body = {.mass = 0.25, .damping = 12, .spring = 300, .friction = 0}};
+  }
+
+  static std::shared_ptr<const HapticSnapshot> plane() {
+    HapticProperties haptics;
+    haptics.stiffness = 600;
+    return planeSnapshot(haptics, {});
+  }
+
+  struct Broken {
+    bool servo = false, window = false;
+    std::optional<Vec3> command{};
+  } broken;
+
+  void tick() {
+    const double t = rig.clock->now();
+    const double depth = situation_ == Situation::free ? 0.01 : -0.012;
+    const double along = situation_ == Situation::stroke ? 0.02 * std::sin(2 * t) : 0;
+    rig.bench.rest = Vec3(along, 0, depth);
+    if (!broken.window) rig.notes->looked_at = t;
+    const DeviceState& state = rig.tick(broken.command.value_or(force_), !broken.servo);
+    if (broken.servo) return;
+    status = judge(state);
+    if (status != DeviceStatus::ok) {
+      EXPECT_TRUE(holds(status)) << text(status);
+      force_.setZero();
+      return law_.lose();
+    }
+    const Contact contact = law_.tick(state.position, kTick);
+    force_ = contact.force;
+    ++felt;
+    // What is felt was measured just now, or says how long ago.
+    EXPECT_LT((state.position - rig.bench.handle()).norm(), 1e-3 + 0.5 * (state.age + 2e-3));
+  }
+  void run(double seconds) {
+    for (const double until = rig.clock->now() + seconds; rig.clock->now() < until;) tick();
+  }
+  bool runUntilFelt(double seconds) {
+    for (const double until = rig.clock->now() + seconds; rig.clock->now() < until;) {
+      tick();
+      if (rig.notes->gain >= 1) return true;
+    }
+    return false;
+  }
+
+  FalconRig rig;
+  DeviceStatus status = DeviceStatus::away;
+  std::uint64_t felt = 0; // ticks
+
+ private:
+  Situation situation_;
+  std::shared_ptr<const HapticSnapshot> snapshot_;
+  CrossFade law_;
+  Vec3 force_ = Vec3::Zero();
+};
+
+struct Fault {
+  const char* name;
+  std::function<void(FeltFalcon&)> begin;
+  std::function<void(FeltFalcon&)> end;
+  double visible = 0; // [s] after the tick in which it begins, at the latest
+  double lasts = 0.05;
+  bool resumes = true;
+  bool passes = true; // frames still get through while it lasts
+};
+
+Fault ofAnswers(const char* name, WireFault kind, double visible, int frames = 1) {
+  return {name,
+          [=](FeltFalcon& f) {
+            f.rig.bench.faults = {kind, frames};
+          },
+          [](FeltFalcon&) {}, visible};
+}
+
+std::vector<Fault> faults() {
+  constexpr double kWire = 0.3e-3, kOverdue = 2.3e-3; // an answer; one that does not come
+  const auto nothing = [](FeltFalcon&) {};
+  std::vector<Fault> list{
+      ofAnswers("STALL", WireFault::stall, kWire),
+      ofAnswers("lost", WireFault::mute, kOverdue),
+      ofAnswers("short", WireFault::shortened, kOverdue),
+      ofAnswers("corrupt", WireFault::corrupt, kWire),
+      ofAnswers("a bit flipped", WireFault::flipped, kWire),
+      ofAnswers("late", WireFault::late, kOverdue),
+      ofAnswers("repeated", WireFault::repeated, kWire),
+      ofAnswers("of the frame before", WireFault::stale, kWire),
+      ofAnswers("out of order", WireFault::out_of_order, kOverdue),
+      ofAnswers("noise", WireFault::noise, kOverdue),
+      ofAnswers("homing lost", WireFault::homing_lost, kWire),
+      ofAnswers("12 lost", WireFault::mute, kOverdue, 12),
+      ofAnswers("12 of noise", WireFault::noise, kOverdue, 12),
+      ofAnswers("12 stalls", WireFault::stall, kWire, 12),
+  };
+  list.back().passes = false;
+  list.push_back({"unplugged", [](FeltFalcon& f) { f.rig.bench.unplug(); },
+                  [](FeltFalcon& f) { f.rig.bench.attach(); }, 0, 0.3});
+  list.push_back({"servo stops", [](FeltFalcon& f) { f.broken.servo = true; },
+                  [](FeltFalcon& f) { f.broken.servo = false; }, 3e-3});
+  list.push_back({"window hangs", [](FeltFalcon& f) { f.broken.window = true; },
+                  [](FeltFalcon& f) { f.broken.window = false; }, 0.5, 10});
+  list.push_back({"NaN asked for", [](FeltFalcon& f) { f.broken.command = Vec3(0, kNan, 0); },
+                  [](FeltFalcon& f) { f.broken.command.reset(); }});
+  list.push_back({"infinity asked for",
+                  [](FeltFalcon& f) { f.broken.command = Vec3(HUGE_VAL, 0, 0); },
+                  [](FeltFalcon& f) { f.broken.command.reset(); }});
+  list.push_back({"firmware lost and refused", [](FeltFalcon& f) { f.rig.bench.loseFirmware(); },
+                  nothing, kOverdue, 3, false});
+  return list;
+}
+
+// The wire from the moment when the fault can be seen: no force 5 ms later, until it is over.
+TEST(DeviceFaults, EachTakesTheForceFromTheWireWithinFiveMillisecondsAndItComesBackByTheRamp) {
+  double worst = 0;
+  const std::vector<Fault> all = faults();
+  EXPECT_GE(all.size(), 15U);
+  for (const Fault& fault : all)
+    for (const Situation situation : {Situation::free, Situation::contact, Situation::stroke}) {
+      SCOPED_TRACE(std::string(fault.name) + ", " + name(situation));
+      FeltFalcon f(situation);
+      ASSERT_TRUE(f.runUntilFelt(1));
+      f.run(0.7);
+      const bool pushes = situation != Situation::free;
+      ASSERT_EQ(f.rig.sent.back().force(), pushes);
+      const std::uint64_t felt_before = f.felt;
+      const std::uint64_t faults_before = f.rig.notes->faults;
+
+      const std::size_t from = f.rig.sent.size();
+      fault.begin(f);
+      f.tick(); // it may be seen from the end of this tick's frame on
+      const double seen = f.rig.sent.size() > from ? f.rig.sent[from].t : f.rig.clock->now();
+      const double visible = seen + fault.visible;
+      bool shown = false;
+      for (const double until = f.rig.clock->now() + fault.lasts; f.rig.clock->now() < until;) {
+        f.tick();
+        if (f.rig.clock->now() < visible + 0.1)
+          shown = shown || f.rig.notes->hold != Hold::none || f.rig.notes->gain < 1 ||
+                  f.rig.notes->status != DeviceStatus::ok;
+      }
+      EXPECT_TRUE(shown) << "nobody is told";
+      fault.end(f);
+      const double ended = f.rig.clock->now();
+
+      double last_force = -1, first_none = -1;
+      std::size_t i = from;
+      for (; i < f.rig.sent.size() && first_none < 0; ++i) {
+        if (f.rig.sent[i].force())
+          last_force = f.rig.sent[i].t;
+        else if (f.rig.sent[i].t > seen || !pushes || fault.visible == 0)
+          first_none = f.rig.sent[i].t;
+      }
+      if (pushes && last_force > 0) {
+        worst = std::max(worst, last_force - visible);
+        EXPECT_LE(last_force, visible + 5e-3);
+      }
+      if (first_none > 0 && fault.passes) {
+        EXPECT_LE(first_none, visible + 5e-3);
+      }
+
+      if (!fault.resumes) {
+        EXPECT_NE(f.rig.notes->cause(), "");
+        for (; i < f.rig.sent.size(); ++i) ASSERT_FALSE(f.rig.sent[i].force());
+        continue;
+      }
+      ASSERT_TRUE(f.runUntilFelt(2.3)) << f.rig.notes->cause();
+      EXPECT_LE(f.rig.clock->now() - ended, 2.25);
+      // From the last frame without force to all of it takes the ramp.
+      EXPECT_GE(f.rig.clock->now() - first_none, 0.25);
+      f.run(0.3);
+      EXPECT_EQ(f.rig.sent.back().force(), pushes);
+      EXPECT_GT(f.felt, felt_before + 200); // the stroke goes on
+      EXPECT_GE(f.rig.notes->faults.load(), faults_before);
+    }
+  std::printf("%zu faults in 3 situations: at most %.2f ms of force after it can be seen\n",
+              all.size(), 1e3 * std::max(worst, 0.0));
+}
+
+TEST(DeviceFaults, WhatEditsHangDoesNotReachTheHand) {
+  // The servo holds what it was given last; nobody publishes for ten seconds.
+  FeltFalcon f(Situation::contact);
+  ASSERT_TRUE(f.runUntilFelt(1));
+  f.run(0.5);
+  const std::uint64_t before = f.felt;
+  const std::size_t from = f.rig.sent.size();
+  f.run(10);
+  EXPECT_GE(f.felt - before, 9990U);
+  for (std::size_t i = from; i < f.rig.sent.size(); ++i) ASSERT_TRUE(f.rig.sent[i].force());
+}
+
+TEST(DeviceFaults, AHundredUnpluggingsAreEachOverWithinTwoSecondsByTheRamp) {
+  FeltFalcon f(Situation::contact);
+  ASSERT_TRUE(f.runUntilFelt(1));
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> away(0.01, 1.5);
+  double longest = 0, shortest_ramp = 1;
+  for (int time = 0; time < 100; ++time) {
+    f.run(0.05);
+    f.rig.bench.unplug();
+    f.run(away(random));
+    ASSERT_NE(f.status, DeviceStatus::ok);
+    const std::size_t from = f.rig.sent.size();
+    const double plugged = f.rig.clock->now();
+    f.rig.bench.attach();
+    ASSERT_TRUE(f.runUntilFelt(3)) << time;
+    const double whole = f.rig.clock->now();
+    const auto first = std::find_if(f.rig.sent.begin() + static_cast<std::ptrdiff_t>(from),
+                                    f.rig.sent.end(), [](const SentFrame& s) { return s.force(); });
+    ASSERT_NE(first, f.rig.sent.end());
+    longest = std::max(longest, first->t - plugged);
+    shortest_ramp = std::min(shortest_ramp, whole - first->t);
+  }
+  EXPECT_LE(longest, 2);
+  EXPECT_GE(shortest_ramp, 0.249); // 250 turns, the first of which sends a force already
+  EXPECT_EQ(f.rig.notes->openings, 101U);
+  std::printf("resumed in %.2f s at most, ramp %.3f s at least\n", longest, shortest_ramp);
+}
+
+// An answer too many while nobody listens: found out, never taken for the newest for long.
+TEST(DeviceFaults, TwentySecondsOfOneFaultInAHundredFramesNeverFeelAnOldPlace) {
+  FeltFalcon f(Situation::stroke);
+  ASSERT_TRUE(f.runUntilFelt(1));
+  std::mt19937 random(12);
+  const long ticks = longer(20000);
+  constexpr WireFault kKinds[] = {WireFault::mute,    WireFault::shortened,   WireFault::corrupt,
+                                  WireFault::flipped, WireFault::late,        WireFault::repeated,
+                                  WireFault::stale,   WireFault::out_of_order};
+  std::uint64_t injected = 0;
+  for (long i = 0; i < ticks; ++i) {
+    if (random() % 100 == 0) {
+      f.rig.bench.faults = {kKinds[random() % std::size(kKinds)], 1};
+      ++injected;
+    }
+    f.tick(); // which holds each place against the handle's
+  }
+  EXPECT_GE(f.rig.notes->faults.load(), injected);
+  EXPECT_EQ(f.rig.notes->openings, 1U) << "a frame that is lost is no reason to begin anew";
+}
+
+} // namespace
+} // namespace patina::test
