@@ -51,8 +51,8 @@ void SceneView::Impl::choosePaint() {
 
 // The mesh is kept by whoever makes it: the view may have another one before it is done.
 void SceneView::Impl::makeCoarse() {
-  constexpr std::size_t kMany = 50'000;
-  constexpr int kCells = 80; // some 40,000 triangles
+  constexpr std::size_t kMany = 20'000;
+  constexpr int kCells = 48; // some 14,000 triangles
   if (mesh && mesh->triangles.size() > kMany && !coarse_made.valid() && !has_coarse)
     coarse_made = std::async(std::launch::async,
                              [shown = mesh] { return surfaceData(coarsened(*shown, kCells)); });
