@@ -5,6 +5,9 @@
 
 #include <sys/wait.h>
 
+#ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/aligning/align_desk.h"
+#endif
 #include "app/gui/control/desk_controller.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
@@ -68,6 +71,17 @@ class Fit : public DrivenWindow {
                                           "open in another program: edits are not kept in it"),
                            true});
     feel().toggleRecording();
+#ifdef PATINA_HAS_ACQUISITION
+    std::vector<PathSample> path(300);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const double angle = 0.1 * static_cast<double>(i);
+      path[i].t = angle;
+      path[i].position = Vec3(0.02 * std::cos(angle), 0.02 * std::sin(angle), 2e-5 * angle);
+    }
+    window_->findChild<AlignDesk*>()->setPath(
+        QStringLiteral("a_path_of_a_long_and_winding_name.csv"), path);
+    find<QPushButton>("align_pick")->click();
+#endif
     wait(400);
   }
   void checkAll(const std::string& size) {
@@ -81,7 +95,8 @@ class Fit : public DrivenWindow {
         auto* button = find<QToolButton>(QStringLiteral("tab_") + tab.name);
         if (!button->isVisible()) continue;
         if (desks.tab() != tab.tab) button->click();
-        for (const Panel page : {Panel::forces, Panel::energy, Panel::history, Panel::messages}) {
+        for (const Panel page :
+             {Panel::forces, Panel::energy, Panel::history, Panel::messages, Panel::basin}) {
           if (tab.tab != first && page != Panel::energy) continue;
           desks.open(page);
           wait(60);

@@ -3,8 +3,8 @@
 
 #include "acquisition/files/registered_file.h"
 #include "acquisition/files/scan_files.h"
-#include "acquisition/filtering/contact.h"
 #include "acquisition/registration/closest_point_loop.h"
+#include "acquisition/registration/first_guess.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/pose_file.h"
 #include "app/cli/output/reports.h"
@@ -90,27 +90,10 @@ Method parseMethod(const std::string& word) {
   throw Error("'" + word + "' is none of distance, loop, literal");
 }
 
-// Where no sample tells a force, all are taken to touch.
-std::vector<PathSample> inContact(std::vector<PathSample> path) {
-  const bool told = std::any_of(path.begin(), path.end(),
-                                [](const PathSample& sample) { return sample.force != 0; });
-  if (!told) return path;
-  markContact(path);
-  std::erase_if(path, [](const PathSample& sample) { return !sample.touching; });
-  return path;
-}
-
 double medianSigma(const std::vector<PathSample>& path) {
   std::vector<double> sigmas;
   for (const PathSample& sample : path) sigmas.push_back(sample.sigma);
   return percentiles(sigmas).p50;
-}
-
-// The path's middle onto the mesh's: what is known of a path where nothing is.
-Pose middleOnMiddle(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
-  Pose pose = Pose::Identity();
-  pose.translation() = bounds(mesh).center() - scaleOf(points, Pose::Identity()).centre;
-  return pose;
 }
 
 Registration byLoop(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,

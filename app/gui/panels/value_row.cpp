@@ -78,6 +78,11 @@ void ValueRow::setValue(double value) {
   slider_->setValue(toSlider(value));
 }
 
+void ValueRow::setReach(double reach) {
+  range_.low = -reach;
+  range_.high = reach;
+}
+
 void ValueRow::setRemovable(const QString& tip) {
   cross_->setToolTip(tip);
   cross_->setVisible(true);

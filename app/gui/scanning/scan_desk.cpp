@@ -68,6 +68,9 @@ void ScanDesk::connectScan() {
   connect(&scan_, &OpenScan::pathMade, this, [this] {
     drawPath();
     drawProbe();
+    const ScanPath* path = scan_.path();
+    if (path != nullptr && !scan_.grows() && !path->path.empty())
+      emit pathMade(scan_.name(), path->path);
     emit changed();
   });
   connect(&scan_, &OpenScan::cursorMoved, this, &ScanDesk::drawProbe);

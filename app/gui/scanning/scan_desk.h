@@ -43,6 +43,7 @@ class ScanDesk : public QObject {
   void refresh(); // of every tick of the window
 
  signals:
+  void pathMade(const QString& name, const std::vector<patina::PathSample>& path);
   void opened(); // a person has asked for it, and there it is
   void changed();
   void said(const patina::Message& message);

@@ -117,6 +117,7 @@ ScanFilter filterFor(const ScanFiles& files) {
 } // namespace
 
 QString lengthWords(double metres) {
+  if (metres < 0.5e-9) return QStringLiteral("0 mm"); // rounding, no length
   return QString::fromStdString(formatLength(metres)).replace(" um", " µm");
 }
 

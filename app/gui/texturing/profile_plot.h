@@ -2,10 +2,9 @@
 // what is felt of it beside the truth.
 #pragma once
 
-#include <functional>
-
 #include <QWidget>
 
+#include "app/gui/widgets/graph.h"
 #include "pipeline/demo.h"
 
 namespace patina {
@@ -21,18 +20,6 @@ class ProfilePlot : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  struct Curve {
-    QString name;
-    const char* ink;
-    QPolygonF points;
-  };
-  struct Graph {
-    QString x_unit, y_unit;
-    bool bars = false, logarithmic = false;
-    std::vector<Curve> curves;
-  };
-  void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) const;
-
   std::vector<Graph> graphs_;
 };
 

@@ -65,6 +65,18 @@ void drawWave(QPainter& p) {
   p.drawPath(wave);
 }
 
+// A curve that comes down onto a surface.
+void drawAlign(QPainter& p) {
+  QPainterPath ground(QPointF(2, 17));
+  ground.cubicTo(6, 10, 13, 10, 18, 17);
+  p.drawPath(ground);
+  QPainterPath path(QPointF(3, 8));
+  path.cubicTo(7, 1, 13, 1, 17, 8);
+  p.setPen(QPen(ink("accent"), 1.6));
+  p.drawPath(path);
+  p.drawPolyline(QPolygonF() << QPointF(8, 7.5) << QPointF(10, 10) << QPointF(12, 7.5));
+}
+
 } // namespace
 
 QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
@@ -85,7 +97,7 @@ QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
 
 QIcon iconOf(Tab tab) {
   constexpr void (*kDraw[])(QPainter&) = {drawTool, drawSurface, drawObject, drawDevice,
-                                          drawEye,  drawScan,    drawWave};
+                                          drawEye,  drawScan,    drawWave,   drawAlign};
   return drawnIcon(kDraw[static_cast<std::size_t>(tab)]);
 }
 

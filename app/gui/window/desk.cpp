@@ -25,6 +25,17 @@ std::vector<DeskRow> makeDesks() {
                   P::timeline,
                   true,
                   270});
+  rows.push_back({Desk::align,
+                  "align",
+                  tr("Align"),
+                  tr("Lay a scan's path onto the mesh by hand, and fit it from there"),
+                  Qt::Key_8,
+                  {P::align, P::basin, P::messages},
+                  {Handling::navigate, {}},
+                  Tab::align,
+                  P::basin,
+                  true,
+                  190});
   rows.push_back({Desk::texture,
                   "texture",
                   tr("Texture"),
@@ -96,13 +107,15 @@ std::optional<Tab> tabOf(Panel panel) {
     return Tab::scan;
   case Panel::steps:
     return Tab::steps;
+  case Panel::align:
+    return Tab::align;
   default:
     return std::nullopt;
   }
 }
 
 bool inDrawer(Panel panel) {
-  return panel >= Panel::forces && panel <= Panel::profile;
+  return panel >= Panel::forces && panel <= Panel::basin;
 }
 
 const std::vector<DeskRow>& deskRows() {
@@ -123,6 +136,7 @@ const DeskRow& rowOf(Desk desk) {
 const std::vector<TabRow>& tabRows() {
   static const std::vector<TabRow> kRows = {
       {Tab::scan, "scan", tr("Scan"), tr("What was recorded, and what it came to")},
+      {Tab::align, "align", tr("Place"), tr("Where the path lies, and how far off")},
       {Tab::steps, "steps", tr("Steps"), tr("From a scan to a feel, step by step")},
       {Tab::tool, "tool", tr("Tool"), tr("What the tool in hand does, and its brush")},
       {Tab::surface, "surface", tr("Surface"), tr("How the surface feels")},
@@ -133,7 +147,7 @@ const std::vector<TabRow>& tabRows() {
 }
 
 bool hasTool(Desk desk, const ToolChoice& tool) {
-  if (desk == Desk::scan || desk == Desk::texture) return tool.handling == Handling::navigate;
+  if (desk >= Desk::scan) return tool.handling == Handling::navigate;
   const bool paints = tool.handling == Handling::paint || tool.handling == Handling::pick;
   return desk == Desk::paint || !paints;
 }

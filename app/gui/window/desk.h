@@ -11,7 +11,7 @@
 
 namespace patina {
 
-enum class Desk { feel, paint, analyse, scan, texture };
+enum class Desk { feel, paint, analyse, scan, texture, align };
 
 enum class Panel {
   recovery, // in the line below the picture
@@ -31,13 +31,15 @@ enum class Panel {
   timeline,
   findings,
   profile,
+  basin,
   scan, // cards again
   recorder,
-  steps
+  steps,
+  align
 };
 
 // The cards of the column, a few at a time.
-enum class Tab { tool, surface, object, device, show, scan, steps };
+enum class Tab { tool, surface, object, device, show, scan, steps, align };
 std::optional<Tab> tabOf(Panel panel); // nullopt: no card
 bool inDrawer(Panel panel);
 

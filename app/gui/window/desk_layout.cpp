@@ -29,7 +29,7 @@ DeskLayout rememberedLayout(Desk desk) {
     value = read(keyOf(desk, what), value, low, high);
   };
   take("tab", layout.tab, 0, static_cast<int>(tabRows().size()) - 1);
-  take("page", layout.page, static_cast<int>(Panel::forces), static_cast<int>(Panel::profile));
+  take("page", layout.page, static_cast<int>(Panel::forces), static_cast<int>(Panel::basin));
   take("column", layout.column, 300, 480);
   take("drawer", layout.drawer, 60, 4000);
   take("column_folded", layout.column_folded, 0, 1);
@@ -53,7 +53,7 @@ WindowPlace rememberedPlace() {
   if (size.isValid()) place.size = size.expandedTo({640, 480});
   place.maximized = QSettings().value(QStringLiteral("window/maximized")).toBool();
   const Desk desk =
-      read(QStringLiteral("window/desk"), place.desk, 0, static_cast<int>(Desk::texture));
+      read(QStringLiteral("window/desk"), place.desk, 0, static_cast<int>(Desk::align));
   if (isBuilt(desk)) place.desk = desk;
   return place;
 }

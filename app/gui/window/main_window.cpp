@@ -8,6 +8,7 @@
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/window/window_menus.h"
 #ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #endif
@@ -126,6 +127,11 @@ void MainWindow::connectScan() {
   connect(parts_.texture, &TextureDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.texture, &TextureDesk::cancel);
   connect(&timer_, &QTimer::timeout, parts_.texture, &TextureDesk::refresh);
+  connect(parts_.scan, &ScanDesk::pathMade, parts_.align, &AlignDesk::setPath);
+  connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
+  connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
+  connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);
+  connect(&timer_, &QTimer::timeout, parts_.align, &AlignDesk::refresh);
 }
 #endif
 
@@ -152,6 +158,13 @@ WindowState MainWindow::state() const {
   if (!state.work) state.work = parts_.scan->work();
   state.texture = parts_.texture->hasTexture();
   if (!state.work) state.work = parts_.texture->work();
+  if (!state.work) state.work = parts_.align->work();
+  const Alignment& aligned = parts_.align->alignment();
+  state.path = aligned.isReady();
+  if (state.desk == Desk::align) {
+    state.undoable = aligned.done();
+    state.redoable = aligned.undone();
+  }
 #endif
   return state;
 }
@@ -208,6 +221,7 @@ void MainWindow::showScene(const SceneChange& change) {
   view_.showScene(change);
 #ifdef PATINA_HAS_ACQUISITION
   parts_.scan->setSceneMesh(change.scene->mesh);
+  if (change.surface) parts_.align->setSceneMesh(change.scene->mesh);
 #endif
   if (change.device) {
     const Vec3 start = edited ? feel_.sample().tip : parts_.view->restingPlace();

@@ -10,6 +10,7 @@
 #include "app/gui/widgets/value_focus.h"
 #include "app/gui/window/theme.h"
 #ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #endif
@@ -28,6 +29,7 @@ std::vector<Page> pages() {
   return {{Panel::timeline, "page_timeline", tr("Timeline"), tr("Frames, force and acceleration")},
           {Panel::findings, "page_findings", tr("Findings"), tr("What is missing, and why")},
           {Panel::profile, "page_profile", tr("Profile"), tr("Heights, harmonics and forces")},
+          {Panel::basin, "page_basin", tr("Error"), tr("How the error grows about this place")},
           {Panel::forces, "page_forces", tr("Forces"), tr("Force on the hand, the last 5 s")},
           {Panel::energy, "page_energy", tr("Energy"), tr("Energy taken by the surface")},
           {Panel::history, "page_history", tr("History"), tr("Every edit; a click goes there")},
@@ -40,8 +42,8 @@ FoldingTabs* makeColumn(const WindowParts& parts) {
   stack->setContentsMargins(8, 0, 4, 8);
   stack->setSpacing(4);
   for (const Panel card :
-       {Panel::scan, Panel::recorder, Panel::steps, Panel::tool, Panel::brush, Panel::relief,
-        Panel::touch, Panel::display, Panel::device, Panel::objects, Panel::mesh})
+       {Panel::scan, Panel::recorder, Panel::align, Panel::steps, Panel::tool, Panel::brush,
+        Panel::relief, Panel::touch, Panel::display, Panel::device, Panel::objects, Panel::mesh})
     if (parts.panels.contains(card)) stack->addWidget(parts.panels.at(card));
   stack->addStretch(1);
   parts.display->layout()->addWidget(parts.paint);
@@ -110,6 +112,9 @@ WindowParts layOut(QMainWindow& window) {
   parts.cells->addWidget(parts.texture->cells());
   parts.panels.insert(
       {{Panel::steps, parts.texture->steps()}, {Panel::profile, parts.texture->profile()}});
+  parts.align = new AlignDesk(window);
+  parts.cells->addWidget(parts.align->cells());
+  parts.panels.insert({{Panel::align, parts.align->panel()}, {Panel::basin, parts.align->basin()}});
 #endif
   parts.column = makeColumn(parts);
   parts.drawer = makeDrawer(parts);
@@ -147,9 +152,9 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
     if (parts.panels.contains(page.panel))
       parts.drawer->setThere(static_cast<int>(page.panel),
                              std::find(there.begin(), there.end(), page.panel) != there.end());
-  const bool scans = state.desk == Desk::scan, textures = state.desk == Desk::texture;
-  parts.cells->setCurrentIndex(scans ? 1 : textures ? 2 : 0);
-  parts.tools->setVisible(!scans && !textures);
+  const int other = static_cast<int>(state.desk) - static_cast<int>(Desk::scan); // desks in a row
+  parts.cells->setCurrentIndex(std::max(0, other + 1));
+  parts.tools->setVisible(other < 0);
   parts.column->setInFront(static_cast<int>(tabInFront(state)));
   parts.drawer->setInFront(static_cast<int>(pageInFront(state)));
   for (const auto& [command, action] : parts.commands)

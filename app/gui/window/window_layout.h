@@ -35,6 +35,7 @@ namespace patina {
 
 class ScanDesk;
 class TextureDesk;
+class AlignDesk;
 
 // All belong to the window that they are laid out in.
 struct WindowParts {
@@ -42,6 +43,7 @@ struct WindowParts {
   QStackedWidget* cells = nullptr; // the view, and what other desks have in its place
   ScanDesk* scan = nullptr;        // where they are built
   TextureDesk* texture = nullptr;
+  AlignDesk* align = nullptr;
   LoadBar* load_bar = new LoadBar;
   RecoverBar* recover = new RecoverBar;
   NoticeLine* notice = new NoticeLine;

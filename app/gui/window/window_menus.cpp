@@ -15,6 +15,7 @@
 #include "app/gui/window/theme.h"
 #include "visualization/view/camera.h"
 #ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #endif
@@ -40,7 +41,8 @@ QString shortcutsText() {
       "<tr><td><b>M T S I W N B E K</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
       "band, field extent, stability</td></tr>"
       "<tr><td><b>V P H D G X</b></td><td>feel, paint, relief, stiffness, friction, erase</td></tr>"
-      "<tr><td><b>Ctrl + 0, 1, 2, 3</b></td><td>the desks Scan, Feel, Paint, Analyse</td></tr>"
+      "<tr><td><b>Ctrl + 0, 8, 9, 1, 2, 3</b></td><td>the desks Scan, Align, Texture, Feel, Paint, "
+      "Analyse</td></tr>"
       "<tr><td><b>← →, Page up, down</b></td><td>one frame of a scan back or on, ten</td></tr>"
       "<tr><td><b>F8, F9</b></td><td>fold the column, the drawer</td></tr>"
       "<tr><td><b>[ ]</b></td><td>brush smaller, larger; with Shift its fall-off</td></tr>"
@@ -117,9 +119,25 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
 void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
   QMenu* edit = window.menuBar()->addMenu(tr("&Edit"));
   EditController* edits = &at.edits;
+  // Each desk's own history: on Align that of the path's place.
+  const auto there = [desks = &at.desks, align = parts.align] {
+    return desks->desk() == Desk::align ? align : nullptr;
+  };
   QAction* undo = edit->addAction(
-      tr("&Undo"), edits, [=] { edits->thread().undo(); }, QKeySequence::Undo);
-  QAction* redo = edit->addAction(tr("&Redo"), edits, [=] { edits->thread().redo(); });
+      tr("&Undo"), edits,
+      [=] {
+#ifdef PATINA_HAS_ACQUISITION
+        if (AlignDesk* align = there()) return align->undo();
+#endif
+        edits->thread().undo();
+      },
+      QKeySequence::Undo);
+  QAction* redo = edit->addAction(tr("&Redo"), edits, [=] {
+#ifdef PATINA_HAS_ACQUISITION
+    if (AlignDesk* align = there()) return align->redo();
+#endif
+    edits->thread().redo();
+  });
   redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
   parts.commands[Command::undo] = undo;
   parts.commands[Command::redo] = redo;
@@ -173,6 +191,7 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
 #ifdef PATINA_HAS_ACQUISITION
   QObject::connect(menu->actions().back(), &QAction::triggered, parts.scan, &ScanDesk::fit);
   QObject::connect(menu->actions().back(), &QAction::triggered, parts.texture, &TextureDesk::fit);
+  QObject::connect(menu->actions().back(), &QAction::triggered, parts.align, &AlignDesk::fit);
 #endif
   QMenu* camera = menu->addMenu(tr("&Camera"));
   int digit = Qt::Key_1;

@@ -25,12 +25,15 @@ bool isThere(Panel panel, const WindowState& state) {
   case Panel::scan:
   case Panel::recorder:
   case Panel::steps:
+  case Panel::align:
     return true;
   case Panel::timeline:
   case Panel::findings:
     return state.scan;
   case Panel::profile:
     return state.texture;
+  case Panel::basin:
+    return state.path;
   case Panel::display:
   case Panel::mesh:
     return state.content != Content::nothing;

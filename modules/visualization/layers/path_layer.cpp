@@ -136,7 +136,8 @@ void PathLayer::setPath(const DrawnPath& path) {
     range.low = std::min(range.low, sample.value);
     range.high = std::max(range.high, sample.value);
   }
-  has_bar_ = range.low <= range.high;
+  const bool has_values = range.low <= range.high;
+  has_bar_ = has_values && path.bar;
   bar_->SetVisibility(has_bar_);
   const vtkNew<vtkTubeFilter> tube;
   const auto lines = linesOf(drawn_, false);
@@ -149,7 +150,7 @@ void PathLayer::setPath(const DrawnPath& path) {
   meshMapper(*line_)->SetInputData(lines);
   meshMapper(*bridge_)->SetInputData(linesOf(drawn_, true));
   setMarks(marks_);
-  if (!has_bar_) return;
+  if (!has_values) return;
   const auto colors = pathColors(rounded(range));
   for (const auto& actor : {tube_, line_}) {
     meshMapper(*actor)->ScalarVisibilityOn();

@@ -27,6 +27,7 @@ struct DrawnSample {
 struct DrawnPath {
   std::vector<DrawnSample> samples; // in the order of time
   std::string title;                // of the values: "force [N]"
+  bool bar = true;                  // says what the colours are
 };
 
 // What was seen and is not part of the path.

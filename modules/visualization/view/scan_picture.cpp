@@ -61,6 +61,7 @@ std::array<Vec3, 4> frustumCorners(const DrawnCamera& camera) {
 struct ScanPicture::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
   PathLayer path{*scene, *overlay};
+  HandleLayer handle{*overlay};
   vtkSmartPointer<vtkActor> mesh = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> highlight = surfaceActor(palette::kTool);
   vtkSmartPointer<vtkActor> frustum = lineActor(palette::kToolShaft, 1.6);
@@ -224,6 +225,14 @@ void ScanPicture::setProbe(const std::optional<DrawnProbe>& probe) {
                                        (kAxis * Vec3::Unit(static_cast<Eigen::Index>(i)))}}));
 }
 
+HandleLayer& ScanPicture::handle() {
+  return impl_->handle;
+}
+
+void ScanPicture::setDirty() {
+  impl_->dirty = true;
+}
+
 void ScanPicture::lookAtAll(const Vec3& up) {
   Impl& my = *impl_;
   vtkCamera& eye = *my.scene->GetActiveCamera();
@@ -267,6 +276,7 @@ bool ScanPicture::prepare() {
   Impl& my = *impl_;
   my.path.setTextSize(textSize(my.scene->GetRenderWindow()), my.size()[0]);
   my.sizeBall();
+  my.handle.prepare();
   my.syncCorner();
   my.scene->ResetCameraClippingRange();
   // Behind the farthest is room for the mesh's offset, or its back would come to the front.

@@ -9,6 +9,7 @@
 #include <vtkRenderer.h>
 
 #include "geometry/mesh/triangle_mesh.h"
+#include "visualization/layers/handle_layer.h"
 #include "visualization/layers/path_layer.h"
 #include "visualization/view/view_options.h"
 
@@ -44,6 +45,8 @@ class ScanPicture {
   void setMarks(const std::vector<DrawnMark>& marks);
   void setCamera(const std::optional<DrawnCamera>& camera);
   void setProbe(const std::optional<DrawnProbe>& probe);
+  HandleLayer& handle();
+  void setDirty(); // the handle has changed
 
   // Path and mesh in the picture, with `up` up, at an angle; the camera too where there is no mesh.
   void lookAtAll(const Vec3& up);

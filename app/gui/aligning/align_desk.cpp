@@ -1,0 +1,389 @@
+#include "app/gui/aligning/align_desk.h"
+
+#include <cmath>
+
+#include <QFileDialog>
+#include <QGridLayout>
+#include <QShortcut>
+#include <QVBoxLayout>
+
+#include "acquisition/files/registered_file.h"
+#include "acquisition/files/scan_files.h"
+#include "acquisition/registration/first_guess.h"
+#include "acquisition/registration/rigid_fit.h"
+#include "app/gui/loading/load_dialogs.h"
+#include "app/gui/scanning/scan_path.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/numbers.h"
+#include "core/percentiles.h"
+
+namespace patina {
+namespace {
+
+constexpr int kSettle = 350;         // after its last change a value is a step [ms]
+constexpr double kSpread = 0.01;     // of the mesh, that three points are apart at least
+constexpr double kPlaces = 1. / 200; // samples this near are one place, of the path's radius
+
+std::string poseText(const Pose& pose) {
+  std::string text = "# mesh_from_scan\n";
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column)
+      text += (column > 0 ? " " : "") + formatNumber(pose.matrix()(row, column));
+    text += '\n';
+  }
+  return text;
+}
+
+QString wordsOf(const Registration& found) {
+  QString words = found.converged
+                      ? AlignDesk::tr("Fitted: rms %1 of what counts").arg(lengthWords(found.rms))
+                      : AlignDesk::tr("No fit explains the path from here");
+  for (const FreeMotion& motion : found.free)
+    words += QStringLiteral("; ") + QString::fromStdString(inWords(motion));
+  return words;
+}
+
+} // namespace
+
+AlignDesk::AlignDesk(QWidget& window)
+    : QObject(&window), window_(window), fit_job_(this), basin_job_(this) {
+  auto* empty = new QWidget;
+  auto* column = new QVBoxLayout(empty);
+  empty_->setWordWrap(true);
+  empty_->setAlignment(Qt::AlignCenter);
+  column->addWidget(empty_);
+  cells_->addWidget(empty);
+  settle_.setSingleShot(true);
+  connect(&settle_, &QTimer::timeout, this, &AlignDesk::settle);
+  connect(panel_, &AlignPanel::openAsked, this, &AlignDesk::openDialog);
+  connect(panel_, &AlignPanel::keepAsked, this, &AlignDesk::keepDialog);
+  connect(panel_, &AlignPanel::edited, this, [this](const PoseValues& values) {
+    if (!alignment_.isReady() || work_) return;
+    alignment_.setPose(poseOf(values));
+    stale_ = true;
+    settle_.start(kSettle);
+  });
+  connect(panel_, &AlignPanel::pickToggled, this, &AlignDesk::setPicking);
+  connect(panel_, &AlignPanel::fitAsked, this, &AlignDesk::registerFromHere);
+  connect(panel_, &AlignPanel::beginAsked, this, [this] {
+    move(middleOnMiddle(alignment_.target()->mesh(), alignment_.points()));
+    settle();
+  });
+  connect(&fit_job_, &Background::progressed, this, [this](double fraction, const QString&) {
+    if (!work_) return;
+    work_->fraction = fraction;
+    emit changed();
+  });
+  begin();
+}
+
+void AlignDesk::makeViews() {
+  if (!views_.empty()) return;
+  auto* page = new QWidget;
+  auto* grid = new QGridLayout(page);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setSpacing(4);
+  const std::tuple<const char*, QString, ViewPreset> kViews[] = {
+      {"align_top", tr("Top"), ViewPreset::plus_z},
+      {"align_bottom", tr("Bottom"), ViewPreset::minus_z},
+      {"align_front", tr("Front"), ViewPreset::minus_y},
+      {"align_back", tr("Back"), ViewPreset::plus_y}};
+  for (const auto& [name, words, from] : kViews) {
+    const int i = static_cast<int>(views_.size());
+    auto* view = new AlignView(name, from);
+    view->setToolTip(tr("Drag an arrow to shift the path along it, a ring to turn it about its "
+                        "axis, the ball to shift it freely; beside them the picture"));
+    auto* cell = new QVBoxLayout;
+    cell->setSpacing(1);
+    auto* caption = new QLabel(words);
+    caption->setContentsMargins(6, 0, 0, 0);
+    cell->addWidget(caption);
+    cell->addWidget(view, 1);
+    grid->addLayout(cell, i / 2, i % 2);
+    views_.push_back(view);
+    connect(view, &AlignView::dragBegun, this, [this] { held_ = alignment_.pose(); });
+    connect(view, &AlignView::dragged, this, [this](const Pose& motion) { move(motion * held_); });
+    connect(view, &AlignView::dropped, this, &AlignDesk::settle);
+    connect(view, &AlignView::clicked, this, &AlignDesk::pick);
+  }
+  for (int i = 0; i < 2; ++i) grid->setRowStretch(i, 1), grid->setColumnStretch(i, 1);
+  cells_->addWidget(page);
+  auto* escape = new QShortcut(Qt::Key_Escape, page);
+  escape->setContext(Qt::WidgetWithChildrenShortcut);
+  connect(escape, &QShortcut::activated, this, [this] { setPicking(false); });
+}
+
+void AlignDesk::openPath(const std::filesystem::path& file) {
+  try {
+    setPath(QString::fromStdString(file.filename().string()), readPath(file));
+  } catch (const Error& error) {
+    showProblem(&window_, tr("The path cannot be read"), QString::fromStdString(error.what()),
+                tr("What was open before is as it was."));
+  }
+}
+
+void AlignDesk::setPath(const QString& name, std::vector<PathSample> path) {
+  path = inContact(std::move(path));
+  if (path.size() < 3) {
+    emit said({tr("%1 has fewer than three samples in contact").arg(name), true});
+    return;
+  }
+  cancel();
+  name_ = name;
+  alignment_.setPath(std::move(path));
+  begin();
+}
+
+void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
+  cancel();
+  alignment_.setMesh(std::move(mesh));
+  begin();
+}
+
+void AlignDesk::begin() {
+  settle_.stop();
+  setPicking(false);
+  panel_->setPath(name_, alignment_.path().size());
+  panel_->setReady(alignment_.isReady(), false);
+  panel_->setFit({});
+  plot_->setBasin(std::nullopt);
+  empty_->setText(alignment_.path().empty()
+                      ? tr("A scan's path is laid onto the mesh here.\n\nOpen a scan on the desk "
+                           "Scan, or a path.csv by Open path.")
+                      : tr("There is a path, and no mesh to lay it onto.\n\nOpen the mesh that was "
+                           "scanned: Ctrl + O."));
+  cells_->setCurrentIndex(0);
+  if (alignment_.isReady()) {
+    makeViews();
+    cells_->setCurrentIndex(1);
+    const auto mesh = std::make_shared<const TriangleMesh>(alignment_.target()->mesh());
+    for (AlignView* view : views_) view->picture().setMesh(mesh);
+    reach_ =
+        1.5 * alignment_.target()->extent() + alignment_.pose().translation().cwiseAbs().maxCoeff();
+    draw();
+    fit();
+    lookAbout();
+  }
+  emit changed();
+}
+
+void AlignDesk::openDialog() {
+  auto* dialog =
+      new QFileDialog(&window_, tr("Open a scan's path"), {}, tr("Paths (*.csv);;All files (*)"));
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { openPath(file.toStdString()); });
+  dialog->open();
+}
+
+void AlignDesk::keepDialog() {
+  auto* dialog =
+      new QFileDialog(&window_, tr("Keep the path on the mesh"), {}, tr("Paths (*.csv)"));
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setAcceptMode(QFileDialog::AcceptSave);
+  dialog->setDefaultSuffix(QStringLiteral("csv"));
+  dialog->selectFile(QStringLiteral("registered.csv"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { keep(file.toStdString()); });
+  dialog->open();
+}
+
+void AlignDesk::keep(const std::filesystem::path& file) {
+  try {
+    const auto pose = std::filesystem::path(file).replace_extension(".txt");
+    writeRegisteredPath(file, alignment_.path(),
+                        registeredAt(*alignment_.target(), alignment_.path(), alignment_.pose()));
+    writeFileAtomically(pose, poseText(alignment_.pose()));
+    emit said({tr("The path on the mesh is in %1, its pose in %2")
+                   .arg(QString::fromStdString(file.string()),
+                        QString::fromStdString(pose.filename().string()))});
+  } catch (const Error& error) {
+    showProblem(&window_, tr("The path cannot be kept"), QString::fromStdString(error.what()),
+                tr("Make room, or choose another folder."));
+  }
+}
+
+void AlignDesk::move(const Pose& pose) {
+  if (!alignment_.isReady() || work_) return;
+  alignment_.setPose(pose);
+  settle_.stop();
+  draw();
+}
+
+void AlignDesk::settle() {
+  if (!alignment_.isReady() || work_) return;
+  settle_.stop();
+  alignment_.commit();
+  panel_->setFit({});
+  draw();
+  lookAbout();
+  emit changed();
+}
+
+void AlignDesk::undo() {
+  if (work_ || !alignment_.undo()) return;
+  settle_.stop();
+  settle();
+}
+
+void AlignDesk::redo() {
+  if (work_ || !alignment_.redo()) return;
+  settle();
+}
+
+void AlignDesk::draw() {
+  stale_ = false;
+  const Pose& pose = alignment_.pose();
+  const Residuals off = residualsOf(*alignment_.target(), alignment_.points(), pose);
+  panel_->setResiduals(off);
+  if (!settle_.isActive()) panel_->setValues(valuesOf(pose), reach_);
+  DrawnPath path;
+  path.title = tr("distance [mm]").toStdString();
+  for (std::size_t i = 0; i < alignment_.points().size(); ++i)
+    path.samples.push_back({static_cast<double>(i), pose * alignment_.points()[i],
+                            1e3 * off.distances[i], false, false});
+  std::vector<DrawnMark> marks;
+  for (const Vec3& point : on_path_) marks.push_back({0, pose * point});
+  for (const Vec3& point : on_mesh_) marks.push_back({0, point});
+  for (AlignView* view : views_) {
+    path.bar = view == views_[1];
+    view->picture().setPath(path);
+    view->picture().setMarks(marks);
+    view->picture().handle().setPlace(picks_ ? std::nullopt : std::optional(alignment_.middle()));
+    view->picture().setDirty();
+  }
+}
+
+void AlignDesk::lookAbout() {
+  plot_->setBasin(std::nullopt);
+  std::vector<double> rms;
+  for (const Pose& step : alignment_.steps())
+    rms.push_back(residualsOf(*alignment_.target(), alignment_.points(), step).rms);
+  rms.resize(alignment_.done() + 1);
+  plot_->setSteps(rms);
+  basin_job_.start(
+      [this, target = alignment_.target(), points = alignment_.points(),
+       pose = alignment_.pose()](Progress& progress, const Background::Deliver& deliver) {
+        try {
+          const Basin basin = basinOf(*target, points, pose, progress);
+          deliver(true, [this, basin] { plot_->setBasin(basin); });
+        } catch (const Cancelled&) {
+          deliver(true, [] {});
+        }
+      });
+}
+
+void AlignDesk::registerFromHere() {
+  if (!alignment_.isReady() || work_) return;
+  alignment_.commit();
+  settle_.stop();
+  setPicking(false);
+  const QString title = tr("Fitting the path");
+  work_ = Work{title, title};
+  panel_->setReady(true, true);
+  emit changed();
+  std::vector<Vec3> points;
+  std::vector<double> sigmas;
+  for (const PathSample& sample : alignment_.path()) {
+    points.push_back(sample.position);
+    sigmas.push_back(sample.sigma);
+  }
+  RegistrationOptions options;
+  options.noise = percentiles(sigmas).p50;
+  options.place = kPlaces * scaleOf(points, Pose::Identity()).radius;
+  options.search = false; // the hand has said where
+  fit_job_.start([this, options, points, target = alignment_.target(), start = alignment_.pose()](
+                     Progress& progress, const Background::Deliver& deliver) {
+    const auto rest = [this] {
+      work_.reset();
+      panel_->setReady(alignment_.isReady(), false);
+    };
+    try {
+      const Registration found = registerPath(*target, points, start, options, progress);
+      deliver(true, [this, rest, found] {
+        rest();
+        move(found.mesh_from_path);
+        settle();
+        panel_->setFit(wordsOf(found));
+        emit changed();
+      });
+    } catch (const std::exception& error) {
+      deliver(true, [this, rest, problem = QString::fromStdString(error.what())] {
+        rest();
+        panel_->setFit(problem);
+        emit changed();
+      });
+    }
+  });
+}
+
+void AlignDesk::cancel() {
+  if (!work_) return;
+  fit_job_.silence();
+  work_.reset();
+  panel_->setReady(alignment_.isReady(), false);
+  emit changed();
+}
+
+void AlignDesk::setPicking(bool on) {
+  picks_ = on && alignment_.isReady() && !work_;
+  on_path_.clear();
+  on_mesh_.clear();
+  for (AlignView* view : views_) view->setPicking(picks_);
+  if (picks_) views_[0]->setFocus(); // Esc is the picture's
+  askForPoint();
+  if (alignment_.isReady() && !views_.empty()) draw();
+}
+
+void AlignDesk::askForPoint() {
+  panel_->setPicking(!picks_ ? QString()
+                             : (on_path_.size() == on_mesh_.size()
+                                    ? tr("%1 of 3: click a place on the path (Esc ends it)")
+                                    : tr("%1 of 3: click the same place on the mesh"))
+                                   .arg(on_mesh_.size() + 1));
+}
+
+void AlignDesk::pick(const Ray& sight, double reach) {
+  if (!picks_) return;
+  const auto isNew = [&](const std::vector<Vec3>& list, const Vec3& point) {
+    return std::all_of(list.begin(), list.end(), [&](const Vec3& other) {
+      return (other - point).norm() > kSpread * alignment_.target()->extent();
+    });
+  };
+  if (on_path_.size() == on_mesh_.size()) {
+    double nearest = reach;
+    std::optional<Vec3> found;
+    for (const Vec3& point : alignment_.points()) {
+      const Vec3 away = alignment_.pose() * point - sight.origin;
+      const double off = (away - away.dot(sight.direction) * sight.direction).norm();
+      if (off >= nearest) continue;
+      nearest = off;
+      found = point;
+    }
+    if (found && isNew(on_path_, *found)) on_path_.push_back(*found);
+  } else if (const auto hit =
+                 alignment_.target()->tree().firstHit(sight.origin, sight.direction, INFINITY)) {
+    const Vec3 point = sight.origin + hit->t * sight.direction;
+    if (isNew(on_mesh_, point)) on_mesh_.push_back(point);
+  }
+  askForPoint();
+  draw();
+  if (on_mesh_.size() < 3) return;
+  const Pose fitted = fitRigid(on_path_, on_mesh_);
+  setPicking(false);
+  move(fitted);
+  settle();
+}
+
+void AlignDesk::fit() {
+  for (AlignView* view : views_) view->fit();
+}
+
+void AlignDesk::refresh() {
+  if (stale_) draw();
+  for (AlignView* view : views_) view->refresh();
+}
+
+} // namespace patina

@@ -1,0 +1,79 @@
+// The desk on which a path is laid onto the mesh by hand: four views at once, six values, three
+// points, a fit from there; what it is off, live.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <QLabel>
+#include <QStackedWidget>
+#include <QTimer>
+
+#include "app/gui/aligning/align_panel.h"
+#include "app/gui/aligning/align_view.h"
+#include "app/gui/aligning/basin_plot.h"
+#include "app/gui/panels/message_panel.h"
+#include "app/gui/window/background.h"
+#include "app/gui/window/window_state.h"
+
+namespace patina {
+
+class AlignDesk : public QObject {
+  Q_OBJECT
+ public:
+  explicit AlignDesk(QWidget& window); // to which it belongs
+
+  // To be laid out by the window.
+  QStackedWidget* cells() const { return cells_; }
+  QWidget* panel() const { return panel_; }
+  QWidget* basin() const { return plot_; }
+
+  const Alignment& alignment() const { return alignment_; }
+  const std::optional<Work>& work() const { return work_; }
+
+  void openPath(const std::filesystem::path& file);
+  void setPath(const QString& name, std::vector<PathSample> path); // not yet told by contact
+  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);     // nullptr: no scene is open
+  void cancel();
+  void fit();
+  void undo();
+  void redo();
+  void refresh(); // of every tick of the window
+
+ signals:
+  void changed();
+  void said(const patina::Message& message);
+
+ private:
+  void makeViews();
+  void openDialog();
+  void keepDialog();
+  void keep(const std::filesystem::path& file);
+  void begin();                // another path or mesh
+  void move(const Pose& pose); // while a hand moves it
+  void settle();               // it has
+  void draw();
+  void lookAbout();
+  void registerFromHere();
+  void setPicking(bool on);
+  void pick(const Ray& sight, double reach);
+  void askForPoint();
+
+  QWidget& window_;
+  Background fit_job_, basin_job_;
+  Alignment alignment_;
+  QString name_;
+  QStackedWidget* cells_ = new QStackedWidget;
+  QLabel* empty_ = new QLabel;
+  AlignPanel* panel_ = new AlignPanel;
+  BasinPlot* plot_ = new BasinPlot;
+  std::vector<AlignView*> views_; // made with the first path
+  QTimer settle_;
+  double reach_ = 1;                    // of the sliders [m]
+  Pose held_ = Pose::Identity();        // as it was when a drag began
+  std::vector<Vec3> on_path_, on_mesh_; // that were picked
+  bool picks_ = false, stale_ = false;  // stale: moved since it was drawn
+  std::optional<Work> work_;
+};
+
+} // namespace patina

@@ -1,0 +1,45 @@
+// The card of the Align desk: which path, where it lies on the mesh, how far off it is.
+#pragma once
+
+#include <array>
+
+#include <QLabel>
+#include <QPushButton>
+#include <QWidget>
+
+#include "app/gui/aligning/alignment.h"
+#include "app/gui/panels/value_row.h"
+#include "geometry/mesh/pose_values.h"
+
+namespace patina {
+
+class AlignPanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit AlignPanel(QWidget* parent = nullptr);
+
+  void setPath(const QString& name, std::size_t samples); // 0: there is none
+  void setReady(bool ready, bool works);                  // there is something to align; or not now
+  void setValues(const PoseValues& values, double reach); // [m] that shifts may be
+  void setResiduals(const Residuals& residuals);
+  void setFit(const QString& words);     // of a registration; empty: none
+  void setPicking(const QString& words); // what is to be clicked; empty: it is over
+
+ signals:
+  void openAsked();
+  void edited(const patina::PoseValues& values);
+  void pickToggled(bool on);
+  void fitAsked();
+  void beginAsked();
+  void keepAsked();
+
+ private:
+  PoseValues values() const;
+
+  QLabel *path_, *off_, *fit_words_, *hint_;
+  std::array<ValueRow*, 6> rows_;
+  QPushButton *pick_, *fit_, *begin_, *keep_;
+  QWidget *place_, *error_;
+};
+
+} // namespace patina

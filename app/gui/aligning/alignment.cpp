@@ -1,0 +1,150 @@
+#include "app/gui/aligning/alignment.h"
+
+#include <cmath>
+
+#include "acquisition/registration/first_guess.h"
+#include "geometry/mesh/mesh_report.h"
+
+namespace patina {
+namespace {
+
+constexpr std::size_t kLooked = 400; // points, while a hand moves them
+constexpr std::size_t kMapped = 120; // while a basin is made
+constexpr int kSteps = 21;           // across a basin
+
+std::vector<Vec3> someOf(const std::vector<Vec3>& points, std::size_t count) {
+  if (points.size() <= count) return points;
+  std::vector<Vec3> some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
+  return some;
+}
+
+Vec3 middleOf(const std::vector<Vec3>& points) {
+  return scaleOf(points, Pose::Identity()).centre;
+}
+
+double rmsOf(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& pose) {
+  double squares = 0;
+  std::int32_t face = kNone;
+  for (const Vec3& point : points) {
+    const ClosestPoint near = target.tree().closestPoint(pose * point, face);
+    face = near.surface.face;
+    squares += near.distance * near.distance;
+  }
+  return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
+} // namespace
+
+Residuals residualsOf(const SurfaceTarget& target, const std::vector<Vec3>& points,
+                      const Pose& mesh_from_path) {
+  Residuals found;
+  double squares = 0;
+  std::int32_t face = kNone;
+  for (const Vec3& point : points) {
+    const ClosestPoint near = target.tree().closestPoint(mesh_from_path * point, face);
+    face = near.surface.face;
+    found.distances.push_back(near.distance);
+    found.mean += near.distance;
+    squares += near.distance * near.distance;
+    found.worst = std::max(found.worst, near.distance);
+  }
+  const double count = static_cast<double>(std::max<std::size_t>(1, points.size()));
+  found.mean /= count;
+  found.rms = std::sqrt(squares / count);
+  return found;
+}
+
+Basin basinOf(const SurfaceTarget& target, const std::vector<Vec3>& points,
+              const Pose& mesh_from_path, Progress& progress) {
+  const std::vector<Vec3> some = someOf(points, kMapped);
+  Basin basin;
+  basin.shift = 0.15 * target.extent();
+  basin.turn = 0.35;
+  basin.side = kSteps;
+  const Vec3 middle = mesh_from_path * middleOf(some);
+  const auto part = [](int step) { return 2. * step / (kSteps - 1) - 1; };
+  for (int axis = 0; axis < 3; ++axis)
+    for (int step = 0; step < kSteps; ++step) {
+      progress.throwIfCancelled();
+      Pose shift = Pose::Identity(), turn = Pose::Identity();
+      shift.translation() = part(step) * basin.shift * Vec3::Unit(axis);
+      turn.linear() =
+          Eigen::AngleAxisd(part(step) * basin.turn, Vec3::Unit(axis)).toRotationMatrix();
+      turn.translation() = middle - turn.linear() * middle;
+      const auto i = static_cast<std::size_t>(axis);
+      basin.along[i].push_back(rmsOf(target, some, shift * mesh_from_path));
+      basin.along[i + 3].push_back(rmsOf(target, some, turn * mesh_from_path));
+    }
+  for (int row = 0; row < kSteps; ++row)
+    for (int column = 0; column < kSteps; ++column) {
+      progress.throwIfCancelled();
+      Pose shift = Pose::Identity();
+      shift.translation() = basin.shift * (part(column) * Vec3::Unit(basin.first) +
+                                           part(row) * Vec3::Unit(basin.second));
+      basin.map.push_back(rmsOf(target, some, shift * mesh_from_path));
+    }
+  return basin;
+}
+
+Registration registeredAt(const SurfaceTarget& target, const std::vector<PathSample>& path,
+                          const Pose& mesh_from_path) {
+  Registration found;
+  found.mesh_from_path = mesh_from_path;
+  for (const PathSample& sample : path)
+    found.misses.push_back(target.miss(mesh_from_path * sample.position));
+  found.counts.assign(path.size(), true);
+  return found;
+}
+
+void Alignment::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
+  target_.reset();
+  if (mesh != nullptr) {
+    TriangleMesh clean = cleaned(*mesh).mesh;
+    if (!clean.triangles.empty())
+      target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0);
+  }
+  begin();
+}
+
+void Alignment::setPath(std::vector<PathSample> path) {
+  path_ = std::move(path);
+  std::vector<Vec3> all;
+  for (const PathSample& sample : path_) all.push_back(sample.position);
+  points_ = someOf(all, kLooked);
+  begin();
+}
+
+void Alignment::begin() {
+  steps_.clear();
+  at_ = 0;
+  if (!isReady()) return;
+  pose_ = middleOnMiddle(target_->mesh(), points_);
+  steps_ = {pose_};
+}
+
+Vec3 Alignment::middle() const {
+  return pose_ * middleOf(points_);
+}
+
+void Alignment::commit() {
+  if (steps_.empty() || pose_.isApprox(steps_[at_], 1e-12)) return;
+  steps_.resize(at_ + 1);
+  steps_.push_back(pose_);
+  ++at_;
+}
+
+bool Alignment::undo() {
+  commit();
+  if (at_ == 0) return false;
+  pose_ = steps_[--at_];
+  return true;
+}
+
+bool Alignment::redo() {
+  if (undone() == 0) return false;
+  pose_ = steps_[++at_];
+  return true;
+}
+
+} // namespace patina
