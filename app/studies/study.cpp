@@ -9,6 +9,7 @@
 #include "app/studies/field/field_study.h"
 #include "app/studies/field/surfaces_study.h"
 #include "app/studies/haptics/contact_study.h"
+#include "app/studies/haptics/device_study.h"
 #include "app/studies/haptics/friction_study.h"
 #include "app/studies/haptics/stability_study.h"
 #include "app/studies/paint/material_study.h"
@@ -28,6 +29,8 @@ const std::vector<Study>& studies() {
       {"material", "painted stiffness: its value, and work round closed loops", materialStudy},
       {"stability", "the closed loop against eigenvalues and closed forms; what quietens it",
        stabilityStudy},
+      {"device", "an emulated Falcon: counts, round trips, where it buzzes, stiffness displayed",
+       deviceStudy},
 #ifdef PATINA_HAS_ACQUISITION
       {"tracking", "poses of a marker rig from rendered frames; a tip by turning about it",
        trackingStudy},

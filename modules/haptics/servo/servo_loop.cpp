@@ -14,6 +14,7 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kTimingTicks = 8192;
+constexpr std::size_t kSamples = 16384; // a window that hangs for 16 s loses nothing at 1 kHz
 constexpr double kNsPerSecond = 1e9;
 constexpr int kRateTicks = 250;
 
@@ -22,7 +23,7 @@ constexpr int kRateTicks = 250;
 struct ServoLoop::Impl {
   Impl(std::unique_ptr<Device> device_in, double rate_hz)
       : device(std::move(device_in)), period_ns(periodNs(rate_hz)),
-        samples(std::max<std::size_t>(4096, static_cast<std::size_t>(rate_hz))),
+        samples(std::max<std::size_t>(kSamples, static_cast<std::size_t>(rate_hz))),
         window(kTimingTicks) {
     if (!device) throw std::invalid_argument("servo loop: no device");
   }

@@ -41,7 +41,7 @@ class ServoLoop {
   // as publish does too; call it now and then.
   void publish(std::shared_ptr<const HapticSnapshot> snapshot);
   void collect();
-  Ring<ToolSample>& samples(); // consumer: one thread; holds 1 s at least
+  Ring<ToolSample>& samples(); // consumer: one thread; holds 16384, 1 s at least
   ServoTiming timing() const;  // any thread
 
  private:

@@ -1,0 +1,270 @@
+#include "app/studies/haptics/device_study.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "app/studies/haptics/bisection.h"
+#include "haptics/contact/plane.h"
+#include "haptics/devices/device_catalog.h"
+#include "haptics/devices/falcon/emulated_falcon.h"
+#include "haptics/devices/falcon/falcon_device.h"
+#include "haptics/devices/falcon/falcon_frame.h"
+#include "haptics/devices/falcon/wire_run.h"
+#include "haptics/devices/link/link_loop.h"
+#include "haptics/servo/cross_fade.h"
+#include "haptics/stability/stabilisers.h"
+
+namespace patina {
+namespace {
+
+constexpr double kTick = 1e-3;
+
+// The servo's tick over driver, wire and mechanics, in simulated time.
+class Loop {
+ public:
+  Loop(const FalconBenchSpec& spec, std::shared_ptr<const HapticSnapshot> snapshot)
+      : clock_(std::make_shared<SimulatedClock>()), notes_(std::make_shared<LinkNotes>()),
+        bench(spec, clock_),
+        link_(makeFalconLink([this] { return bench.plug(); }, {}, clock_), guard(), clock_, notes_),
+        snapshot_(std::move(snapshot)) {
+    law_.turnTo(snapshot_.get());
+  }
+  // The device's own peak is left, nothing else: the guard is not what is measured here.
+  static GuardSpec guard() {
+    GuardSpec spec;
+    spec.ramp = kTick;
+    return spec;
+  }
+  void tick() {
+    due_ += kTick;
+    clock_->waitUntil(due_);
+    const DeviceState& state = link_.step({force_, clock_->now()});
+    force_.setZero();
+    if (judge(state) == DeviceStatus::ok) force_ = law_.tick(state.position, kTick).force;
+    ++ticks;
+  }
+  // Root mean square of the handle's speed along z.
+  double rms(double seconds) {
+    double sum = 0;
+    const int count = static_cast<int>(seconds / kTick);
+    for (int i = 0; i < count; ++i) {
+      tick();
+      sum += std::pow(bench.velocity().z(), 2);
+    }
+    return std::sqrt(sum / count);
+  }
+  double force() const { return force_.z(); }
+
+ private:
+  std::shared_ptr<SimulatedClock> clock_;
+  std::shared_ptr<LinkNotes> notes_;
+
+ public:
+  FalconBench bench;
+  std::uint64_t ticks = 0;
+
+ private:
+  LinkLoop link_;
+  std::shared_ptr<const HapticSnapshot> snapshot_;
+  CrossFade law_;
+  Vec3 force_ = Vec3::Zero();
+  double due_ = 0;
+};
+
+HapticProperties wall(double stiffness) {
+  HapticProperties haptics;
+  haptics.stiffness = stiffness;
+  haptics.force_limit = std::numeric_limits<double>::infinity();
+  return haptics;
+}
+
+// A blow on a handle that is pressed into the wall: does the swing die out?
+bool decays(double stiffness, const FalconBenchSpec& spec, std::uint64_t& ticks) {
+  Loop loop(spec, planeSnapshot(wall(stiffness), {}));
+  loop.bench.push = Vec3(0, 0, -3);
+  loop.rms(0.5);
+  loop.bench.push = Vec3(0, 0, -4);
+  loop.rms(0.01);
+  loop.bench.push = Vec3(0, 0, -3);
+  const double early = loop.rms(0.1);
+  loop.rms(0.3);
+  const double late = loop.rms(0.1);
+  ticks += loop.ticks;
+  return late < early;
+}
+
+WorkPrecisionTable limits(bool quick, Progress& progress) {
+  WorkPrecisionTable table =
+      tableOf("Where a wall on the emulated Falcon begins to buzz, against eigenvalues with a "
+              "delay of one sample (MATH 2.1.3)",
+              "%");
+  struct Case {
+    double mass, damping, spring, friction, play;
+  };
+  std::vector<Case> cases{{.25, 3, 60, 0, 0}, {.25, 5, 60, 0, 0}, {.15, 3, 60, 0, 0}};
+  if (!quick)
+    for (const Case& more : {Case{.4, 3, 60, 0, 0}, Case{.25, 3, 300, 0, 0},
+                             Case{.25, 3, 60, .05, 0}, Case{.25, 3, 60, 0, 1e-3}})
+      cases.push_back(more);
+  for (const Case& c : cases) {
+    progress.throwIfCancelled();
+    const FalconBenchSpec spec{
+        .body = {.mass = c.mass, .damping = c.damping, .spring = c.spring, .friction = c.friction},
+        .play = c.play};
+    const double predicted = stiffnessLimit({.mass = c.mass,
+                                             .damping = c.damping,
+                                             .hand_stiffness = c.spring,
+                                             .period = kTick,
+                                             .delay = 1});
+    const auto start = std::chrono::steady_clock::now();
+    std::uint64_t ticks = 0;
+    const double measured = bisected(0.3 * predicted, 3 * predicted, 5e-3, [&](double stiffness) {
+      return decays(stiffness, spec, ticks);
+    });
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    WorkPrecisionRow row;
+    row.knobs = {{"m [kg]", c.mass},
+                 {"b [N s/m]", c.damping},
+                 {"hand [N/m]", c.spring},
+                 {"friction [N]", c.friction},
+                 {"play [rad]", c.play}};
+    row.error = row.error_max = 100 * std::abs(measured / predicted - 1);
+    row.ns = 1e9 * taken.count() / static_cast<double>(ticks);
+    row.more = {{"measured [N/m]", measured}, {"eigenvalues [N/m]", predicted}};
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+WorkPrecisionTable displayed(bool quick, Progress& progress) {
+  WorkPrecisionTable table =
+      tableOf("Stiffness displayed on the emulated Falcon behind the automatic stabiliser, against "
+              "the two springs in series (MATH 2.3)",
+              "%");
+  const DeviceModel model = deviceNamed("falcon").model;
+  const std::vector<double> stiffnesses =
+      quick ? std::vector{500., 1e5} : std::vector{200., 500., 1000., 2000., 5000., 1e4, 1e5};
+  for (const double stiffness : stiffnesses) {
+    progress.throwIfCancelled();
+    const HapticProperties haptics = wall(stiffness);
+    const StabiliserPlan plan = planStabilisers(haptics, model, std::nullopt);
+    Loop loop({.body = {.mass = model.mass, .damping = model.damping, .spring = 60, .friction = 0}},
+              planeSnapshot(haptics, plan));
+    loop.bench.push = Vec3(0, 0, -2);
+    loop.rms(3);
+    double depth = 0, force = 0, low = 1, high = -1;
+    for (int i = 0; i < 1000; ++i) {
+      loop.tick();
+      const double z = loop.bench.handle().z();
+      depth -= 1e-3 * z;
+      force += 1e-3 * loop.force();
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+    const double expected = plan.softened(stiffness), measured = force / depth;
+    WorkPrecisionRow row;
+    row.knobs = {{"K [N/m]", stiffness}};
+    row.error = row.error_max = 100 * std::abs(measured / expected - 1);
+    row.more = {{"displayed [N/m]", measured},
+                {"expected [N/m]", expected},
+                {"limit [N/m]", plan.predicted_limit.value_or(0)},
+                {"coupling [N/m]", plan.coupling ? plan.coupling->stiffness : 0},
+                {"moves [m]", high - low},
+                {"depth [m]", depth}};
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// Of one count of any of the three encoders, and of one value of any of the three motors.
+WorkPrecisionTable quantisation(bool quick, Progress& progress) {
+  WorkPrecisionTable table =
+      tableOf("One count of an encoder, over the workspace at each height", "m");
+  const FalconShape shape;
+  const int steps = quick ? 8 : 40;
+  for (const double z : {-0.04, -0.02, 0., 0.02, 0.04}) {
+    progress.throwIfCancelled();
+    WorkPrecisionRow row;
+    row.knobs = {{"z [m]", z}};
+    double squares = 0, force_most = 0, force_squares = 0;
+    int count = 0;
+    for (int ring = 0; ring <= steps; ++ring)
+      for (int turn = 0; turn < 3 * steps; ++turn) {
+        const double radius = 0.045 * ring / steps,
+                     angle = 2 * std::numbers::pi * turn / (3 * steps);
+        const Vec3 place =
+            kFalconCentre + Vec3(radius * std::cos(angle), radius * std::sin(angle), z);
+        const auto angles = falconAngles(shape, place);
+        if (!angles) continue;
+        Eigen::Matrix3d torques; // of the three unit forces
+        for (int i = 0; i < 3; ++i)
+          torques.col(i) =
+              falconTorques(shape, place, *angles, Vec3::Unit(i)).value_or(Vec3::Zero());
+        const Eigen::Matrix3d forces = torques.inverse();
+        for (int leg = 0; leg < 3; ++leg) {
+          Angles next = *angles;
+          next[leg] += kFalconCount;
+          const double step = (falconPose(shape, next, place).handle - place).norm();
+          const double push = forces.col(leg).norm() * kFalconFullTorque / kMostMotor;
+          squares += step * step;
+          force_squares += push * push;
+          row.error_max = std::max(row.error_max, step);
+          force_most = std::max(force_most, push);
+          ++count;
+        }
+      }
+    row.error = std::sqrt(squares / count);
+    row.more = {{"one motor value, rms [N]", std::sqrt(force_squares / count)},
+                {"one motor value, most [N]", force_most}};
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+WorkPrecisionTable turns(bool quick, Progress& progress) {
+  WorkPrecisionTable table =
+      tableOf("Round trips over the emulated wire in real time, p99.9 and longest beyond a bare "
+              "timer's",
+              "us");
+  for (const unsigned faults : {0U, 10U})
+    for (const int load : {0, 2}) {
+      const WireRun run = runOnEmulatedWire(
+          {.seconds = quick ? 0.5 : 10, .faults_per_thousand = faults, .load = load}, progress);
+      WorkPrecisionRow row;
+      row.knobs = {{"faults a thousand", static_cast<int>(faults)}, {"load [threads]", load}};
+      row.error = std::max(0.0, run.round_us.p999 - run.bare_round_us.p999);
+      row.error_max = std::max(0.0, run.round_us.max - run.bare_round_us.max);
+      row.ns = 1e3 * run.round_us.p50;
+      row.more = {{"round trip p50 [us]", run.round_us.p50},
+                  {"p99 [us]", run.round_us.p99},
+                  {"p99.9 [us]", run.round_us.p999},
+                  {"bare p99.9 [us]", run.bare_round_us.p999},
+                  {"late p99.9 [us]", run.late_us.p999},
+                  {"bare late p99.9 [us]", run.bare_late_us.p999},
+                  {"age p50 [us]", run.age_us.p50},
+                  {"age p99 [us]", run.age_us.p99},
+                  {"ticks", static_cast<double>(run.ticks)},
+                  {"missed", static_cast<double>(run.missed)},
+                  {"injected", static_cast<double>(run.injected)},
+                  {"noticed", static_cast<double>(run.faults)},
+                  {"old places felt", static_cast<double>(run.stale)}};
+      table.rows.push_back(std::move(row));
+    }
+  return table;
+}
+
+} // namespace
+
+std::vector<WorkPrecisionTable> deviceStudy(const StudyOptions& options, Progress& progress) {
+  const bool quick = options.quick;
+  return tablesOf({{0, "one count", [&] { return quantisation(quick, progress); }},
+                   {0.1, "where it buzzes", [&] { return limits(quick, progress); }},
+                   {0.4, "what is displayed", [&] { return displayed(quick, progress); }},
+                   {0.5, "round trips", [&] { return turns(quick, progress); }}},
+                  progress);
+}
+
+} // namespace patina
