@@ -106,7 +106,8 @@ FirmwareLoader::State FirmwareLoader::hello() noexcept {
   }
   std::array<std::byte, 5> got{}; // a zero may lead the first
   const LineRead read = line_.receive(std::span(got).first(first ? 5 : 1), kHelloWait);
-  if (std::ranges::search(std::span(got).first(read.bytes), answer).empty()) return State::going;
+  const auto end = got.begin() + static_cast<std::ptrdiff_t>(read.bytes);
+  if (std::search(got.begin(), end, answer.begin(), answer.end()) == end) return State::going;
   hellos_ = 0;
   if (!first) {
     stage_ = Stage::chunks;

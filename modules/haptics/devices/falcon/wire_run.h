@@ -24,7 +24,7 @@ struct WireRun {
   std::uint64_t overruns = 0;          // turns without a new command
   std::uint64_t injected = 0;          // faults that were asked for
   std::uint64_t aged = 0;              // states that the servo had for a second time
-  std::uint64_t stale = 0;             // states that were not where the handle was when they say
+  std::uint64_t stale = 0;             // states of a place where the handle was before they say
   double worst = 0;                    // [m], the most that one was off
   Percentiles late_us, bare_late_us;   // wake-ups after their time
   Percentiles round_us, bare_round_us; // from a frame to its answer

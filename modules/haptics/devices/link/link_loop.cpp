@@ -74,7 +74,8 @@ void LinkLoop::turn(const LinkCommand& command) noexcept {
   const bool held = holds(reading_.status); // calibrating: it answers, but nowhere
   if (judge(reading_) == DeviceStatus::ok && reading_.position.allFinite()) {
     shown_ = reading_;
-    measured_at_ = good_at_ = after - reading_.age;
+    good_at_ = after;
+    measured_at_ = before - reading_.age; // not earlier, whoever had the processor meanwhile
     notes_->turns.fetch_add(1, std::memory_order_relaxed);
   } else if (held && reading_.status != DeviceStatus::away) {
     shown_ = reading_;

@@ -30,7 +30,7 @@ class LinkLoop {
   // One step. The state that the servo may see: the last good one with its age, calibrating, or
   // away.
   const DeviceState& step(const LinkCommand& command) noexcept;
-  double measuredAt() const noexcept { return measured_at_; } // [s]: of the state's position
+  double measuredAt() const noexcept { return measured_at_; } // [s]: its position is not older
 
  private:
   void tryToOpen() noexcept;
