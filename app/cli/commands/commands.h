@@ -19,6 +19,7 @@ Command renderCommand();
 Command exportCommand();
 #ifdef PATINA_HAS_ACQUISITION
 Command simulateScanCommand();
+Command simulateDeviceCommand();
 Command recordCommand();
 Command calibrateCommand();
 Command trackCommand();
@@ -37,15 +38,21 @@ Command manCommand();
 
 // In the order in which --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),         sceneCommand(),    fieldCommand(),      sampleCommand(),
-          feelCommand(),         simulateCommand(), paintCommand(),      undoCommand(),
-          redoCommand(),         embossCommand(),   renderCommand(),     exportCommand(),
+  return {infoCommand(),         sceneCommand(),
+          fieldCommand(),        sampleCommand(),
+          feelCommand(),         simulateCommand(),
+          paintCommand(),        undoCommand(),
+          redoCommand(),         embossCommand(),
+          renderCommand(),       exportCommand(),
 #ifdef PATINA_HAS_ACQUISITION
-          simulateScanCommand(), recordCommand(),   calibrateCommand(),  trackCommand(),
-          filterCommand(),       registerCommand(), fitTextureCommand(), mapTextureCommand(),
-          demoCommand(),
+          simulateScanCommand(), simulateDeviceCommand(),
+          recordCommand(),       calibrateCommand(),
+          trackCommand(),        filterCommand(),
+          registerCommand(),     fitTextureCommand(),
+          mapTextureCommand(),   demoCommand(),
 #endif
-          studyCommand(),        modelCommand(),    devicesCommand(),    latencyTestCommand(),
+          studyCommand(),        modelCommand(),
+          devicesCommand(),      latencyTestCommand(),
           guiCommand(),          manCommand()};
 }
 

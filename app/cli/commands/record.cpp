@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "acquisition/recording/recorder.h"
@@ -27,7 +28,28 @@ const Keys kRecordKeys = {
      Shown::if_any},
     {"unreadable", "", "unreadable", "frames", Shown::if_any},
     {"samples", "", "samples", "of the probe"},
-    {"dropouts", "", "dropouts", "where the probe's stream lacks more than 50 ms", Shown::if_any}};
+    {"dropouts", "", "dropouts", "where the probe's stream lacks more than 50 ms", Shown::if_any},
+    {"packets", "", "packets", "of a probe that numbers them, as what follows", Shown::if_any},
+    {"lost_packets", "", "lost packets", "whose numbers never came"},
+    {"lost_samples", "", "lost samples", "in them", Shown::if_any},
+    {"corrupt", "", "corrupt", "packets, which are among the lost", Shown::if_any},
+    {"repeated", "", "repeated", "packets, left out", Shown::if_any},
+    {"restarts", "", "restarts", "of the probe", Shown::if_any},
+    {"saturated", "", "beyond a sensor's range", "samples", Shown::if_any},
+    {"silent", "", "without a sensor's answer", "packets", Shown::if_any},
+    {"clock_skew", "", "clock",
+     "by how much the probe's runs faster than this machine's, after 10 s", Shown::never}};
+
+void setHealth(const ProbeHealth& health, Report& report) {
+  report.set("packets", health.packets).set("lost_packets", health.lost_packets);
+  report.set("lost_samples", health.lost_samples).set("corrupt", health.corrupt);
+  report.set("repeated", health.repeated).set("restarts", health.restarts);
+  report.set("saturated", health.saturated).set("silent", health.silent);
+  if (!health.skew) return;
+  report.set("clock_skew", *health.skew);
+  report.tell("clock", rounded(1e6 * std::abs(*health.skew)) + " ppm " +
+                           (*health.skew < 0 ? "slower" : "faster") + " than this machine's");
+}
 
 int runRecord(RecordOptions options, Console& console) {
   RecordingSetup& setup = options.setup;
@@ -51,6 +73,7 @@ int runRecord(RecordOptions options, Console& console) {
   report.set("frames_with_pose", now.poses).set("skipped", now.skipped);
   report.set("unreadable", now.unreadable).set("samples", now.samples);
   report.set("dropouts", now.dropouts);
+  if (now.probe) setHealth(*now.probe, report);
   console.report(report);
   if (now.frames > 0) return kDone;
   console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
@@ -72,7 +95,10 @@ Command recordCommand() {
           "pace, "
           "a video or a folder of pictures; PROBE is stream:PATH, lines of a probe.csv as they "
           "come "
-          "from a pipe or a serial device, replay:SCAN, or with a video or folder a probe.csv. "
+          "from a pipe or a serial device, serial:PATH or usb:SERIAL, the packets of "
+          "docs/usb_protocol.md over a serial line or USB (usb: is the first probe), replay:SCAN, "
+          "or "
+          "with a video or folder a probe.csv. Packets are numbered: what is lost is counted. "
           "Recording ends with Ctrl-C, after --seconds, or with the frames.\n"
           "SCAN gets frames/, frames.csv, probe.csv, poses.tum, camera.yml and rig.json, all as it "
           "is "
@@ -86,7 +112,8 @@ Command recordCommand() {
       .arguments = {input("FRAMES", "camera:N, replay:SCAN, video, or folder.",
                           text(options->frames)),
                     outputTo(options->setup.folder, "SCAN", "The scan folder, which is made."),
-                    {"--probe", "PROBE", "", "", "stream:PATH, replay:SCAN, or a probe.csv.",
+                    {"--probe", "PROBE", "", "",
+                     "stream:PATH, serial:PATH, usb:, replay:SCAN, or a probe.csv.",
                      text(options->probe)},
                     {"--camera", "CAMERA.yml", "", "FRAMES/camera.yml",
                      "What the camera's calibration says.", into(options->setup.camera)},

@@ -224,6 +224,7 @@ class Recorder::Work {
         news_.samples.push_back(sample);
       }
       batch.clear();
+      state_.probe = probe_->health();
     }
     if (failure) std::rethrow_exception(failure);
   }

@@ -33,11 +33,12 @@ struct RecordingState {
   double seconds = 0; // since the beginning
   // Written, or on their way to the disk for a quarter of a second at most.
   std::size_t frames = 0, poses = 0, samples = 0;
-  std::size_t skipped = 0;    // frames that there was no time to track; they are written
-  std::size_t unreadable = 0; // frames
-  std::size_t dropouts = 0;   // where the probe's stream lacks more than 50 ms
-  bool probe_ended = false;   // it sends no more
-  std::string error;          // why it ended, if that was not asked for; one line
+  std::size_t skipped = 0;          // frames that there was no time to track; they are written
+  std::size_t unreadable = 0;       // frames
+  std::size_t dropouts = 0;         // where the probe's stream lacks more than 50 ms
+  bool probe_ended = false;         // it sends no more
+  std::optional<ProbeHealth> probe; // of one that sends packets
+  std::string error;                // why it ended, if that was not asked for; one line
 };
 
 // What has come since the last time. What came while it was paused is in it too.

@@ -41,6 +41,20 @@ std::unique_ptr<FrameSource> openFrames(const std::string& frames, double rate);
 // The folder of "replay:SCAN" or of what is a folder; nullopt: a camera, a video.
 std::optional<std::filesystem::path> scanFolderOf(const std::string& frames);
 
+// How a stream of numbered packets (docs/usb_protocol.md) has come over so far.
+struct ProbeHealth {
+  std::size_t packets = 0;      // that were read
+  std::size_t lost_packets = 0; // whose numbers never came, whatever the reason
+  std::size_t lost_samples = 0; // in them
+  std::size_t corrupt = 0;      // that came and could not be read: they are among the lost
+  std::size_t repeated = 0;     // that came again or too late, and were left out
+  std::size_t restarts = 0;     // of the probe, in the middle
+  std::size_t saturated = 0;    // samples beyond a sensor's range
+  std::size_t silent = 0;       // packets in which a sensor did not answer the probe
+  std::optional<double> skew{}; // by how much the probe's clock runs faster than this machine's
+  bool operator==(const ProbeHealth&) const = default;
+};
+
 class ProbeSource {
  public:
   virtual ~ProbeSource() = default;
@@ -50,11 +64,14 @@ class ProbeSource {
   virtual bool read(std::vector<ProbeSample>& into) = 0;
   virtual bool isLive() const = 0;
   virtual void stop() noexcept = 0; // from any thread: read() returns false within 0.2 s
+  // Of what sends packets; for the thread that reads.
+  virtual std::optional<ProbeHealth> health() const { return std::nullopt; }
 };
 
 // PROBE is a probe.csv, "stream:PATH", lines of a probe.csv, its header first, as they arrive at a
-// pipe or a serial device, or "replay:SCAN". A USB probe is another ProbeSource. Throws FileError
-// or Error.
+// pipe or a serial device, "serial:PATH", the packets of docs/usb_protocol.md on a serial device,
+// "usb:" or "usb:SERIAL", the same of the first or the named probe on the bus, or "replay:SCAN".
+// Throws FileError, DeviceError or Error.
 std::unique_ptr<ProbeSource> openProbe(const std::string& probe);
 
 } // namespace patina

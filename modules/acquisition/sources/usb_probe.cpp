@@ -1,0 +1,99 @@
+#include "acquisition/sources/usb_probe.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "acquisition/sources/probe_decoder.h"
+#include "core/error.h"
+
+namespace patina {
+namespace {
+
+constexpr std::uint8_t kIn = 0x81;
+constexpr std::uint8_t kFromProbe = 0xc1, kToProbe = 0x41; // vendor, interface
+constexpr std::uint8_t kDescribe = 1, kStream = 2;
+constexpr unsigned kAnswer = 500, kWait = 100; // [ms]
+constexpr double kSilence = 2;                 // [s]
+constexpr double kTogether = 0.01;             // [s]: packets are read in lots of this length
+constexpr std::size_t kMostTogether = 16;
+
+class UsbProbe final : public ProbeSource {
+ public:
+  UsbProbe(std::unique_ptr<UsbTransport> usb, std::string name, std::function<double()> now)
+      : usb_(std::move(usb)), name_(std::move(name)), now_(std::move(now)) {
+    if (const UsbResult result = usb_->claim(0); result != UsbResult::ok)
+      fail(result == UsbResult::gone ? "is gone: plug it in again"
+                                     : "is in use by another program: close that program");
+    stream(false); // of a program that was killed
+    discard();
+    std::vector<ProbeSample> none;
+    for (std::uint16_t part = 0; part < kProbeParts; ++part) {
+      std::array<std::byte, kProbePacket> packet;
+      const UsbCount got = usb_->controlIn({kFromProbe, kDescribe, part, 0}, packet, kAnswer);
+      if (got.result == UsbResult::gone) fail("is gone: it was pulled out, or its hub lost power");
+      decoder_.take(std::span(packet).first(got.result == UsbResult::ok ? got.bytes : 0), 0, none);
+    }
+    if (!decoder_.described())
+      fail("does not describe itself as docs/usb_protocol.md asks: load firmware of this version");
+    const ProbeDescription& probe = decoder_.description();
+    together_ = std::clamp<std::size_t>(
+        static_cast<std::size_t>(kTogether / (probe.period * probe.samples_per_packet)), 1,
+        kMostTogether);
+    stream(true);
+    heard_ = now_();
+  }
+  ~UsbProbe() override { stream(false); }
+
+  bool read(std::vector<ProbeSample>& into) override {
+    for (const std::size_t before = into.size(); into.size() == before;) {
+      if (stopped_) return false;
+      std::array<std::byte, kMostTogether * kProbePacket> bytes;
+      const UsbCount got = usb_->read(kIn, std::span(bytes).first(together_ * kProbePacket), kWait);
+      const double now = now_();
+      if (got.bytes > 0) heard_ = now;
+      for (std::size_t at = 0; at < got.bytes; at += kProbePacket)
+        decoder_.take(std::span(bytes).subspan(at, std::min(kProbePacket, got.bytes - at)), now,
+                      into);
+      if (into.size() > before) return true; // what came before a fault is given first
+      if (got.result == UsbResult::gone) fail("is gone: it was pulled out, or its hub lost power");
+      if (got.result != UsbResult::ok && got.result != UsbResult::timeout)
+        fail("cannot be read: plug it in again, without a hub");
+      if (now - heard_ > kSilence) fail("has sent nothing for 2 s: plug it in again");
+    }
+    return true;
+  }
+  bool isLive() const override { return true; }
+  void stop() noexcept override { stopped_ = true; }
+  std::optional<ProbeHealth> health() const override { return decoder_.health(); }
+
+ private:
+  [[noreturn]] void fail(const std::string& cause) const {
+    throw DeviceError("the probe " + name_ + " " + cause);
+  }
+  void stream(bool on) noexcept {
+    usb_->controlOut({kToProbe, kStream, static_cast<std::uint16_t>(on), 0}, {}, kAnswer);
+  }
+  void discard() noexcept {
+    std::array<std::byte, kProbePacket> packet;
+    for (int i = 0; i < 256 && usb_->read(kIn, packet, 5).bytes > 0; ++i) {
+    }
+  }
+
+  const std::unique_ptr<UsbTransport> usb_;
+  const std::string name_;
+  const std::function<double()> now_;
+  std::size_t together_ = 1;
+  double heard_ = 0;
+  ProbeDecoder decoder_;
+  std::atomic<bool> stopped_{false};
+};
+
+} // namespace
+
+std::unique_ptr<ProbeSource> makeUsbProbe(std::unique_ptr<UsbTransport> usb, std::string name,
+                                          std::function<double()> now) {
+  return std::make_unique<UsbProbe>(std::move(usb), std::move(name), std::move(now));
+}
+
+} // namespace patina

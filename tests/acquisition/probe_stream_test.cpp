@@ -1,0 +1,300 @@
+// A probe's stream over an emulated bus in simulated time, and over a serial line: nothing is lost
+// here, and whatever is lost before is counted.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fcntl.h>
+#include <thread>
+#include <unistd.h>
+
+#include "acquisition/sources/probe_decoder.h"
+#include "acquisition/sources/sources.h"
+#include "acquisition/sources/usb_probe.h"
+#include "core/descriptor.h"
+#include "core/error.h"
+#include "support/emulated_probe_usb.h"
+
+namespace patina {
+namespace {
+
+using test::EmulatedProbeUsb;
+using test::ProbeBus;
+
+struct OnBus {
+  explicit OnBus(const EmulatedProbeSpec& spec, ProbeBus with = {}) : probe(spec), bus(with) {}
+  std::unique_ptr<ProbeSource> open() {
+    return makeUsbProbe(std::make_unique<EmulatedProbeUsb>(probe, bus), "P-1",
+                        [this] { return bus.now; });
+  }
+  EmulatedProbe probe;
+  ProbeBus bus;
+};
+
+template <class Work> std::string causeOf(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(ProbeStream, IsReadInItsUnits) {
+  OnBus on({.rate = 500, .samples_per_packet = 1});
+  const auto source = on.open();
+  std::vector<ProbeSample> samples;
+  while (samples.size() < 500) ASSERT_TRUE(source->read(samples));
+  EXPECT_DOUBLE_EQ(samples[0].t, 0);
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    ASSERT_NEAR(samples[i].t - samples[i - 1].t, 0.002, 1e-9);
+  double most = 0;
+  for (const ProbeSample& sample : samples) {
+    most = std::max(most, sample.force);
+    ASSERT_GE(sample.force, -0.01);
+    ASSERT_NEAR(sample.acceleration[1], 9.80665, 0.0736); // half a step
+    ASSERT_DOUBLE_EQ(sample.acceleration[0], 0);
+  }
+  EXPECT_NEAR(most, 1, 0.01);
+  const ProbeHealth health = source->health().value();
+  EXPECT_EQ(health.packets, samples.size());
+  EXPECT_EQ(health.lost_packets + health.corrupt + health.repeated + health.saturated, 0u);
+  EXPECT_FALSE(health.skew) << "too early to say";
+}
+
+// The figures of the protocol's promise: 4 kHz, one hour, one packet of a thousand lost on the way,
+// a clock 80 ppm fast, delays of 125 us and some more on each packet.
+TEST(ProbeStream, OfAnHourLosesNothingHereCountsAllThatWasLostAndKnowsItsClock) {
+  OnBus on({.rate = 4000, .skew = 80e-6, .loss = 1e-3, .describe_every = 0},
+           {.now = 3, .jitter = 200e-6});
+  const auto source = on.open();
+  const double begin = on.bus.now;
+  std::vector<ProbeSample> samples;
+  std::size_t count = 0;
+  double last = -1;
+  while (on.bus.now - begin < 3600) {
+    samples.clear();
+    ASSERT_TRUE(source->read(samples));
+    count += samples.size();
+    for (const ProbeSample& sample : samples) {
+      ASSERT_GT(sample.t, last);
+      last = sample.t;
+    }
+  }
+  const ProbeHealth health = source->health().value();
+  EXPECT_GT(on.bus.lost, 3000u);
+  EXPECT_EQ(health.lost_packets, on.bus.lost);
+  EXPECT_EQ(health.packets, on.bus.given);
+  EXPECT_EQ(count, 4 * health.packets);
+  EXPECT_EQ(health.lost_samples, 4 * health.lost_packets);
+  EXPECT_EQ(health.corrupt + health.repeated + health.restarts, 0u);
+  ASSERT_TRUE(health.skew);
+  EXPECT_NEAR(*health.skew, 80e-6, 1e-6);
+  RecordProperty("skew_ppm", std::to_string(1e6 * *health.skew));
+  RecordProperty("lost", std::to_string(health.lost_packets));
+}
+
+TEST(ProbeStream, ClockIsFoundWithinAPartPerMillionInAMinuteEitherWay) {
+  for (const double skew : {-80e-6, 0., 80e-6, 5e-3}) {
+    OnBus on({.rate = 1000, .samples_per_packet = 1, .skew = skew}, {.now = 1, .jitter = 100e-6});
+    const auto source = on.open();
+    std::vector<ProbeSample> samples;
+    while (on.bus.now < 61) ASSERT_TRUE(source->read(samples));
+    EXPECT_NEAR(source->health()->skew.value(), skew, 1e-6);
+  }
+}
+
+TEST(ProbeStream, CorruptPacketsAreCountedOnceAndAmongTheLost) {
+  OnBus on({.rate = 4000, .corrupt = 0.01, .describe_every = 0});
+  const auto source = on.open();
+  std::vector<ProbeSample> samples;
+  while (on.bus.now < 30) ASSERT_TRUE(source->read(samples));
+  const ProbeHealth health = source->health().value();
+  EXPECT_GT(on.probe.spoilt(), 200u);
+  EXPECT_LE(on.probe.spoilt() - health.corrupt, 16u);
+  EXPECT_LE(health.corrupt - health.lost_packets, 16u);
+  EXPECT_EQ(samples.size(), 4 * health.packets);
+}
+
+// Packets of one sample a millisecond, numbered as told.
+class Numbered {
+ public:
+  Numbered() {
+    for (unsigned part = 0; part < kProbeParts; ++part)
+      decoder.take(probe_.describe(part), 0, samples);
+  }
+  void send(std::uint32_t packet, std::uint64_t ms) {
+    probe_description about{};
+    probe_packer packer;
+    probe_start(&packer, &about, 1);
+    packer.packets = packer.samples = packet;
+    const std::int16_t counts[5] = {};
+    std::array<std::uint8_t, kProbePacket> raw;
+    probe_add(&packer, counts, 1'000'000 * ms, 0, raw.data());
+    decoder.take(std::as_bytes(std::span(raw)), 1e-3 * static_cast<double>(arrival_ += 1), samples);
+  }
+  ProbeDecoder decoder;
+  std::vector<ProbeSample> samples;
+
+ private:
+  EmulatedProbe probe_{{.rate = 1000, .samples_per_packet = 1}};
+  std::uint64_t arrival_ = 0;
+};
+
+TEST(ProbeStream, TakesEachNumberOnceAndInOrder) {
+  Numbered stream;
+  for (const std::uint32_t packet : {5u, 6u, 6u, 9u, 8u, 5u, 10u})
+    stream.send(packet, 100 + packet);
+  const ProbeHealth health = stream.decoder.health();
+  EXPECT_EQ(health.packets, 4u); // 5 6 9 10
+  EXPECT_EQ(health.lost_packets, 2u);
+  EXPECT_EQ(health.lost_samples, 2u);
+  EXPECT_EQ(health.repeated, 3u);
+  EXPECT_NEAR(stream.samples.back().t, 0.005, 1e-12);
+}
+
+TEST(ProbeStream, NumbersGoRoundTheCorner) {
+  Numbered stream;
+  for (const std::uint32_t ahead : {0u, 1u, 3u, 4u}) stream.send(0xfffffffeu + ahead, 100 + ahead);
+  EXPECT_EQ(stream.decoder.health().lost_packets, 1u);
+  EXPECT_EQ(stream.decoder.health().restarts, 0u);
+  EXPECT_EQ(stream.samples.size(), 4u);
+}
+
+TEST(ProbeStream, GoesOnInTimeWhereTheProbeStartsAnew) {
+  Numbered stream;
+  for (std::uint32_t i = 0; i < 50; ++i) stream.send(i, 7000 + i);
+  for (std::uint32_t i = 0; i < 50; ++i) stream.send(i, 2 + i);
+  EXPECT_EQ(stream.decoder.health().restarts, 1u);
+  EXPECT_EQ(stream.decoder.health().repeated, 0u);
+  ASSERT_EQ(stream.samples.size(), 100u);
+  for (std::size_t i = 1; i < 100; ++i)
+    EXPECT_NEAR(stream.samples[i].t - stream.samples[i - 1].t, 1e-3, 1e-9) << i;
+}
+
+TEST(ProbeStream, ThatIsNeverDescribedSaysSo) {
+  ProbeDecoder decoder;
+  EmulatedProbe probe({.rate = 4000, .samples_per_packet = 1, .describe_every = 0});
+  std::vector<ProbeSample> samples;
+  const std::string cause = causeOf([&] {
+    probe.until(10, [&](ProbePacket packet, double sent) { decoder.take(packet, sent, samples); });
+  });
+  EXPECT_NE(cause.find("never says what they mean"), std::string::npos);
+  EXPECT_TRUE(samples.empty());
+}
+
+TEST(UsbProbe, SaysInOneLineWhatIsWrong) {
+  const auto opening = [](ProbeBus with) {
+    OnBus on({}, with);
+    return causeOf([&] { (void)on.open(); });
+  };
+  EXPECT_EQ(opening({.claim = UsbResult::failed}),
+            "the probe P-1 is in use by another program: close that program");
+  EXPECT_EQ(opening({.claim = UsbResult::gone}), "the probe P-1 is gone: plug it in again");
+  EXPECT_NE(opening({.describe = UsbResult::stall}).find("load firmware of this version"),
+            std::string::npos);
+  EXPECT_NE(opening({.describe = UsbResult::gone}).find("its hub lost power"), std::string::npos);
+  const auto reading = [](ProbeBus with) {
+    OnBus on({}, {});
+    const auto source = on.open();
+    with.now = on.bus.now;
+    on.bus = with;
+    std::vector<ProbeSample> samples;
+    const std::string cause = causeOf([&] {
+      while (source->read(samples) && on.bus.now < 20) {
+      }
+    });
+    EXPECT_EQ(samples.size() % 4, 0u);
+    return cause + (samples.empty() ? ", nothing before" : "");
+  };
+  EXPECT_EQ(reading({.gone_at = 1.5}),
+            "the probe P-1 is gone: it was pulled out, or its hub lost power");
+  EXPECT_EQ(reading({.read = UsbResult::stall}),
+            "the probe P-1 cannot be read: plug it in again, without a hub, nothing before");
+  OnBus mute({}, {.streams = false});
+  const auto source = mute.open();
+  std::vector<ProbeSample> samples;
+  EXPECT_EQ(causeOf([&] { source->read(samples); }),
+            "the probe P-1 has sent nothing for 2 s: plug it in again");
+  EXPECT_LT(mute.bus.now, 2.5);
+}
+
+TEST(UsbProbe, StartsAndStopsTheStreamAndEndsWhenTold) {
+  OnBus on({});
+  {
+    const auto source = on.open();
+    EXPECT_EQ(on.bus.starts, 1);
+    std::vector<ProbeSample> samples;
+    EXPECT_TRUE(source->read(samples));
+    source->stop();
+    EXPECT_FALSE(source->read(samples));
+  }
+  EXPECT_EQ(on.bus.stops, 2) << "what an earlier program left, and its own";
+}
+
+class SerialLine : public testing::Test {
+ protected:
+  SerialLine() : end_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+    if (::grantpt(end_.get()) == 0 && ::unlockpt(end_.get()) == 0) path = ::ptsname(end_.get());
+  }
+  void send(std::string_view bytes) {
+    ASSERT_EQ(::write(end_.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  void send(ProbePacket packet) {
+    std::array<std::uint8_t, PROBE_FRAME> frame;
+    probe_frame(reinterpret_cast<const std::uint8_t*>(packet.data()), frame.data());
+    send(std::string_view(reinterpret_cast<const char*>(frame.data()), frame.size()));
+  }
+  void hangUp() { end_.close(); }
+  std::string path;
+
+ private:
+  Descriptor end_;
+};
+
+TEST_F(SerialLine, CarriesPacketsJoinedInTheMiddle) {
+  const auto source = openProbe("serial:" + path);
+  EXPECT_TRUE(source->isLive());
+  send("the end of a packet that was under way");
+  send(std::string_view("\0", 1));
+  EmulatedProbe probe({.rate = 1000, .describe_every = 0.02});
+  std::vector<ProbeSample> samples;
+  std::size_t sent = 0;
+  for (int step = 1; step <= 50; ++step) {
+    probe.until(0.01 * step, [&](ProbePacket packet, double) {
+      ++sent;
+      send(packet);
+    });
+    if (step < 12) continue; // six parts by then
+    ASSERT_TRUE(source->read(samples));
+  }
+  while (source->health()->packets < probe.made()) ASSERT_TRUE(source->read(samples));
+  EXPECT_GT(sent, probe.made());
+  EXPECT_EQ(samples.size(), 4 * probe.made());
+  EXPECT_EQ(source->health()->corrupt, 0u);
+  EXPECT_EQ(source->health()->lost_packets, 0u);
+  hangUp();
+  EXPECT_NE(causeOf([&] { source->read(samples); }).find("pulled out or hung up"),
+            std::string::npos);
+}
+
+TEST_F(SerialLine, OfTextSaysWhatToDo) {
+  const auto source = openProbe("serial:" + path);
+  std::thread talks([this] {
+    for (int i = 0; i < 400; ++i) {
+      send("0.002,0.1,0,9.8,0,9.8\n");
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  });
+  std::vector<ProbeSample> samples;
+  const std::string cause = causeOf([&] {
+    while (source->read(samples)) {
+    }
+  });
+  talks.join();
+  EXPECT_EQ(cause,
+            path +
+                ": what it sends are no packets of a probe: for lines of text say stream:" + path);
+}
+
+} // namespace
+} // namespace patina
