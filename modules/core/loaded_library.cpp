@@ -1,18 +1,23 @@
 #include "core/loaded_library.h"
 
 #include <dlfcn.h>
-#include <filesystem>
 
 namespace patina {
 
 namespace fs = std::filesystem;
 
+std::vector<fs::path> libraryFolders() {
+  std::error_code code;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", code).parent_path();
+  return {beside, (beside / PATINA_LIBRARIES_FOLDER).lexically_normal()};
+}
+
 void* loadedSymbol(const std::string& file, const char* symbol, std::string& cause) {
   std::error_code code;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", code).parent_path();
-  const fs::path beside = folder / file;
-  const fs::path installed = (folder / PATINA_LIBRARIES_FOLDER / file).lexically_normal();
-  for (const fs::path& place : {beside, installed}) {
+  std::string places;
+  for (const fs::path& folder : libraryFolders()) {
+    const fs::path place = folder / file;
+    places += (places.empty() ? "" : " nor ") + place.string();
     if (!fs::exists(place, code)) continue;
     void* library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     void* found = library ? ::dlsym(library, symbol) : nullptr;
@@ -21,7 +26,7 @@ void* loadedSymbol(const std::string& file, const char* symbol, std::string& cau
     cause = error ? error : place.string() + " is another version's";
     return nullptr;
   }
-  cause = "it is neither " + beside.string() + " nor " + installed.string();
+  cause = "it is neither " + places;
   return nullptr;
 }
 

@@ -2,12 +2,17 @@
 // would cost every start its time.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 namespace patina {
 
-// The address of `symbol` in the library `file`, which is looked for beside the running program and
-// where libraries are installed. nullptr if there is none, and `cause` says why.
+// Where they lie: beside the running program, and where libraries are installed.
+std::vector<std::filesystem::path> libraryFolders();
+
+// The address of `symbol` in the library `file`, which is looked for there. nullptr if there is
+// none, and `cause` says why.
 void* loadedSymbol(const std::string& file, const char* symbol, std::string& cause);
 
 } // namespace patina

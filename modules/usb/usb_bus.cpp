@@ -1,5 +1,8 @@
 #include "usb/usb_bus.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include "core/error.h"
 
 namespace patina {
@@ -12,21 +15,50 @@ const UsbLibrary& library() {
   return *table;
 }
 
+// What the kernel tells of those that may not be asked.
+void readSysfs(UsbDevice& device) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  const auto word = [](const fs::path& file) {
+    std::string text;
+    std::getline(std::ifstream(file), text);
+    for (char& c : text) c = c < 0x20 || c > 0x7e ? '?' : c; // it ends on a terminal
+    return text;
+  };
+  for (const auto& item : fs::directory_iterator("/sys/bus/usb/devices", code)) {
+    if (word(item.path() / "busnum") != std::to_string(device.bus) ||
+        word(item.path() / "devnum") != std::to_string(device.address))
+      continue;
+    const std::string maker = word(item.path() / "manufacturer"),
+                      product = word(item.path() / "product");
+    device.name = maker.empty() || product.empty() ? maker + product : maker + " " + product;
+    device.serial = word(item.path() / "serial");
+    return;
+  }
+}
+
 UsbDevice described(const UsbFound& found) {
   UsbDevice out;
   out.vendor = found.vendor;
   out.product = found.product;
-  out.name = found.name.empty() ? usbNumbers(found.vendor, found.product) : found.name;
-  out.haptic = hapticName(found.vendor, found.product);
+  out.release = found.release;
   out.openable = found.openable;
   out.bus = found.bus;
   out.address = found.address;
   out.megabits = found.megabits;
+  out.name = found.name;
+  out.serial = found.serial;
+  if (!found.openable) readSysfs(out);
+  out.haptic = out.name.find(kProbeName) != std::string::npos
+                   ? kProbeName
+                   : hapticName(found.vendor, found.product);
+  if (out.name.empty()) out.name = usbNumbers(found.vendor, found.product);
   // Ours take it from the kernel's driver by themselves; it is told of those we have no driver for.
   if (!found.openable)
-    out.advice = usbAdvice(found.refusal.value_or(UsbRefusal::other), found.vendor, found.product);
+    out.refusal = found.refusal.value_or(UsbRefusal::other);
   else if (found.driver_holds && !out.haptic.empty())
-    out.advice = usbAdvice(UsbRefusal::held_by_driver, found.vendor, found.product);
+    out.refusal = UsbRefusal::held_by_driver;
+  if (out.refusal) out.advice = usbAdvice(*out.refusal, found.vendor, found.product);
   return out;
 }
 
@@ -40,17 +72,35 @@ std::vector<UsbDevice> listUsbDevices() {
   return devices;
 }
 
-std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product) {
+namespace {
+
+std::unique_ptr<UsbTransport> opened(const std::function<bool(const UsbFound&)>& wanted,
+                                     std::string who, std::uint16_t vendor, std::uint16_t product) {
   std::optional<UsbRefusal> refusal;
   std::string cause;
-  std::unique_ptr<UsbTransport> usb = library().open(vendor, product, refusal, cause);
+  std::unique_ptr<UsbTransport> usb = library().open(wanted, refusal, cause);
   if (usb) return usb;
   if (!cause.empty()) throw DeviceError(cause);
-  const std::string_view known = hapticName(vendor, product);
-  const std::string who = (known.empty() ? "the device" : std::string(known)) + " (USB " +
-                          usbNumbers(vendor, product) + ")";
+  who += " (USB " + usbNumbers(vendor, product) + ")";
   throw DeviceError(refusal ? who + ": " + usbAdvice(*refusal, vendor, product)
                             : who + " is not attached: plug it in, and its power supply too");
+}
+
+} // namespace
+
+std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product) {
+  const std::string_view known = hapticName(vendor, product);
+  return opened(
+      [&](const UsbFound& found) { return found.vendor == vendor && found.product == product; },
+      known.empty() ? "the device" : std::string(known), vendor, product);
+}
+
+std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device) {
+  return opened(
+      [&](const UsbFound& found) {
+        return found.bus == device.bus && found.address == device.address;
+      },
+      device.name, device.vendor, device.product);
 }
 
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,11 @@ struct UsbDevice {
   std::string haptic;    // "Force Dimension", "Novint Falcon" ...; empty if it is none that we know
   bool openable = false; // by this user
   std::string advice;    // what to do if not: permissions, a driver that holds it
-  int bus = 0, address = 0; // as in /dev/bus/usb
-  double megabits = 0;      // of its cable: 12 is full speed; 0 if unknown
+  int bus = 0, address = 0;            // as in /dev/bus/usb
+  double megabits = 0;                 // of its cable: 12 is full speed; 0 if unknown
+  std::string serial{};                // empty if it says none
+  std::uint16_t release = 0;           // of the device, mostly its firmware: 0x0123 is 1.23
+  std::optional<UsbRefusal> refusal{}; // what forbids it, where advice says what to do
 };
 
 // Every device on the bus; an empty list if there is a bus with nothing on it. Throws DeviceError
@@ -32,6 +36,10 @@ std::vector<UsbDevice> listUsbDevices();
 // claimed yet. Throws DeviceError with what to do where there is none. Any thread; slow.
 std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product);
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic);
+std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device); // this one, where it was listed
+
+// What `haptic` says of a probe (docs/usb_protocol.md): whatever its numbers, its name begins so.
+inline constexpr std::string_view kProbeName = "Patina probe";
 
 // The maker or model of a haptic device; empty if vendor and product are none that we know.
 std::string_view hapticName(std::uint16_t vendor, std::uint16_t product);

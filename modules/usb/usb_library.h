@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ enum class UsbRefusal : std::uint8_t { permission, held_by_driver, gone, other }
 struct UsbFound {
   std::uint16_t vendor = 0, product = 0;
   std::string name;                    // maker and product; empty if it may not be asked
+  std::string serial{};                // likewise
+  std::uint16_t release = 0;           // of the device, mostly its firmware: 0x0123 is 1.23
   int bus = 0, address = 0;            // as in /dev/bus/usb
   double megabits = 0;                 // of its cable; 0 if unknown
   bool openable = false;               // by this user
@@ -28,8 +31,8 @@ struct UsbFound {
 struct UsbLibrary {
   // Both say in `cause` what went wrong with the bus itself.
   std::vector<UsbFound> (*list)(std::string& cause);
-  // nullptr: there is none, or `refusal` of the last that there is.
-  std::unique_ptr<UsbTransport> (*open)(std::uint16_t vendor, std::uint16_t product,
+  // The first for which `wanted`. nullptr: there is none, or `refusal` of the last that there is.
+  std::unique_ptr<UsbTransport> (*open)(const std::function<bool(const UsbFound&)>& wanted,
                                         std::optional<UsbRefusal>& refusal, std::string& cause);
 };
 

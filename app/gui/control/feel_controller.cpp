@@ -29,7 +29,7 @@ void FeelController::place(const Scene& scene, const Vec3& start) {
   const auto target = std::make_shared<TipTarget>(start);
   const DeviceModel model =
       entry.takes_numbers ? scene.device_model.value_or(entry.model) : entry.model;
-  const DeviceSetup setup{.target = target, .model = model};
+  const DeviceSetup setup{.name = scene.device, .target = target, .model = model};
   notes_ = entry.linked ? setup.notes : nullptr;
   look();
   try {

@@ -13,8 +13,10 @@
 #include "acquisition/sources/pace.h"
 #include "acquisition/sources/probe_decoder.h"
 #include "acquisition/sources/sources.h"
+#include "acquisition/sources/usb_probe.h"
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "usb/usb_bus.h"
 
 namespace patina {
 namespace {
@@ -174,11 +176,26 @@ class SerialProbe final : public ByteStream {
   std::size_t came_ = 0;
 };
 
+// The first probe on the bus, or the one of this serial number.
+std::unique_ptr<ProbeSource> openUsbProbe(const std::string& serial) {
+  std::string others;
+  for (const UsbDevice& device : listUsbDevices()) {
+    if (device.haptic != kProbeName) continue;
+    if (serial.empty() || device.serial == serial)
+      return makeUsbProbe(openUsb(device), device.serial.empty() ? device.name : device.serial,
+                          steadySeconds);
+    others += (others.empty() ? "" : ", ") + device.serial;
+  }
+  if (others.empty()) throw DeviceError("there is no probe on the USB bus: plug it in");
+  throw DeviceError("there is no probe " + serial + " on the USB bus, only " + others);
+}
+
 } // namespace
 
 std::unique_ptr<ProbeSource> openProbe(const std::string& probe) {
   if (probe.starts_with("stream:")) return std::make_unique<ProbeStream>(probe.substr(7));
   if (probe.starts_with("serial:")) return std::make_unique<SerialProbe>(probe.substr(7));
+  if (probe.starts_with("usb:")) return openUsbProbe(probe.substr(4));
   if (probe.starts_with("replay:")) return std::make_unique<ReplayedProbe>(probe.substr(7));
   return std::make_unique<ProbeFile>(probe);
 }

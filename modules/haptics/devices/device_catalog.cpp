@@ -6,6 +6,8 @@
 #include "core/error.h"
 #include "haptics/devices/emulated_devices.h"
 #include "haptics/devices/falcon/falcon_device.h"
+#include "haptics/devices/plugin/plugin_device.h"
+#include "haptics/devices/plugin/plugin_library.h"
 #include "haptics/devices/replayed_hand.h"
 #include "haptics/devices/simulated_hand.h"
 #include "haptics/devices/spacemouse/spacemouse.h"
@@ -94,6 +96,13 @@ const DeviceEntry kCatalog[] = {
      .open = [](const DeviceSetup& setup) { return makeReplayedHand(setup.path); }},
 };
 
+// Not in the list, as each of its kind has a name of its own.
+const DeviceEntry kPlugin{
+    .name = "plugin",
+    .caption = "Plug-in",
+    .note = "a library of its maker's drives it",
+    .open = [](const DeviceSetup& setup) { return makePluginDevice(setup.name); }};
+
 } // namespace
 
 std::span<const DeviceEntry> deviceCatalog() {
@@ -101,13 +110,14 @@ std::span<const DeviceEntry> deviceCatalog() {
 }
 
 const DeviceEntry& deviceNamed(std::string_view name) {
+  if (isPlugin(name)) return (void)pluginName(name), kPlugin;
   std::string known;
   for (const DeviceEntry& entry : kCatalog) {
     if (!entry.in_scenes) continue;
     if (entry.name == name) return entry;
     known += (known.empty() ? "" : " or ") + std::string(entry.name);
   }
-  throw Error("device = " + std::string(name) + ": it must be " + known);
+  throw Error("device = " + std::string(name) + ": it must be " + known + " or plugin:NAME");
 }
 
 MountSpec mountAt(const DeviceEntry& entry, const Vec3& place) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct DeviceLimits {
 
 // What opening needs; each device takes its part.
 struct DeviceSetup {
+  std::string name{}; // as the scene has it, of what needs more than its entry
   std::shared_ptr<const TipTarget> target{}; // of what a pointer moves
   DeviceModel model{};                       // of what is simulated
   std::vector<TimedTip> path{};              // of what is replayed
@@ -47,7 +49,8 @@ struct DeviceEntry {
 };
 
 std::span<const DeviceEntry> deviceCatalog();
-// Of those that a scene may name. Throws Error that lists them.
+// Of those that a scene may name, plug-ins too (plugin/plugin_library.h). Throws Error that lists
+// them.
 const DeviceEntry& deviceNamed(std::string_view name);
 
 // Where the middle of the device's own workspace, if it has one, lies in the world.

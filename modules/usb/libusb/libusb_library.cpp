@@ -78,13 +78,20 @@ double megabitsOf(libusb_device* device) {
   }
 }
 
-UsbFound found(libusb_device* device, const libusb_device_descriptor& descriptor) {
+// What is known without opening it.
+UsbFound numbered(libusb_device* device, const libusb_device_descriptor& descriptor) {
   UsbFound out;
   out.vendor = descriptor.idVendor;
   out.product = descriptor.idProduct;
   out.bus = libusb_get_bus_number(device);
   out.address = libusb_get_device_address(device);
   out.megabits = megabitsOf(device);
+  out.release = descriptor.bcdDevice;
+  return out;
+}
+
+UsbFound found(libusb_device* device, const libusb_device_descriptor& descriptor) {
+  UsbFound out = numbered(device, descriptor);
   libusb_device_handle* raw = nullptr;
   if (const int code = libusb_open(device, &raw); code != LIBUSB_SUCCESS) {
     out.refusal = refusalOf(code);
@@ -95,6 +102,7 @@ UsbFound found(libusb_device* device, const libusb_device_descriptor& descriptor
   const std::string maker = text(raw, descriptor.iManufacturer);
   const std::string product = text(raw, descriptor.iProduct);
   out.name = maker.empty() || product.empty() ? maker + product : maker + " " + product;
+  out.serial = text(raw, descriptor.iSerialNumber);
   out.driver_holds = libusb_kernel_driver_active(raw, 0) == 1;
   return out;
 }
@@ -112,7 +120,7 @@ std::vector<UsbFound> listAll(std::string& cause) {
   return devices;
 }
 
-std::unique_ptr<UsbTransport> openFirst(std::uint16_t vendor, std::uint16_t product,
+std::unique_ptr<UsbTransport> openFirst(const std::function<bool(const UsbFound&)>& wanted,
                                         std::optional<UsbRefusal>& refusal, std::string& cause) {
   Context context = openContext(cause);
   if (!context) return nullptr;
@@ -123,7 +131,7 @@ std::unique_ptr<UsbTransport> openFirst(std::uint16_t vendor, std::uint16_t prod
     for (ssize_t i = 0; i < list.count && !handle; ++i) {
       libusb_device_descriptor descriptor{};
       if (libusb_get_device_descriptor(list.items[i], &descriptor) != 0 ||
-          descriptor.idVendor != vendor || descriptor.idProduct != product)
+          !wanted(numbered(list.items[i], descriptor)))
         continue;
       libusb_device_handle* raw = nullptr;
       const int code = libusb_open(list.items[i], &raw);

@@ -1,0 +1,392 @@
+// Devices behind plug-ins: what is loaded and what is refused, and that no fault of a plug-in
+// leaves a force behind or stops the loop.
+#include "haptics/devices/plugin/plugin_device.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <thread>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "core/newest.h"
+#include "haptics/devices/plugin/plugin_library.h"
+#include "haptics/servo/realtime.h"
+#include "support/places.h"
+
+namespace patina {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+const double kNan = std::nan("");
+
+template <class Work> std::string causeOf(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+bool has(const std::string& text, const char* part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Newest, IsNeverReadByHalfAndEndsWithTheLast) {
+  struct Pair {
+    std::uint64_t a = 0, b = 0;
+  };
+  Newest<Pair> newest;
+  std::thread writer([&] {
+    for (std::uint64_t i = 1; i <= 200000; ++i) newest.put({i, ~i});
+  });
+  std::uint64_t last = 0;
+  while (last < 200000) {
+    const Pair seen = newest.get();
+    ASSERT_TRUE(seen.b == ~seen.a || (seen.a == 0 && seen.b == 0));
+    ASSERT_GE(seen.a, last);
+    last = seen.a;
+  }
+  writer.join();
+}
+
+// A device in this program: it notes each exchange, and fails as it is told, from now on.
+enum class Fault {
+  none,
+  stalls,
+  answers_nan,
+  answers_infinity,
+  leaves_it_out,
+  refuses,
+  turns_wrongly,
+  is_far,
+  odd_status,
+  negative_age,
+  old_age,
+  is_gone,
+  throws,
+  slow
+};
+struct Noted {
+  double force;    // [N], magnitude
+  std::int64_t at; // [ns]
+  Fault fault;     // in force
+};
+struct Faulty {
+  std::atomic<Fault> fault{Fault::none};
+  std::atomic<int> calls{0}, closed{0};
+  std::array<Noted, 20000> noted;
+  std::atomic<bool> release{false};
+} faulty;
+
+void* openFaulty(const char* argument, char* why, std::size_t room) {
+  faulty.fault = Fault::none;
+  faulty.calls = 0;
+  faulty.closed = 0;
+  faulty.release = false;
+  if (std::strcmp(argument, "refuse") == 0) {
+    std::memset(why, 'x', room); // no zero ends it
+    return nullptr;
+  }
+  if (std::strcmp(argument, "mute") == 0) faulty.fault = Fault::refuses;
+  if (std::strcmp(argument, "throw") == 0) throw 7;
+  return &faulty;
+}
+
+int exchangeFaulty(void*, const double force[3], double, patina_device_state* state) {
+  const int call = faulty.calls;
+  const Fault fault = faulty.fault;
+  if (call < 20000)
+    faulty.noted[static_cast<std::size_t>(call)] = {Vec3(force[0], force[1], force[2]).norm(),
+                                                    monotonicNs(), fault};
+  ++faulty.calls;
+  for (int i = 0; i < 3; ++i) state->position[i] = 1e-3 * (i + 1);
+  switch (fault) {
+  case Fault::stalls:
+    for (int i = 0; i < 60 && !faulty.release; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    faulty.fault = Fault::none;
+    break;
+  case Fault::slow:
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));
+    break;
+  case Fault::answers_nan:
+    state->position[1] = kNan;
+    break;
+  case Fault::answers_infinity:
+    state->has_velocity = 1;
+    state->velocity[2] = INFINITY;
+    break;
+  case Fault::leaves_it_out:
+    for (double& place : state->position) place = kNan;
+    break;
+  case Fault::refuses:
+    return -1;
+  case Fault::turns_wrongly:
+    state->orientation[0] = 0;
+    break;
+  case Fault::is_far:
+    state->position[0] = 1e6;
+    break;
+  case Fault::odd_status:
+    state->status = 77;
+    break;
+  case Fault::negative_age:
+    state->age = -1;
+    break;
+  case Fault::old_age:
+    state->age = 0.5;
+    break;
+  case Fault::is_gone:
+    state->status = PATINA_DEVICE_GONE;
+    break;
+  case Fault::throws:
+    throw std::runtime_error("no plug-in may");
+  case Fault::none:
+    break;
+  }
+  return 0;
+}
+
+void describeFaulty(patina_device_description* description) {
+  std::memset(description->name, 'N', sizeof description->name); // fills its room
+  description->max_force = 3;
+  description->max_stiffness = kNan;
+  description->workspace_low[0] = 1; // above the highest
+}
+
+const patina_device kFaulty{PATINA_DEVICE_ABI, sizeof(patina_device),
+                            describeFaulty,    openFaulty,
+                            exchangeFaulty,    [](void*) { ++faulty.closed; }};
+
+// What a servo does, with a law of what it feels.
+struct Loop {
+  std::unique_ptr<Device> device = makePluginDevice(kFaulty, "faulty", "");
+  double stiffness = 0, friction = 0; // free, in contact, in a stroke
+  DeviceState state;
+  Vec3 force = Vec3::Zero();
+  double most_age = 0; // of a state that was felt [s]
+
+  void tick(int count) {
+    for (int i = 0; i < count; ++i) {
+      std::this_thread::sleep_for(std::chrono::microseconds(900));
+      state = device->exchange(force, kPeriod);
+      const bool felt = judge(state) == DeviceStatus::ok;
+      force = felt ? Vec3(friction, 0, stiffness * state.position.z()) : Vec3(Vec3::Zero());
+      if (felt) most_age = std::max(most_age, state.age);
+    }
+  }
+};
+
+std::size_t firstWith(Fault fault) {
+  const auto end = faulty.noted.begin() + std::min(faulty.calls.load(), 20000);
+  return static_cast<std::size_t>(
+      std::find_if(faulty.noted.begin(), end, [&](const Noted& n) { return n.fault == fault; }) -
+      faulty.noted.begin());
+}
+
+const std::pair<double, double> kLaws[] = {{0, 0}, {400, 0}, {400, 0.3}};
+
+TEST(PluginDevice, CarriesForceAndStateOfTheExample) {
+  const auto device = makePluginDevice("plugin:example:0.01,0.02,0.03");
+  DeviceState state = device->exchange(Vec3::Zero(), kPeriod);
+  EXPECT_EQ(judge(state), DeviceStatus::ok);
+  EXPECT_LT((state.position - Vec3(0.01, 0.02, 0.03)).norm(), 1e-9);
+  for (int i = 0; i < 900; ++i) {
+    std::this_thread::sleep_for(std::chrono::microseconds(900));
+    state = device->exchange(Vec3(0, 0.3, 0), kPeriod);
+  }
+  ASSERT_TRUE(state.velocity);
+  EXPECT_NEAR(state.position.y(), 0.02 + 0.3 / 150, 2e-4); // rests where its spring bears the force
+}
+
+TEST(PluginDevice, InEveryFaultSendsNoForceWithTheNextExchangeAndTellsTheLoop) {
+  for (const Fault fault : {Fault::answers_nan, Fault::answers_infinity, Fault::leaves_it_out,
+                            Fault::refuses, Fault::turns_wrongly, Fault::is_far, Fault::odd_status,
+                            Fault::negative_age, Fault::old_age, Fault::is_gone, Fault::throws}) {
+    for (const auto& [stiffness, friction] : kLaws) {
+      Loop loop;
+      loop.stiffness = stiffness;
+      loop.friction = friction;
+      loop.tick(400); // the force has faded in
+      const double before = faulty.noted[static_cast<std::size_t>(faulty.calls - 1)].force;
+      EXPECT_NEAR(before, std::hypot(friction, stiffness * 3e-3), 1e-9);
+      faulty.fault = fault;
+      loop.tick(60);
+      const int id = static_cast<int>(fault);
+      EXPECT_NE(judge(loop.state), DeviceStatus::ok) << id;
+      EXPECT_LE(loop.most_age, kOldestAge) << id;
+      const std::size_t first = firstWith(fault);
+      ASSERT_LT(first, static_cast<std::size_t>(faulty.calls)) << id;
+      // An age is seen by the servo, a tick later; all else by the plug-in's own thread.
+      const std::size_t until =
+          first + (fault == Fault::old_age || fault == Fault::is_gone ? 3 : 1);
+      for (std::size_t i = until; i < static_cast<std::size_t>(faulty.calls); ++i)
+        ASSERT_EQ(faulty.noted[i].force, 0) << id << ", exchange " << i - first;
+      faulty.fault = Fault::none;
+    }
+  }
+}
+
+TEST(PluginDevice, AStallShowsAsAgeAndComesBackWithoutForceThatFadesIn) {
+  for (const auto& [stiffness, friction] : kLaws) {
+    Loop loop;
+    loop.stiffness = stiffness;
+    loop.friction = friction;
+    loop.tick(400);
+    faulty.fault = Fault::stalls;
+    const auto begin = monotonicNs();
+    loop.tick(40);
+    const double passed = 1e-9 * static_cast<double>(monotonicNs() - begin);
+    EXPECT_GT(passed, 0.03);
+    EXPECT_EQ(judge(loop.state), DeviceStatus::silent); // and the ticks went on
+    loop.tick(400);
+    EXPECT_EQ(judge(loop.state), DeviceStatus::ok);
+    const std::size_t after = firstWith(Fault::stalls) + 1;
+    ASSERT_LT(after + 100, static_cast<std::size_t>(faulty.calls));
+    EXPECT_EQ(faulty.noted[after].force, 0) << "what waited for it";
+    const double full = std::hypot(friction, stiffness * 3e-3);
+    for (std::size_t i = after; i < static_cast<std::size_t>(faulty.calls); ++i) {
+      const double since = 1e-9 * static_cast<double>(faulty.noted[i].at - faulty.noted[after].at);
+      // dt of the ticks is a millisecond, which they take at least 900 us for.
+      ASSERT_LE(faulty.noted[i].force, full * (since + 5e-3) / 0.9 / 0.25 + 1e-12);
+    }
+    EXPECT_NEAR(faulty.noted[static_cast<std::size_t>(faulty.calls - 1)].force, full, 1e-9);
+  }
+}
+
+TEST(PluginDevice, ThatIsAlwaysLateFeelsNothing) {
+  Loop loop;
+  loop.stiffness = 400;
+  faulty.fault = Fault::slow; // 8 ms, where 4 are too old
+  loop.tick(300);
+  double most = 0;
+  for (int i = 0; i < faulty.calls; ++i)
+    most = std::max(most, faulty.noted[static_cast<std::size_t>(i)].force);
+  // Only a tick just after an answer may pass one on, and its force has not faded in.
+  EXPECT_LT(most, 0.1);
+  faulty.fault = Fault::none;
+}
+
+TEST(PluginDevice, AServoThatHangsLeavesNoForceBehind) {
+  Loop loop;
+  loop.stiffness = 400;
+  loop.tick(400);
+  const auto last = monotonicNs();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  int late = 0, rests = 0;
+  for (int i = 0; i < faulty.calls; ++i) {
+    const Noted& noted = faulty.noted[static_cast<std::size_t>(i)];
+    if (noted.at < last + 5'000'000) continue;
+    ++rests;
+    late += noted.force > 0;
+  }
+  EXPECT_GE(rests, 10); // the plug-in is served on
+  EXPECT_LE(late, 1);   // one may have been under way
+}
+
+TEST(PluginDevice, SendsNoMoreThanItRendersAndNothingThatIsNone) {
+  Loop loop;
+  for (const double huge : {1e6, 1e300, kNan, double(INFINITY), -1e9}) {
+    for (int i = 0; i < 300; ++i) {
+      std::this_thread::sleep_for(std::chrono::microseconds(300));
+      loop.device->exchange(Vec3(huge, 0, huge), kPeriod);
+    }
+  }
+  double most = 0;
+  for (int i = 0; i < faulty.calls; ++i) {
+    ASSERT_TRUE(std::isfinite(faulty.noted[static_cast<std::size_t>(i)].force));
+    most = std::max(most, faulty.noted[static_cast<std::size_t>(i)].force);
+  }
+  EXPECT_LE(most, 3 * (1 + 1e-12));
+  EXPECT_GT(most, 2.9);
+}
+
+TEST(PluginDevice, EndsWithAForceOfZeroAndAtMostASecondAfterAHang) {
+  {
+    Loop loop;
+    loop.stiffness = 400;
+    loop.tick(300);
+  }
+  EXPECT_EQ(faulty.closed, 1);
+  EXPECT_EQ(faulty.noted[static_cast<std::size_t>(faulty.calls - 1)].force, 0);
+}
+
+TEST(PluginDevice, ThatCannotBeOpenedSaysWhy) {
+  const auto opening = [](const char* argument) {
+    return causeOf([&] { (void)makePluginDevice(kFaulty, "faulty", argument); });
+  };
+  EXPECT_TRUE(has(opening("refuse"), "the plug-in faulty cannot be opened: xxxx"));
+  EXPECT_EQ(opening("mute"), "the plug-in faulty opens and does not answer: is the device switched "
+                             "on?");
+  EXPECT_EQ(opening("throw"), "the plug-in faulty throws an exception, which no plug-in may");
+  EXPECT_TRUE(has(causeOf([] { (void)makePluginDevice("plugin:example:here"); }),
+                  "'here' is no place: write X,Y,Z in metres"));
+}
+
+TEST(PluginDevice, WhatItSaysOfItselfIsJudged) {
+  const PluginFound found = described("faulty", kFaulty);
+  EXPECT_EQ(found.caption, std::string(64, 'N'));
+  EXPECT_EQ(found.limits.max_force, 3);
+  EXPECT_FALSE(found.limits.max_stiffness);
+  EXPECT_FALSE(found.limits.workspace);
+}
+
+class PluginLibraries : public testing::Test {
+ protected:
+  PluginLibraries() {
+    folder_ = std::filesystem::path(testing::TempDir()) / ("plugins" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    ::setenv("PATINA_DEVICES", folder_.c_str(), 1);
+  }
+  ~PluginLibraries() override {
+    ::unsetenv("PATINA_DEVICES");
+    std::filesystem::remove_all(folder_);
+  }
+  std::string causeOfLoading(const char* name) {
+    return causeOf([&] { (void)loadedPlugin(name); });
+  }
+  void put(const char* from, const char* name) {
+    std::filesystem::copy_file(test::programFolder() / from,
+                               folder_ / ("patina_device_" + std::string(name) + ".so"));
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(PluginLibraries, OfAnotherVersionOrNoneAreRefusedInOneLine) {
+  put("odd_plugin_1.so", "later");
+  put("odd_plugin_2.so", "hollow");
+  put("odd_plugin_3.so", "nothing");
+  put("fault_shim.so", "foreign");
+  std::ofstream(folder_ / "patina_device_text.so") << "no library";
+  EXPECT_TRUE(has(causeOfLoading("later"), "patina_device_later.so is made for version 2 of "
+                                           "patina_device.h, this program reads version 1: build"));
+  EXPECT_TRUE(has(causeOfLoading("hollow"), "is not whole"));
+  EXPECT_TRUE(has(causeOfLoading("nothing"), "has no device to offer"));
+  EXPECT_TRUE(has(causeOfLoading("foreign"), "is no plug-in: it has no patina_device_entry"));
+  EXPECT_TRUE(has(causeOfLoading("text"), "cannot be loaded: "));
+  EXPECT_TRUE(has(causeOfLoading("absent"), "there is no plug-in absent: put "
+                                            "patina_device_absent.so into one of "));
+  for (const char* name : {"later", "hollow", "nothing", "foreign", "text", "absent"})
+    EXPECT_FALSE(has(causeOfLoading(name), "\n")) << name;
+  // All of them are listed, and the one that ships.
+  int sound = 0, odd = 0;
+  for (const PluginFound& found : installedPlugins()) ++(found.problem.empty() ? sound : odd);
+  EXPECT_EQ(sound, 1);
+  EXPECT_EQ(odd, 5);
+}
+
+TEST_F(PluginLibraries, AreNamedByAWordAndNeverByAPlace) {
+  for (const char* name : {"plugin:", "plugin:../evil", "plugin:a/b", "plugin:a.so", "plugin::x"})
+    EXPECT_TRUE(has(causeOf([&] { (void)deviceNamed(name); }), "it must be plugin:NAME")) << name;
+  EXPECT_EQ(pluginName("plugin:inverse3:localhost:10001").argument, "localhost:10001");
+  EXPECT_EQ(std::string(deviceNamed("plugin:example").name), "plugin");
+}
+
+} // namespace
+} // namespace patina
