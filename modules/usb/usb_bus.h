@@ -48,4 +48,9 @@ std::string_view hapticName(std::uint16_t vendor, std::uint16_t product);
 std::string usbAdvice(UsbRefusal refusal, std::uint16_t vendor, std::uint16_t product);
 std::string usbNumbers(std::uint16_t vendor, std::uint16_t product); // "0403:cb48"
 
+// Rules of udev for all devices that we know, a file's text: whoever sits at the machine may open
+// them. data/70-patina.rules is the same.
+inline constexpr const char* kUdevFile = "70-patina.rules";
+std::string udevRules();
+
 } // namespace patina

@@ -55,10 +55,12 @@ std::string_view hapticName(std::uint16_t vendor, std::uint16_t product) {
 std::string usbAdvice(UsbRefusal refusal, std::uint16_t vendor, std::uint16_t product) {
   switch (refusal) {
   case UsbRefusal::permission:
-    return "no permission: put SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + hex4(vendor) +
-           "\", ATTR{idProduct}==\"" + hex4(product) +
-           "\", TAG+=\"uaccess\" into /etc/udev/rules.d/70-haptic.rules, run 'udevadm control "
-           "--reload' as root and plug the device in again";
+    return "no permission: run 'patina devices --install-udev' as root, which puts "
+           "SUBSYSTEM==\"usb\", "
+           "ATTR{idVendor}==\"" +
+           hex4(vendor) + "\", ATTR{idProduct}==\"" + hex4(product) +
+           "\", TAG+=\"uaccess\" and its like into /etc/udev/rules.d/, then 'udevadm control "
+           "--reload', and plug the device in again";
   case UsbRefusal::held_by_driver:
     return "a driver or another program holds it: close that program, or unload the driver that "
            "'lsusb -t' names";
@@ -68,6 +70,25 @@ std::string usbAdvice(UsbRefusal refusal, std::uint16_t vendor, std::uint16_t pr
     break;
   }
   return "it does not answer: plug it in again, without a hub, and look at 'dmesg'";
+}
+
+std::string udevRules() {
+  std::string text =
+      "# Whoever sits at this machine may open its haptic devices and probes, which Patina knows.\n"
+      "# 'patina devices --install-udev' writes this into /etc/udev/rules.d; then run\n"
+      "# 'udevadm control --reload' and plug the device in again.\n"
+      "ACTION==\"remove\", GOTO=\"patina_end\"\n";
+  for (const Known& known : kKnown) {
+    text += "# " + std::string(known.name) + "\nSUBSYSTEM==\"usb\", ATTR{idVendor}==\"" +
+            hex4(known.vendor) + "\"";
+    if (known.product != 0) text += ", ATTR{idProduct}==\"" + hex4(known.product) + "\"";
+    text += ", TAG+=\"uaccess\"\n";
+  }
+  // ModemManager would talk to a serial line that it does not know.
+  const std::string probe =
+      "==\"" + std::string(kProbeName) + "*\", TAG+=\"uaccess\", ENV{ID_MM_DEVICE_IGNORE}=\"1\"\n";
+  return text + "# Probes: docs/usb_protocol.md\nSUBSYSTEM==\"usb\", ATTR{product}" + probe +
+         "SUBSYSTEM==\"tty\", ATTRS{product}" + probe + "LABEL=\"patina_end\"\n";
 }
 
 } // namespace patina

@@ -1,8 +1,11 @@
 #include "usb/usb_bus.h"
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 
 #include "core/error.h"
+#include "support/places.h"
 
 namespace patina {
 namespace {
@@ -56,6 +59,17 @@ TEST(UsbBus, EveryRefusalHasItsOwnAdviceInOneLine) {
     EXPECT_EQ(std::count(seen.begin(), seen.end(), advice), 0);
     seen.push_back(advice);
   }
+}
+
+TEST(UsbBus, RulesOfUdevAreThoseThatShipAndKnowEachDevice) {
+  std::ifstream file(test::sourceFolder() / "data" / kUdevFile);
+  std::stringstream shipped;
+  shipped << file.rdbuf();
+  EXPECT_EQ(shipped.str(), udevRules()) << "write it anew: patina devices --install-udev data";
+  EXPECT_NE(
+      udevRules().find("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\", TAG+=\"uaccess\"\n"),
+      std::string::npos);
+  EXPECT_NE(udevRules().find("ATTR{product}==\"Patina probe*\""), std::string::npos);
 }
 
 } // namespace

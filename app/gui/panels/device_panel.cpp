@@ -79,7 +79,8 @@ DeviceChoice deviceChoice(const Scene& scene) {
 
 DevicePanel::DevicePanel(QWidget* parent)
     : QGroupBox(tr("Device"), parent), device_(new QComboBox(this)),
-      stabiliser_(new QComboBox(this)), layout_(new QVBoxLayout(this)), note_(new QLabel(this)) {
+      stabiliser_(new QComboBox(this)), layout_(new QVBoxLayout(this)), note_(new QLabel(this)),
+      attached_(new AttachedDevices(this)) {
   layout_->setContentsMargins(0, 0, 0, 0);
   layout_->setSpacing(6);
   auto* grid = new QGridLayout;
@@ -114,6 +115,16 @@ DevicePanel::DevicePanel(QWidget* parent)
   note_->setWordWrap(true);
   note_->hide();
   layout_->addWidget(note_);
+  layout_->addWidget(attached_);
+  connect(attached_, &AttachedDevices::pluginsFound, this,
+          [this](const std::vector<PluginFound>& plugins) {
+            for (const PluginFound& plugin : plugins)
+              if (plugin.problem.empty())
+                addDevice(QString::fromStdString(plugin.caption), "plugin:" + plugin.name);
+          });
+  connect(attached_, &AttachedDevices::useAsked, this, [this](const std::string& device) {
+    device_->setCurrentIndex(device_->findData(QString::fromStdString(device)));
+  });
   connect(device_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
     choice_.device = device_->itemData(index).toString().toStdString();
     rebuild();
@@ -128,10 +139,17 @@ DevicePanel::DevicePanel(QWidget* parent)
 void DevicePanel::setValues(const DeviceChoice& choice) {
   choice_ = choice;
   const QSignalBlocker quiet(device_), quiet_too(stabiliser_);
+  if (isPlugin(choice.device)) addDevice(QString::fromStdString(choice.device), choice.device);
   device_->setCurrentIndex(device_->findData(QString::fromStdString(choice.device)));
   for (int i = 0; i < 5; ++i)
     if (kStabilisers[i] == choice.stabilisers) stabiliser_->setCurrentIndex(i);
   rebuild();
+}
+
+void DevicePanel::addDevice(const QString& caption, const std::string& device) {
+  const QString data = QString::fromStdString(device);
+  const QSignalBlocker quiet(device_);
+  if (device_->findData(data) < 0) device_->addItem(caption, data);
 }
 
 void DevicePanel::showPlan(const StabiliserPlan& plan) {

@@ -11,6 +11,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "app/gui/panels/attached_devices.h"
 #include "haptics/stability/stabilisers.h"
 #include "scene/scene.h"
 
@@ -40,6 +41,7 @@ class DevicePanel : public QGroupBox {
  private:
   void rebuild();
   void addNumbers(QVBoxLayout* column);
+  void addDevice(const QString& caption, const std::string& device); // to the list, once
 
   DeviceChoice choice_;
   QComboBox* device_;
@@ -47,6 +49,7 @@ class DevicePanel : public QGroupBox {
   QVBoxLayout* layout_;
   QWidget* numbers_ = nullptr;
   QLabel* note_;
+  AttachedDevices* attached_;
 };
 
 } // namespace patina

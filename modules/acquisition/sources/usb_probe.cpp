@@ -18,24 +18,41 @@ constexpr double kSilence = 2;                 // [s]
 constexpr double kTogether = 0.01;             // [s]: packets are read in lots of this length
 constexpr std::size_t kMostTogether = 16;
 
+const char* const kUndescribed =
+    "does not describe itself as docs/usb_protocol.md asks: load firmware of this version";
+
+[[noreturn]] void fail(const std::string& name, const std::string& cause) {
+  throw DeviceError("the probe " + name + " " + cause);
+}
+
+void claim(UsbTransport& usb, const std::string& name) {
+  const UsbResult result = usb.claim(0);
+  if (result == UsbResult::gone) fail(name, "is gone: plug it in again");
+  if (result != UsbResult::ok) fail(name, "is in use by another program: close that program");
+}
+
+template <class Take> void askParts(UsbTransport& usb, const std::string& name, const Take& take) {
+  for (std::uint16_t part = 0; part < kProbeParts; ++part) {
+    std::array<std::byte, kProbePacket> packet;
+    const UsbCount got = usb.controlIn({kFromProbe, kDescribe, part, 0}, packet, kAnswer);
+    if (got.result == UsbResult::gone)
+      fail(name, "is gone: it was pulled out, or its hub lost power");
+    if (got.result == UsbResult::ok) take(std::span(packet).first(got.bytes));
+  }
+}
+
 class UsbProbe final : public ProbeSource {
  public:
   UsbProbe(std::unique_ptr<UsbTransport> usb, std::string name, std::function<double()> now)
       : usb_(std::move(usb)), name_(std::move(name)), now_(std::move(now)) {
-    if (const UsbResult result = usb_->claim(0); result != UsbResult::ok)
-      fail(result == UsbResult::gone ? "is gone: plug it in again"
-                                     : "is in use by another program: close that program");
+    claim(*usb_, name_);
     stream(false); // of a program that was killed
     discard();
-    std::vector<ProbeSample> none;
-    for (std::uint16_t part = 0; part < kProbeParts; ++part) {
-      std::array<std::byte, kProbePacket> packet;
-      const UsbCount got = usb_->controlIn({kFromProbe, kDescribe, part, 0}, packet, kAnswer);
-      if (got.result == UsbResult::gone) fail("is gone: it was pulled out, or its hub lost power");
-      decoder_.take(std::span(packet).first(got.result == UsbResult::ok ? got.bytes : 0), 0, none);
-    }
-    if (!decoder_.described())
-      fail("does not describe itself as docs/usb_protocol.md asks: load firmware of this version");
+    askParts(*usb_, name_, [this](ProbePacket packet) {
+      std::vector<ProbeSample> none;
+      decoder_.take(packet, 0, none);
+    });
+    if (!decoder_.described()) fail(name_, kUndescribed);
     const ProbeDescription& probe = decoder_.description();
     together_ = std::clamp<std::size_t>(
         static_cast<std::size_t>(kTogether / (probe.period * probe.samples_per_packet)), 1,
@@ -56,10 +73,11 @@ class UsbProbe final : public ProbeSource {
         decoder_.take(std::span(bytes).subspan(at, std::min(kProbePacket, got.bytes - at)), now,
                       into);
       if (into.size() > before) return true; // what came before a fault is given first
-      if (got.result == UsbResult::gone) fail("is gone: it was pulled out, or its hub lost power");
+      if (got.result == UsbResult::gone)
+        fail(name_, "is gone: it was pulled out, or its hub lost power");
       if (got.result != UsbResult::ok && got.result != UsbResult::timeout)
-        fail("cannot be read: plug it in again, without a hub");
-      if (now - heard_ > kSilence) fail("has sent nothing for 2 s: plug it in again");
+        fail(name_, "cannot be read: plug it in again, without a hub");
+      if (now - heard_ > kSilence) fail(name_, "has sent nothing for 2 s: plug it in again");
     }
     return true;
   }
@@ -68,9 +86,6 @@ class UsbProbe final : public ProbeSource {
   std::optional<ProbeHealth> health() const override { return decoder_.health(); }
 
  private:
-  [[noreturn]] void fail(const std::string& cause) const {
-    throw DeviceError("the probe " + name_ + " " + cause);
-  }
   void stream(bool on) noexcept {
     usb_->controlOut({kToProbe, kStream, static_cast<std::uint16_t>(on), 0}, {}, kAnswer);
   }
@@ -94,6 +109,25 @@ class UsbProbe final : public ProbeSource {
 std::unique_ptr<ProbeSource> makeUsbProbe(std::unique_ptr<UsbTransport> usb, std::string name,
                                           std::function<double()> now) {
   return std::make_unique<UsbProbe>(std::move(usb), std::move(name), std::move(now));
+}
+
+ProbeDescription describeProbe(UsbTransport& usb, const std::string& name) {
+  claim(usb, name);
+  ProbeParts parts;
+  bool complete = false;
+  try {
+    askParts(usb, name, [&](ProbePacket packet) {
+      const ProbeContent content = parseProbePacket(packet);
+      if (const auto* part = std::get_if<ProbePart>(&content))
+        complete = parts.take(*part) || complete;
+    });
+  } catch (const DeviceError&) {
+    throw;
+  } catch (const Error& error) {
+    throw DeviceError(error.what());
+  }
+  if (!complete) fail(name, kUndescribed);
+  return parts.description();
 }
 
 } // namespace patina
