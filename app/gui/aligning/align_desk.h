@@ -29,6 +29,7 @@ class AlignDesk : public QObject {
   QWidget* basin() const { return plot_; }
 
   const Alignment& alignment() const { return alignment_; }
+  const QString& name() const { return name_; } // of the path
   const std::optional<Work>& work() const { return work_; }
 
   void openPath(const std::filesystem::path& file);

@@ -84,12 +84,15 @@ void BasinPlot::paintMap(QPainter& painter, const QRectF& whole) const {
   painter.drawLine(area.center() - QPointF(5, 0), area.center() + QPointF(5, 0));
   painter.drawLine(area.center() - QPointF(0, 5), area.center() + QPointF(0, 5));
   painter.setPen(ink("text"));
-  painter.drawText(
-      QPointF(area.left(), whole.top() + painter.fontMetrics().ascent() + 3),
-      tr("shift x, y: %1 to %2 mm").arg(least_mm_, 0, 'f', 2).arg(most_mm_, 0, 'f', 1));
+  painter.drawText(QPointF(area.left(), whole.top() + painter.fontMetrics().ascent() + 3),
+                   tr("rms over shifts x, y"));
   painter.setPen(ink("quiet"));
   painter.drawText(QRectF(area.left(), area.bottom() + 3, whole.width() - 28, line),
-                   Qt::AlignLeft | Qt::AlignVCenter, tr("±%1 mm").arg(reach_mm_, 0, 'f', 0));
+                   Qt::AlignLeft | Qt::AlignVCenter,
+                   tr("±%1 mm: %2 to %3 mm")
+                       .arg(reach_mm_, 0, 'f', 0)
+                       .arg(least_mm_, 0, 'g', 3)
+                       .arg(most_mm_, 0, 'g', 3));
 }
 
 void BasinPlot::paintEvent(QPaintEvent*) {

@@ -30,6 +30,7 @@ class ScanDesk : public QObject {
   QWidget* timeline() const { return timeline_; }
   QWidget* findings() const { return findings_; }
 
+  const OpenScan& scan() const { return scan_; }
   bool isOpen() const { return scan_.files() != nullptr; }
   QString name() const { return isOpen() ? scan_.name() : QString(); }
   const std::optional<Work>& work() const { return work_; }

@@ -1,5 +1,6 @@
 #include "app/gui/texturing/profile_plot.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <QPainter>
@@ -13,7 +14,38 @@ constexpr double kMilli = 1e3, kMicro = 1e6;
 constexpr double kFineStep = 0.1e-3;       // of what is drawn along the way [m]
 constexpr double kLeastAmplitude = 0.1e-6; // of what is drawn of the spectrum [m]
 
+Graph spectrumOf(const FourierSeries& series, double period) {
+  Graph spectrum{ProfilePlot::tr("mm"),
+                 ProfilePlot::tr("µm"),
+                 true,
+                 true,
+                 {{ProfilePlot::tr("spectrum"), "accent", {}}}};
+  for (std::size_t j = 0; j < series.a.size(); ++j) {
+    const double amplitude = std::hypot(series.a[j], series.b[j]);
+    if (amplitude < kLeastAmplitude) continue;
+    spectrum.curves[0].points << QPointF(kMilli * period / static_cast<double>(j + 1),
+                                         kMicro * amplitude);
+  }
+  return spectrum;
+}
+
 } // namespace
+
+void ProfilePlot::setTexture(const FourierTexture* texture) {
+  graphs_.clear();
+  if (texture != nullptr) {
+    Graph heights{tr("mm"), tr("µm"), false, false, {{tr("height over a period"), "accent", {}}}};
+    const int steps = std::clamp(8 * harmonics(*texture), 64, 2000);
+    for (int i = 0; i <= steps; ++i) {
+      const double x = period(*texture) * i / steps;
+      heights.curves[0].points << QPointF(kMilli * x, kMicro * patina::height(*texture, x));
+    }
+    graphs_ = {heights};
+    if (texture->kind == TextureKind::line || texture->kind == TextureKind::spectrum)
+      graphs_.push_back(spectrumOf(patina::seriesOf(*texture), period(*texture)));
+  }
+  update();
+}
 
 void ProfilePlot::setTexture(const DemoTexture* texture) {
   graphs_.clear();
@@ -33,14 +65,7 @@ void ProfilePlot::setTexture(const DemoTexture* texture) {
       heights.curves[1].points << QPointF(kMilli * along,
                                           kMicro * patina::height(fitted.texture, along));
     }
-    Graph spectrum{tr("mm"), tr("µm"), true, true, {{tr("spectrum"), "accent", {}}}};
-    for (std::size_t j = 0; j < fitted.texture.series.a.size(); ++j) {
-      const double amplitude = std::hypot(fitted.texture.series.a[j], fitted.texture.series.b[j]);
-      if (amplitude < kLeastAmplitude) continue;
-      spectrum.curves[0].points << QPointF(
-          kMilli * period(fitted.texture) / static_cast<double>(j + 1), kMicro * amplitude);
-    }
-    graphs_ = {heights, spectrum};
+    graphs_ = {heights, spectrumOf(patina::seriesOf(fitted.texture), period(fitted.texture))};
     if (!texture->felt.empty()) {
       Graph felt{tr("mm"),
                  tr("N"),

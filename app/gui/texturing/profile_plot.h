@@ -14,7 +14,8 @@ class ProfilePlot : public QWidget {
  public:
   explicit ProfilePlot(QWidget* parent = nullptr) : QWidget(parent) { setMinimumHeight(118); }
 
-  void setTexture(const DemoTexture* texture); // nullptr: none; copies what it draws
+  void setTexture(const DemoTexture* texture);    // nullptr: none; copies what it draws
+  void setTexture(const FourierTexture* texture); // the same: a period of it, and its harmonics
 
  protected:
   void paintEvent(QPaintEvent* event) override;

@@ -23,7 +23,8 @@ std::shared_ptr<const TriangleMesh> texturedFaces(const Demo& demo) {
 
 } // namespace
 
-TextureDesk::TextureDesk(QWidget& window) : QObject(&window), window_(window), job_(this) {
+TextureDesk::TextureDesk(QWidget& window)
+    : QObject(&window), window_(window), job_(this), library_(window) {
   auto* empty = new QWidget;
   auto* column = new QVBoxLayout(empty);
   auto* words = new QLabel(tr(
@@ -50,6 +51,13 @@ TextureDesk::TextureDesk(QWidget& window) : QObject(&window), window_(window), j
   connect(steps_, &StepList::allAsked, this, [this] { run(true); });
   connect(steps_, &StepList::feelAsked, this,
           [this] { emit openAsked(QString::fromStdString((folder_ / "workspace").string())); });
+  connect(&library_, &TextureLibrary::changed, this, &TextureDesk::changed);
+  connect(&library_, &TextureLibrary::said, this, &TextureDesk::said);
+  connect(&library_, &TextureLibrary::chosen, this, [this](const auto& texture) {
+    chosen_ = texture;
+    if (library_shown_) showProfile();
+    emit changed();
+  });
   connect(&job_, &Background::progressed, this, [this](double fraction, const QString& what) {
     if (!work_) return;
     work_->words = tr("From a scan to a feel: %1").arg(what);
@@ -120,7 +128,7 @@ void TextureDesk::takeStep() {
 }
 
 void TextureDesk::draw() {
-  cells_->setCurrentIndex(demo_ ? 1 : 0);
+  choosePage();
   if (!demo_) return;
   const bool first = view_ == nullptr;
   if (first) {
@@ -128,7 +136,7 @@ void TextureDesk::draw() {
     view_->setObjectName(QStringLiteral("texture_view"));
     view_->setToolTip(tr("The toy, the tip's paths on it and the faces that got a texture"));
     cells_->addWidget(view_);
-    cells_->setCurrentIndex(1);
+    choosePage();
   }
   view_->picture().setMesh(std::make_shared<const TriangleMesh>(demo_->object.mesh));
   view_->picture().setPath(demoPaths(*demo_));
@@ -136,7 +144,25 @@ void TextureDesk::draw() {
   if (first) view_->picture().setView(ViewPreset::minus_y);
 }
 
+void TextureDesk::choosePage() {
+  QWidget* page = demo_ != nullptr && view_ != nullptr ? view_ : cells_->widget(0);
+  if (library_shown_ && library_.hasScene()) {
+    page = library_.view();
+    if (cells_->indexOf(page) < 0) cells_->addWidget(page);
+  }
+  cells_->setCurrentWidget(page);
+}
+
+void TextureDesk::showLibrary(bool on) {
+  if (on == library_shown_) return;
+  library_shown_ = on;
+  choosePage();
+  showProfile();
+}
+
 void TextureDesk::showProfile() {
+  material_->setVisible(!library_shown_);
+  if (library_shown_) return plot_->setTexture(chosen_ ? &chosen_->value : nullptr);
   const int chosen = material_->currentIndex();
   const bool there = !work_ && has_texture_ && chosen >= 0;
   if (work_) return;
@@ -144,6 +170,7 @@ void TextureDesk::showProfile() {
 }
 
 void TextureDesk::cancel() {
+  library_.cancel();
   if (!work_) return;
   job_.silence();
   demo_.reset();
@@ -151,15 +178,18 @@ void TextureDesk::cancel() {
 }
 
 void TextureDesk::fit() {
-  if (view_ != nullptr && view_->isVisible()) view_->picture().fit();
+  for (ScanView* view : {view_, library_shown_ ? library_.view() : nullptr})
+    if (view != nullptr && view->isVisible()) view->picture().fit();
 }
 
 void TextureDesk::setView(ViewPreset view) {
-  if (view_ != nullptr && view_->isVisible()) view_->picture().setView(view);
+  for (ScanView* each : {view_, library_shown_ ? library_.view() : nullptr})
+    if (each != nullptr && each->isVisible()) each->picture().setView(view);
 }
 
 void TextureDesk::refresh() {
   if (view_ != nullptr) view_->refresh();
+  library_.refresh();
 }
 
 } // namespace patina

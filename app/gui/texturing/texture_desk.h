@@ -1,5 +1,5 @@
 // The desk on which a scan becomes a feel: the guided sequence on the toy's scan, step by step,
-// with what each step found.
+// with what each step found; and the library of textures, laid on what is open.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include "app/gui/scanning/scan_view.h"
 #include "app/gui/texturing/profile_plot.h"
 #include "app/gui/texturing/step_list.h"
+#include "app/gui/texturing/texture_library.h"
 #include "app/gui/window/background.h"
 #include "app/gui/window/window_state.h"
 
@@ -29,7 +30,10 @@ class TextureDesk : public QObject {
   QWidget* steps() const { return steps_; }
   QWidget* profile() const { return profile_; }
 
-  bool hasTexture() const { return has_texture_; }
+  TextureLibrary& library() { return library_; }
+  void showLibrary(bool on); // in the place of the sequence
+
+  bool hasTexture() const { return library_shown_ ? chosen_ != nullptr : has_texture_; }
   const std::optional<Work>& work() const { return work_; }
   void runAll(); // the whole sequence
   void cancel();
@@ -47,6 +51,7 @@ class TextureDesk : public QObject {
   void takeStep();
   void draw();
   void showProfile();
+  void choosePage();
 
   QWidget& window_;
   Background job_;
@@ -59,6 +64,9 @@ class TextureDesk : public QObject {
   QComboBox* material_ = new QComboBox;
   ProfilePlot* plot_ = new ProfilePlot;
   ScanView* view_ = nullptr; // made with the first step
+  TextureLibrary library_;
+  std::shared_ptr<const FeltTexture> chosen_; // of the library
+  bool library_shown_ = false;
   std::optional<Work> work_;
   bool has_texture_ = false;
 };

@@ -77,6 +77,13 @@ void drawAlign(QPainter& p) {
   p.drawPolyline(QPolygonF() << QPointF(8, 7.5) << QPointF(10, 10) << QPointF(12, 7.5));
 }
 
+void drawLibrary(QPainter& p) {
+  for (int i = 0; i < 3; ++i) {
+    p.drawRoundedRect(QRectF(2, 2.5 + 5.5 * i, 16, 4), 1, 1);
+    p.drawLine(QPointF(5, 4.5 + 5.5 * i), QPointF(8 + 3 * i, 4.5 + 5.5 * i));
+  }
+}
+
 } // namespace
 
 QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
@@ -96,8 +103,8 @@ QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
 }
 
 QIcon iconOf(Tab tab) {
-  constexpr void (*kDraw[])(QPainter&) = {drawTool, drawSurface, drawObject, drawDevice,
-                                          drawEye,  drawScan,    drawWave,   drawAlign};
+  constexpr void (*kDraw[])(QPainter&) = {drawTool, drawSurface, drawObject, drawDevice, drawEye,
+                                          drawScan, drawWave,    drawAlign,  drawLibrary};
   return drawnIcon(kDraw[static_cast<std::size_t>(tab)]);
 }
 

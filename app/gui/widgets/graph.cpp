@@ -38,6 +38,7 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     return area.bottom() - (value - low) / (high - low) * area.height();
   };
   const double step = graph.logarithmic ? 1 : stepFor(high - low, 4);
+  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
   for (double value = std::ceil(low / step) * step; value <= high + 1e-9; value += step) {
     const double shown = graph.logarithmic ? std::pow(10, value) : value;
     painter.setPen(ink("line"));
@@ -45,8 +46,8 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     painter.setPen(ink("quiet"));
     painter.drawText(QRectF(whole.left(), yAt(shown) - line / 2., 42, line),
                      Qt::AlignRight | Qt::AlignVCenter,
-                     graph.logarithmic && shown >= 1 ? QString::number(shown, 'f', 0)
-                                                     : QString::number(shown, 'g', 3));
+                     graph.logarithmic && shown < 1 ? QString::number(shown, 'g', 3)
+                                                    : QString::number(shown, 'f', decimals));
   }
   std::vector<double> marks;
   const double across = stepFor(box.width(), std::clamp(static_cast<int>(area.width() / 45), 2, 8));

@@ -41,7 +41,7 @@ std::vector<DeskRow> makeDesks() {
                   tr("Texture"),
                   tr("From a scan to a feel: register, fit, map"),
                   Qt::Key_9,
-                  {P::steps, P::profile, P::messages},
+                  {P::steps, P::library, P::profile, P::history, P::messages},
                   {Handling::navigate, {}},
                   Tab::steps,
                   P::profile,
@@ -109,6 +109,8 @@ std::optional<Tab> tabOf(Panel panel) {
     return Tab::steps;
   case Panel::align:
     return Tab::align;
+  case Panel::library:
+    return Tab::library;
   default:
     return std::nullopt;
   }
@@ -138,6 +140,7 @@ const std::vector<TabRow>& tabRows() {
       {Tab::scan, "scan", tr("Scan"), tr("What was recorded, and what it came to")},
       {Tab::align, "align", tr("Place"), tr("Where the path lies, and how far off")},
       {Tab::steps, "steps", tr("Steps"), tr("From a scan to a feel, step by step")},
+      {Tab::library, "library", tr("Library"), tr("Textures, and how they come onto the mesh")},
       {Tab::tool, "tool", tr("Tool"), tr("What the tool in hand does, and its brush")},
       {Tab::surface, "surface", tr("Surface"), tr("How the surface feels")},
       {Tab::object, "object", tr("Object"), tr("What is felt, and where it is")},

@@ -35,11 +35,12 @@ enum class Panel {
   scan, // cards again
   recorder,
   steps,
-  align
+  align,
+  library
 };
 
 // The cards of the column, a few at a time.
-enum class Tab { tool, surface, object, device, show, scan, steps, align };
+enum class Tab { tool, surface, object, device, show, scan, steps, align, library };
 std::optional<Tab> tabOf(Panel panel); // nullopt: no card
 bool inDrawer(Panel panel);
 

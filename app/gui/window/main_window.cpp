@@ -127,6 +127,9 @@ void MainWindow::connectScan() {
   connect(parts_.texture, &TextureDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.texture, &TextureDesk::cancel);
   connect(&timer_, &QTimer::timeout, parts_.texture, &TextureDesk::refresh);
+  parts_.texture->library().setSources(edits_.thread(), [this] {
+    return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
+  });
   connect(parts_.scan, &ScanDesk::pathMade, parts_.align, &AlignDesk::setPath);
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
@@ -158,6 +161,7 @@ WindowState MainWindow::state() const {
   if (!state.work) state.work = parts_.scan->work();
   state.texture = parts_.texture->hasTexture();
   if (!state.work) state.work = parts_.texture->work();
+  if (!state.work) state.work = parts_.texture->library().work();
   if (!state.work) state.work = parts_.align->work();
   const Alignment& aligned = parts_.align->alignment();
   state.path = aligned.isReady();
@@ -221,6 +225,7 @@ void MainWindow::showScene(const SceneChange& change) {
   view_.showScene(change);
 #ifdef PATINA_HAS_ACQUISITION
   parts_.scan->setSceneMesh(change.scene->mesh);
+  parts_.texture->library().setScene(change.scene);
   if (change.surface) parts_.align->setSceneMesh(change.scene->mesh);
 #endif
   if (change.device) {

@@ -41,9 +41,9 @@ FoldingTabs* makeColumn(const WindowParts& parts) {
   auto* stack = new QVBoxLayout(side);
   stack->setContentsMargins(8, 0, 4, 8);
   stack->setSpacing(4);
-  for (const Panel card :
-       {Panel::scan, Panel::recorder, Panel::align, Panel::steps, Panel::tool, Panel::brush,
-        Panel::relief, Panel::touch, Panel::display, Panel::device, Panel::objects, Panel::mesh})
+  for (const Panel card : {Panel::scan, Panel::recorder, Panel::align, Panel::steps, Panel::library,
+                           Panel::tool, Panel::brush, Panel::relief, Panel::touch, Panel::display,
+                           Panel::device, Panel::objects, Panel::mesh})
     if (parts.panels.contains(card)) stack->addWidget(parts.panels.at(card));
   stack->addStretch(1);
   parts.display->layout()->addWidget(parts.paint);
@@ -110,8 +110,9 @@ WindowParts layOut(QMainWindow& window) {
                        {Panel::findings, parts.scan->findings()}});
   parts.texture = new TextureDesk(window);
   parts.cells->addWidget(parts.texture->cells());
-  parts.panels.insert(
-      {{Panel::steps, parts.texture->steps()}, {Panel::profile, parts.texture->profile()}});
+  parts.panels.insert({{Panel::steps, parts.texture->steps()},
+                       {Panel::profile, parts.texture->profile()},
+                       {Panel::library, parts.texture->library().card()}});
   parts.align = new AlignDesk(window);
   parts.cells->addWidget(parts.align->cells());
   parts.panels.insert({{Panel::align, parts.align->panel()}, {Panel::basin, parts.align->basin()}});
@@ -155,6 +156,9 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
   const int other = static_cast<int>(state.desk) - static_cast<int>(Desk::scan); // desks in a row
   parts.cells->setCurrentIndex(std::max(0, other + 1));
   parts.tools->setVisible(other < 0);
+#ifdef PATINA_HAS_ACQUISITION
+  parts.texture->showLibrary(tabInFront(state) == Tab::library);
+#endif
   parts.column->setInFront(static_cast<int>(tabInFront(state)));
   parts.drawer->setInFront(static_cast<int>(pageInFront(state)));
   for (const auto& [command, action] : parts.commands)

@@ -1,0 +1,26 @@
+#include "app/gui/texturing/placed_scan.h"
+
+#include "core/error.h"
+
+namespace patina {
+
+PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene& scene) {
+  if (scan.files() == nullptr || scan.path() == nullptr)
+    throw Error("no scan is open: open its folder on the desk Scan");
+  const ScanPath& path = *scan.path();
+  if (!scan.files()->rig || path.poses.empty() || path.probe.empty())
+    throw Error("the scan has no poses, no probe's stream or no rig.json: heights need all three");
+  if (scene.objects.size() != 1)
+    throw Error("a scan's texture needs a scene of one object, the one that was scanned");
+  if (!align.alignment().isReady() || align.name() != scan.name())
+    throw Error("the scan's path is not laid onto the mesh: do that on the desk Align");
+  PlacedScan placed;
+  placed.name = scan.name().toStdString();
+  placed.streams = {path.poses, path.probe};
+  placed.probe = scan.files()->rig->probe;
+  placed.gravity = scan.files()->rig->gravity;
+  placed.mesh_from_scan = scene.objects[0].world_from_object.inverse() * align.alignment().pose();
+  return placed;
+}
+
+} // namespace patina

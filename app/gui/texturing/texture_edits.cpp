@@ -1,0 +1,120 @@
+#include "app/gui/texturing/texture_edits.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "geometry/mesh/mesh_report.h"
+
+namespace patina {
+namespace {
+
+const LaidTextures* texturesOn(const SceneObject& object) {
+  return object.paint ? object.paint->textures.get() : nullptr;
+}
+
+void setTextures(SceneObject& object, LaidTextures laid) {
+  ObjectPaint paint = object.paint ? *object.paint : ObjectPaint();
+  paint.textures =
+      laid.faces.empty() ? nullptr : std::make_shared<const LaidTextures>(std::move(laid));
+  object.paint = std::make_shared<const ObjectPaint>(std::move(paint));
+}
+
+} // namespace
+
+std::vector<TextureRow> texturesOf(const Scene& scene, const std::vector<TextureRow>& read) {
+  std::map<std::int32_t, TextureRow> rows;
+  for (const SceneObject& object : scene.objects) {
+    const LaidTextures* laid = texturesOn(object);
+    if (laid == nullptr) continue;
+    for (const TexturedFace& face : laid->faces) {
+      TextureRow& row = rows[face.texture];
+      row.number = face.texture;
+      ++row.faces;
+      const auto known = laid->library.find(face.texture);
+      if (known != laid->library.end()) row.texture = known->second;
+    }
+  }
+  for (const TextureRow& row : read) rows.try_emplace(row.number, row);
+  std::vector<TextureRow> list;
+  for (const auto& [number, row] : rows) list.push_back(row);
+  return list;
+}
+
+std::int32_t freeNumber(const std::vector<TextureRow>& rows) {
+  std::int32_t number = 1;
+  for (const TextureRow& row : rows) number = std::max(number, row.number + 1);
+  return number;
+}
+
+Scene withLaid(const Scene& scene, std::size_t object, const std::vector<PathOnMesh>& strokes,
+               const TextureRow& row, int rings, const Progress& progress) {
+  Scene made = scene;
+  SceneObject& on = made.objects.at(object);
+  // Faces that nothing can lie on keep their number.
+  const std::vector<std::int32_t> usable = usableTriangles(*on.mesh);
+  if (usable.empty()) throw Error("the mesh has no face that a texture can lie on");
+  TriangleMesh ground;
+  ground.positions = on.mesh->positions;
+  for (const std::int32_t face : usable)
+    ground.triangles.push_back(on.mesh->triangles[static_cast<std::size_t>(face)]);
+  LayOptions options;
+  options.texture = row.number;
+  options.rings = rings;
+  LaidTexture laid = layTexture(PathGround(std::move(ground)), strokes, options, progress);
+  if (laid.faces.empty()) throw Error("no face on its way can take the texture");
+  for (TexturedFace& face : laid.faces) face.face = usable[static_cast<std::size_t>(face.face)];
+  const LaidTextures* before = texturesOn(on);
+  LaidTextures merged = before ? *before : LaidTextures();
+  merged.faces = laidOver(laid.faces, merged.faces);
+  merged.library[row.number] = row.texture;
+  setTextures(on, std::move(merged));
+  return made;
+}
+
+Scene withSwapped(const Scene& scene, std::int32_t number,
+                  std::shared_ptr<const FeltTexture> texture) {
+  Scene made = scene;
+  for (SceneObject& object : made.objects) {
+    const LaidTextures* before = texturesOn(object);
+    if (before == nullptr ||
+        std::none_of(before->faces.begin(), before->faces.end(),
+                     [&](const TexturedFace& face) { return face.texture == number; }))
+      continue;
+    LaidTextures laid = *before;
+    laid.library[number] = texture;
+    setTextures(object, std::move(laid));
+  }
+  return made;
+}
+
+Scene withoutTexture(const Scene& scene, std::int32_t number) {
+  Scene made = scene;
+  for (SceneObject& object : made.objects) {
+    const LaidTextures* before = texturesOn(object);
+    if (before == nullptr) continue;
+    LaidTextures laid = *before;
+    std::erase_if(laid.faces, [&](const TexturedFace& face) { return face.texture == number; });
+    laid.library.erase(number);
+    setTextures(object, std::move(laid));
+  }
+  return made;
+}
+
+std::shared_ptr<const TriangleMesh> texturedFacesOf(const Scene& scene) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const SceneObject& object : scene.objects) {
+    const LaidTextures* laid = texturesOn(object);
+    if (laid == nullptr) continue;
+    const auto first = static_cast<std::int32_t>(mesh->positions.size());
+    for (const Vec3& p : object.mesh->positions)
+      mesh->positions.push_back(object.world_from_object * p);
+    for (const TexturedFace& face : laid->faces) {
+      Triangle triangle = object.mesh->triangles[static_cast<std::size_t>(face.face)];
+      for (std::int32_t& corner : triangle) corner += first;
+      mesh->triangles.push_back(triangle);
+    }
+  }
+  return mesh->triangles.empty() ? nullptr : mesh;
+}
+
+} // namespace patina

@@ -1,0 +1,145 @@
+// Textures read from files, laid along a path that is drawn, swapped and taken off: by pointer and
+// keys.
+#ifdef PATINA_HAS_ACQUISITION
+#include <cmath>
+
+#include "app/gui/control/desk_controller.h"
+#include "app/gui/texturing/texture_desk.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "workspace/texture_file.h"
+
+namespace patina {
+namespace {
+
+class TextureLibraryTest : public DrivenWindow {
+ protected:
+  static FourierTexture wave(const char* name, double wavelength, double amplitude) {
+    FourierTexture texture;
+    texture.name = name;
+    texture.omega = 2 * M_PI / wavelength;
+    texture.series.a = {amplitude, 0};
+    texture.series.b = {0, 0.3 * amplitude};
+    texture.low = leastHeight(texture);
+    return texture;
+  }
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    TriangleMesh mesh = icosphere(0.03, 40);
+    ASSERT_TRUE(open(saved(mesh, "sphere.ply")));
+    writeTexture(folder_ / "ribs.json", wave("ribs", 4e-3, 30e-6));
+    writeTexture(folder_ / "felt.json", wave("felt", 1e-3, 8e-6));
+    clickAction("desk_texture");
+    clickOn("tab_library");
+    wait(500);
+  }
+  ScanView& cell() { return *find<ScanView>("lay_view"); }
+  QListWidget& list() { return *find<QListWidget>("textures"); }
+  const LaidTextures* laid() {
+    const auto& paint = edits().scene()->scene.objects[0].paint;
+    return paint ? paint->textures.get() : nullptr;
+  }
+  void read(const char* file) {
+    answerWithPath(folder_ / file);
+    const int before = list().count();
+    clickOn("texture_read");
+    ASSERT_TRUE(waitUntil([&] { return list().count() == before + 1; }, 10000));
+  }
+  QPoint at(double x, double y) { // fractions of the picture's height, from its middle
+    const int high = cell().height();
+    return cell().mapToGlobal(cell().rect().center() + QPoint(qRound(x * high), qRound(-y * high)));
+  }
+  bool draw(const QPoint& from, const QPoint& to) {
+    const std::size_t before = edits().status().done;
+    drag(from, to, 1, 24);
+    return waitUntil([&] { return edits().status().done == before + 1; }, 20000);
+  }
+  void keepPicture(const QString& name) {
+    wait(500);
+    if (const char* folder = std::getenv("PATINA_PICTURES"))
+      window_->grab().save(QStringLiteral("%1/%2.png").arg(QString::fromUtf8(folder), name));
+  }
+};
+
+TEST_F(TextureLibraryTest, ATextureIsLaidAlongWhatIsDrawnAndUndone) {
+  EXPECT_FALSE(find<QPushButton>("texture_draw")->isEnabled()); // there is none to lay
+  read("ribs.json");
+  clickOn("texture_draw");
+  ASSERT_TRUE(draw(at(-0.2, 0.05), at(0.2, 0.05)));
+  ASSERT_NE(laid(), nullptr);
+  keepPicture("texture_library");
+  // Where it lies: x grows with the hand, 1 m a metre, and nothing lies far from what was drawn.
+  const auto& mesh = *edits().scene()->scene.objects[0].mesh;
+  EXPECT_GT(laid()->faces.size(), 50U);
+  EXPECT_EQ(laid()->library.at(1)->value.name, "ribs");
+  double most = 0, least = 1e9;
+  for (const TexturedFace& face : laid()->faces) {
+    const Triangle& corners = mesh.triangles[static_cast<std::size_t>(face.face)];
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& a =
+          mesh.positions[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+      const Vec3& b =
+          mesh.positions[static_cast<std::size_t>(corners[static_cast<std::size_t>((k + 1) % 3)])];
+      const double way = (b - a).norm();
+      const double drawn =
+          (face.at[static_cast<std::size_t>((k + 1) % 3)] - face.at[static_cast<std::size_t>(k)])
+              .norm();
+      most = std::max(most, drawn / way);
+      least = std::min(least, drawn / way);
+    }
+  }
+  EXPECT_LT(most, 1.5);
+  EXPECT_GT(least, 0.5);
+  // It is felt: the stage that reads it is there.
+  EXPECT_TRUE(list().item(0)->text().contains(QStringLiteral("ribs, on")))
+      << list().item(0)->text().toStdString();
+  EXPECT_TRUE(find<QWidget>("page_profile")->isVisible());
+  const std::size_t faces = laid()->faces.size();
+  type('z', kControl);
+  ASSERT_TRUE(waitUntil([&] { return laid() == nullptr; }, 10000));
+  type('y', kControl);
+  ASSERT_TRUE(waitUntil([&] { return laid() != nullptr && laid()->faces.size() == faces; }, 10000));
+}
+
+TEST_F(TextureLibraryTest, AnotherTakesItsPlaceOnEveryFaceAndItIsTakenOff) {
+  read("ribs.json");
+  clickOn("texture_draw");
+  ASSERT_TRUE(draw(at(-0.15, 0), at(0.15, 0.1)));
+  clickOn("texture_draw"); // the hand rests
+  const std::vector<TexturedFace> faces = laid()->faces;
+  const std::size_t done = edits().status().done;
+  answerWithPath(folder_ / "felt.json");
+  clickOn("texture_swap");
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == done + 1; }, 20000));
+  EXPECT_EQ(laid()->faces, faces);
+  EXPECT_TRUE(laid()->library.at(1)->value == readTexture(folder_ / "felt.json"));
+  clickOn("texture_remove");
+  ASSERT_TRUE(waitUntil([&] { return laid() == nullptr; }, 20000));
+  EXPECT_TRUE(list().item(0)->text().contains(QStringLiteral("not laid")));
+  // What is kept is the texture again.
+  answerWithPath(folder_ / "kept.json");
+  clickOn("texture_keep");
+  ASSERT_TRUE(waitUntil([&] { return std::filesystem::exists(folder_ / "kept.json"); }, 10000));
+  EXPECT_TRUE(readTexture(folder_ / "kept.json") == readTexture(folder_ / "felt.json"));
+}
+
+TEST_F(TextureLibraryTest, WithoutPenOrTextureTheHandTurnsThePictureAndWithoutAScanItIsSaid) {
+  const std::size_t done = edits().status().done;
+  drag(at(-0.1, 0), at(0.1, 0));
+  wait(300);
+  EXPECT_EQ(edits().status().done, done);
+  read("ribs.json");
+  clickOn("texture_draw");
+  type(kEscape);
+  EXPECT_FALSE(find<QPushButton>("texture_draw")->isChecked());
+  drag(at(-0.1, 0), at(0.1, 0));
+  wait(300);
+  EXPECT_EQ(edits().status().done, done);
+  clickOn("texture_scan");
+  EXPECT_TRUE(find<QLabel>("texture_hint")->text().contains(QStringLiteral("desk Scan")));
+}
+
+} // namespace
+} // namespace patina
+#endif
