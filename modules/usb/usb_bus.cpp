@@ -53,11 +53,8 @@ UsbDevice described(const UsbFound& found) {
                    ? kProbeName
                    : hapticName(found.vendor, found.product);
   if (out.name.empty()) out.name = usbNumbers(found.vendor, found.product);
-  // Ours take it from the kernel's driver by themselves; it is told of those we have no driver for.
-  if (!found.openable)
-    out.refusal = found.refusal.value_or(UsbRefusal::other);
-  else if (found.driver_holds && !out.haptic.empty())
-    out.refusal = UsbRefusal::held_by_driver;
+  // A driver of the kernel's is no refusal: it gives way to a claim, and has the interface back.
+  if (!found.openable) out.refusal = found.refusal.value_or(UsbRefusal::other);
   if (out.refusal) out.advice = usbAdvice(*out.refusal, found.vendor, found.product);
   return out;
 }

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr UsbRequest kGetStatus{0x80, 0, 0, 0}; // USB 2.0 9.4.5
+constexpr UsbRequest kGetStatus{0x80, 0, 0, 0}; // of the standard, chapter 9
 
 std::string lineOf(const fs::path& file) {
   std::string text;

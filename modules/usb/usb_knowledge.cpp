@@ -78,9 +78,11 @@ std::string udevRules() {
       "# 'patina devices --install-udev' writes this into /etc/udev/rules.d; then run\n"
       "# 'udevadm control --reload' and plug the device in again.\n"
       "ACTION==\"remove\", GOTO=\"patina_end\"\n";
+  std::string_view last;
   for (const Known& known : kKnown) {
-    text += "# " + std::string(known.name) + "\nSUBSYSTEM==\"usb\", ATTR{idVendor}==\"" +
-            hex4(known.vendor) + "\"";
+    if (known.name != last) text += "# " + std::string(known.name) + "\n";
+    last = known.name;
+    text += "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + hex4(known.vendor) + "\"";
     if (known.product != 0) text += ", ATTR{idProduct}==\"" + hex4(known.product) + "\"";
     text += ", TAG+=\"uaccess\"\n";
   }

@@ -214,10 +214,8 @@ void installRules(const std::filesystem::path& folder, Report& report) {
   try {
     writeFileAtomically(file, udevRules());
   } catch (const FileError& error) {
-    throw FileError(file.string(), 0,
-                    std::string("cannot be written: run this as root (sudo), or name a folder of "
-                                "your own; ") +
-                        error.what());
+    throw Error(std::string(error.what()) +
+                "; run this as root (sudo), or name a folder of your own");
   }
   report.set("rules", file.string());
   report.tell("next", "run 'udevadm control --reload' as root and plug the device in again");

@@ -97,11 +97,13 @@ const DeviceEntry kCatalog[] = {
 };
 
 // Not in the list, as each of its kind has a name of its own.
-const DeviceEntry kPlugin{
-    .name = "plugin",
-    .caption = "Plug-in",
-    .note = "a library of its maker's drives it",
-    .open = [](const DeviceSetup& setup) { return makePluginDevice(setup.name); }};
+const DeviceEntry kPlugin{.name = "plugin",
+                          .caption = "Plug-in",
+                          .note = "a library of its maker's drives it",
+                          .linked = true,
+                          .open = [](const DeviceSetup& setup) {
+                            return makePluginDevice(setup.name, {.notes = setup.notes});
+                          }};
 
 } // namespace
 

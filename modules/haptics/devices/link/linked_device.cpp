@@ -51,18 +51,14 @@ struct Told {
   bool has_velocity = false;
 };
 
-class LinkedDevice final : public Device {
+// Of both threads.
+class Exchange {
  public:
-  LinkedDevice(std::unique_ptr<DeviceLink> link, const LinkedSpec& spec)
-      : spec_(spec), loop_(std::move(link), spec.guard, spec.clock, spec.notes),
-        thread_([this] { run(); }) {}
-  ~LinkedDevice() override {
-    stopping_.store(true, std::memory_order_relaxed);
-    asked_.ring();
-    thread_.join();
-  }
+  Exchange(std::unique_ptr<DeviceLink> link, const LinkedSpec& spec)
+      : spec_(spec),
+        loop_(std::make_unique<LinkLoop>(std::move(link), spec.guard, spec.clock, spec.notes)) {}
 
-  DeviceState exchange(const Vec3& force, double) noexcept override {
+  DeviceState exchange(const Vec3& force) noexcept {
     command_.set({spec_.clock->now(), {force.x(), force.y(), force.z()}});
     answered_.hush();
     asked_.ring();
@@ -75,6 +71,29 @@ class LinkedDevice final : public Device {
     if (last_.status == DeviceStatus::ok && !(last_.age <= kOldestAge))
       last_.status = DeviceStatus::away;
     return last_;
+  }
+
+  // Whether it has closed within a while: another's library may never return.
+  bool end() noexcept {
+    stopping_.store(true, std::memory_order_relaxed);
+    asked_.ring();
+    for (int i = 0; i < 1000 && !ended_.load(std::memory_order_acquire); ++i) answered_.wait(kIdle);
+    return ended_.load(std::memory_order_acquire);
+  }
+
+  void run() noexcept {
+    requestRealtime();
+    LinkCommand command;
+    while (!stopping_.load(std::memory_order_relaxed)) {
+      asked_.wait(kIdle);
+      Wire wire;
+      if (command_.read(wire)) command = {Vec3(wire.v), wire.at};
+      tell(loop_->step(command));
+      answered_.ring();
+    }
+    loop_.reset(); // closes
+    ended_.store(true, std::memory_order_release);
+    answered_.ring();
   }
 
  private:
@@ -90,7 +109,7 @@ class LinkedDevice final : public Device {
 
   void tell(const DeviceState& state) noexcept {
     Told told;
-    told.measured_at = loop_.measuredAt();
+    told.measured_at = loop_->measuredAt();
     for (int i = 0; i < 3; ++i) told.position[i] = state.position[i];
     for (int i = 0; i < 4; ++i) told.orientation[i] = state.orientation.coeffs()[i];
     told.has_velocity = state.velocity.has_value();
@@ -100,26 +119,33 @@ class LinkedDevice final : public Device {
     told_.set(told);
   }
 
-  void run() noexcept {
-    requestRealtime();
-    LinkCommand command;
-    while (!stopping_.load(std::memory_order_relaxed)) {
-      asked_.wait(kIdle);
-      Wire wire;
-      if (command_.read(wire)) command = {Vec3(wire.v), wire.at};
-      tell(loop_.step(command));
-      answered_.ring();
-    }
-  }
-
   LinkedSpec spec_;
-  LinkLoop loop_; // the thread's, as soon as it runs
+  std::unique_ptr<LinkLoop> loop_; // the thread's, as soon as it runs
   LatestValue<Wire> command_;
   LatestValue<Told> told_;
   Bell asked_, answered_;
-  std::atomic<bool> stopping_{false};
+  std::atomic<bool> stopping_{false}, ended_{false};
   DeviceState last_{.status = DeviceStatus::away}; // the servo's, as the next
   double measured_at_ = 0;
+};
+
+class LinkedDevice final : public Device {
+ public:
+  LinkedDevice(std::unique_ptr<DeviceLink> link, const LinkedSpec& spec)
+      : shared_(std::make_shared<Exchange>(std::move(link), spec)),
+        thread_([shared = shared_] { shared->run(); }) {}
+  ~LinkedDevice() override {
+    if (shared_->end())
+      thread_.join();
+    else
+      thread_.detach(); // which keeps what it needs
+  }
+  DeviceState exchange(const Vec3& force, double) noexcept override {
+    return shared_->exchange(force);
+  }
+
+ private:
+  const std::shared_ptr<Exchange> shared_;
   std::thread thread_;
 };
 

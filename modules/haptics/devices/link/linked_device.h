@@ -18,7 +18,8 @@ struct LinkedSpec {
 // force once the newest is older than guard.oldest_command: a servo that has stopped leaves none.
 // exchange() waits for the answer for answer_wait at most; what comes later is that of the next
 // tick, with its age. It never fails: while the device is away it says so, and goes on when it is
-// back. Throws std::invalid_argument as LinkLoop does.
+// back. Destroying it waits a second at most: a link that hangs is left to itself. Throws
+// std::invalid_argument as LinkLoop does.
 std::unique_ptr<Device> makeLinkedDevice(std::unique_ptr<DeviceLink> link, const LinkedSpec& spec);
 
 } // namespace patina

@@ -2,30 +2,24 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
+#include <string>
 
-#include "haptics/devices/device.h"
+#include "haptics/devices/link/linked_device.h"
 #include "haptics/devices/plugin/patina_device.h"
 
 namespace patina {
 
-// What is older gets no force. [s]
-inline constexpr double kPluginStale = 4e-3;
+// A turn that took longer is a fault: its force was that of another place. [s]
+inline constexpr double kLatePlugin = 4e-3;
 
-// The plug-in is opened, exchanged with and closed in a thread of its own, below the servo's
-// priority; forces and states are handed over newest value first, without a lock. A call that does
-// not return shows as age: from kPluginStale on the force that waits for it is zero, from
-// kOldestAge on the device is silent. An answer that is none (an error, a number that is not
-// finite, a place further than 10 m, no orientation) is left out, and the very next force is zero.
-// Where the servo itself hands over nothing for 5 ms, the plug-in gets zero, too. After each of
-// these the force comes back over a quarter of a second. None is above what the plug-in says it
-// renders.
-//
-// `device` is "plugin:NAME" or "plugin:NAME:ARGUMENT". Throws Error, and DeviceError where it
-// cannot be opened or does not answer within a second. Destroying it waits a second at most: a
-// plug-in that hangs in a call is left to itself.
-std::unique_ptr<Device> makePluginDevice(std::string_view device);
-std::unique_ptr<Device> makePluginDevice(const patina_device& plugin, std::string name,
-                                         std::string argument);
+// The plug-in is opened, turned with and closed in the link's thread, below the servo's priority.
+// An answer that is none (an error, a number that is not finite, a place further than 10 m, no
+// orientation, a late one) is a fault of its turn, and a plug-in that throws is not called again.
+// `plugin` outlives it.
+std::unique_ptr<DeviceLink> makePluginLink(const patina_device& plugin, std::string argument);
+
+// "plugin:NAME" or "plugin:NAME:ARGUMENT", with what it says of its workspace and its force in its
+// guard. Throws Error, and DeviceError where there is none of this name or it cannot be used.
+std::unique_ptr<Device> makePluginDevice(std::string_view device, LinkedSpec spec = {});
 
 } // namespace patina

@@ -133,6 +133,13 @@ PluginFound described(const std::string& name, const patina_device& plugin) {
   return found;
 }
 
+GuardSpec guardFor(const DeviceLimits& limits) {
+  GuardSpec guard;
+  guard.max_force = std::max(limits.max_force.value_or(0), 1e-9); // none that anyone feels
+  guard.workspace = limits.workspace;
+  return guard;
+}
+
 std::vector<PluginFound> installedPlugins() {
   std::vector<PluginFound> list;
   for (const auto& [name, file] : files()) {

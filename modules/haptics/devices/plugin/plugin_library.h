@@ -30,6 +30,9 @@ struct PluginFound {
 };
 std::vector<PluginFound> installedPlugins(); // by name; loads each
 
+// No force above what it renders, none out of its workspace.
+GuardSpec guardFor(const DeviceLimits& limits);
+
 // Sound text and numbers, whatever it says of itself.
 PluginFound described(const std::string& name, const patina_device& plugin);
 
