@@ -12,10 +12,10 @@ namespace patina {
 
 // What a look finds; slow, any thread.
 struct AttachedFindings {
-  std::vector<UsbCheck> usb; // haptic devices and probes
-  std::vector<SerialProbe> serial;
-  std::vector<PluginFound> plugins;
-  std::string problem; // why the bus cannot be read
+  std::vector<UsbCheck> usb{}; // haptic devices and probes
+  std::vector<SerialProbe> serial{};
+  std::vector<PluginFound> plugins{};
+  std::string problem{}; // why the bus cannot be read
 };
 AttachedFindings lookForDevices();
 

@@ -147,9 +147,9 @@ void DevicePanel::setValues(const DeviceChoice& choice) {
 }
 
 void DevicePanel::addDevice(const QString& caption, const std::string& device) {
-  const QString data = QString::fromStdString(device);
+  const QString name = QString::fromStdString(device);
   const QSignalBlocker quiet(device_);
-  if (device_->findData(data) < 0) device_->addItem(caption, data);
+  if (device_->findData(name) < 0) device_->addItem(caption, name);
 }
 
 void DevicePanel::showPlan(const StabiliserPlan& plan) {

@@ -24,9 +24,9 @@ PluginName pluginName(std::string_view device); // throws Error
 const patina_device& loadedPlugin(const std::string& name);
 
 struct PluginFound {
-  std::string name, caption, note;
-  DeviceLimits limits;
-  std::string problem; // why it cannot be used; then the others are empty
+  std::string name, caption{}, note{};
+  DeviceLimits limits{};
+  std::string problem{}; // why it cannot be used; then the others are empty
 };
 std::vector<PluginFound> installedPlugins(); // by name; loads each
 
