@@ -64,7 +64,7 @@ Vec3 inWorkspace(std::mt19937& random) {
 
 TEST(FalconKinematics, AnglesAreThoseOfTheLinkage) {
   std::mt19937 random(1);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     const Vec3 p = inWorkspace(random);
     const auto angles = falconAngles(kShape, p);
     ASSERT_TRUE(angles.has_value()) << p.transpose();
@@ -114,7 +114,7 @@ TEST(FalconKinematics, EveryAngleGivesAFinitePoseThatSaysWhetherItIsOne) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-25, 25);
   int poses = 0;
-  for (int i = 0; i < 200000; ++i) {
+  for (int i = 0; i < 50000; ++i) {
     const Angles angles(any(random), any(random), any(random));
     const FalconPose pose = falconPose(kShape, angles);
     ASSERT_TRUE(pose.handle.allFinite() && std::isfinite(pose.residual)) << angles.transpose();
@@ -154,7 +154,7 @@ TEST(FalconKinematics, ASingularPoseIsFiniteAndSaysSo) {
 TEST(FalconKinematics, TorquesDoTheWorkOfTheForce) {
   std::mt19937 random(5);
   std::normal_distribution<double> any(0, 1);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 500; ++i) {
     const Vec3 p = inWorkspace(random);
     const Vec3 force(any(random), any(random), any(random));
     const auto torques = falconTorques(kShape, p, *falconAngles(kShape, p), force);

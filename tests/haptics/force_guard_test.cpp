@@ -26,7 +26,7 @@ ForceGuard opened(const GuardSpec& spec, const DeviceState& state = at(Vec3::Zer
 }
 
 TEST(ForceGuard, EachFaultTakesTheForceAtOnceAndItComesBackEvenlyOverTheRamp) {
-  const GuardSpec spec{.dead_man = 2};
+  const GuardSpec spec;
   const DeviceState good = at(Vec3::Zero(), 1U << 2);
   const Vec3 force(1, -2, 0.5);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -50,9 +50,9 @@ TEST(ForceGuard, EachFaultTakesTheForceAtOnceAndItComesBackEvenlyOverTheRamp) {
         Case{Hold::window, {force, 0, 1.01 * spec.oldest_look}, good},
         Case{Hold::command, {Vec3(nan, 0, 0)}, good},
         Case{Hold::command, {Vec3(0, 0, HUGE_VAL)}, good},
-        Case{Hold::let_go, {force}, at(Vec3::Zero())}}) {
+        Case{Hold::let_go, {force, 0, 0, true}, at(Vec3::Zero())}}) {
     ForceGuard guard = opened(spec, good);
-    EXPECT_EQ(guard.pass({force}, good, kTick), force);
+    EXPECT_EQ(guard.pass({force, 0, 0, true}, good, kTick), force);
     EXPECT_EQ(guard.pass(fault.asked, fault.state, kTick), Vec3::Zero()) << text(fault.hold);
     EXPECT_EQ(guard.hold(), fault.hold);
     for (int i = 1; i <= 250; ++i) {

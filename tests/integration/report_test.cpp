@@ -58,7 +58,8 @@ TEST_F(Reports, HaveNoKeyThatTheHelpOfTheirCommandLacks) {
       {"emboss", scene, "-o", folder / "e.ply"},
       {"export", scene, "-o", folder / "out", "--stability"},
       {"devices"},
-      {"latency-test", "--seconds", "0.1"}};
+      {"latency-test", "--seconds", "0.1"},
+      {"latency-test", "--wire", "--seconds", "0.3", "--faults", "20"}};
 #ifdef PATINA_HAS_ACQUISITION
   const std::string scan = folder / "scan";
   calls.push_back({"simulate-scan", box, "-o", scan, "--dropouts", "2"});

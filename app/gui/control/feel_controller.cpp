@@ -31,9 +31,10 @@ void FeelController::place(const Scene& scene, const Vec3& start) {
       entry.takes_numbers ? scene.device_model.value_or(entry.model) : entry.model;
   const DeviceSetup setup{.name = scene.device, .target = target, .model = model};
   notes_ = entry.linked ? setup.notes : nullptr;
+  setNeedsButton(needs_button_);
   look();
   try {
-    servo_.open(openDevice(entry, setup, mountAt(entry, start)), target, model.rate);
+    servo_.open(openDevice(entry, setup, mountAt(entry, start), controls_), target, model.rate);
   } catch (const DeviceError& error) {
     emit failed(QString::fromUtf8(error.what()));
   }
@@ -45,9 +46,19 @@ void FeelController::close() {
   collect();
 }
 
+void FeelController::setForce(bool on) {
+  controls_->enabled = on;
+}
+
+void FeelController::setNeedsButton(bool on) {
+  needs_button_ = on;
+  if (notes_) notes_->needs_button = on;
+}
+
 void FeelController::look() {
   if (notes_) notes_->looked_at = clock_->now();
-  const QString held_back = notes_ ? QString::fromStdString(patina::heldBack(*notes_)) : QString();
+  QString held_back = notes_ ? QString::fromStdString(patina::heldBack(*notes_)) : QString();
+  if (!controls_->enabled) held_back = tr("no force: it is switched off");
   if (held_back == held_back_) return;
   held_back_ = held_back;
   if (!held_back.isEmpty()) emit said({held_back, true});

@@ -10,6 +10,7 @@
 #include "app/gui/servo/live_plots.h"
 #include "app/gui/servo/recording.h"
 #include "app/gui/servo/stability_job.h"
+#include "haptics/devices/device_mount.h"
 #include "haptics/devices/link/device_clock.h"
 #include "haptics/devices/link/link_notes.h"
 #include "haptics/servo/tip_servo.h"
@@ -34,6 +35,9 @@ class FeelController : public QObject {
   // force back, in one line.
   const LinkNotes* notes() const { return notes_.get(); }
   const QString& heldBack() const { return held_back_; }
+  // By a person: none at all, or only while a button of the device is held.
+  void setForce(bool on);
+  void setNeedsButton(bool on);
   const ToolSample& sample() const { return sample_; } // the last one
   void open(const Scene& scene, const Vec3& start);
   void place(const Scene& scene, const Vec3& tip); // there, as if it had never been elsewhere
@@ -59,6 +63,8 @@ class FeelController : public QObject {
   Parts at_;
   TipServo servo_;
   std::shared_ptr<LinkNotes> notes_;
+  std::shared_ptr<MountControls> controls_ = std::make_shared<MountControls>();
+  bool needs_button_ = false;
   std::shared_ptr<DeviceClock> clock_ = systemClock(); // that the notes are in
   QString held_back_;
   StabilityJob stability_;

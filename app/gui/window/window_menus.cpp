@@ -110,6 +110,18 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   record->setToolTip(tr("Record every tick, then save a CSV table"));
   QObject::connect(record, &QAction::triggered, &at.feel, &FeelController::toggleRecording);
   parts.commands[Command::record] = record;
+  FeelController* feel = &at.feel;
+  QAction* none = file->addAction(tr("&No force"));
+  none->setObjectName(QStringLiteral("no_force"));
+  none->setCheckable(true);
+  none->setShortcut(Qt::Key_F4);
+  none->setToolTip(tr("The device gives none until this is taken back; the tip follows"));
+  QObject::connect(none, &QAction::toggled, feel, [feel](bool on) { feel->setForce(!on); });
+  QAction* held = file->addAction(tr("Force only while a &button is held"));
+  held->setObjectName(QStringLiteral("force_by_button"));
+  held->setCheckable(true);
+  held->setToolTip(tr("Of a device with buttons: a handle that is let go gives none"));
+  QObject::connect(held, &QAction::toggled, feel, &FeelController::setNeedsButton);
   file->addSeparator();
   file->addAction(tr("&Quit"), &window, &QWidget::close, QKeySequence::Quit);
   bar.addAction(save);

@@ -10,8 +10,8 @@ namespace patina {
 namespace {
 
 constexpr double kAnswerWait = 2e-3; // [s]
-constexpr double kSoonest = 1e-4;    // [s]: 16 bytes at 1.5 Mbaud; what is there before is old
-constexpr double kFastest = 5;       // [m/s], of a hand
+constexpr double kSoonest = 2.1e-4;  // [s]: 16 bytes out, 16 back, at 1.5 Mbaud; sooner is old
+constexpr double kFastest = 2.5;     // [m/s], of a hand
 constexpr double kJump = 2e-3;       // [m], that is none in itself: counts, and a late answer
 constexpr double kHomingTurn = 1;    // [s], of either way to ask for it
 constexpr int kProbes = 3;

@@ -72,13 +72,14 @@ class Judged final : public Device {
       : device_(std::move(device)), clock_(std::move(clock)), witness_(witness), run_(run),
         ages_(ages) {}
   DeviceState exchange(const Vec3& force, double dt) noexcept override {
+    const double asked = clock_->now();
     const DeviceState state = device_->exchange(force, dt);
     if (judge(state) != DeviceStatus::ok) return state;
     const double now = clock_->now();
     if (ages_.size() < ages_.capacity()) ages_.push_back(1e6 * state.age);
     if (state.position == last_ && state.age > 1e-3) ++run_.aged;
     last_ = state.position;
-    const double off = witness_.off(now - state.age - kSlack, now, state.position);
+    const double off = witness_.off(asked - state.age - kSlack, now, state.position);
     run_.worst = std::max(run_.worst, off);
     if (off < 0 || off > kOff) ++run_.stale;
     return state;

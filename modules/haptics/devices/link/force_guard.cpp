@@ -43,7 +43,7 @@ Hold ForceGuard::holdFor(const Asked& asked, const DeviceState& reading) const n
   if (!(asked.command_age <= spec_.oldest_command)) return Hold::servo;
   if (!(asked.look_age <= spec_.oldest_look)) return Hold::window;
   if (!asked.force.allFinite()) return Hold::command;
-  if (spec_.dead_man && (reading.buttons >> (*spec_.dead_man & 31U) & 1U) == 0) return Hold::let_go;
+  if (asked.needs_button && reading.buttons == 0) return Hold::let_go;
   return Hold::none;
 }
 

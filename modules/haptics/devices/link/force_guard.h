@@ -32,11 +32,10 @@ struct GuardSpec {
   double max_force = std::numeric_limits<double>::infinity(); // [N], of the magnitude
   std::optional<Box3> workspace{};                            // [m]: no force pushes further out
   MotorHeat motors{};
-  Vec3 weight = Vec3::Zero();         // [N], of the handle: borne, part of the force
-  double oldest_command = 3e-3;       // [s]
-  double oldest_look = 0.5;           // [s]; the window looks 30 times a second
-  double ramp = 0.25;                 // [s], from no force to all of it
-  std::optional<unsigned> dead_man{}; // button that must be down for force
+  Vec3 weight = Vec3::Zero();   // [N], of the handle: borne, part of the force
+  double oldest_command = 3e-3; // [s]
+  double oldest_look = 0.5;     // [s]; the window looks 30 times a second
+  double ramp = 0.25;           // [s], from no force to all of it
 };
 
 inline constexpr double kWorkspaceEdge = 2e-3; // [m], over which what pushes out is taken away
@@ -50,6 +49,7 @@ class ForceGuard {
     Vec3 force = Vec3::Zero(); // [N], device frame
     double command_age = 0;    // [s]
     double look_age = 0;       // [s]
+    bool needs_button = false; // no force unless a person holds a button of the device
   };
   // Throws std::invalid_argument unless limits, ramp and times are above 0.
   explicit ForceGuard(const GuardSpec& spec);

@@ -58,9 +58,10 @@ void LinkLoop::tryToOpen() noexcept {
 void LinkLoop::turn(const LinkCommand& command) noexcept {
   const double before = clock_->now();
   const double looked = notes_->looked_at.load(std::memory_order_relaxed);
-  const Vec3 force =
-      guard_.pass({command.force, since(before, command.at), looked < 0 ? 0 : before - looked},
-                  reading_, before - last_turn_);
+  const ForceGuard::Asked asked{command.force, since(before, command.at),
+                                looked < 0 ? 0 : before - looked,
+                                notes_->needs_button.load(std::memory_order_relaxed)};
+  const Vec3 force = guard_.pass(asked, reading_, before - last_turn_);
   last_turn_ = before;
   if (command.at == last_command_) notes_->overruns.fetch_add(1, std::memory_order_relaxed);
   last_command_ = command.at;

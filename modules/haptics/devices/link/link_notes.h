@@ -22,6 +22,7 @@ struct LinkNotes {
   std::atomic<std::uint64_t> overruns{0}; // turns that began without a new command
   std::atomic<std::uint64_t> openings{0}; // times that it began to answer
   std::atomic<double> looked_at{-1};      // [s], of the device's clock; below 0: nobody looks
+  std::atomic<bool> needs_button{false};  // the dead man's: force while one is held, no longer
   TimingWindow round_trip{8192};          // [ns]; the device's thread writes
 
   std::string cause() const {
