@@ -15,6 +15,7 @@
 #include <QSurfaceFormat>
 #include <QTimer>
 
+#include "app/gui/loading/up_choice.h"
 #include "app/gui/loading/first_picture.h"
 #include "app/gui/window/main_window.h"
 #include "app/gui/window/theme.h"
@@ -129,7 +130,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
   }
   window.controllers().recovery.begin();
   patina::LoadRequest request = arguments.request;
-  if (!arguments.up && documents.asks()) request.options.up = documents.up();
+  if (!arguments.up && documents.asks()) request.options.up = patina::rememberedUp();
   documents.open(request);
   if (arguments.demo) window.controllers().desks.choose(patina::Desk::texture);
   if (arguments.log) feel.startLog();

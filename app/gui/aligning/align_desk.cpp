@@ -238,6 +238,7 @@ void AlignDesk::draw() {
   const Pose& pose = alignment_.pose();
   const Residuals off = residualsOf(*alignment_.target(), alignment_.points(), pose);
   panel_->setResiduals(off);
+  off_ = off.rms;
   if (!settle_.isActive()) panel_->setValues(valuesOf(pose), reach_);
   DrawnPath path;
   path.title = tr("distance [mm]").toStdString();

@@ -29,6 +29,7 @@ class AlignDesk : public QObject {
   QWidget* basin() const { return plot_; }
 
   const Alignment& alignment() const { return alignment_; }
+  double off() const { return off_; }           // rms of the path from the mesh [m]
   const QString& name() const { return name_; } // of the path
   const std::optional<Work>& work() const { return work_; }
 
@@ -70,6 +71,7 @@ class AlignDesk : public QObject {
   BasinPlot* plot_ = new BasinPlot;
   std::vector<AlignView*> views_; // made with the first path
   QTimer settle_;
+  double off_ = 0;
   double reach_ = 1;                    // of the sliders [m]
   Pose held_ = Pose::Identity();        // as it was when a drag began
   std::vector<Vec3> on_path_, on_mesh_; // that were picked

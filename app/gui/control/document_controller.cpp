@@ -1,11 +1,11 @@
 #include "app/gui/control/document_controller.h"
 
-#include <QDragEnterEvent>
-#include <QMimeData>
-#include <QSettings>
+#include <utility>
 
+#include "app/gui/loading/file_drop.h"
 #include "app/gui/loading/file_question.h"
 #include "app/gui/loading/load_dialogs.h"
+#include "app/gui/loading/up_choice.h"
 #include "core/error.h"
 #include "workspace/workspace.h"
 
@@ -22,19 +22,32 @@ QString wordsFor(const LoadRequest& request) {
                                 : fileNameOf(request.path);
 }
 
-const QString kYUp = QStringLiteral("y_up");
+LoadRequest requestFor(const QString& path) {
+  LoadRequest request;
+  request.path = path.toStdString();
+  request.options.up = rememberedUp();
+  return request;
+}
+
+bool opensElsewhere(const DocumentController::Parts& at, RecentFiles& recent,
+                    const LoadRequest& request) {
+  if (request.path.empty() || !at.elsewhere || !at.elsewhere(request.path)) return false;
+  recent.add(QString::fromStdString(request.path.string()));
+  return true;
+}
 
 } // namespace
 
 DocumentController::DocumentController(const Parts& parts, QObject* parent)
     : QObject(parent), at_(parts), loader_(parts.edits.thread().listener(), this),
-      recent_(parts.recent, this), up_(QSettings().value(kYUp).toBool() ? UpAxis::y : UpAxis::z) {
+      recent_(parts.recent, this) {
+  connect(this, &DocumentController::abandoned, this, [this] { work_.reset(); });
   connectLoader();
   connect(&recent_, &RecentFiles::chosen, this,
           [this](const QString& path) { openAsked(requestFor(path)); });
   connect(&at_.saving, &SaveController::saved, &recent_, &RecentFiles::add);
-  at_.window.setAcceptDrops(true);
-  at_.window.installEventFilter(this);
+  connect(new FileDrop(at_.window), &FileDrop::dropped, this,
+          [this](const QString& path) { openAsked(requestFor(path)); });
 }
 
 void DocumentController::connectLoader() {
@@ -53,11 +66,11 @@ void DocumentController::connectLoader() {
   connect(&loader_, &SceneLoader::failed, this, &DocumentController::fail);
   connect(&loader_, &SceneLoader::cancelled, this, [this] {
     if (closing_) return;
-    abandon();
+    emit abandoned();
     emit cancelled();
   });
   connect(&loader_, &SceneLoader::needsUnit, this, [this](double longest) {
-    abandon();
+    emit abandoned();
     const LoadRequest asked = loader_.request();
     askUnit(&at_.window, wordsFor(asked), longest, asked.options.up,
             [this, asked](MeshUnit unit, UpAxis up) {
@@ -65,12 +78,12 @@ void DocumentController::connectLoader() {
               request.options.unit = unit;
               request.options.up = up;
               request.unit_chosen = true;
-              setUp(up);
+              rememberUp(up);
               open(request);
             });
   });
   connect(&loader_, &SceneLoader::needsIso, this, [this](double low, double high) {
-    abandon();
+    emit abandoned();
     askIso(&at_.window, wordsFor(loader_.request()), low, high, [this](double iso) {
       LoadRequest request = loader_.request();
       request.options.iso = iso;
@@ -86,14 +99,8 @@ QString DocumentController::nameUnderWay() const {
                                 : fileNameOf(request.path);
 }
 
-bool DocumentController::opensElsewhere(const LoadRequest& request) {
-  if (request.path.empty() || !elsewhere_ || !elsewhere_(request.path)) return false;
-  recent_.add(QString::fromStdString(request.path.string()));
-  return true;
-}
-
 void DocumentController::open(const LoadRequest& request) {
-  if (opensElsewhere(request)) return;
+  if (opensElsewhere(at_, recent_, request)) return;
   std::error_code code;
   const auto& folder = at_.edits.status().folder;
   const bool is_open = !request.adds && !request.recover && folder &&
@@ -109,21 +116,8 @@ void DocumentController::open(const LoadRequest& request) {
 }
 
 void DocumentController::openAsked(const LoadRequest& request) {
-  if (opensElsewhere(request)) return;
+  if (opensElsewhere(at_, recent_, request)) return;
   if (!asks_ || at_.saving.settleEdits()) open(request);
-}
-
-LoadRequest DocumentController::requestFor(const QString& path) const {
-  LoadRequest request;
-  request.path = path.toStdString();
-  request.options.up = up_;
-  return request;
-}
-
-void DocumentController::setUp(UpAxis up) {
-  up_ = up;
-  QSettings().setValue(kYUp, up == UpAxis::y);
-  emit changed();
 }
 
 void DocumentController::openDialog(bool adds) {
@@ -164,14 +158,9 @@ void DocumentController::add(const OpenedScene& opened) {
                        });
 }
 
-void DocumentController::abandon() {
-  work_.reset();
-  emit abandoned();
-}
-
 void DocumentController::fail(const QString& message) {
   const LoadRequest request = loader_.request();
-  abandon();
+  emit abandoned();
   const QString name = request.path.empty() ? tr("The scene") : fileNameOf(request.path);
   const bool damaged = !request.adds && !request.recover && isWorkspace(request.path) &&
                        !message.contains(QStringLiteral("no object"));
@@ -200,21 +189,6 @@ bool DocumentController::close() {
   work_ = Work{words, words, -1};
   emit changed();
   return false;
-}
-
-bool DocumentController::eventFilter(QObject*, QEvent* event) {
-  if (event->type() == QEvent::DragEnter) {
-    auto* drag = static_cast<QDragEnterEvent*>(event);
-    const QMimeData& data = *drag->mimeData();
-    if (data.hasUrls() && data.urls().front().isLocalFile()) drag->acceptProposedAction();
-    return true;
-  }
-  if (event->type() != QEvent::Drop) return false;
-  const QString path = static_cast<QDropEvent*>(event)->mimeData()->urls().front().toLocalFile();
-  // A question must not hold up the program that the file is dragged from.
-  QMetaObject::invokeMethod(
-      this, [this, path] { openAsked(requestFor(path)); }, Qt::QueuedConnection);
-  return true;
 }
 
 } // namespace patina

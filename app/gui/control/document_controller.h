@@ -21,22 +21,17 @@ class DocumentController : public QObject {
     QMenu& recent;
     EditController& edits;
     SaveController& saving;
+    // Opens what is no scene: true if it did. May be empty.
+    std::function<bool(const std::filesystem::path&)> elsewhere;
   };
   DocumentController(const Parts& parts, QObject* parent);
 
   // Whether a person is asked about what is not saved; a script's window has nobody to ask.
   void setAsks(bool asks) { asks_ = asks; }
   bool asks() const { return asks_; }
-  // What is no scene, and is opened by someone else: true if it was.
-  void setElsewhere(std::function<bool(const std::filesystem::path&)> opens) {
-    elsewhere_ = std::move(opens);
-  }
   void open(const LoadRequest& request);
   void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
   void openDialog(bool adds);
-  // What is up in the mesh files that a person opens from now on, in later sessions too.
-  UpAxis up() const { return up_; }
-  void setUp(UpAxis up);
   void cancel(); // what is loaded, else what is edited
   bool close();  // false: a file is still being read, and rested() follows
 
@@ -53,24 +48,16 @@ class DocumentController : public QObject {
   void said(const patina::Message& message);
   void rested();
 
- protected:
-  bool eventFilter(QObject* watched, QEvent* event) override; // what is dropped on the window
-
  private:
   void connectLoader();
   void take(OpenedEditor& opened);
   void add(const OpenedScene& opened);
-  void abandon();
   void fail(const QString& message);
-  LoadRequest requestFor(const QString& path) const;
-  bool opensElsewhere(const LoadRequest& request);
 
   Parts at_;
-  std::function<bool(const std::filesystem::path&)> elsewhere_;
   SceneLoader loader_;
   RecentFiles recent_;
   std::optional<Work> work_;
-  UpAxis up_;
   bool asks_ = true, closing_ = false;
 };
 

@@ -14,6 +14,16 @@
 #include "visualization/view/camera.h"
 
 namespace patina {
+namespace {
+
+// A pixel in fractions of the picture's height, from its centre, right and up.
+Vec2 fractionOf(const QWidget& widget, const QPoint& pixel) {
+  const double high = std::max(1, widget.height());
+  return {(pixel.x() - 0.5 * widget.width()) / high, (0.5 * widget.height() - pixel.y()) / high};
+}
+
+} // namespace
+
 SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent), frames_(view_, *this) {
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
@@ -39,11 +49,6 @@ void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
   setHandling(handling_);
 }
 
-Vec2 SceneWidget::fraction(const QPoint& pixel) const {
-  const double high = std::max(1, height());
-  return {(pixel.x() - 0.5 * width()) / high, (0.5 * height() - pixel.y()) / high};
-}
-
 Vec3 SceneWidget::restingPlace() {
   vtkCamera& camera = *view_.renderer().GetActiveCamera();
   const double gap = 0.04 * view_.extent().diagonal().norm();
@@ -55,14 +60,9 @@ Vec3 SceneWidget::restingPlace() {
          (0.5 * view_.extent().diagonal().norm() + gap) * viewDirection(camera);
 }
 
-void SceneWidget::moveTip(const Vec3& target) {
-  target_ = target;
-  emit tipMoved(target);
-}
-
 std::optional<Vec3> SceneWidget::surfaceAt(const QPoint& pixel) {
   if (!field_) return std::nullopt;
-  const Vec2 at = fraction(pixel);
+  const Vec2 at = fractionOf(*this, pixel);
   const Ray ray = rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
   return firstSurfaceAlong(*field_, ray.origin, ray.direction);
 }
@@ -129,8 +129,8 @@ void SceneWidget::press(QMouseEvent& event) {
 
 void SceneWidget::drag(QMouseEvent& event) {
   vtkCamera& camera = *view_.renderer().GetActiveCamera();
-  const Vec2 now = fraction(event.pos());
-  const Vec2 moved = now - fraction(last_);
+  const Vec2 now = fractionOf(*this, event.pos());
+  const Vec2 moved = now - fractionOf(*this, last_);
   last_ = event.pos();
   pointer_ = last_;
   switch (drag_) {
@@ -138,7 +138,8 @@ void SceneWidget::drag(QMouseEvent& event) {
     brush(last_, true, 1, event);
     break;
   case Drag::tip:
-    moveTip(pointInViewPlane(camera, now[0], now[1], target_));
+    target_ = pointInViewPlane(camera, now[0], now[1], target_);
+    emit tipMoved(target_);
     break;
   case Drag::orbit:
     orbit(camera, moved[0], moved[1]);
@@ -154,25 +155,13 @@ void SceneWidget::drag(QMouseEvent& event) {
   }
 }
 
-void SceneWidget::doubleClick(QMouseEvent& event) {
-  if (!feels() || event.button() != Qt::LeftButton) return press(event);
-  if (const auto hit = surfaceAt(event.pos())) emit placeAsked(*hit);
-  drag_ = Drag::none;
-}
-
-bool SceneWidget::escape(const QKeyEvent& event) {
-  if (event.key() != Qt::Key_Escape || drag_ != Drag::brush) return false;
-  drag_ = Drag::none;
-  emit escaped();
-  return true;
-}
-
 void SceneWidget::wheel(QWheelEvent& event) {
   vtkCamera& camera = *view_.renderer().GetActiveCamera();
   const double notches = event.angleDelta().y() / 120.0;
   if (feels() && !event.modifiers().testFlag(Qt::ControlModifier)) {
     const double step = 0.004 * view_.extent().diagonal().norm();
-    moveTip(target_ + notches * step * viewDirection(camera));
+    target_ += notches * step * viewDirection(camera);
+    emit tipMoved(target_);
   } else if (paints() && handling_ == Handling::press &&
              !event.modifiers().testFlag(Qt::ControlModifier)) {
     emit forceTurned(notches);
@@ -190,9 +179,13 @@ bool SceneWidget::event(QEvent* event) {
   case QEvent::MouseMove:
     drag(*static_cast<QMouseEvent*>(event));
     return true;
-  case QEvent::MouseButtonDblClick:
-    doubleClick(*static_cast<QMouseEvent*>(event));
+  case QEvent::MouseButtonDblClick: {
+    auto& click = *static_cast<QMouseEvent*>(event);
+    if (!feels() || click.button() != Qt::LeftButton) return press(click), true;
+    if (const auto hit = surfaceAt(click.pos())) emit placeAsked(*hit);
+    drag_ = Drag::none;
     return true;
+  }
   case QEvent::MouseButtonRelease:
     release(*static_cast<QMouseEvent*>(event));
     return true;
@@ -210,7 +203,11 @@ bool SceneWidget::event(QEvent* event) {
     return true;
   // VTK's own key bindings (e quits, w wireframes) are not ours: keys go to the window's menus.
   case QEvent::KeyPress:
-    if (escape(*static_cast<QKeyEvent*>(event))) return true;
+    if (static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape && drag_ == Drag::brush) {
+      drag_ = Drag::none; // the stroke is taken back
+      emit escaped();
+      return true;
+    }
     return QOpenGLWidget::event(event);
   case QEvent::KeyRelease:
     return QOpenGLWidget::event(event);

@@ -69,13 +69,9 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   bool pick(const QMouseEvent& event); // false: it is no picking
   bool pen(QTabletEvent& event);
   void release(const QMouseEvent& event);
-  Vec2 fraction(const QPoint& pixel) const; // of the height, from the centre, right and up
   void press(QMouseEvent& event);
   void drag(QMouseEvent& event);
-  void doubleClick(QMouseEvent& event);
-  bool escape(const QKeyEvent& event); // false: there is nothing to leave
   void wheel(QWheelEvent& event);
-  void moveTip(const Vec3& target);
 
   enum class Drag { none, tip, orbit, pan, zoom, brush };
   SceneView view_;

@@ -16,7 +16,37 @@
 namespace patina {
 namespace {
 constexpr int kNarrow = 1100; // without room for the column
+
+#ifdef PATINA_HAS_ACQUISITION
+GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, double felt) {
+  GuideFacts facts;
+  facts.force = felt;
+  if (const ScanFiles* files = parts.scan->scan().files()) facts.frames = files->frames.size();
+  if (const ScanPath* path = parts.scan->scan().path()) facts.poses = path->poses.size();
+  const Alignment& aligned = parts.align->alignment();
+  facts.samples = aligned.path().size();
+  if (aligned.isReady() && aligned.done() > 0) facts.off = parts.align->off();
+  if (scene != nullptr)
+    for (const SceneObject& object : scene->scene.objects)
+      if (object.paint && object.paint->textures)
+        facts.faces += object.paint->textures->faces.size();
+  return facts;
 }
+#endif
+
+std::function<bool(const std::filesystem::path&)> opensScans(const WindowParts& parts) {
+#ifdef PATINA_HAS_ACQUISITION
+  return [scan = parts.scan](const std::filesystem::path& path) {
+    if (!isScanFolder(path)) return false;
+    scan->open(path);
+    return true;
+  };
+#else
+  static_cast<void>(parts);
+  return {};
+#endif
+}
+} // namespace
 
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), parts_(layOut(*this)),
@@ -29,7 +59,8 @@ MainWindow::MainWindow(QWidget* parent)
       paint_({*parts_.tools, *parts_.brush, *parts_.tool, *parts_.view, feel_.servo(),
               edits_.thread()},
              this),
-      saving_(*this, edits_, this), documents_({*this, *parts_.recent, edits_, saving_}, this),
+      saving_(*this, edits_, this),
+      documents_({*this, *parts_.recent, edits_, saving_, opensScans(parts_)}, this),
       recovery_(*parts_.recover, this),
       desks_({*parts_.tools, *parts_.across, *parts_.down, *parts_.column, *parts_.drawer}, this) {
   addMenus(*this, parts_, controllers());
@@ -102,11 +133,6 @@ void MainWindow::connectTools() {
 
 #ifdef PATINA_HAS_ACQUISITION
 void MainWindow::connectScan() {
-  documents_.setElsewhere([this](const std::filesystem::path& path) {
-    if (!isScanFolder(path)) return false;
-    parts_.scan->open(path);
-    return true;
-  });
   connect(parts_.scan, &ScanDesk::openAsked, &documents_, [this](const QString& folder) {
     LoadRequest request;
     request.path = folder.toStdString();
@@ -130,6 +156,7 @@ void MainWindow::connectScan() {
   parts_.texture->library().setSources(edits_.thread(), [this] {
     return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
   });
+  connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
   connect(parts_.scan, &ScanDesk::pathMade, parts_.align, &AlignDesk::setPath);
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
@@ -165,6 +192,7 @@ WindowState MainWindow::state() const {
   if (!state.work) state.work = parts_.align->work();
   const Alignment& aligned = parts_.align->alignment();
   state.path = aligned.isReady();
+  state.guide = guideFacts(parts_, edits_.scene().get(), felt_);
   if (state.desk == Desk::align) {
     state.undoable = aligned.done();
     state.redoable = aligned.undone();
@@ -187,6 +215,7 @@ void MainWindow::tick() {
   feel_.collect();
   paint_.refresh();
   if (feel_.servo().running()) view_.view().setTool(feel_.sample());
+  if (feel_.servo().running()) felt_ = std::max(felt_, feel_.sample().force.norm());
   view_.refresh();
   parts_.force->refresh();
   parts_.energy->refresh();
@@ -228,6 +257,7 @@ void MainWindow::showScene(const SceneChange& change) {
   parts_.texture->library().setScene(change.scene);
   if (change.surface) parts_.align->setSceneMesh(change.scene->mesh);
 #endif
+  if (change.surface) felt_ = 0;
   if (change.device) {
     const Vec3 start = edited ? feel_.sample().tip : parts_.view->restingPlace();
     parts_.view->setTarget(start);

@@ -62,6 +62,7 @@ class MainWindow : public QMainWindow {
   DeskController desks_;
   QTimer timer_;
   bool stages_shown_ = true;
+  double felt_ = 0; // the greatest force, since the surface is this one [N]
   bool closing_ = false;
   int ticks_ = 0;
 };

@@ -119,7 +119,13 @@ WindowParts layOut(QMainWindow& window) {
 #endif
   parts.column = makeColumn(parts);
   parts.drawer = makeDrawer(parts);
-  parts.down->addWidget(parts.cells);
+  auto* above = new QWidget;
+  auto* stack = new QVBoxLayout(above);
+  stack->setContentsMargins(0, 0, 0, 0);
+  stack->setSpacing(0);
+  stack->addWidget(parts.guide);
+  stack->addWidget(parts.cells, 1);
+  parts.down->addWidget(above);
   parts.down->addWidget(parts.drawer);
   parts.across->addWidget(parts.down);
   parts.across->addWidget(parts.column);
@@ -156,6 +162,7 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
   const int other = static_cast<int>(state.desk) - static_cast<int>(Desk::scan); // desks in a row
   parts.cells->setCurrentIndex(std::max(0, other + 1));
   parts.tools->setVisible(other < 0);
+  parts.guide->show(state.guide, other >= 0);
 #ifdef PATINA_HAS_ACQUISITION
   parts.texture->showLibrary(tabInFront(state) == Tab::library);
 #endif

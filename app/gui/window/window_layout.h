@@ -26,6 +26,7 @@
 #include "app/gui/widgets/folding_tabs.h"
 #include "app/gui/widgets/scene_widget.h"
 #include "app/gui/widgets/status_line.h"
+#include "app/gui/window/guide_strip.h"
 #include "app/gui/window/tool_bar.h"
 #include "app/gui/window/window_state.h"
 
@@ -44,6 +45,7 @@ struct WindowParts {
   ScanDesk* scan = nullptr;        // where they are built
   TextureDesk* texture = nullptr;
   AlignDesk* align = nullptr;
+  GuideStrip* guide = new GuideStrip; // over them
   LoadBar* load_bar = new LoadBar;
   RecoverBar* recover = new RecoverBar;
   NoticeLine* notice = new NoticeLine;

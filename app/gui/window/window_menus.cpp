@@ -10,6 +10,7 @@
 #include "app/gui/control/edit_controller.h"
 #include "app/gui/control/feel_controller.h"
 #include "app/gui/control/view_controller.h"
+#include "app/gui/loading/up_choice.h"
 #include "app/gui/painting/paint_controller.h"
 #include "app/gui/widgets/words.h"
 #include "app/gui/window/theme.h"
@@ -89,11 +90,11 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   y_up->setObjectName(QStringLiteral("y_up"));
   y_up->setToolTip(tr("Meshes that are opened from now on are turned so that their y is up"));
   y_up->setCheckable(true);
-  y_up->setChecked(documents->up() == UpAxis::y);
+  y_up->setChecked(rememberedUp() == UpAxis::y);
   QObject::connect(y_up, &QAction::toggled, documents,
-                   [=](bool on) { documents->setUp(on ? UpAxis::y : UpAxis::z); });
+                   [](bool on) { rememberUp(on ? UpAxis::y : UpAxis::z); });
   QObject::connect(documents, &DocumentController::changed, y_up,
-                   [=] { y_up->setChecked(documents->up() == UpAxis::y); });
+                   [=] { y_up->setChecked(rememberedUp() == UpAxis::y); });
   file->addSeparator();
   QAction* save =
       file->addAction(tr("&Save"), &at.saving, &SaveController::save, QKeySequence::Save);
@@ -235,6 +236,15 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   addLayers(*menu, parts.display);
   menu->addSeparator();
   menu->addActions(at.desks.actions());
+#ifdef PATINA_HAS_ACQUISITION
+  QAction* guide = menu->addAction(tr("Guide from a scan to a feel"));
+  guide->setObjectName(QStringLiteral("guide"));
+  guide->setToolTip(tr("A line over Scan, Align and Texture: what is done, and what is next"));
+  guide->setCheckable(true);
+  guide->setChecked(parts.guide->isOpen());
+  QObject::connect(guide, &QAction::toggled, parts.guide, &GuideStrip::setOpen);
+  QObject::connect(parts.guide, &GuideStrip::openChanged, guide, &QAction::setChecked);
+#endif
   DeskController* desks = &at.desks;
   FoldingTabs *column = parts.column, *drawer = parts.drawer;
   menu->addAction(

@@ -6,7 +6,7 @@
 
 #include <QString>
 
-#include "app/gui/window/desk.h"
+#include "app/gui/window/guide_strip.h"
 
 namespace patina {
 
@@ -33,6 +33,7 @@ struct WindowState {
   bool scan = false;                  // one is open
   bool texture = false;               // one was fitted
   bool path = false;                  // there is one on a mesh, to be aligned
+  GuideFacts guide;                   // how far a scan has come to a feel
   std::size_t undoable = 0, redoable = 0;
   bool unsaved = false;
   bool recording = false;
