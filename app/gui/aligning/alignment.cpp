@@ -99,11 +99,7 @@ Registration registeredAt(const SurfaceTarget& target, const std::vector<PathSam
 
 void Alignment::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   target_.reset();
-  if (mesh != nullptr) {
-    TriangleMesh clean = cleaned(*mesh).mesh;
-    if (!clean.triangles.empty())
-      target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0);
-  }
+  mesh_ = std::move(mesh);
   begin();
 }
 
@@ -118,7 +114,12 @@ void Alignment::setPath(std::vector<PathSample> path) {
 void Alignment::begin() {
   steps_.clear();
   at_ = 0;
-  if (!isReady()) return;
+  if (path_.empty() || mesh_ == nullptr) return;
+  if (target_ == nullptr) {
+    TriangleMesh clean = cleaned(*mesh_).mesh;
+    if (clean.triangles.empty()) return;
+    target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0);
+  }
   pose_ = middleOnMiddle(target_->mesh(), points_);
   steps_ = {pose_};
 }

@@ -38,7 +38,8 @@ Registration registeredAt(const SurfaceTarget& target, const std::vector<PathSam
 
 class Alignment {
  public:
-  // Either nullptr or empty: there is none. Begins anew, middle on middle.
+  // Either nullptr or empty: there is none. Begins anew, middle on middle. What distances need of a
+  // mesh is made with the first path.
   void setMesh(std::shared_ptr<const TriangleMesh> mesh);
   void setPath(std::vector<PathSample> path);
   bool isReady() const { return target_ != nullptr && !path_.empty(); }
@@ -61,6 +62,7 @@ class Alignment {
  private:
   void begin();
 
+  std::shared_ptr<const TriangleMesh> mesh_;
   std::shared_ptr<const SurfaceTarget> target_;
   std::vector<PathSample> path_;
   std::vector<Vec3> points_;
