@@ -92,6 +92,36 @@ TEST(Compliance, KnowsItsDeviationWhereNeighboursErrAlike) {
   EXPECT_NEAR(found.stated / found.deviation, 1, 0.1);
 }
 
+// Each press has an error of its own that grows with the force, as a path's does that leans: from
+// few of them two intervals of three still hold the truth.
+TEST(Compliance, OfFewPressesHasAnHonestDeviation) {
+  constexpr double kStiffness = 800, kOwn = 0.08; // deviation of a press's slope, relative
+  for (const int count : {2, 3, 5, 12}) {
+    int held = 0, all = 0;
+    for (std::uint32_t seed = 0; seed < 1500; ++seed) {
+      std::mt19937 random(seed);
+      std::normal_distribution<double> normal;
+      std::vector<PressSample> samples;
+      for (int press = 0; press < count; ++press) {
+        const double slope = (1 + kOwn * normal(random)) / kStiffness;
+        for (int i = 0; i < 60; ++i) {
+          const double force = 3.0 * i / 59;
+          samples.push_back({press + i / 500., slope * force + 2e-5 * normal(random),
+                             force + kForceSigma * normal(random)});
+        }
+      }
+      const auto estimate = estimateCompliance(samples, kForceSigma, true);
+      ASSERT_TRUE(estimate);
+      ASSERT_EQ(estimate->loadings, static_cast<std::size_t>(count));
+      held += std::abs(estimate->compliance - 1 / kStiffness) < estimate->compliance_deviation;
+      ++all;
+    }
+    const double share = static_cast<double>(held) / all; // its own deviation is .012
+    std::printf("%d presses: %.3f of the intervals hold the truth\n", count, share);
+    EXPECT_NEAR(share, 0.683, 0.04) << count;
+  }
+}
+
 TEST(Compliance, IsAbsentWithoutALoading) {
   EXPECT_FALSE(estimateCompliance({}, kForceSigma));
   std::vector<PressSample> resting(500);

@@ -60,6 +60,13 @@ std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double 
   return loadings;
 }
 
+// Of Student's distribution, what two thirds (erf(1/sqrt 2)) lie below, by its expansion at one: a
+// deviation that so few values show is often too small.
+double studentsShare(double freedom) {
+  const double v = 1 / freedom;
+  return 1 + v * (0.5 + v * (0.25 + 0.0625 * v));
+}
+
 struct Moments {
   double forces = 0, mixed = 0, displacements = 0, freedom = 0;
 };
@@ -124,7 +131,8 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
     double sum = 0;
     for (const double pull : pulls) sum += pull * pull;
     estimate.compliance_deviation = std::max(
-        estimate.compliance_deviation, std::sqrt(sum * presses / (presses - 1)) / true_forces);
+        estimate.compliance_deviation,
+        studentsShare(presses - 1) * std::sqrt(sum * presses / (presses - 1)) / true_forces);
   }
   // 1 / C is too large on the mean by the square of C's relative deviation.
   const double relative = estimate.compliance_deviation / C;

@@ -25,7 +25,8 @@ struct ComplianceEstimate {
 // takes the noise of the displacement for yielding, and is 42 % too soft at 3000 N/m with 0.3 mm.
 // The deviation counts the noise as correlated from sample to sample as the residuals are;
 // `alike_in_a_press`: as at least what the presses differ by among themselves, for displacements
-// whose errors last as long as one, such as a smoothed path's.
+// whose errors last as long as one, such as a smoothed path's; with few presses as much wider as
+// two of three intervals of one deviation, either way, need to hold the truth.
 // Samples more than 0.05 s apart belong to two presses. nullopt without a loading of at least
 // `least_rise` [N].
 std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
