@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "acquisition/calibration/pivot.h"
@@ -10,7 +11,10 @@
 #include "acquisition/simulation/simulated_pivot.h"
 #include "acquisition/tracking/lens.h"
 #include "acquisition/tracking/rig_pose.h"
+#include "acquisition/vision/vision.h"
+#include "acquisition/vision_library.h"
 #include "app/studies/query_timing.h"
+#include "core/error.h"
 
 namespace patina {
 namespace {
@@ -25,8 +29,27 @@ struct Setting {
   bool large = false;    // 1080p in place of 640 x 480
   double distance = 0.4; // [m]
   FrameLook look;
-  bool thorough = false;
+  std::optional<VisionRefinement> opencv = {}; // in place of ours
 };
+
+// As ours would hand them on, each as exact as any other.
+std::vector<SeenMarker> foundByOpenCv(const GreyFrame& image, const Setting& setting,
+                                      const Camera& camera) {
+  std::vector<VisionMarker> found;
+  if (const std::string cause =
+          visionLibrary().markers(image, setting.family, *setting.opencv, found);
+      !cause.empty())
+    throw Error(cause);
+  std::vector<SeenMarker> seen;
+  for (const VisionMarker& one : found) {
+    if (one.id > 4) continue; // not on the cube
+    seen.push_back({setting.family, one.id, 0, {}, 0});
+    for (std::size_t i = 0; i < 4; ++i)
+      seen.back().corner[i] = {one.corner[i], straightened(camera, one.corner[i]),
+                               10 * Eigen::Matrix2d::Identity()};
+  }
+  return seen;
+}
 
 Camera cameraOf(const Setting& setting) {
   const std::array<double, 5> lens{-0.08, 0.03, 3e-4, -2e-4, 0};
@@ -69,10 +92,11 @@ WorkPrecisionRow measured(const Setting& setting, int frames) {
     double least = INFINITY;
     std::vector<SeenMarker> markers;
     SeenRig seen;
-    for (int pass = 0; pass < 3; ++pass) {
+    for (int pass = 0; pass < (setting.opencv ? 1 : 3); ++pass) {
       const double begin = threadSeconds();
-      markers = findMarkers(image, books, &camera, {setting.thorough});
-      seen = poseOf(markers, rig, camera);
+      markers = setting.opencv ? foundByOpenCv(image, setting, camera)
+                               : findMarkers(image, books, &camera);
+      seen = poseOf(markers, rig, camera, nullptr, setting.opencv ? nullptr : &image);
       least = std::min(least, threadSeconds() - begin);
     }
     seconds += least;
@@ -135,6 +159,27 @@ std::vector<Variation> cameras() {
   return all;
 }
 
+// Beside OpenCV's own search with each of its refinements, of which the last is AprilTag 2.
+std::vector<Variation> searches() {
+  constexpr std::array<std::pair<const char*, VisionRefinement>, 4> kRefinements{
+      {{"OpenCV", VisionRefinement::none},
+       {"OpenCV subpix", VisionRefinement::subpix},
+       {"OpenCV contour", VisionRefinement::contour},
+       {"OpenCV apriltag", VisionRefinement::apriltag}}};
+  std::vector<Variation> all;
+  for (const bool large : {false, true}) {
+    Setting setting;
+    setting.large = large;
+    const std::string picture = large ? " 1080p" : " 640x480";
+    all.push_back({"search, picture", "ours" + picture, setting});
+    for (const auto& [name, refinement] : kRefinements) {
+      setting.opencv = refinement;
+      all.push_back({"search, picture", name + picture, setting});
+    }
+  }
+  return all;
+}
+
 template <class Change>
 std::vector<Variation> varied(const std::string& knob, const std::vector<double>& values,
                               const Change& change) {
@@ -191,7 +236,8 @@ std::vector<WorkPrecisionTable> trackingStudy(const StudyOptions& options, Progr
   const auto noise = [](Setting& setting, double value) { setting.look.noise = value; };
   return tablesOf(
       {{0, "cameras", part("Families and pictures", cameras())},
-       {0.4, "distances",
+       {0.3, "searches", part("Beside OpenCV's search", searches())},
+       {0.5, "distances",
         part("Distance [m]", varied("distance [m]", {0.25, 0.4, 0.6, 0.9}, distance))},
        {0.6, "blur", part("Blur [px]", varied("blur [px]", {0.4, 0.8, 1.2, 1.8, 2.5}, blur))},
        {0.8, "noise", part("Noise [grey levels]", varied("noise", {0, 2, 5, 10, 20}, noise))},

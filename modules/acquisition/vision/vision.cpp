@@ -1,8 +1,9 @@
 #include "acquisition/vision/vision.h"
 
 #include <algorithm>
-#include <opencv2/aruco/dictionary.hpp>
+#include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
+#include <stdexcept>
 
 namespace patina {
 namespace {
@@ -46,17 +47,19 @@ template <typename Work> std::string guarded(const Work& work) {
   }
 }
 
+// Throws what cv::Exception cannot say: a name that is none, with those that there are.
+const Named& familyNamed(const std::string& name) {
+  const Named* found = std::find_if(std::begin(kFamilies), std::end(kFamilies),
+                                    [&](const Named& each) { return name == each.name; });
+  if (found != std::end(kFamilies)) return *found;
+  std::string names;
+  for (const Named& each : kFamilies) names += (names.empty() ? "" : " ") + std::string(each.name);
+  throw std::runtime_error("'" + name + "' is no family of markers; there are " + names);
+}
+
 std::string family(const std::string& name, MarkerFamily& out) {
   return guarded([&]() -> std::string {
-    const Named* found = std::find_if(std::begin(kFamilies), std::end(kFamilies),
-                                      [&](const Named& each) { return name == each.name; });
-    if (found == std::end(kFamilies)) {
-      std::string names;
-      for (const Named& each : kFamilies)
-        names += (names.empty() ? "" : " ") + std::string(each.name);
-      return "'" + name + "' is no family of markers; there are " + names;
-    }
-    const auto dictionary = cv::aruco::getPredefinedDictionary(found->value);
+    const auto dictionary = cv::aruco::getPredefinedDictionary(familyNamed(name).value);
     out.name = name;
     out.side = dictionary->markerSize;
     out.code.clear();
@@ -79,6 +82,29 @@ std::string chessboard(const GreyFrame& image, int columns, int rows, std::vecto
     std::vector<cv::Point2f> found;
     if (!cv::findChessboardCorners(view, {columns, rows}, found)) return "";
     for (const cv::Point2f& point : found) corners.emplace_back(point.x, point.y);
+    return "";
+  });
+}
+
+std::string markers(const GreyFrame& image, const std::string& name, VisionRefinement refinement,
+                    std::vector<VisionMarker>& found) {
+  return guarded([&]() -> std::string {
+    constexpr cv::aruco::CornerRefineMethod kMethods[] = {
+        cv::aruco::CORNER_REFINE_NONE, cv::aruco::CORNER_REFINE_SUBPIX,
+        cv::aruco::CORNER_REFINE_CONTOUR, cv::aruco::CORNER_REFINE_APRILTAG};
+    found.clear();
+    const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
+    const auto parameters = cv::aruco::DetectorParameters::create();
+    parameters->cornerRefinementMethod = kMethods[static_cast<int>(refinement)];
+    std::vector<std::vector<cv::Point2f>> corners;
+    std::vector<int> ids;
+    cv::aruco::detectMarkers(view, cv::aruco::getPredefinedDictionary(familyNamed(name).value),
+                             corners, ids, parameters);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      found.push_back({ids[i], {}});
+      for (std::size_t k = 0; k < 4; ++k)
+        found.back().corner[k] = {corners[i][k].x, corners[i][k].y};
+    }
     return "";
   });
 }
@@ -115,7 +141,7 @@ std::string calibrate(const std::vector<BoardView>& views, CameraFit& fit) {
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) const VisionLibrary* patinaVisionLibrary() {
-  static constexpr VisionLibrary kLibrary{family, chessboard, calibrate};
+  static constexpr VisionLibrary kLibrary{family, chessboard, markers, calibrate};
   // No threads of the library's own beside the servo.
   static const bool quiet = [] {
     cv::setNumThreads(1);

@@ -2,6 +2,7 @@
 // board. Both sides are built together, so that C++ types may cross; exceptions may not.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,21 @@ struct CameraFit {
   std::vector<double> view_rms;      // [px]
 };
 
+// A marker as OpenCV's own search finds it, to compare with.
+struct VisionMarker {
+  int id = 0;
+  std::array<Vec2, 4> corner; // as RigMarker::corners()
+};
+enum class VisionRefinement { none, subpix, contour, apriltag };
+
 // Each returns an empty text, or why it could not.
 struct VisionLibrary {
   // Its codes; not how many bits are forgiven.
   std::string (*family)(const std::string& name, MarkerFamily& out);
   // Inner corners of a chessboard by rows, to about a pixel; none if it is not seen.
   std::string (*chessboard)(const GreyFrame&, int columns, int rows, std::vector<Vec2>& corners);
+  std::string (*markers)(const GreyFrame&, const std::string& family, VisionRefinement refinement,
+                         std::vector<VisionMarker>& found);
   std::string (*calibrate)(const std::vector<BoardView>&, CameraFit& fit);
 };
 
