@@ -177,13 +177,15 @@ PATINA_TIMED_TEST(MarkerFinder, TakesHardlyLongerWhereThereIsNoiseAndLosesNoMark
     look.noise = noise;
     return rig.renderer.render({pose}, look, 1);
   };
-  const GreyFrame clear = frame(2), noisy = frame(8);
+  const GreyFrame clear = frame(2), noisy = frame(8), noisier = frame(20);
   const auto looking = [&](const GreyFrame& image) {
     return [&] { (void)findMarkers(image, rig.books, &rig.camera); };
   };
-  const auto times = test::leastSeconds({looking(clear), looking(noisy)});
-  std::printf("noise of 8 takes %.2f of that of 2\n", times[1] / times[0]);
+  const auto times = test::leastSeconds({looking(clear), looking(noisy), looking(noisier)});
+  std::printf("noise of 8 takes %.2f of that of 2, of 20 %.2f\n", times[1] / times[0],
+              times[2] / times[0]);
   EXPECT_LT(times[1] / times[0], 1.5);
+  EXPECT_LT(times[2] / times[0], 3);
   int shown = 0;
   for (const double distance : {0.25, 0.4, 0.6, 0.9}) {
     const Found clean = findIn(rig, lookOf(0.6, 2, 0.3), distance, 6);

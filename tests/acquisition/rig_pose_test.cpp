@@ -59,6 +59,78 @@ TEST(RigPose, FindsTheTipAndSaysHowWell) {
   }
 }
 
+// Blurred edges are off by what shines through narrow borders, and the covariance knows it.
+TEST(RigPose, KnowsWhatBlurTakesFromIt) {
+  const struct {
+    Camera camera;
+    const char* family;
+    double distance;
+  } settings[] = {{test::smallCamera(), "apriltag_36h11", 0.4},
+                  {test::smallCamera(), "4x4_50", 0.4},
+                  {test::smallCamera(), "6x6_250", 0.35},
+                  {test::largeCamera(), "apriltag_36h11", 0.4},
+                  {test::wideCamera(), "5x5_100", 0.3}};
+  for (const auto& s : settings) {
+    const RenderedRig rig(s.camera, s.family);
+    double all = 0, frames = 0;
+    for (const double blur : {0.4, 1.2, 1.8, 2.5}) {
+      std::mt19937 random(21);
+      FrameLook look;
+      look.blur = blur;
+      double nees = 0, poses = 0;
+      for (std::uint32_t i = 0; i < 12; ++i) {
+        const Pose known = somePose(random, s.distance);
+        const SeenRig seen = rig.track(rig.renderer.render({known}, look, i));
+        if (seen.verdict != RigVerdict::seen) continue;
+        const Vec6 error = errorOf(seen.camera_from_probe, known);
+        nees += error.dot(seen.covariance.ldlt().solve(error)) / 6;
+        poses += 1;
+      }
+      std::printf("%s, blur %.1f: NEES %.2f of %.0f poses\n", s.family, blur, nees / poses, poses);
+      EXPECT_GE(poses, 9);
+      EXPECT_LT(nees / poses, 1.6) << blur; // 72 values: sigmas that hold stay below 1.35
+      EXPECT_GT(nees / poses, 0.3) << blur;
+      all += nees;
+      frames += poses;
+    }
+    EXPECT_LT(all / frames, 1.3);
+    EXPECT_GT(all / frames, 0.6);
+  }
+}
+
+// Far away the corners leave two poses; how all faces look tells which.
+TEST(RigPose, FarAwayIsToldByHowTheFacesLook) {
+  const struct {
+    Camera camera;
+    const char* family;
+    double distance, blur;
+    int most; // of 40 frames without a pose
+  } settings[] = {{test::smallCamera(), "apriltag_36h11", 0.9, 0.6, 4},
+                  {test::smallCamera(), "4x4_50", 0.9, 1.2, 8},
+                  {test::wideCamera(), "5x5_100", 0.6, 0.9, 4}};
+  for (const auto& s : settings) {
+    const RenderedRig rig(s.camera, s.family);
+    std::mt19937 random(33);
+    FrameLook look;
+    look.blur = s.blur;
+    int without = 0, of_corners = 0, wrong = 0;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      const Pose known = somePose(random, s.distance);
+      const GreyFrame image = rig.renderer.render({known}, look, i);
+      const auto markers = findMarkers(image, rig.books, &rig.camera);
+      of_corners += poseOf(markers, rig.markers, rig.camera).verdict == RigVerdict::ambiguous;
+      const SeenRig seen = poseOf(markers, rig.markers, rig.camera, nullptr, &image);
+      without += seen.verdict != RigVerdict::seen;
+      wrong += seen.verdict == RigVerdict::seen &&
+               errorOf(seen.camera_from_probe, known).tail<3>().norm() > 0.3;
+    }
+    std::printf("%s at %.1f m: %d of 40 without a pose, %d by corners alone, %d wrong\n", s.family,
+                s.distance, without, of_corners, wrong);
+    EXPECT_LE(without, s.most);
+    EXPECT_LE(wrong, 1);
+  }
+}
+
 // Corners without an image: what the tests below are about is exact.
 std::vector<SeenMarker> seenExactly(const RenderedRig& rig, const Pose& pose,
                                     const std::vector<std::size_t>& which, double noise = 0) {

@@ -32,7 +32,7 @@ struct RenderedRig {
     return out;
   }
   SeenRig track(const GreyFrame& image, const Pose* lately = nullptr) const {
-    return poseOf(findMarkers(image, books, &camera), markers, camera, lately);
+    return poseOf(findMarkers(image, books, &camera), markers, camera, lately, &image);
   }
 
   Camera camera;

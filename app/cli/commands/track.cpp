@@ -122,7 +122,7 @@ Command trackCommand() {
           "pose together, from lines "
           "fitted to their edges. A frame without a pose, by whatever cause, is a comment in "
           "POSES.tum and is listed in the report; one that could be tilted either way is decided "
-          "by the frame before it or left out.",
+          "by how all faces of the rig look or by the frame before it, or left out.",
       .examples =
           {"patina track scan -o scan/poses.tum",
            "patina track pictures --rate 30 --camera camera.yml --rig rig.json -o poses.tum",

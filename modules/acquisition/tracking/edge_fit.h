@@ -24,9 +24,11 @@ struct FittedQuad {
   }
 };
 
-// `lens` straightens the edges; without it they are taken for straight. Nothing where a side is not
-// an edge from dark to bright.
-std::optional<FittedQuad> fitEdges(const GreyFrame& image, const Quad& quad, const Camera* lens);
+// `lens` straightens the edges; without it they are taken for straight. The quad is `bits` wide, of
+// which the outer ones are black: what is nearer to an edge than half of one belongs to it. Nothing
+// where a side is not an edge from dark to bright.
+std::optional<FittedQuad> fitEdges(const GreyFrame& image, const Quad& quad, const Camera* lens,
+                                   int bits = 8);
 
 // Grey between pixels; nothing outside of the image.
 inline std::optional<double> greyAt(const GreyFrame& image, double x, double y) {

@@ -27,11 +27,14 @@ void keep(std::vector<SeenMarker>& seen, const SeenMarker& marker) {
 void look(const GreyFrame& image, const std::vector<CodeBook>& books, const Camera* lens,
           const QuadSearch& search, std::vector<SeenMarker>& seen) {
   for (const Quad& quad : findQuads(image, search)) {
-    const auto fitted = fitEdges(image, quad, lens);
+    constexpr int kBits = 8; // of most families
+    auto fitted = fitEdges(image, quad, lens, kBits);
     if (!fitted) continue;
     for (const CodeBook& book : books) {
       const auto match = readCode(image, fitted->pixels(), book);
       if (!match) continue;
+      if (const int bits = book.family().side + 2; bits != kBits)
+        if (const auto closer = fitEdges(image, fitted->pixels(), lens, bits)) fitted = closer;
       SeenMarker marker{book.family().name, match->id, match->wrong, fitted->corner,
                         fitted->roughness};
       std::rotate(marker.corner.begin(), marker.corner.begin() + match->turn, marker.corner.end());

@@ -104,6 +104,22 @@ double noiseOf(const GreyFrame& image) {
   return static_cast<double>(bend) / (0.6745 * std::sqrt(6.));
 }
 
+// Those at the border of the picture stay.
+GreyFrame meansOfNine(const GreyFrame& image) {
+  GreyFrame out = image;
+  const auto width = static_cast<std::size_t>(image.width);
+  std::vector<std::uint16_t> column(width);
+  for (int y = 1; y + 1 < image.height; ++y) {
+    const std::uint8_t *above = image.row(y - 1), *here = image.row(y), *below = image.row(y + 1);
+    for (std::size_t x = 0; x < width; ++x)
+      column[x] = static_cast<std::uint16_t>(above[x] + here[x] + below[x]);
+    std::uint8_t* to = out.pixel.data() + static_cast<std::size_t>(y) * width;
+    for (std::size_t x = 1; x + 1 < width; ++x)
+      to[x] = static_cast<std::uint8_t>((column[x - 1] + column[x] + column[x + 1] + 4) / 9);
+  }
+  return out;
+}
+
 struct Point {
   int x, y;
 };
@@ -243,13 +259,20 @@ std::optional<Quad> quadOf(const Border& border, const QuadSearch& search) {
 
 } // namespace
 
-std::vector<Quad> findQuads(const GreyFrame& image, const QuadSearch& search) {
+std::vector<Quad> findQuads(const GreyFrame& original, const QuadSearch& search) {
   // Noise alone spreads over six deviations where a threshold looks; its thousand spots each would
-  // be walked around.
+  // be walked around. Where no marker's contrast would be beyond that, means of nine are looked at.
   constexpr double kSpread = 7, kMostContrast = 64; // in deviations; that no marker is lost
+  double noise = noiseOf(original);
+  GreyFrame means;
+  if (kSpread * noise > kMostContrast) {
+    means = meansOfNine(original);
+    noise /= 3;
+  }
+  const GreyFrame& image = means.pixel.empty() ? original : means;
   QuadSearch quieted = search;
-  quieted.contrast = std::max(search.contrast,
-                              static_cast<int>(std::min(kMostContrast, kSpread * noiseOf(image))));
+  quieted.contrast =
+      std::max(search.contrast, static_cast<int>(std::min(kMostContrast, kSpread * noise)));
   DarkMap map = darkMap(image, quieted);
   std::vector<Quad> quads;
   Border border;

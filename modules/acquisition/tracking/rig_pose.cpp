@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/tracking/face_likeness.h"
+
 namespace patina {
 namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kFar = 10;      // by how much a marker may miss a first guess [px]
-constexpr double kMisfit = 2;    // rms that no good rig leaves [px]
-constexpr double kPrior = 8;     // for how many residuals the edges' own deviations count
-constexpr double kDoubt = 12;    // squared residuals by which another pose must be worse
+constexpr double kFar = 10;   // by how much a marker may miss a first guess [px]
+constexpr double kMisfit = 2; // rms that no good rig leaves [px]
+constexpr double kPrior = 8;  // for how many residuals the edges' own deviations count
+constexpr double kDoubt = 12; // squared residuals by which another pose must be worse
+// Beyond the first nobody asks how the faces look; what is systematic about edges counts as the
+// other.
+constexpr double kNoDoubt = 150, kMostTrust = 24;
 constexpr double kSame = 0.05;   // poses nearer to one another are one [rad]
 constexpr double kOwnTurn = 0.3; // the most that a hand turns from frame to frame [rad]
 
@@ -229,7 +234,7 @@ std::string_view nameOf(RigVerdict verdict) {
 }
 
 SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig,
-               const Camera& camera, const Pose* lately) {
+               const Camera& camera, const Pose* lately, const GreyFrame* image) {
   SeenRig result;
   const std::vector<Sight> all = sightsOf(seen, rig);
   if (all.empty()) return result;
@@ -242,12 +247,17 @@ SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>
     choice.best = refined(choice.sights, camera, choice.best.pose);
   result.markers = choice.sights.size();
   result.dropped = all.size() - result.markers;
-  result.rms = rmsOf(choice.sights, camera, choice.best.pose);
   const double residuals = 8. * static_cast<double>(result.markers);
   const auto unit = [&](const Fit& fit) { // of what the edges say, from how well it fits
     return std::max(1., (kPrior + fit.cost) / (kPrior + residuals - 6));
   };
-  if (choice.other.cost - choice.best.cost < kDoubt * unit(choice.best)) {
+  double evidence = (choice.other.cost - choice.best.cost) / unit(choice.best); // twice a logarithm
+  if (evidence < kNoDoubt && image)
+    evidence =
+        std::min(evidence, kMostTrust) + 2 * (faceLikeness(*image, rig, camera, choice.best.pose) -
+                                              faceLikeness(*image, rig, camera, choice.other.pose));
+  if (evidence < 0) std::swap(choice.best, choice.other);
+  if (std::abs(evidence) < kDoubt) {
     const auto turn = [&](const Fit& fit) { return angleBetween(fit.pose, *lately); };
     if (lately && turn(choice.other) < turn(choice.best)) std::swap(choice.best, choice.other);
     if (!lately || turn(choice.best) > kOwnTurn ||
@@ -256,6 +266,7 @@ SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>
       return result;
     }
   }
+  result.rms = rmsOf(choice.sights, camera, choice.best.pose);
   result.camera_from_probe = choice.best.pose;
   if (result.rms > kMisfit || 2 * result.dropped > all.size()) {
     result.verdict = RigVerdict::misfit;

@@ -23,8 +23,11 @@ struct SeenRig {
   double rms = 0;          // of their corners, each as exactly as it is known [px]
 };
 
-// `lately` decides where a picture does not, if the rig cannot have turned as far since.
+// Where the corners leave two poses, the faces decide of which no marker was found, if there is an
+// `image` to look at; and where it does not say, `lately` does, if the rig cannot have turned as
+// far since.
 SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig,
-               const Camera& camera, const Pose* lately = nullptr);
+               const Camera& camera, const Pose* lately = nullptr,
+               const GreyFrame* image = nullptr);
 
 } // namespace patina

@@ -52,7 +52,7 @@ RigTracker::RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
 SeenRig RigTracker::track(const GreyFrame& image, double t) {
   const bool lately = last_ && std::abs(t - last_t_) < kLately;
   markers_ = findMarkers(image, books_, &camera_, options_);
-  const SeenRig seen = poseOf(markers_, rig_, camera_, lately ? &*last_ : nullptr);
+  const SeenRig seen = poseOf(markers_, rig_, camera_, lately ? &*last_ : nullptr, &image);
   if (seen.verdict == RigVerdict::seen) {
     last_ = seen.camera_from_probe;
     last_t_ = t;
