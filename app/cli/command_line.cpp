@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
+#include <map>
 #include <sstream>
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/suggestion.h"
 #include "app/cli/output/help.h"
 #include "core/error.h"
+#include "core/output_target.h"
 
 namespace patina::cli {
 
@@ -17,7 +18,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 // The input that the next word is for: the first that may still be given, else the last.
-const Argument* nextInput(const Command& command, const std::set<std::string>& given) {
+const Argument* nextInput(const Command& command, const std::map<std::string, Words>& given) {
   const Argument* last = nullptr;
   for (const Argument& argument : command.arguments) {
     if (!argument.isInput()) continue;
@@ -59,10 +60,13 @@ void give(const Argument& argument, const std::string& value) {
   }
 }
 
-// Fills in the command's options from the words after its name; which were given, by name.
-std::set<std::string> parse(const Command& command, const Words& words) {
+// An argument that was given, and with which values.
+using Given = std::map<std::string, Words>;
+
+// Fills in the command's options from the words after its name.
+Given parse(const Command& command, const Words& words) {
   const std::string see = "patina " + command.name + " --help";
-  std::set<std::string> given;
+  Given given;
   bool only_inputs = false; // after "--"
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
@@ -73,9 +77,10 @@ std::set<std::string> parse(const Command& command, const Words& words) {
     if (only_inputs || word.size() < 2 || word[0] != '-') {
       const Argument* input = nextInput(command, given);
       if (!input) throw Error(command.name + ": '" + word + "' is one word too many; see " + see);
-      if (!given.insert(input->name()).second && !input->isRepeated())
+      if (given.contains(input->name()) && !input->isRepeated())
         throw Error(command.name + ": one " + input->value + " at a time: '" + word +
                     "' is one too many; see " + see);
+      given[input->name()].push_back(word);
       give(*input, word);
       continue;
     }
@@ -85,14 +90,14 @@ std::set<std::string> parse(const Command& command, const Words& words) {
     const std::string name = word.substr(0, end);
     const bool carries = end < word.size();
     const Argument& option = optionNamed(command, name);
-    given.insert(option.name());
+    Words& values = given[option.name()];
     if (option.isFlag() && carries) throw Error(name + " takes no value; see " + see);
     if (!option.isFlag() && !carries && i + 1 == words.size())
       throw Error(name + ": " + option.value + " is missing after it; see " + see);
-    if (option.isFlag())
-      give(option, "");
-    else
-      give(option, carries ? word.substr(end + (is_long ? 1 : 0)) : words[++i]);
+    values.push_back(option.isFlag() ? ""
+                     : carries       ? word.substr(end + (is_long ? 1 : 0))
+                                     : words[++i]);
+    give(option, values.back());
   }
   for (const Argument& argument : command.arguments)
     if (argument.isRequired() && !given.contains(argument.name()))
@@ -111,11 +116,35 @@ const Command& commandNamed(const std::vector<Command>& commands, const std::str
               suggestion(name, known, "; see patina --help"));
 }
 
-} // namespace
+// Of the words: what is read and written, and what was said more often than it counts.
+void checkFiles(const Command& command, const Given& given, Console& console) {
+  std::size_t read = 0, written = 0;
+  for (const Argument& argument : command.arguments) {
+    const auto found = given.find(argument.name());
+    if (found == given.end()) continue;
+    const Words& values = found->second;
+    if (values.size() > 1 && !argument.isRepeated() && !argument.isFlag())
+      console.warn(argument.name() + " is given " + std::to_string(values.size()) +
+                   " times: only the last counts");
+    const auto streams = std::ranges::count_if(values, isStandardStream);
+    (argument.is_output ? written : read) += static_cast<std::size_t>(streams);
+    if (!argument.is_output) continue;
+    const std::filesystem::path path = values.back();
+    const bool stream = isStandardStream(path) || path == "/dev/stdout";
+    console.data_on_stdout |= stream;
+    if (stream || !given.contains("--no-clobber") || !pathExists(path)) continue;
+    const bool empty_folder =
+        std::filesystem::is_directory(path) && std::filesystem::is_empty(path);
+    if (!empty_folder) throw FileError(path.string(), 0, "exists, and --no-clobber keeps it");
+  }
+  if (read > 1)
+    throw Error("'-' is given " + std::to_string(read) + " times: standard input is one");
+  if (written > 1)
+    throw Error("'-' is given " + std::to_string(written) + " times: standard output is one");
+}
 
-int runCommandLine(int argc, char** argv) {
+int run(const Words& words, Console& console) {
   const std::vector<Command> commands = allCommands();
-  const Words words(argv + 1, argv + argc);
   const auto only_inputs = std::ranges::find(words, "--");
   const auto asked = [&](const char* name) {
     return std::find(words.begin(), only_inputs, name) != only_inputs;
@@ -123,20 +152,36 @@ int runCommandLine(int argc, char** argv) {
   // Asking for help must work however incomplete or wrong the rest of the line is.
   if (asked("--help") || asked("-h")) {
     const auto about = std::ranges::find(commands, words.front(), &Command::name);
-    std::fputs((about == commands.end() ? programHelp(commands) : commandHelp(*about)).c_str(),
-               stdout);
+    console.print(about == commands.end() ? programHelp(commands) : commandHelp(*about));
     return kDone;
   }
-  if (asked("--version")) {
-    std::puts("patina " PATINA_VERSION);
+  if (asked("--version") || words == Words{"-V"}) {
+    console.print("patina " PATINA_VERSION "\n");
     return kDone;
   }
+  console.json = asked("--json");
   if (words.empty()) throw Error("which command? See patina --help");
-  Console console;
   Command command = commandNamed(commands, words.front());
   for (const Argument& argument : commonArguments(command)) command.arguments.push_back(argument);
-  console.json = parse(command, {words.begin() + 1, words.end()}).contains("--json");
+  const Given given = parse(command, {words.begin() + 1, words.end()});
+  checkFiles(command, given, console);
   return command.run(console);
+}
+
+} // namespace
+
+int runCommandLine(int argc, char** argv) {
+  try {
+    Console console;
+    try {
+      return run(Words(argv + 1, argv + argc), console);
+    } catch (const std::exception& error) {
+      return console.fail(error);
+    }
+  } catch (const std::exception& error) { // not even that much memory
+    std::fprintf(stderr, "patina: %s\n", error.what());
+    return kBadInput;
+  }
 }
 
 } // namespace patina::cli

@@ -3,8 +3,7 @@
 
 namespace patina::cli {
 
-// Prints help and versions itself. Throws Error (one line) for a wrong word and whatever the
-// command throws. Returns the exit code.
+// What goes wrong is one line on stderr. Returns the exit code.
 int runCommandLine(int argc, char** argv);
 
 } // namespace patina::cli

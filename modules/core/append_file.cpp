@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/error.h"
+#include "core/disk_error.h"
 
 namespace patina {
 namespace {
@@ -25,16 +25,16 @@ bool lock(int fd) {
 void createFile(const std::filesystem::path& path, std::string_view bytes) {
   const std::string name = path.string();
   Descriptor file(openRetrying(name.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666));
-  if (file.get() < 0) throw FileError(name, 0, "cannot be written: " + reason(errno));
+  if (file.get() < 0) throw DiskError(name, "cannot be written: " + reason(errno));
   if (writeAllAt(file.get(), bytes, 0) && file.close() == 0) return;
   const int code = errno;
   ::unlink(name.c_str());
-  throw FileError(name, 0, "cannot be written: " + reason(code));
+  throw DiskError(name, "cannot be written: " + reason(code));
 }
 
 AppendFile::AppendFile(const std::filesystem::path& path)
     : name_(path.string()), file_(openRetrying(name_.c_str(), O_RDWR)) {
-  if (file_.get() < 0) throw FileError(name_, 0, "cannot be opened for writing: " + reason(errno));
+  if (file_.get() < 0) throw DiskError(name_, "cannot be opened for writing: " + reason(errno));
   if (!lock(file_.get())) {
     throw FileError(name_, 0,
                     "another program is writing it; close that one, or save to another folder");
@@ -62,7 +62,7 @@ bool AppendFile::cut(std::uint64_t size) {
 }
 
 void AppendFile::truncate(std::uint64_t size) {
-  if (!cut(size)) throw FileError(name_, 0, "cannot be cut: " + reason(errno));
+  if (!cut(size)) throw DiskError(name_, "cannot be cut: " + reason(errno));
   size_ = size;
   longer_ = false;
 }
@@ -86,7 +86,7 @@ void AppendFile::append(std::string_view bytes) {
   if (!done) {
     const int code = errno;
     longer_ = !cut(size_);
-    throw FileError(name_, 0, what + reason(code));
+    throw DiskError(name_, what + reason(code));
   }
   size_ += bytes.size();
 }

@@ -59,8 +59,7 @@ constexpr std::size_t kLongestLine = 1 << 20;
 
 CsvReader::Source sourceOf(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const auto file = std::make_shared<Descriptor>(openRetrying(name.c_str(), O_RDONLY));
-  if (file->get() < 0) throw FileError(name, 0, "cannot be opened: " + reason(errno));
+  const auto file = std::make_shared<Descriptor>(openToRead(path));
   struct stat info {};
   if (::fstat(file->get(), &info) == 0 && S_ISDIR(info.st_mode))
     throw FileError(name, 0, "is a folder, not a file");

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fcntl.h>
+#include <future>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
-#include "core/error.h"
+#include "core/disk_error.h"
+#include "core/output_target.h"
 
 namespace patina {
 
@@ -27,6 +31,41 @@ int openRetrying(const char* path, int flags, mode_t mode) {
   return fd;
 }
 
+namespace {
+
+// The file system says only to a reader that waits whether anybody writes. Who waits too long is
+// let go by a writer of our own.
+int openPipe(const std::string& name) {
+  constexpr std::chrono::seconds kPatience{5};
+  std::promise<int> opened;
+  std::future<int> ready = opened.get_future();
+  std::thread reader([&] { opened.set_value(openRetrying(name.c_str(), O_RDONLY)); });
+  const bool waits = ready.wait_for(kPatience) == std::future_status::timeout;
+  if (waits) Descriptor(openRetrying(name.c_str(), O_WRONLY | O_NONBLOCK));
+  reader.join();
+  const int fd = ready.get();
+  if (!waits) return fd;
+  Descriptor unused(fd);
+  throw FileError(name, 0, "is a pipe that nobody writes: nothing came for 5 s");
+}
+
+} // namespace
+
+int openToRead(const std::filesystem::path& path) {
+  if (isStandardStream(path)) return ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
+  const std::string name = path.string();
+  struct stat info {};
+  const bool pipe = ::stat(name.c_str(), &info) == 0 && S_ISFIFO(info.st_mode) &&
+                    !path.string().starts_with("/dev/") && !path.string().starts_with("/proc/");
+  const int fd = pipe ? openPipe(name) : openRetrying(name.c_str(), O_RDONLY);
+  if (fd >= 0) return fd;
+  const int code = errno;
+  const std::string cause = "cannot be opened: " + reason(code);
+  if (code == ENOENT || code == ENOTDIR || code == ELOOP || code == EACCES)
+    throw FileError(name, 0, cause);
+  throw DiskError(name, cause);
+}
+
 bool syncRetrying(int fd) {
   int result;
   do {
@@ -34,6 +73,17 @@ bool syncRetrying(int fd) {
   } while (result != 0 && errno == EINTR);
   // Some file systems cannot sync a folder and say so with EINVAL: nothing more can be done there.
   return result == 0 || errno == EINVAL;
+}
+
+bool writeAll(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written >= 0)
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    else if (errno != EINTR)
+      return false;
+  }
+  return true;
 }
 
 bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset) {
@@ -53,13 +103,13 @@ std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t 
   for (;;) {
     const ssize_t got = ::read(fd, buffer, room);
     if (got >= 0) return static_cast<std::size_t>(got);
-    if (errno != EINTR) throw FileError(name, 0, "cannot be read: " + reason(errno));
+    if (errno != EINTR) throw DiskError(name, "cannot be read: " + reason(errno));
   }
 }
 
 std::string readAll(int fd, const std::string& name) {
   struct stat info {};
-  if (::fstat(fd, &info) != 0) throw FileError(name, 0, "cannot be read: " + reason(errno));
+  if (::fstat(fd, &info) != 0) throw DiskError(name, "cannot be read: " + reason(errno));
   if (S_ISDIR(info.st_mode)) throw FileError(name, 0, "is a folder, not a file");
   std::string bytes;
   // One byte more than the size, so that the end is seen without another growth.

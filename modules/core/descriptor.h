@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <sys/types.h>
@@ -26,10 +27,14 @@ class Descriptor {
 };
 
 int openRetrying(const char* path, int flags, mode_t mode = 0);
+// Open for reading; "-" is standard input. FileError: missing, a ring of links, a pipe that nobody
+// has opened for writing after five seconds; DiskError: anything else.
+int openToRead(const std::filesystem::path& path);
 bool syncRetrying(int fd);
 // false and errno; part of the bytes may then be there.
+bool writeAll(int fd, std::string_view bytes); // where it stands
 bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset);
-// Up to `room` bytes, 0 at the end. Throws FileError(name).
+// Up to `room` bytes, 0 at the end. Throws DiskError(name).
 std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t room);
 // The whole file from its beginning. Throws FileError(name).
 std::string readAll(int fd, const std::string& name);

@@ -7,7 +7,8 @@
 #include <unistd.h>
 
 #include "core/descriptor.h"
-#include "core/error.h"
+#include "core/disk_error.h"
+#include "core/file_kind.h"
 
 namespace patina {
 namespace {
@@ -23,13 +24,18 @@ struct Temporary {
 
 // Beside the target, because a rename is atomic only within one file system. Created with the
 // permissions that a plain open would give, which mkstemp does not.
-Temporary createBeside(const std::string& folder, const std::string& filename) {
+Temporary createBeside(const std::string& folder, const std::string& filename,
+                       Unfinished& unfinished) {
   static std::atomic<unsigned> counter{0};
   for (;;) {
     std::string name = folder + "/." + filename + "." + std::to_string(::getpid()) + "-" +
                        std::to_string(counter.fetch_add(1)) + std::string(kTemporaryEnd);
+    unfinished = Unfinished(name); // before it is there: an end in between leaves none
     const int fd = openRetrying(name.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666);
-    if (fd >= 0 || errno != EEXIST) return {fd, std::move(name)};
+    const int code = errno;
+    if (fd < 0) unfinished.done();
+    errno = code;
+    if (fd >= 0 || code != EEXIST) return {fd, std::move(name)};
   }
 }
 
@@ -49,24 +55,25 @@ bool syncFolder(const char* folder) {
 } // namespace
 
 std::string readFile(const fs::path& path) {
-  const std::string name = path.string();
-  const Descriptor file(openRetrying(name.c_str(), O_RDONLY));
-  if (file.get() < 0) throw FileError(name, 0, "cannot be opened: " + reason(errno));
-  return readAll(file.get(), name);
+  const Descriptor file(openToRead(path));
+  return readAll(file.get(), path.string());
 }
 
-AtomicFile::AtomicFile(const fs::path& path) : path_(path.string()), file_(-1) {
-  const fs::path parent = path.parent_path();
+AtomicFile::AtomicFile(const fs::path& path)
+    : path_(path.string()), target_(outputTarget(path)), file_(-1) {
+  if (target_.is_stream) {
+    file_.reset(target_.descriptor >= 0 ? ::fcntl(target_.descriptor, F_DUPFD_CLOEXEC, 3)
+                                        : openRetrying(target_.path.c_str(), O_WRONLY | O_NOCTTY));
+    if (file_.get() < 0) fail("cannot be written");
+    return;
+  }
+  const fs::path end = target_.path, parent = end.parent_path();
   folder_ = parent.empty() ? "." : parent.string();
-  struct stat old {};
-  const bool exists = ::stat(path_.c_str(), &old) == 0;
-  // The rename would put a file where a device or a pipe was.
-  if (exists && !S_ISREG(old.st_mode)) throw FileError(path_, 0, "cannot be written: not a file");
-  const Temporary temporary = createBeside(folder_, path.filename().string());
+  const Temporary temporary = createBeside(folder_, end.filename().string(), unfinished_);
   if (temporary.fd < 0) fail("cannot be written");
   file_.reset(temporary.fd);
   temporary_ = temporary.name;
-  if (!exists || ::fchmod(file_.get(), old.st_mode & 07777) == 0) return;
+  if (!target_.exists || ::fchmod(file_.get(), target_.permissions) == 0) return;
   const int code = errno;
   ::unlink(temporary_.c_str());
   errno = code;
@@ -78,22 +85,30 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::fail(const std::string& what) const {
-  throw FileError(path_, 0, what + ": " + reason(errno));
+  throw DiskError(path_, what + ": " + reason(errno));
 }
 
 void AtomicFile::append(std::string_view bytes) {
-  if (!writeAllAt(file_.get(), bytes, size_)) fail("cannot be written");
+  if (target_.exists && !target_.is_stream && size_ == 0)
+    requireSameKind(target_.path, kindOf(bytes, bytes.size()));
+  const bool written =
+      target_.is_stream ? writeAll(file_.get(), bytes) : writeAllAt(file_.get(), bytes, size_);
+  if (!written) fail("cannot be written");
   size_ += static_cast<std::int64_t>(bytes.size());
 }
 
 void AtomicFile::commit() {
+  if (target_.is_stream) {
+    if (file_.close() != 0) fail("cannot be written");
+    return;
+  }
   if (!syncRetrying(file_.get())) fail("cannot be flushed to disk");
   if (file_.close() != 0) fail("cannot be written");
-  if (renameRetrying(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be replaced");
+  if (renameRetrying(temporary_.c_str(), target_.path.c_str()) != 0) fail("cannot be replaced");
   temporary_.clear();
+  unfinished_.done();
   // Without this the new name may be lost with the power, though the bytes are safe.
-  if (!syncFolder(folder_.c_str()))
-    throw FileError(path_, 0, "was written, but its folder cannot be flushed: " + reason(errno));
+  if (!syncFolder(folder_.c_str())) fail("was written, but its folder cannot be flushed");
 }
 
 void writeFileAtomically(const fs::path& path, std::string_view bytes) {
@@ -120,12 +135,11 @@ void makeFolder(const fs::path& folder) {
   if (!parent.empty()) makeFolder(parent);
   if (::mkdir(folder.c_str(), 0777) != 0 && !fs::is_directory(folder, code)) {
     const int cause = errno;
-    throw FileError(folder.string(), 0,
-                    "cannot be made a folder: " +
-                        (cause == EEXIST ? "a file stands there" : reason(cause)));
+    throw DiskError(folder.string(), "cannot be made a folder: " +
+                                         (cause == EEXIST ? "a file stands there" : reason(cause)));
   }
   if (!syncFolder(parent.empty() ? "." : parent.c_str()))
-    throw FileError(folder.string(), 0, "was made, but cannot be flushed: " + reason(errno));
+    throw DiskError(folder.string(), "was made, but cannot be flushed: " + reason(errno));
 }
 
 } // namespace patina

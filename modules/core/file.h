@@ -7,15 +7,20 @@
 #include <string_view>
 
 #include "core/descriptor.h"
+#include "core/output_target.h"
+#include "core/unfinished.h"
 
 namespace patina {
 
-// The whole file as bytes. Throws FileError (missing, a folder, unreadable).
+// The whole file as bytes; "-" is standard input. Throws FileError (missing, a folder, unreadable,
+// a pipe that nobody writes).
 std::string readFile(const std::filesystem::path& path);
 
 // A file that is written piece by piece and stands at `path` only once it is whole: temp file in
 // the same folder, writes, fsync, rename, fsync folder. Until commit() returns, and on any failure,
-// what stood at `path` is untouched; without commit() the temp file is gone. All throw FileError.
+// what stood at `path` is untouched; without commit() the temp file is gone. Where `path` is a
+// link, that is the file it leads to; what is no file (a pipe, a device, "-") is written as it
+// comes. All throw FileError, also over a file of another kind (file_kind.h) or a read-only one.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path);
@@ -29,6 +34,8 @@ class AtomicFile {
   [[noreturn]] void fail(const std::string& what) const;
 
   std::string path_, folder_, temporary_; // temporary_ is empty once it has been renamed
+  OutputTarget target_;
+  Unfinished unfinished_;
   Descriptor file_;
   std::int64_t size_ = 0;
 };

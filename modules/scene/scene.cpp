@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/utf8.h"
 #include "scene/paint/grey_relief.h"
 #include "scene/scene_values.h"
 
@@ -13,6 +14,7 @@ namespace patina {
 namespace {
 
 constexpr double kMostReliefHeight = 0.1; // [m]
+constexpr double kFarthest = 1e6;         // [m], where doubles still tell a nanometre
 
 void require(bool holds, const std::string& key, double value, const std::string& range) {
   if (!holds) throw Error(key + " = " + formatNumber(value) + ": it must be " + range);
@@ -90,9 +92,9 @@ void validate(const FieldSpec& field) {
 }
 
 bool isName(const std::string& name) {
-  if (name.empty() || name.size() > 100) return false;
+  if (name.empty() || name.size() > 100 || !isUtf8(name)) return false;
   for (const char c : name) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80);
     if (!letter && !(c >= '0' && c <= '9') && c != '-' && c != '_') return false;
   }
   return true;
@@ -103,7 +105,7 @@ void validate(const std::vector<SceneObject>& objects) {
   for (const SceneObject& object : objects) {
     if (!isName(object.name)) {
       throw Error("object name '" + object.name +
-                  "': use 1 to 100 letters, digits, '-' and '_' only");
+                  "': use letters (UTF-8), digits, '-' and '_' only, up to 100 bytes");
     }
     if (!seen.insert(object.name).second)
       throw Error("object name '" + object.name + "' is used twice");
@@ -122,6 +124,10 @@ void validate(const std::vector<SceneObject>& objects) {
         rotation.determinant() > 0;
     // A scaled pose would scale distances and with them the force.
     if (!rigid) throw Error("object '" + object.name + "': its pose is not a rigid transform");
+    const double away = object.world_from_object.translation().cwiseAbs().maxCoeff();
+    if (!(away <= kFarthest))
+      throw Error("object '" + object.name + "': its pose puts it " + formatNumber(away) +
+                  " m away; the farthest is " + formatNumber(kFarthest) + " m");
   }
 }
 

@@ -74,10 +74,10 @@ TEST_F(Program, TheTourLeavesPicturesAndALog) {
   for (const char* name : {"window.png", "feel.png", "slice.png", "nodes.png", "offset.png",
                            "magnet.png", "stability.png", "objects.png", "relief.png", "paint.png"})
     EXPECT_GT(fs::file_size(folder_ / "tour" / name), 10000U) << name;
-  const CsvTable table =
-      readCsv(folder_ / "tour" / "feel.csv",
-              {"t [s]", "x [m]", "y [m]", "z [m]", "fx [N]", "fy [N]", "fz [N]", "contact",
-               "depth [m]", "vcp_x [m]", "vcp_y [m]", "vcp_z [m]", "nx", "ny", "nz", "step [ns]"});
+  const CsvTable table = readCsv(folder_ / "tour" / "feel.csv",
+                                 {"t [s]", "x [m]", "y [m]", "z [m]", "fx [N]", "fy [N]", "fz [N]",
+                                  "contact", "depth [m]", "vcp_x [m]", "vcp_y [m]", "vcp_z [m]",
+                                  "nx", "ny", "nz", "step [ns]", "fault", "held", "snap"});
   std::size_t touching = 0;
   for (const auto& row : table.rows) {
     if (row[7] == 0) continue;

@@ -15,7 +15,7 @@ namespace {
 
 const char* const kForceHeader =
     "t [s],x [m],y [m],z [m],fx [N],fy [N],fz [N],contact,depth [m],vcp_x [m],vcp_y [m],vcp_z "
-    "[m],nx,ny,nz,step [ns]";
+    "[m],nx,ny,nz,step [ns],fault,held,snap";
 const char* const kSampleHeader = "x [m],y [m],z [m],phi [m],nx,ny,nz,face,cx [m],cy [m],cz "
                                   "[m],in_band,stiffness [N/m],friction";
 

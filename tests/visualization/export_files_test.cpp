@@ -83,7 +83,7 @@ TEST_F(ExportFiles, ToolSamplesReadBackBitForBit) {
   ASSERT_EQ(table.rows.size(), 5U);
   EXPECT_EQ(table.rows[4][3], 1.0 / 3);
   EXPECT_EQ(table.rows[3][7], 1);
-  EXPECT_EQ(table.columns.back(), "step [ns]");
+  EXPECT_EQ(table.columns.back(), "snap");
 }
 
 TEST_F(ExportFiles, AFolderThatIsNotThereIsAFileError) {

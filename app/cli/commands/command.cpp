@@ -1,5 +1,6 @@
 #include "app/cli/commands/command.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -20,6 +21,8 @@ double numberIn(const std::string& text) {
 std::vector<Argument> commonArguments(const Command& command) {
   const Setter seen = [](const std::string&) {}; // the parser looks for them itself
   std::vector<Argument> all = {{"-h,--help", "", "", "", "Print this help.", seen}};
+  if (std::ranges::any_of(command.arguments, &Argument::is_output))
+    all.insert(all.begin(), {"--no-clobber", "", "", "", "Never write over what is there.", seen});
   if (!command.keys.empty())
     all.insert(all.begin(),
                {"--json", "", "", "", "Print the report as one JSON object on stdout.", seen});
@@ -66,7 +69,12 @@ Argument sceneInput(std::filesystem::path& target, const std::string& name) {
 
 Argument outputTo(std::filesystem::path& target, const std::string& value,
                   const std::string& caption) {
-  return {"-o,--output", value, "", "", caption, into(target), Times::once};
+  return {"-o,--output", value, "", "", caption, into(target), Times::once, true};
+}
+
+Argument writtenTo(std::filesystem::path& target, const std::string& names,
+                   const std::string& value, const std::string& caption) {
+  return {names, value, "", "", caption, into(target), Times::at_most_once, true};
 }
 
 Vec3 parsePoint(const std::string& text) {

@@ -27,6 +27,7 @@ struct Argument {
   std::string caption;
   Setter set;
   Times times = Times::at_most_once;
+  bool is_output = false; // the value names a file or folder that is written
 
   bool isInput() const { return names.front() != '-'; }
   bool isFlag() const { return value.empty(); }
@@ -46,7 +47,8 @@ struct Command {
   std::function<int(Console&)> run; // returns an exit code
 };
 
-// What every command has: --json where there are keys, and --help.
+// What every command has: --json where there are keys, --no-clobber where something is written, and
+// --help.
 std::vector<Argument> commonArguments(const Command& command);
 
 // Targets must outlive the parse.
@@ -71,5 +73,8 @@ Argument input(const std::string& name, const std::string& caption, Setter set,
 Argument sceneInput(std::filesystem::path& target, const std::string& name = "INPUT");
 Argument outputTo(std::filesystem::path& target, const std::string& value,
                   const std::string& caption);
+// The same for one that need not be given.
+Argument writtenTo(std::filesystem::path& target, const std::string& names,
+                   const std::string& value, const std::string& caption);
 
 } // namespace patina::cli

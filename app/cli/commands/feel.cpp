@@ -42,7 +42,7 @@ const Keys kFeelKeys = {
     {"field", "", "as patina field"}};
 
 int runFeel(const FeelOptions& options, Console& console) {
-  requireWritable(options.output, {options.input, options.path});
+  requireWritable(options.output, {options.input, options.path}, FileKind::table);
   TipPathReader path(options.path);
   // A path that is wrong from the start is refused before the field is built.
   std::optional<TimedTip> first = path.next();

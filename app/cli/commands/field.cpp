@@ -16,7 +16,7 @@ struct FieldOptions {
 int runField(const FieldOptions& options, Console& console) {
   if (!isVolumeFile(options.output))
     throw Error("--output: a field is a .vti file, not '" + options.output.string() + "'");
-  requireWritable(options.output, {options.input});
+  requireWritable(options.output, {options.input}, FileKind::image_data);
   const Scene scene = openWith(options.input, options.scene, console);
   if (scene.objects.empty())
     throw Error(options.input.string() + ": needs an object to build a field");

@@ -232,11 +232,11 @@ int runFilter(FilterOptions options, Console& console) {
   findFiles(options);
   const std::vector<std::filesystem::path> inputs = {
       options.input, options.probe, options.rig, options.truth, options.over, options.registration};
-  requireWritable(options.output, inputs);
+  requireWritable(options.output, inputs, FileKind::table);
   if (options.normal && options.heights.empty())
     throw Error("--normal: is that of heights; name a file for them with --heights");
   if (!options.heights.empty()) {
-    requireWritable(options.heights, inputs);
+    requireWritable(options.heights, inputs, FileKind::table);
     if (areOne(options.heights, options.output))
       throw FileError(options.heights.string(), 0, "is the path's file too");
   }
@@ -361,8 +361,8 @@ Command filterCommand() {
             [options](const std::string&) { options->forward = false; }},
            {"--forward", "", "", "", "Each sample knows the poses before it only.",
             into(options->forward)},
-           {"--heights", "HEIGHTS.csv", "", "", "Heights along the path, with sigma.",
-            into(options->heights)},
+           writtenTo(options->heights, "--heights", "HEIGHTS.csv",
+                     "Heights along the path, with sigma."),
            {"--normal", "X,Y,Z", "", "of the plane that was touched",
             "Outwards, in the camera's frame.",
             [options](const std::string& word) { options->normal = parseNormal(word); }},

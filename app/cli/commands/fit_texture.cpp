@@ -81,7 +81,7 @@ std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console&
 }
 
 int runFitTexture(const FitTextureOptions& options, Console& console) {
-  requireWritable(options.output, {options.profile});
+  requireWritable(options.output, {options.profile}, FileKind::json);
   FittedTexture fitted;
   try {
     fitted = fitTexture(readProfile(options, console), options.fit);

@@ -50,7 +50,7 @@ bool isObj(const std::filesystem::path& path) {
 }
 
 int runMapTexture(const MapOptions& options, Console& console) {
-  requireWritable(options.output, {options.path, options.heights});
+  requireWritable(options.output, {options.path, options.heights}, FileKind::obj);
   if (!isObj(options.output))
     throw FileError(options.output.string(), 0, "only an .obj holds haptic coordinates");
   TexturedMesh file = isObj(options.mesh) ? readTexturedObj(options.mesh)

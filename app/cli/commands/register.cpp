@@ -166,9 +166,9 @@ int runRegister(RegisterOptions options, Console& console) {
   std::vector<std::filesystem::path> inputs = {options.mesh, options.path, options.initial,
                                                options.truth};
   inputs.insert(inputs.end(), options.also.begin(), options.also.end());
-  requireWritable(options.output, inputs);
+  requireWritable(options.output, inputs, FileKind::table);
   if (!options.report.empty()) {
-    requireWritable(options.report, inputs);
+    requireWritable(options.report, inputs, FileKind::json);
     if (areOne(options.report, options.output))
       throw FileError(options.report.string(), 0, "is the path's file too");
   }
@@ -266,7 +266,7 @@ Command registerCommand() {
            {"--also", "PATH.csv", "", "",
             "Another scan in the same camera's frame, registered with it; its pose is the same.",
             into(options->also), Times::any},
-           {"--report", "R.json", "", "", "The report as a file.", into(options->report)},
+           writtenTo(options->report, "--report", "R.json", "The report as a file."),
            {"--initial", "T.txt", "", "middle on middle", "First guess of mesh_from_scan, 4 x 4.",
             into(options->initial)},
            {"--align", "X,Y,Z,A,B,C", "", "",

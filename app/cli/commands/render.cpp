@@ -106,7 +106,7 @@ ToolSample toolAt(const CompiledScene& compiled, const Vec3& tip, Progress& prog
 int runRender(const RenderOptions& options, Console& console) {
   if (options.output.extension() != ".png")
     throw Error("--output: a picture is a .png file, not '" + options.output.string() + "'");
-  requireWritable(options.output, {options.input});
+  requireWritable(options.output, {options.input}, FileKind::png);
   if (!options.tip &&
       (options.layers.contains(Layer::tip) || options.layers.contains(Layer::nodes)))
     throw Error("--show: the layers tip and nodes need --tip X,Y,Z");

@@ -135,7 +135,7 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
 }
 
 int runSample(const SampleOptions& options, Console& console) {
-  requireWritable(options.output, {options.input, options.points});
+  requireWritable(options.output, {options.input, options.points}, FileKind::table);
   PointReader points(options.points);
   std::optional<Vec3> p = points.next(); // one that is wrong from the start is refused now
   const SampledSurface surface = open(options, console);

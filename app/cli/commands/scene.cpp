@@ -4,6 +4,7 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/output_target.h"
 #include "session/store/replay.h"
 #include "session/store/workspace_link.h"
 #include "workspace/workspace.h"
@@ -92,7 +93,7 @@ Scene recovered(const SceneCommandOptions& options, Console& console) {
   const std::filesystem::path from = inputPath(options.recovered), &to = options.workspace;
   if (!options.edits.empty()) throw Error("--recover: change the scene in a second call");
   if (!std::filesystem::is_directory(from)) throw FileError(from.string(), 0, "no such folder");
-  if (!sameFolder(from, to) && std::filesystem::exists(to) &&
+  if (!sameFolder(from, to) && pathExists(to) &&
       !(std::filesystem::is_directory(to) && std::filesystem::is_empty(to)))
     throw FileError(to.string(), 0, "exists; what is recovered goes into a new folder");
   const auto found = opened(from, false, true, console);
@@ -108,7 +109,7 @@ Scene recovered(const SceneCommandOptions& options, Console& console) {
 int runScene(const SceneCommandOptions& options, Console& console) {
   const std::filesystem::path& folder = options.workspace;
   if (!options.recovered.empty()) return report(folder, recovered(options, console), true, console);
-  if (std::filesystem::exists(folder) && isWorkspace(folder))
+  if (pathExists(folder) && isWorkspace(folder))
     return report(folder, changed(folder, options, console), !options.edits.empty(), console);
   return report(folder, created(folder, options, console), true, console);
 }

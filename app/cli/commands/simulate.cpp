@@ -235,7 +235,7 @@ int runSimulate(const SimulateOptions& options, Console& console) {
     throw Error("simulate: give " + options.input.string() + " or --plane, not both");
   if (!options.plane && options.input.empty())
     throw Error("simulate: give a workspace, a mesh or --plane");
-  if (!options.output.empty()) requireWritable(options.output, {options.input});
+  if (!options.output.empty()) requireWritable(options.output, {options.input}, FileKind::table);
   const Felt felt = feltBy(options, console);
   const SimulationSpec spec = specFor(options, felt);
 
@@ -348,8 +348,8 @@ Command simulateCommand() {
       .arguments = {sceneInput(options->input),
                     {"--plane", "", "", "", "The exact plane z = 0 in place of a model.",
                      into(options->plane)},
-                    {"-o,--output", "RUN.csv", "", "",
-                     "One row a tick: position, velocity, force, energy.", into(options->output)}},
+                    writtenTo(options->output, "-o,--output", "RUN.csv",
+                              "One row a tick: position, velocity, force, energy.")},
       .run = [options](Console& console) { return runSimulate(*options, console); }};
   command.arguments.front().times = Times::at_most_once;
   addSettings(command, scene,

@@ -20,6 +20,8 @@ SceneObject readObject(const std::string& text, const OpenOptions& open, Console
       at != std::string::npos && !std::filesystem::exists(text)) {
     mesh = text.substr(0, at);
     pose = text.substr(at + 1);
+    if (pose.empty())
+      throw Error("--add: '" + text + "' is not MESH@POSE.txt: no pose after the '@'");
   }
   if (std::filesystem::is_directory(mesh))
     throw Error("--add: " + mesh + " is a folder; add a mesh or a volume");

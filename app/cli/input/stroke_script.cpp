@@ -38,8 +38,10 @@ std::vector<Stroke> strokesOfJournal(const std::string& text, const std::string&
 std::vector<ScriptStroke> readScript(const std::filesystem::path& path, Console& console) {
   const std::string name = path.string();
   const std::string text = readFile(path);
-  std::vector<Stroke> strokes = path.extension() == ".jsonl" ? strokesOfJournal(text, name, console)
-                                                             : parseStrokes(text, name);
+  const bool journal =
+      path.extension() == ".jsonl" || (isStandardStream(path) && text.starts_with(R"({"n":)"));
+  std::vector<Stroke> strokes =
+      journal ? strokesOfJournal(text, name, console) : parseStrokes(text, name);
   std::vector<ScriptStroke> script;
   for (Stroke& stroke : strokes) {
     std::string where = name + ": stroke " + std::to_string(script.size() + 1);

@@ -1,6 +1,7 @@
 #include "app/cli/input/workspace_place.h"
 
 #include "core/error.h"
+#include "core/output_target.h"
 #include "session/build/session.h"
 #include "workspace/workspace.h"
 
@@ -10,7 +11,7 @@ namespace fs = std::filesystem;
 
 fs::path workspaceFolder(const fs::path& input) {
   const fs::path folder = inputPath(input);
-  if (!fs::exists(folder)) throw FileError(folder.string(), 0, "no such folder");
+  if (!pathExists(folder)) throw FileError(folder.string(), 0, "no such folder");
   if (!fs::is_directory(folder) || !isWorkspace(folder))
     throw FileError(folder.string(), 0, "is not a workspace; patina scene makes one of a mesh");
   return folder;

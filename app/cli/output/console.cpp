@@ -2,9 +2,19 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <new>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <system_error>
 #include <unistd.h>
+
+#include "app/cli/commands/command.h"
+#include "core/error.h"
+#include "core/unfinished.h"
 
 namespace patina::cli {
 
@@ -13,16 +23,30 @@ namespace {
 // A signal handler can reach nothing but a global; Console keeps these to itself.
 std::atomic<Progress*> interrupted_progress{nullptr};
 std::atomic<bool> interrupted{false};
+std::atomic<int> wakes{-1};      // the descriptor that wakes the impatient thread
+std::atomic<bool> ending{false}; // somebody says the last line already
+
+constexpr std::uint64_t kInterrupt = 1, kEnd = 1ULL << 32; // what is added to it
+
+void wake(std::uint64_t what) {
+  const int descriptor = wakes.load();
+  if (descriptor < 0) return;
+  const ssize_t unused = ::write(descriptor, &what, sizeof what);
+  (void)unused;
+}
 
 extern "C" void onInterrupt(int) {
+  const int code = errno;
   interrupted = true;
   if (Progress* progress = interrupted_progress.load()) progress->cancel();
+  wake(kInterrupt);
+  errno = code;
 }
 
 extern "C" void catchInterrupt() {
   struct sigaction action = {};
   action.sa_handler = onInterrupt;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
 }
 
@@ -30,24 +54,78 @@ extern "C" void catchInterrupt() {
 // what is in the background with SIGINT ignored, and until it is caught it would be lost.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const before_all)() = catchInterrupt;
 
+// Whether the Console ended within the time (-1: any) and before the next interrupt.
+bool endsWithin(int descriptor, int milliseconds) {
+  pollfd wait{descriptor, POLLIN, 0};
+  while (::poll(&wait, 1, milliseconds) < 0 && errno == EINTR) {
+  }
+  std::uint64_t sum = 0;
+  return (wait.revents & POLLIN) && ::read(descriptor, &sum, sizeof sum) == sizeof sum &&
+         sum >= kEnd;
+}
+
 } // namespace
 
 Console::Console()
     : stderr_is_terminal_(isatty(STDERR_FILENO) == 1),
       progress_([this](double fraction, std::string_view what) { drawBar(fraction, what); }) {
   interrupted_progress = &progress_;
-  if (interrupted) progress_.cancel();
+  wakes = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  impatient_ = std::thread([this] { endWhatDoesNot(); });
+  if (!interrupted) return;
+  progress_.cancel();
+  wake(kInterrupt);
 }
 
 Console::~Console() {
+  wake(kEnd);
+  impatient_.join();
+  ::close(wakes.exchange(-1));
   clearBar();
   std::signal(SIGINT, SIG_DFL);
   interrupted_progress = nullptr;
 }
 
+// A long call into a library, a wait for a pipe or a gigabyte that is freed asks nobody whether it
+// was cancelled.
+void Console::endWhatDoesNot() {
+  const int descriptor = wakes.load();
+  if (endsWithin(descriptor, -1) || endsWithin(descriptor, static_cast<int>(kPatience.count())))
+    return;
+  if (ending.exchange(true) && endsWithin(descriptor, static_cast<int>(kPatience.count()))) return;
+  removeUnfinished();
+  static constexpr std::string_view kLine = "patina: cancelled\n";
+  const ssize_t unused = ::write(STDERR_FILENO, kLine.data(), kLine.size());
+  (void)unused;
+  _exit(kCancelledByUser);
+}
+
 void Console::endOnInterrupt() {
   progress_.throwIfCancelled();
   std::signal(SIGINT, SIG_DFL);
+}
+
+int Console::fail(const std::exception& error) {
+  while (ending.exchange(true)) pause();
+  clearBar();
+  const auto* file = dynamic_cast<const FileError*>(&error);
+  const bool cancelled = dynamic_cast<const Cancelled*>(&error);
+  const int code = cancelled ? kCancelledByUser : kBadInput;
+  std::string message = error.what();
+  if (dynamic_cast<const std::bad_alloc*>(&error)) message = "not enough memory";
+  if (dynamic_cast<const std::system_error*>(&error))
+    message = "the system refused what is needed: " + message;
+  for (char& c : message)
+    if (c == '\n') c = ' ';
+  if (json) {
+    Json object = Json::object();
+    object.set("message", message).set("exit", code);
+    if (file) object.set("file", file->path());
+    if (file && file->line() > 0) object.set("line", file->line());
+    std::fputs((Json::object().set("error", std::move(object)).dump() + "\n").c_str(), reports());
+  }
+  std::fprintf(stderr, "patina: %s\n", message.c_str());
+  return code;
 }
 
 void Console::warn(const std::string& line) {
@@ -61,7 +139,7 @@ void Console::report(const Report& report, const std::string& below) {
 
 void Console::print(const std::string& text) {
   clearBar();
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fwrite(text.data(), 1, text.size(), reports());
 }
 
 void Console::say(const std::string& line) {

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
+#include <exception>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "app/cli/output/report.h"
 #include "core/progress.h"
@@ -20,8 +23,12 @@ class Console {
   Console& operator=(const Console&) = delete;
 
   bool json = false;
+  bool data_on_stdout = false; // of an output named "-": reports go to stderr then
 
-  // Cancelled by the first Ctrl-C; a second one ends the process at once.
+  // Cancelled by the first Ctrl-C. What has not ended kPatience after it is ended (exit 130): files
+  // and folders that are being made are removed, what stood on disk stays. A second one does not
+  // wait that long.
+  static constexpr std::chrono::milliseconds kPatience{250};
   Progress& progress() { return progress_; }
   // From here on Ctrl-C ends the process: for work that touches no file and cannot be polled.
   void endOnInterrupt();
@@ -29,6 +36,8 @@ class Console {
   // The object with --json, else the rows, and below them what else is for people.
   void report(const Report& report, const std::string& below = "");
   void print(const std::string& text); // on stdout
+  // One line on stderr and, with --json, an object on stdout. Returns the exit code.
+  int fail(const std::exception& error);
   // For people who wait: no line of it is part of a report. Nothing with --json.
   void say(const std::string& line);
   // Removes the progress bar, if one is drawn.
@@ -36,11 +45,14 @@ class Console {
 
  private:
   void drawBar(double fraction, std::string_view what);
+  void endWhatDoesNot();
+  std::FILE* reports() const { return data_on_stdout ? stderr : stdout; }
 
   bool stderr_is_terminal_;
   bool bar_drawn_ = false;
   std::chrono::steady_clock::time_point last_draw_;
   Progress progress_;
+  std::thread impatient_;
 };
 
 } // namespace patina::cli

@@ -36,8 +36,8 @@ Argument unitOfOutput(MeshUnit& unit) {
 void requireMeshOutput(const std::filesystem::path& path, MeshUnit unit,
                        const std::vector<std::filesystem::path>& inputs) {
   if (unit == MeshUnit::fit) throw Error("--unit: fit is for reading; use mm, cm, m or in");
-  (void)meshFileType(path);
-  requireWritable(path, inputs);
+  constexpr FileKind kinds[] = {FileKind::obj, FileKind::ply, FileKind::stl};
+  requireWritable(path, inputs, kinds[static_cast<std::size_t>(meshFileType(path))]);
 }
 
 void writeMeshIn(const std::filesystem::path& path, TriangleMesh mesh, MeshUnit unit) {

@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/numbers.h"
+#include "core/output_target.h"
 #include "scene/scene_values.h"
 
 namespace patina::cli {
@@ -119,21 +119,22 @@ Json jsonOf(const std::vector<std::string>& words) {
 }
 
 void requireWritable(const std::filesystem::path& path,
-                     const std::vector<std::filesystem::path>& inputs) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder))
-    throw FileError(path.string(), 0, "cannot be written: there is no folder " + folder.string());
-  if (std::filesystem::is_directory(path))
-    throw FileError(path.string(), 0, "cannot be written: it is a folder");
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
-    throw FileError(path.string(), 0, "cannot be written: not a file");
+                     const std::vector<std::filesystem::path>& inputs,
+                     std::optional<FileKind> kind) {
+  const OutputTarget target = outputTarget(path);
   for (const std::filesystem::path& input : inputs) {
     std::error_code unknown; // one that does not exist is not the other
-    if (std::filesystem::equivalent(path, input, unknown))
+    if (!target.is_stream && std::filesystem::equivalent(target.path, input, unknown))
       throw FileError(path.string(), 0, "cannot be written: it is an input of this command");
   }
+  if (target.is_stream) return;
+  const std::filesystem::path end = target.path;
+  const std::filesystem::path folder = end.has_parent_path() ? end.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder))
+    throw FileError(path.string(), 0, "cannot be written: there is no folder " + folder.string());
   if (access(folder.c_str(), W_OK) != 0)
     throw FileError(path.string(), 0, "cannot be written: no permission in " + folder.string());
+  if (kind) requireSameKind(end, *kind);
 }
 
 bool areOne(const std::filesystem::path& a, const std::filesystem::path& b) {

@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/cli/output/report.h"
+#include "core/file_kind.h"
 #include "core/percentiles.h"
 #include "field/build/build_field.h"
 #include "scene/scene.h"
@@ -40,10 +42,11 @@ std::vector<std::string> namesIn(const List& list, Name name) {
 }
 Json jsonOf(const std::vector<std::string>& words);
 
-// Throws FileError now rather than after a minute's work if `path` cannot become a file.
-// `inputs` are not to be replaced by it.
+// Throws FileError now rather than after a minute's work if `path` cannot be written
+// (outputTarget), holds a file of another kind than `kind`, or is one of `inputs`.
 void requireWritable(const std::filesystem::path& path,
-                     const std::vector<std::filesystem::path>& inputs = {});
+                     const std::vector<std::filesystem::path>& inputs = {},
+                     std::optional<FileKind> kind = {});
 // Links lead to one file by two names, also to one that does not exist yet.
 bool areOne(const std::filesystem::path& a, const std::filesystem::path& b);
 

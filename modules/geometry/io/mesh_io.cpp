@@ -4,11 +4,28 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/file_kind.h"
 #include "geometry/io/mesh_file_type.h"
 
 namespace patina {
 
+namespace {
+
+bool isStream(const std::filesystem::path& path) {
+  return isStandardStream(path) || path.string().starts_with("/dev/");
+}
+
+} // namespace
+
+MeshFileType meshFileType(const std::filesystem::path& path, std::string_view bytes) {
+  if (!isStream(path)) return meshFileType(path);
+  const FileKind kind = kindOf(bytes, bytes.size());
+  if (kind == FileKind::ply) return MeshFileType::ply;
+  return kind == FileKind::stl ? MeshFileType::stl : MeshFileType::obj;
+}
+
 MeshFileType meshFileType(const std::filesystem::path& path) {
+  if (isStream(path)) return MeshFileType::ply;
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension == ".obj") return MeshFileType::obj;
@@ -20,9 +37,9 @@ MeshFileType meshFileType(const std::filesystem::path& path) {
 }
 
 TriangleMesh readMesh(const std::filesystem::path& path) {
-  const MeshFileType type = meshFileType(path);
+  (void)meshFileType(path); // a name that says nothing is refused unread
   const std::string bytes = readFile(path);
-  switch (type) {
+  switch (meshFileType(path, bytes)) {
   case MeshFileType::obj:
     return parseObj(bytes, path.string());
   case MeshFileType::ply:

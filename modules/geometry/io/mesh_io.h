@@ -9,9 +9,9 @@
 
 namespace patina {
 
-// By extension (.obj .ply .stl, any case). Coordinates are returned in the file's own unit, as
-// doubles. Throws FileError with the line, or line 0 and the byte in the cause for binary data; a
-// file without a face is an error too.
+// By extension (.obj .ply .stl, any case); of a stream ("-", /dev/fd/3) by its content. Coordinates
+// are returned in the file's own unit, as doubles. Throws FileError with the line, or line 0 and
+// the byte in the cause for binary data; a file without a face is an error too.
 // - Polygons are fanned from their first corner, whatever their shape: a concave one may fold over.
 // - OBJ: v, v/vt, v//vn, v/vt/vn, negative indices, comments, CRLF and lines continued by a
 //   backslash are understood; normals, groups, materials and unknown statements are passed over.
@@ -29,8 +29,8 @@ TriangleMesh parseObj(std::string_view bytes, const std::string& name);
 TriangleMesh parsePly(std::string_view bytes, const std::string& name);
 TriangleMesh parseStl(std::string_view bytes, const std::string& name);
 
-// By extension; PLY and STL binary. Atomic. PLY stores doubles and OBJ the shortest text, so both
-// read back bit for bit; STL stores floats and no texture.
+// By extension; PLY to a stream; PLY and STL binary. Atomic. PLY stores doubles and OBJ the
+// shortest text, so both read back bit for bit; STL stores floats and no texture.
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 std::string plyBytes(const TriangleMesh& mesh); // what it writes as PLY
 

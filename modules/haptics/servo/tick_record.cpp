@@ -13,6 +13,8 @@ void record(const Contact& contact, const SurfaceField* field, ToolSample& sampl
   sample.attracted = contact.attracted;
   sample.deep = contact.deep;
   sample.fault = contact.fault;
+  sample.snap = contact.snap;
+  sample.held = static_cast<std::uint8_t>(contact.touching ? contact.walls : 0);
   if (!contact.touching && !contact.attracted) return;
   sample.vcp = contact.vcp;
   sample.surface = contact.surface;

@@ -7,6 +7,8 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/output_target.h"
+#include "core/utf8.h"
 #include "field/surface/iso_surface.h"
 #include "geometry/io/textured_obj.h"
 #include "session/store/journal_fold.h"
@@ -32,9 +34,12 @@ std::string objectName(const std::filesystem::path& path) {
   std::string name = path.stem().string();
   for (char& c : name) {
     const auto letter = static_cast<unsigned char>(c);
-    if (letter >= 128 || (!std::isalnum(letter) && c != '-' && c != '_')) c = '_';
+    if (letter < 128 && !std::isalnum(letter) && c != '-' && c != '_') c = '_';
   }
-  return name.empty() ? "object" : name;
+  if (!isUtf8(name)) // of another encoding: no one could write it
+    for (char& c : name)
+      if (static_cast<unsigned char>(c) >= 128) c = '_';
+  return name.empty() || isStandardStream(path) ? "object" : name;
 }
 
 TriangleMesh meshOfVolume(const std::filesystem::path& path, const OpenOptions& options,
@@ -126,7 +131,8 @@ std::filesystem::path inputPath(const std::filesystem::path& path) {
 
 OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& options) {
   const std::filesystem::path path = inputPath(input);
-  if (!std::filesystem::exists(path)) throw FileError(path.string(), 0, "no such file or folder");
+  if (!isStandardStream(path) && !pathExists(path))
+    throw FileError(path.string(), 0, "no such file or folder");
   OpenedScene opened;
   const auto warnOf = [&](const char* option, const char* what) {
     opened.warnings.push_back(path.string() + ": " + option + " has no effect on a " + what);

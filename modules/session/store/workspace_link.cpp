@@ -34,7 +34,7 @@ Edit editOf(const JournalEvent& event) {
 
 void requireWorkspacePlace(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
-  if (!fs::exists(folder) || isWorkspace(folder)) return;
+  if (!pathExists(folder) || isWorkspace(folder)) return;
   if (!fs::is_directory(folder) || !fs::is_empty(folder))
     throw FileError(folder.string(), 0, "exists and is not a workspace; choose another folder");
 }

@@ -122,17 +122,32 @@ void writeCollectionVtm(const std::filesystem::path& path,
 
 const std::vector<std::string>& toolSampleColumns() {
   static const std::vector<std::string> columns = {
-      "t [s]",  "x [m]",   "y [m]",     "z [m]",     "fx [N]",    "fy [N]",
-      "fz [N]", "contact", "depth [m]", "vcp_x [m]", "vcp_y [m]", "vcp_z [m]",
-      "nx",     "ny",      "nz",        "step [ns]"};
+      "t [s]",   "x [m]",     "y [m]",     "z [m]",     "fx [N]",    "fy [N]", "fz [N]",
+      "contact", "depth [m]", "vcp_x [m]", "vcp_y [m]", "vcp_z [m]", "nx",     "ny",
+      "nz",      "step [ns]", "fault",     "held",      "snap"};
   return columns;
 }
 
 std::vector<double> toolSampleRow(const ToolSample& s) {
-  return {s.t,         s.tip[0],    s.tip[1],    s.tip[2],
-          s.force[0],  s.force[1],  s.force[2],  s.contact ? 1.0 : 0.0,
-          s.depth,     s.vcp[0],    s.vcp[1],    s.vcp[2],
-          s.normal[0], s.normal[1], s.normal[2], static_cast<double>(s.step_ns)};
+  return {s.t,
+          s.tip[0],
+          s.tip[1],
+          s.tip[2],
+          s.force[0],
+          s.force[1],
+          s.force[2],
+          s.contact ? 1.0 : 0.0,
+          s.depth,
+          s.vcp[0],
+          s.vcp[1],
+          s.vcp[2],
+          s.normal[0],
+          s.normal[1],
+          s.normal[2],
+          static_cast<double>(s.step_ns),
+          s.fault ? 1.0 : 0.0,
+          static_cast<double>(s.held),
+          s.snap ? 1.0 : 0.0};
 }
 
 void writeToolSamplesCsv(const std::filesystem::path& path,

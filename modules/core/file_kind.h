@@ -1,0 +1,34 @@
+// What a file is by its content, so that a table does not take the place of a mesh.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+namespace patina {
+
+enum class FileKind : std::uint8_t {
+  empty,
+  table, // CSV: a header, then numbers
+  json,
+  obj,
+  ply,
+  stl,
+  image_data, // .vti
+  poly_data,  // .vtp
+  png,
+  exr,
+  yaml,
+  other
+};
+
+// `head` is the file's beginning, 1 kB or the whole of it; `size` its bytes.
+FileKind kindOf(std::string_view head, std::uint64_t size);
+// "a JSON object", "a PLY mesh".
+std::string_view nameOf(FileKind kind);
+
+// FileError if what is at `path` is a file that `kind` may not take the place of: one of another
+// kind. Nothing there, nothing in it, or the same kind is no error.
+void requireSameKind(const std::filesystem::path& path, FileKind kind);
+
+} // namespace patina

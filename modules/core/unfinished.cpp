@@ -1,0 +1,49 @@
+#include "core/unfinished.h"
+
+#include <mutex>
+#include <utility>
+
+namespace patina {
+namespace {
+
+// Names of files are the whole process's, as the files are.
+struct Known {
+  std::mutex guard;
+  std::list<std::filesystem::path> paths;
+};
+Known& known() {
+  static Known* const all = new Known; // never destroyed: the last to use it is exit itself
+  return *all;
+}
+
+} // namespace
+
+Unfinished::Unfinished(const std::filesystem::path& path) : held_(true) {
+  const std::lock_guard hold(known().guard);
+  place_ = known().paths.insert(known().paths.end(), std::filesystem::absolute(path));
+}
+
+Unfinished::Unfinished(Unfinished&& other) noexcept
+    : place_(other.place_), held_(std::exchange(other.held_, false)) {}
+
+Unfinished& Unfinished::operator=(Unfinished&& other) noexcept {
+  std::swap(place_, other.place_);
+  std::swap(held_, other.held_);
+  return *this;
+}
+
+void Unfinished::done() noexcept {
+  if (!std::exchange(held_, false)) return;
+  const std::lock_guard hold(known().guard);
+  known().paths.erase(place_);
+}
+
+void removeUnfinished() noexcept {
+  known().guard.lock();
+  for (const std::filesystem::path& path : known().paths) {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+}
+
+} // namespace patina
