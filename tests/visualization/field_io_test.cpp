@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSignedCharArray.h>
+#include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
 
 #include "core/error.h"
@@ -44,9 +46,9 @@ double sphere(const Vec3& p) {
   return p.norm() - 0.03;
 }
 
-SurfaceField sphereField() {
+SurfaceField sphereField(int resolution = 43) { // no multiple of the block side
   FieldSpec spec;
-  spec.resolution = 43; // no multiple of the block side
+  spec.resolution = resolution;
   spec.band = 3;
   const FieldGrid grid = gridAround(Box3(Vec3::Constant(-0.03), Vec3::Constant(0.03)), spec);
   return sampleFunction(sphere, grid, spec.band);
@@ -108,6 +110,47 @@ TEST_F(FieldIo, StoredNodesComeBackBitForBit) {
   EXPECT_TRUE(isField(file("f.vti")));
 }
 
+// As ParaView reads it: one image, also where a piece is in the file only once for many.
+TEST_F(FieldIo, VtkReadsThePiecesAsOneImage) {
+  SurfaceField field = sphereField(150);
+  ASSERT_GT(field.grid.nodes[0], 128);
+  addFaces(field);
+  writeField(file("f.vti"), field);
+  const vtkNew<vtkXMLImageDataReader> reader;
+  reader->SetFileName(file("f.vti").c_str());
+  reader->Update();
+  vtkImageData* image = reader->GetOutput();
+  ASSERT_EQ(image->GetNumberOfPoints(), static_cast<vtkIdType>(field.grid.nodeCount()));
+  auto* phi = vtkFloatArray::SafeDownCast(image->GetPointData()->GetScalars());
+  auto* face = image->GetPointData()->GetArray("face");
+  ASSERT_NE(phi, nullptr);
+  ASSERT_NE(face, nullptr);
+  const double band = field.band * field.grid.voxel;
+  vtkIdType node = 0;
+  for (int k = 0; k < field.grid.nodes[2]; ++k)
+    for (int j = 0; j < field.grid.nodes[1]; ++j)
+      for (int i = 0; i < field.grid.nodes[0]; ++i, ++node) {
+        const double value = static_cast<double>(test::phiAt(field, i, j, k));
+        const double metres = std::clamp(value * field.grid.voxel, -band, band);
+        ASSERT_NEAR(static_cast<double>(phi->GetValue(node)), metres, 1e-7 * band);
+        ASSERT_EQ(face->GetTuple1(node), field.faceAt(i, j, k));
+      }
+  expectSameNodes(field, readField(file("f.vti")));
+  EXPECT_EQ(readField(file("f.vti")).block_at, field.block_at);
+}
+
+TEST_F(FieldIo, AMovedOrScaledGridIsRefused) {
+  writeField(file("f.vti"), sphereField());
+  const std::string whole = readFile(file("f.vti"));
+  for (const std::string name : {"Origin", "Spacing"}) {
+    std::string bytes = whole;
+    const std::size_t at = bytes.find(name + "=\"") + name.size() + 2;
+    bytes.replace(at, bytes.find('"', at) - at, "7 7 7");
+    std::ofstream(file("moved.vti"), std::ios::binary) << bytes;
+    EXPECT_NE(messageOf(file("moved.vti")).find("its " + name + " was changed"), std::string::npos);
+  }
+}
+
 TEST_F(FieldIo, KeepsSparseBlocksSparse) {
   SurfaceField field = sphereField();
   field.coarse.clear();
@@ -165,6 +208,7 @@ struct HandMade {
 void writeByHand(const fs::path& path, const HandMade& of) {
   const vtkNew<vtkImageData> image;
   image->SetDimensions(kBlockSide, kBlockSide, kBlockSide);
+  image->SetSpacing(of.voxel, of.voxel, of.voxel);
   const auto fill = [](auto* array, const char* name, int components, vtkIdType tuples,
                        double value) {
     array->SetName(name);

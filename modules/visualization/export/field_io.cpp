@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 
-#include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
@@ -15,9 +14,8 @@
 #include <vtkSmartPointer.h>
 
 #include "core/error.h"
-#include "field/store/node_reader.h"
 #include "visualization/export/volume_file.h"
-#include "visualization/export/xml_file.h"
+#include "visualization/export/vti_pieces.h"
 
 namespace patina {
 namespace {
@@ -52,15 +50,6 @@ float stepped(float value, int ulps) {
   return value;
 }
 
-template <typename Array>
-vtkSmartPointer<Array> namedArray(const char* name, int components, std::size_t tuples) {
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
-  return array;
-}
-
 template <typename Array, typename Data>
 Array* requireArray(Data* data, const char* name, vtkIdType values,
                     const std::filesystem::path& path) {
@@ -74,172 +63,328 @@ Array* requireArray(Data* data, const char* name, vtkIdType values,
   return array;
 }
 
-FieldGrid readGrid(vtkImageData* image, const std::filesystem::path& path) {
-  const auto* values = requireArray<vtkDoubleArray>(image->GetFieldData(), kGrid, 4, path);
+// Origin and spacing beside the exact numbers: whoever changed them meant another place or size.
+FieldGrid gridOf(const std::array<int, 3>& nodes, const double* exact, const Vec3& origin,
+                 const Vec3& spacing, const std::filesystem::path& path) {
   FieldGrid grid;
+  grid.nodes = nodes;
   for (int axis = 0; axis < 3; ++axis) {
-    grid.origin[axis] = values->GetValue(axis);
-    grid.nodes[static_cast<std::size_t>(axis)] = image->GetDimensions()[axis];
-    if (grid.nodes[static_cast<std::size_t>(axis)] < 2)
+    grid.origin[axis] = exact[axis];
+    if (nodes[static_cast<std::size_t>(axis)] < 2)
       throw FileError(path.string(), 0, "is not a Patina field: fewer than two nodes on an axis");
   }
-  grid.voxel = values->GetValue(3);
+  grid.voxel = exact[3];
   if (!grid.origin.allFinite() || !std::isfinite(grid.voxel) || grid.voxel <= 0)
     throw FileError(path.string(), 0, "is not a Patina field: its voxel is not a positive length");
+  constexpr double kPrinted = 1e-4; // VTK prints some of the digits
+  const double origin_off = (origin - grid.origin).cwiseAbs().maxCoeff();
+  if (!(origin_off <= kPrinted * (grid.voxel + grid.origin.cwiseAbs().maxCoeff())))
+    throw FileError(path.string(), 0,
+                    "its Origin was changed: it is not that of 'grid [m]'; move the mesh instead");
+  if (!((spacing - Vec3::Constant(grid.voxel)).cwiseAbs().maxCoeff() <= kPrinted * grid.voxel))
+    throw FileError(
+        path.string(), 0,
+        "its Spacing was changed: it is not that of 'grid [m]'; scale the mesh instead");
   return grid;
 }
+
+// Nodes of a part of the grid, or of all of it.
+struct NodesRead {
+  VtiExtent extent{};
+  const float* phi = nullptr;
+  const signed char* rounding = nullptr;
+  const std::int32_t* face = nullptr; // nullptr without one
+};
 
 // What one block of the file says; nothing in it within the band means that it is not stored.
 struct BlockReader {
   const std::filesystem::path& path;
   const FieldGrid& grid;
-  const float* phi;
-  const signed char* rounding;
-  const int* face; // nullptr without one
+  const NodesRead& nodes; // all of the block's
   std::array<int, 3> first{};
+
+  std::size_t at(int i, int j, int k) const {
+    const VtiExtent& e = nodes.extent;
+    const auto nx = static_cast<std::size_t>(e[1] - e[0] + 1),
+               ny = static_cast<std::size_t>(e[3] - e[2] + 1);
+    return (static_cast<std::size_t>(k - e[4]) * ny + static_cast<std::size_t>(j - e[2])) * nx +
+           static_cast<std::size_t>(i - e[0]);
+  }
 
   // False if every node is beyond the band; `inside` is then the sign that the nodes share.
   bool read(DistanceNodes& distance, FaceNodes& faces, bool& inside) const {
     bool stored = false;
-    std::size_t at = 0;
+    std::size_t n = 0;
     for (int k = first[2]; k < first[2] + kBlockSide; ++k)
       for (int j = first[1]; j < first[1] + kBlockSide; ++j)
-        for (int i = first[0]; i < first[0] + kBlockSide; ++i, ++at) {
-          distance.phi[at] = kBeyondBand;
-          faces.face[at] = -1;
+        for (int i = first[0]; i < first[0] + kBlockSide; ++i, ++n) {
+          distance.phi[n] = kBeyondBand;
+          faces.face[n] = -1;
           if (i >= grid.nodes[0] || j >= grid.nodes[1] || k >= grid.nodes[2]) continue;
-          const std::size_t node =
-              (static_cast<std::size_t>(k) * static_cast<std::size_t>(grid.nodes[1]) +
-               static_cast<std::size_t>(j)) *
-                  static_cast<std::size_t>(grid.nodes[0]) +
-              static_cast<std::size_t>(i);
-          if (!std::isfinite(phi[node]))
+          const std::size_t node = at(i, j, k);
+          if (!std::isfinite(nodes.phi[node]))
             throw FileError(path.string(), 0, "is damaged: a distance is not a number");
-          if (rounding[node] == kBeyond) {
-            inside = phi[node] < 0;
-            distance.phi[at] = inside ? -kBeyondBand : kBeyondBand;
+          if (nodes.rounding[node] == kBeyond) {
+            inside = nodes.phi[node] < 0;
+            distance.phi[n] = inside ? -kBeyondBand : kBeyondBand;
             continue;
           }
-          distance.phi[at] = stepped(voxels(phi[node], grid.voxel), rounding[node]);
-          if (!(std::abs(distance.phi[at]) < kBeyondBand))
+          distance.phi[n] = stepped(voxels(nodes.phi[node], grid.voxel), nodes.rounding[node]);
+          if (!(std::abs(distance.phi[n]) < kBeyondBand))
             throw FileError(path.string(), 0, "is damaged: a distance is beyond any band");
-          if (face != nullptr) faces.face[at] = face[node];
+          if (nodes.face != nullptr) faces.face[n] = nodes.face[node];
           stored = true;
         }
     return stored;
   }
 };
 
+// Blocks in the order in which they were read, then in that of the field.
+class BlockList {
+ public:
+  explicit BlockList(SurfaceField& field) : field_(field) {
+    std::size_t count = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      field.blocks[axis] = (field.grid.nodes[axis] + kBlockSide - 1) / kBlockSide;
+      count *= static_cast<std::size_t>(field.blocks[axis]);
+    }
+    field.top.assign(count, SurfaceField::kOutside);
+  }
+
+  void take(const std::filesystem::path& path, const NodesRead& nodes) {
+    const VtiExtent& e = nodes.extent;
+    BlockReader reader{path, field_.grid, nodes, {}};
+    for (int bz = e[4] / kBlockSide; bz * kBlockSide <= e[5]; ++bz)
+      for (int by = e[2] / kBlockSide; by * kBlockSide <= e[3]; ++by)
+        for (int bx = e[0] / kBlockSide; bx * kBlockSide <= e[1]; ++bx) {
+          reader.first = {bx * kBlockSide, by * kBlockSide, bz * kBlockSide};
+          const std::size_t at =
+              static_cast<std::size_t>((bz * field_.blocks[1] + by) * field_.blocks[0] + bx);
+          DistanceNodes distance;
+          FaceNodes faces{};
+          bool inside = false;
+          if (!reader.read(distance, faces, inside)) {
+            field_.top[at] = inside ? SurfaceField::kInside : SurfaceField::kOutside;
+            continue;
+          }
+          found_.push_back({at,
+                            {bx, by, bz},
+                            std::make_shared<const DistanceBlock>(distance),
+                            nodes.face ? std::make_shared<const FaceBlock>(faces) : nullptr});
+        }
+  }
+
+  void finish() {
+    std::sort(found_.begin(), found_.end(),
+              [](const Found& a, const Found& b) { return a.at < b.at; });
+    for (Found& block : found_) {
+      field_.top[block.at] = static_cast<std::int32_t>(field_.block_at.size());
+      field_.block_at.push_back(block.block);
+      field_.distance.push_back(std::move(block.distance));
+      if (block.face) field_.face.push_back(std::move(block.face));
+    }
+  }
+
+ private:
+  struct Found {
+    std::size_t at;
+    std::array<std::int32_t, 3> block;
+    std::shared_ptr<const DistanceBlock> distance;
+    std::shared_ptr<const FaceBlock> face;
+  };
+  SurfaceField& field_;
+  std::vector<Found> found_;
+};
+
+void setBand(SurfaceField& field, double band, const std::filesystem::path& path) {
+  field.band = band;
+  if (!std::isfinite(field.band) || field.band <= 0)
+    throw FileError(path.string(), 0, "is not a Patina field: its band is not a positive number");
+}
+
+void setCoarse(SurfaceField& field, const float* values, const std::filesystem::path& path) {
+  if (!std::all_of(values, values + 4 * field.coarse.size(),
+                   [](float value) { return std::isfinite(value); }))
+    throw FileError(path.string(), 0, "is damaged: a coarse distance is not a number");
+  std::memcpy(field.coarse.data(), values, field.coarse.size() * sizeof(CoarseNode));
+}
+
+std::size_t coarseCount(const SurfaceField& field) {
+  std::size_t nodes = 1;
+  for (const int blocks : field.blocks) nodes *= static_cast<std::size_t>(blocks + 1);
+  return nodes;
+}
+
+// The pieces that the grid is written in: whole blocks, so many a side.
+std::vector<VtiExtent> piecesOf(const std::array<int, 3>& nodes) {
+  constexpr int kSide = 8 * kBlockSide;
+  std::vector<VtiExtent> pieces;
+  for (int z = 0; z < nodes[2]; z += kSide)
+    for (int y = 0; y < nodes[1]; y += kSide)
+      for (int x = 0; x < nodes[0]; x += kSide)
+        pieces.push_back({x, std::min(x + kSide, nodes[0]) - 1, y,
+                          std::min(y + kSide, nodes[1]) - 1, z, std::min(z + kSide, nodes[2]) - 1});
+  return pieces;
+}
+
+struct PieceNodes {
+  std::vector<float> phi;
+  std::vector<signed char> rounding;
+  std::vector<std::int32_t> face;
+};
+
+// The nodes of a piece; false if no node of it is stored and all lie on one side.
+bool fill(PieceNodes& nodes, const SurfaceField& field, const VtiExtent& e) {
+  const float band = static_cast<float>(field.band * field.grid.voxel);
+  const bool has_face = !field.face.empty();
+  std::size_t count = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    count *= static_cast<std::size_t>(e[2 * axis + 1] - e[2 * axis] + 1);
+  nodes.phi.resize(count);
+  nodes.rounding.resize(count);
+  nodes.face.resize(has_face ? count : 0);
+  bool any = false, in = false, out = false;
+  const NodesRead shape{e, nullptr, nullptr, nullptr};
+  for (int bz = e[4] / kBlockSide; bz * kBlockSide <= e[5]; ++bz)
+    for (int by = e[2] / kBlockSide; by * kBlockSide <= e[3]; ++by)
+      for (int bx = e[0] / kBlockSide; bx * kBlockSide <= e[1]; ++bx) {
+        const std::int32_t slot = field.slotOf(bx, by, bz);
+        const BlockReader place{
+            {}, field.grid, shape, {bx * kBlockSide, by * kBlockSide, bz * kBlockSide}};
+        DistanceNodes block;
+        if (slot >= 0)
+          field.distance[static_cast<std::size_t>(slot)]->unpack(block);
+        else
+          block.phi.fill(phiBeyond(slot));
+        const auto& first = place.first;
+        std::size_t n = 0;
+        for (int k = first[2]; k < first[2] + kBlockSide; ++k)
+          for (int j = first[1]; j < first[1] + kBlockSide; ++j)
+            for (int i = first[0]; i < first[0] + kBlockSide; ++i, ++n) {
+              if (i > e[1] || j > e[3] || k > e[5]) continue;
+              const float value = block.phi[n];
+              const std::size_t node = place.at(i, j, k);
+              const bool beyond = std::abs(value) >= kBeyondBand;
+              any |= !beyond;
+              (value < 0 ? in : out) = true;
+              if (has_face) nodes.face[node] = beyond ? -1 : field.faceAt(i, j, k);
+              const float written =
+                  beyond ? std::copysign(band, value) : metres(value, field.grid.voxel);
+              nodes.phi[node] = written;
+              nodes.rounding[node] = beyond ? kBeyond
+                                            : static_cast<signed char>(ulpsBetween(
+                                                  voxels(written, field.grid.voxel), value));
+            }
+      }
+  return any || in == out;
+}
+
+template <typename T> std::string_view bytesOf(const T* values, std::size_t count) {
+  return {reinterpret_cast<const char*>(values), count * sizeof(T)};
+}
+
+SurfaceField readPieces(VtiReader& file, const std::filesystem::path& path) {
+  SurfaceField field;
+  std::vector<double> exact;
+  file.readFieldData(kGrid, 4, exact);
+  field.grid = gridOf(file.grid().nodes, exact.data(), file.grid().origin,
+                      Vec3::Constant(file.grid().spacing), path);
+  std::vector<double> band;
+  file.readFieldData(kBand, 1, band);
+  setBand(field, band[0], path);
+  const std::vector<VtiExtent> pieces = piecesOf(field.grid.nodes);
+  if (pieces.size() != file.pieces())
+    throw FileError(path.string(), 0, "is damaged: its pieces are not those of its grid");
+  BlockList blocks(field);
+  PieceNodes nodes;
+  const bool has_face = file.hasArray(kFace);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (file.extent(i) != pieces[i])
+      throw FileError(path.string(), 0, "is damaged: its pieces are not those of its grid");
+    file.readArray(i, kPhi, nodes.phi);
+    file.readArray(i, kRounding, nodes.rounding);
+    if (has_face) file.readArray(i, kFace, nodes.face);
+    blocks.take(path, {pieces[i], nodes.phi.data(), nodes.rounding.data(),
+                       has_face ? nodes.face.data() : nullptr});
+  }
+  blocks.finish();
+  if (!file.hasFieldData(kCoarse)) return field;
+  std::vector<float> coarse;
+  field.coarse.resize(coarseCount(field));
+  file.readFieldData(kCoarse, 4 * field.coarse.size(), coarse);
+  setCoarse(field, coarse.data(), path);
+  return field;
+}
+
+// As VTK or ParaView wrote it.
+SurfaceField readWhole(const std::filesystem::path& path) {
+  const vtkSmartPointer<vtkImageData> image = readVolume(path);
+  const vtkIdType count = image->GetNumberOfPoints();
+  auto* points = image->GetPointData();
+  vtkFieldData* data = image->GetFieldData();
+  SurfaceField field;
+  const int* nodes = image->GetDimensions();
+  field.grid = gridOf({nodes[0], nodes[1], nodes[2]},
+                      requireArray<vtkDoubleArray>(data, kGrid, 4, path)->GetPointer(0),
+                      Vec3(image->GetOrigin()), Vec3(image->GetSpacing()), path);
+  setBand(field, requireArray<vtkDoubleArray>(data, kBand, 1, path)->GetValue(0), path);
+  const bool has_face = points->HasArray(kFace) != 0;
+  BlockList blocks(field);
+  blocks.take(
+      path,
+      {{0, nodes[0] - 1, 0, nodes[1] - 1, 0, nodes[2] - 1},
+       requireArray<vtkFloatArray>(points, kPhi, count, path)->GetPointer(0),
+       requireArray<vtkSignedCharArray>(points, kRounding, count, path)->GetPointer(0),
+       has_face ? requireArray<vtkIntArray>(points, kFace, count, path)->GetPointer(0) : nullptr});
+  blocks.finish();
+  if (data->HasArray(kCoarse) == 0) return field;
+  field.coarse.resize(coarseCount(field));
+  const auto values = static_cast<vtkIdType>(4 * field.coarse.size());
+  setCoarse(field, requireArray<vtkFloatArray>(data, kCoarse, values, path)->GetPointer(0), path);
+  return field;
+}
+
 } // namespace
 
 void writeField(const std::filesystem::path& path, const SurfaceField& field) {
   const FieldGrid& grid = field.grid;
-  const std::size_t count = grid.nodeCount();
-  const auto phi = namedArray<vtkFloatArray>(kPhi, 1, count);
-  const auto rounding = namedArray<vtkSignedCharArray>(kRounding, 1, count);
   const bool has_face = !field.face.empty();
-  const auto face = namedArray<vtkIntArray>(kFace, 1, has_face ? count : 0);
-  const float band_metres = static_cast<float>(field.band * grid.voxel);
-  const NodeReader nodes(field);
-  vtkIdType node = 0;
-  for (int k = 0; k < grid.nodes[2]; ++k)
-    for (int j = 0; j < grid.nodes[1]; ++j)
-      for (int i = 0; i < grid.nodes[0]; ++i, ++node) {
-        const float value = nodes.phiAt(i, j, k);
-        if (has_face) face->SetValue(node, field.faceAt(i, j, k));
-        if (std::abs(value) >= kBeyondBand) {
-          phi->SetValue(node, std::copysign(band_metres, value));
-          rounding->SetValue(node, kBeyond);
-        } else {
-          phi->SetValue(node, metres(value, grid.voxel));
-          rounding->SetValue(node, static_cast<signed char>(ulpsBetween(
-                                       voxels(metres(value, grid.voxel), grid.voxel), value)));
-        }
-      }
-  const vtkNew<vtkImageData> image;
-  image->SetDimensions(grid.nodes.data());
-  image->SetOrigin(grid.origin.data());
-  image->SetSpacing(grid.voxel, grid.voxel, grid.voxel);
-  image->GetPointData()->SetScalars(phi);
-  image->GetPointData()->AddArray(rounding);
-  if (has_face) image->GetPointData()->AddArray(face);
-
-  // The XML header prints origin and spacing in fewer digits than they have.
-  const auto exact_grid = namedArray<vtkDoubleArray>(kGrid, 4, 1);
-  for (int axis = 0; axis < 3; ++axis) exact_grid->SetValue(axis, grid.origin[axis]);
-  exact_grid->SetValue(3, grid.voxel);
-  image->GetFieldData()->AddArray(exact_grid);
-  const auto band = namedArray<vtkDoubleArray>(kBand, 1, 1);
-  band->SetValue(0, field.band);
-  image->GetFieldData()->AddArray(band);
-  if (!field.coarse.empty()) {
-    const auto coarse = namedArray<vtkFloatArray>(kCoarse, 4, field.coarse.size());
-    std::memcpy(coarse->GetPointer(0), field.coarse.data(),
-                field.coarse.size() * sizeof(CoarseNode));
-    image->GetFieldData()->AddArray(coarse);
+  VtiWriter file({grid.nodes, grid.origin, grid.voxel});
+  const std::array<double, 4> exact{grid.origin[0], grid.origin[1], grid.origin[2], grid.voxel};
+  file.addFieldData({kGrid, "Float64", 4, bytesOf(exact.data(), exact.size())});
+  file.addFieldData({kBand, "Float64", 1, bytesOf(&field.band, 1)});
+  if (!field.coarse.empty())
+    file.addFieldData({kCoarse, "Float32", 4, bytesOf(field.coarse.data(), field.coarse.size())});
+  PieceNodes nodes;
+  for (const VtiExtent& piece : piecesOf(grid.nodes)) {
+    const bool stored = fill(nodes, field, piece);
+    const std::size_t count = nodes.phi.size();
+    std::vector<VtiArray> arrays = {{kPhi, "Float32", 1, bytesOf(nodes.phi.data(), count)},
+                                    {kRounding, "Int8", 1, bytesOf(nodes.rounding.data(), count)}};
+    if (has_face) arrays.push_back({kFace, "Int32", 1, bytesOf(nodes.face.data(), count)});
+    // Beyond the band only the side and the number of nodes tell pieces apart.
+    file.addPiece(piece, arrays,
+                  stored ? ""
+                         : (nodes.phi[0] < 0 ? "inside " : "outside ") + std::to_string(count));
   }
-
-  writeImageData(path, image);
+  file.write(path);
 }
 
 SurfaceField readField(const std::filesystem::path& path) {
-  const vtkSmartPointer<vtkImageData> image = readVolume(path);
-  const vtkIdType count = image->GetNumberOfPoints();
-  auto* points = image->GetPointData();
-  SurfaceField field;
-  field.grid = readGrid(image, path);
-  const auto* band = requireArray<vtkDoubleArray>(image->GetFieldData(), kBand, 1, path);
-  field.band = band->GetValue(0);
-  if (!std::isfinite(field.band) || field.band <= 0)
-    throw FileError(path.string(), 0, "is not a Patina field: its band is not a positive number");
-
-  const bool has_face = points->HasArray(kFace) != 0;
-  BlockReader reader{
-      path,
-      field.grid,
-      requireArray<vtkFloatArray>(points, kPhi, count, path)->GetPointer(0),
-      requireArray<vtkSignedCharArray>(points, kRounding, count, path)->GetPointer(0),
-      has_face ? requireArray<vtkIntArray>(points, kFace, count, path)->GetPointer(0) : nullptr,
-      {}};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    field.blocks[axis] = (field.grid.nodes[axis] + kBlockSide - 1) / kBlockSide;
-  for (int bz = 0; bz < field.blocks[2]; ++bz)
-    for (int by = 0; by < field.blocks[1]; ++by)
-      for (int bx = 0; bx < field.blocks[0]; ++bx) {
-        reader.first = {bx * kBlockSide, by * kBlockSide, bz * kBlockSide};
-        DistanceNodes distance;
-        FaceNodes faces{};
-        bool inside = false;
-        if (!reader.read(distance, faces, inside)) {
-          field.top.push_back(inside ? SurfaceField::kInside : SurfaceField::kOutside);
-          continue;
-        }
-        field.top.push_back(static_cast<std::int32_t>(field.block_at.size()));
-        field.block_at.push_back({bx, by, bz});
-        field.distance.push_back(std::make_shared<const DistanceBlock>(distance));
-        if (has_face) field.face.push_back(std::make_shared<const FaceBlock>(faces));
-      }
-
-  if (image->GetFieldData()->HasArray(kCoarse) != 0) {
-    const std::size_t nodes = static_cast<std::size_t>(field.blocks[0] + 1) *
-                              static_cast<std::size_t>(field.blocks[1] + 1) *
-                              static_cast<std::size_t>(field.blocks[2] + 1);
-    auto* coarse = requireArray<vtkFloatArray>(image->GetFieldData(), kCoarse,
-                                               static_cast<vtkIdType>(nodes * 4), path);
-    field.coarse.resize(nodes);
-    std::memcpy(field.coarse.data(), coarse->GetPointer(0), nodes * sizeof(CoarseNode));
-    const float* values = coarse->GetPointer(0);
-    if (!std::all_of(values, values + 4 * nodes, [](float value) { return std::isfinite(value); }))
-      throw FileError(path.string(), 0, "is damaged: a coarse distance is not a number");
-  }
-  return field;
+  requireVolumeFile(path);
+  auto pieces = VtiReader::open(path);
+  return pieces ? readPieces(*pieces, path) : readWhole(path);
 }
 
 bool isField(const std::filesystem::path& path) {
-  const vtkSmartPointer<vtkImageData> image = readVolume(path);
-  return image->GetPointData()->HasArray(kPhi) != 0 &&
-         image->GetPointData()->HasArray(kRounding) != 0 &&
-         image->GetFieldData()->HasArray(kGrid) != 0;
+  requireVolumeFile(path);
+  if (const auto pieces = VtiReader::open(path))
+    return pieces->hasFieldData(kGrid) && pieces->hasArray(kPhi) && pieces->hasArray(kRounding);
+  const std::vector<std::string> names = pointArraysOf(path);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return has(kPhi) && has(kRounding);
 }
 
 } // namespace patina

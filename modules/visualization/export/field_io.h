@@ -8,15 +8,17 @@
 
 namespace patina {
 
-// Dense point arrays "phi [m]" (float; beyond the band clamped to +-band), "phi rounding [ulp]"
+// Point arrays "phi [m]" (float; beyond the band clamped to +-band), "phi rounding [ulp]"
 // (int8: what float metres lost of the stored voxels, 127 beyond the band, so that stored nodes
 // read back bit for bit) and, where there is one, "face" (int32, -1 beyond the band). Field data:
 // "grid [m]" (origin, voxel), "band [voxel]" and, where there is one, "coarse [voxel]".
-// Compressed, written atomically. Throws FileError.
+// In pieces of 64 nodes a side, compressed, in memory near the field's own; those without a stored
+// node are in the file once. Written atomically. Throws FileError.
 void writeField(const std::filesystem::path& path, const SurfaceField& field);
 
 // A field written by writeField: grid, distance, face and coarse layers as they were; the sample
-// layer is derived (withSamples). Throws FileError if the file is damaged or is not such a field.
+// layer is derived (withSamples). One that VTK or ParaView wrote anew is read too. Throws FileError
+// if the file is damaged, is not such a field, or its Origin or Spacing was changed.
 SurfaceField readField(const std::filesystem::path& path);
 bool isField(const std::filesystem::path& path); // false for a volume from elsewhere
 

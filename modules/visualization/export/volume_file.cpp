@@ -7,10 +7,10 @@
 #include <string>
 
 #include <vtkCommand.h>
-#include <vtkLogger.h>
 #include <vtkXMLImageDataReader.h>
 
 #include "core/error.h"
+#include "visualization/export/quiet_log.h"
 
 namespace patina {
 namespace {
@@ -30,24 +30,13 @@ class ErrorCatcher : public vtkCommand {
   std::string cause = {};
 };
 
-// VTK's pipeline and decompressor print on stderr beside what they tell their observers.
-class QuietLog {
- public:
-  QuietLog() { vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF); }
-  ~QuietLog() { vtkLogger::SetStderrVerbosity(before_); }
-  QuietLog(const QuietLog&) = delete;
-  QuietLog& operator=(const QuietLog&) = delete;
-
- private:
-  vtkLogger::Verbosity before_ = vtkLogger::GetCurrentVerbosityCutoff();
-};
-
-// The reader allocates whatever the header asks for, so the header is read first.
-void checkHeader(const std::filesystem::path& path) {
+std::string headOf(const std::filesystem::path& path) {
   std::error_code code;
   if (!std::filesystem::exists(path, code)) throw FileError(path.string(), 0, "no such file");
   if (std::filesystem::is_directory(path, code))
     throw FileError(path.string(), 0, "is a folder, not a .vti volume");
+  if (!std::filesystem::is_regular_file(path, code))
+    throw FileError(path.string(), 0, "is no file: a volume is not read from a pipe or device");
   std::ifstream stream(path, std::ios::binary);
   std::string head(8192, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -55,6 +44,12 @@ void checkHeader(const std::filesystem::path& path) {
   if (head.empty()) throw FileError(path.string(), 0, "is empty or cannot be read");
   if (head.find("<VTKFile") == std::string::npos || head.find("\"ImageData\"") == std::string::npos)
     throw FileError(path.string(), 0, "is not a VTK XML ImageData (.vti) file");
+  return head;
+}
+
+// The reader allocates whatever the header asks for, so the header is read first.
+void checkHeader(const std::filesystem::path& path) {
+  const std::string head = headOf(path);
   const auto at = head.find("WholeExtent=\"");
   if (at == std::string::npos) throw FileError(path.string(), 0, "has no WholeExtent");
   std::istringstream numbers(head.substr(at + 13, 200));
@@ -69,13 +64,12 @@ void checkHeader(const std::filesystem::path& path) {
     throw FileError(path.string(), 0, "has more than 2^30 nodes: resample it to a smaller grid");
 }
 
-} // namespace
-
-vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path) {
-  checkHeader(path);
+// `read` with the reader's complaints as errors of the file.
+template <typename Read>
+void readQuietly(vtkXMLImageDataReader* reader, const std::filesystem::path& path,
+                 const Read& read) {
   const QuietLog quiet;
   const vtkNew<ErrorCatcher> errors;
-  const vtkNew<vtkXMLImageDataReader> reader;
   reader->AddObserver(vtkCommand::ErrorEvent, errors);
   reader->AddObserver(vtkCommand::WarningEvent, errors);
   reader->SetFileName(path.c_str());
@@ -83,16 +77,38 @@ vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path) {
     // The XML parser is made inside; its complaints reach the reader's own error code.
     reader->SetReaderErrorObserver(errors);
     reader->SetParserErrorObserver(errors);
-    reader->Update();
+    read();
   } catch (const std::exception&) {
     throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
   }
   if (!errors->cause.empty() || reader->GetErrorCode() != 0)
     throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
+}
+
+} // namespace
+
+vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path) {
+  checkHeader(path);
+  const vtkNew<vtkXMLImageDataReader> reader;
+  readQuietly(reader, path, [&] { reader->Update(); });
   vtkSmartPointer<vtkImageData> image = reader->GetOutput();
   if (image == nullptr || image->GetNumberOfPoints() == 0)
     throw FileError(path.string(), 0, "cannot be read: truncated or damaged, or without nodes");
   return image;
+}
+
+void requireVolumeFile(const std::filesystem::path& path) {
+  (void)headOf(path);
+}
+
+std::vector<std::string> pointArraysOf(const std::filesystem::path& path) {
+  requireVolumeFile(path);
+  const vtkNew<vtkXMLImageDataReader> reader;
+  readQuietly(reader, path, [&] { reader->UpdateInformation(); });
+  std::vector<std::string> names;
+  for (int i = 0; i < reader->GetNumberOfPointArrays(); ++i)
+    names.emplace_back(reader->GetPointArrayName(i));
+  return names;
 }
 
 } // namespace patina

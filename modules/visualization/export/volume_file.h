@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <vtkImageData.h>
 #include <vtkSmartPointer.h>
@@ -11,5 +13,11 @@ namespace patina {
 // The whole image. Throws FileError for a file that is missing, damaged, not .vti or larger than
 // 2^30 nodes; never prints.
 vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path);
+
+// FileError: missing, a folder, empty, or not the beginning of a .vti.
+void requireVolumeFile(const std::filesystem::path& path);
+
+// The names of its point arrays, without their values. Throws FileError.
+std::vector<std::string> pointArraysOf(const std::filesystem::path& path);
 
 } // namespace patina
