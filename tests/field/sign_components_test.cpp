@@ -31,11 +31,12 @@ FieldBuilder randomBuilder(unsigned seed, double dense) {
         if (random() % 4 == 0) continue;
         builder.field.top.back() = static_cast<std::int32_t>(builder.distance.size());
         builder.field.block_at.push_back({x, y, z});
-        builder.distance.push_back(std::make_unique<DistanceNodes>());
-        for (float& d : builder.distance.back()->phi)
+        DistanceNodes nodes;
+        for (float& d : nodes.phi)
           d = std::bernoulli_distribution(dense)(random) ? near(random) : far(random);
         if (random() % 8 == 0) // now and then beyond the band
-          builder.distance.back()->phi[random() % kBlockNodes] = kBeyondBand;
+          nodes.phi[random() % kBlockNodes] = kBeyondBand;
+        builder.distance.push_back(std::make_shared<const DistanceBlock>(nodes));
       }
   return builder;
 }
@@ -83,7 +84,7 @@ class Places {
   float distance(std::size_t place) const {
     const std::int32_t slot = slotOf(place);
     return slot < 0 ? kBand
-                    : builder_.distance[static_cast<std::size_t>(slot)]->phi[place % kBlockNodes];
+                    : builder_.distance[static_cast<std::size_t>(slot)]->phi()[place % kBlockNodes];
   }
   void flood(std::size_t from, int group, bool one_block, std::vector<int>& into) const {
     std::vector<std::size_t> todo{from};
@@ -111,7 +112,7 @@ std::uint32_t partAt(const Components& components, const Places& places, std::si
 }
 
 void expectBruteForce(const FieldBuilder& builder) {
-  const Components components = connectedComponents(builder);
+  Components components = connectedComponents(builder);
   const Places places(builder);
   const std::size_t count = builder.field.top.size() * kBlockNodes;
   ASSERT_EQ(components.parts.size(), components.first.back() + builder.field.top.size());
@@ -135,7 +136,7 @@ void expectBruteForce(const FieldBuilder& builder) {
     Part& own = parts[part];
     const auto node = static_cast<std::uint16_t>(place % kBlockNodes);
     const auto slot = static_cast<std::size_t>(places.slotOf(place));
-    const float d = builder.distance[slot]->phi[node];
+    const float d = builder.distance[slot]->phi()[node];
     if (own.nodes++ == 0 || d > own.depth) {
       own.depth = d;
       own.deepest = node;
@@ -155,6 +156,7 @@ void expectBruteForce(const FieldBuilder& builder) {
     ASSERT_EQ(part.deepest, expected.deepest);
     ASSERT_EQ(part.depth, std::min(expected.depth, kBand + 1));
   }
+  linkUnstored(builder, components);
   ASSERT_EQ(components.links.size(), edges.size());
   for (const Link& link : components.links) {
     const auto pair = std::minmax(link.a, link.b);

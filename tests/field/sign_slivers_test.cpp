@@ -37,7 +37,7 @@ std::vector<Neighbour> deeperAbout(const FieldBuilder& builder, const Index3& at
     const double d =
         place.slot < 0
             ? field.band
-            : double{builder.distance[static_cast<std::size_t>(place.slot)]->phi[node.node]};
+            : double{builder.distance[static_cast<std::size_t>(place.slot)]->phi()[node.node]};
     const Vec3 way(step[0], step[1], step[2]);
     if (d > double{depth}) result.push_back({place, way, double{depth} + d - way.norm()});
   }
@@ -65,7 +65,7 @@ TEST(Slivers, SeeADeeperNodeWhereTheDistancesOrNoTriangleSaysSo) {
         distanceBlocks(mesh, tree, gridAround(bounds(mesh), spec), band, progress, 0, 1);
     for (std::size_t slot = 0; slot < builder.distance.size(); ++slot)
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
-        const float depth = builder.distance[slot]->phi[n];
+        const float depth = builder.distance[slot]->phi()[n];
         if (!(depth < kBeyondBand)) continue;
         const auto s = static_cast<std::int32_t>(slot);
         const Index3 at = nodeAt(builder, s, n);

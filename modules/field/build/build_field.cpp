@@ -64,8 +64,9 @@ PlateCaps makePlates(FieldBuilder& builder, const TriangleMesh& mesh, const Tria
       distanceBlocks(plates, TriangleTree(plates), builder.field.grid, band, progress, 0.7, 1);
   signLike(whole, builder);
   tbb::parallel_for(std::size_t{0}, whole.face.size(), [&](std::size_t slot) {
-    for (std::int32_t& face : whole.face[slot]->face)
-      if (face >= own) face = caps.face[static_cast<std::size_t>(face - own)];
+    whole.face[slot] = renumbered(*whole.face[slot], [&](std::int32_t face) {
+      return face < own ? face : caps.face[static_cast<std::size_t>(face - own)];
+    });
   });
   builder = std::move(whole);
   return caps;
@@ -75,8 +76,9 @@ void renumberFaces(FieldBuilder& builder, PlateCaps& caps,
                    const std::vector<std::int32_t>& face_of) {
   for (std::int32_t& face : caps.face) face = face_of[static_cast<std::size_t>(face)];
   tbb::parallel_for(std::size_t{0}, builder.face.size(), [&](std::size_t slot) {
-    for (std::int32_t& face : builder.face[slot]->face)
-      if (face >= 0) face = face_of[static_cast<std::size_t>(face)];
+    builder.face[slot] = renumbered(*builder.face[slot], [&](std::int32_t face) {
+      return face_of[static_cast<std::size_t>(face)];
+    });
   });
 }
 

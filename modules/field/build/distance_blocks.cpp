@@ -9,6 +9,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "core/memory_left.h"
+
 namespace patina {
 namespace {
 
@@ -70,6 +72,18 @@ std::vector<std::size_t> candidates(const TriangleTree& tree, const FieldGrid& g
   for (std::size_t i = 0; i < near.size(); ++i)
     if (near[i]) result.push_back(i);
   return result;
+}
+
+// [bytes]: of a stored block with what signs need of it and what a file of it takes; of each place
+// of a block, stored or not. As measured, rounded up.
+constexpr double kBytesOfBlock = 3500, kBytesOfPlace = 150;
+
+void requireRoom(const FieldGrid& grid, std::size_t places, std::size_t blocks) {
+  const auto cells = [&](std::size_t axis) { return std::to_string(grid.nodes[axis] - 1); };
+  requireMemory(kBytesOfPlace * static_cast<double>(places) +
+                    kBytesOfBlock * static_cast<double>(blocks),
+                "a field of " + cells(0) + " x " + cells(1) + " x " + cells(2) + " cells",
+                "; choose a larger voxel or a lower resolution");
 }
 
 struct Foot {
@@ -139,19 +153,19 @@ std::vector<CoarseNode> coarseNodes(const TriangleMesh& mesh, const TriangleTree
 }
 
 struct Block {
-  std::unique_ptr<DistanceNodes> distance;
-  std::unique_ptr<FaceNodes> face;
+  std::shared_ptr<const DistanceBlock> distance;
+  std::shared_ptr<const FaceBlock> face;
 };
 
 // Null if no node is within the band. The search is in float, in places that depend on the scale by
 // their last bit; the distance that is stored is the winner's own in double, which does not.
 Block blockAt(const TriangleMesh& mesh, const TriangleTree& tree, const FieldGrid& grid,
               double band, const Index3& at) {
-  Block block{std::make_unique_for_overwrite<DistanceNodes>(),
-              std::make_unique_for_overwrite<FaceNodes>()};
+  DistanceNodes distances;
+  FaceNodes nearest;
   const Vec3 corner = grid.toWorld(kBlockSide * Vec3(at[0], at[1], at[2]));
-  auto& phi = block.distance->phi;
-  auto& face = block.face->face;
+  auto& phi = distances.phi;
+  auto& face = nearest.face;
   tree.closestOnLattice(corner, grid.voxel, kBlockSide, band * grid.voxel, phi, face);
   std::int32_t any = -1;
   for (std::size_t i = 0; i < phi.size(); ++i) {
@@ -165,7 +179,9 @@ Block blockAt(const TriangleMesh& mesh, const TriangleTree& tree, const FieldGri
     const double d = distanceTo(mesh, face[i], p) / grid.voxel;
     phi[i] = static_cast<float>(std::min(d, band));
   }
-  return any >= 0 ? std::move(block) : Block{};
+  if (any < 0) return {};
+  return {std::make_shared<const DistanceBlock>(distances),
+          std::make_shared<const FaceBlock>(nearest)};
 }
 
 } // namespace
@@ -180,8 +196,10 @@ FieldBuilder distanceBlocks(const TriangleMesh& mesh, const TriangleTree& tree,
   for (std::size_t a = 0; a < 3; ++a)
     field.blocks[a] = (grid.nodes[a] + kBlockSide - 1) / kBlockSide;
 
+  requireRoom(grid, cellCount(field.blocks), 0);
   const std::vector<std::size_t> near = candidates(tree, grid, band, field.blocks, progress);
   progress.throwIfCancelled();
+  requireRoom(grid, cellCount(field.blocks), near.size());
   std::vector<Block> blocks(near.size());
   std::atomic<std::size_t> done{0};
   constexpr std::size_t kReportEvery = 64;

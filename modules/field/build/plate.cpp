@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <unordered_map>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -62,11 +63,15 @@ class Caps {
     float phi = kBeyondBand;
     std::int32_t face = -1;
   };
-  Node nodeAt(const Index3& at) const {
+  using Unpacked = std::map<std::size_t, std::array<float, kBlockNodes>>; // by slot
+
+  Node nodeAt(const Index3& at, Unpacked& known) const {
     const SurfaceField::Place place = builder_.field.placeOf(at[0], at[1], at[2]);
     if (place.slot < 0) return {phiBeyond(place.slot), -1};
     const auto slot = static_cast<std::size_t>(place.slot);
-    return {builder_.distance[slot]->phi[place.index], builder_.face[slot]->face[place.index]};
+    auto phi = known.find(slot);
+    if (phi == known.end()) phi = known.emplace(slot, phiOf(builder_, slot)).first;
+    return {phi->second[place.index], builder_.face[slot]->at(place.index)};
   }
 
   bool inPlate(const Node& node) const {
@@ -75,15 +80,16 @@ class Caps {
 
   std::vector<CapEdge> edgesOf(std::size_t slot) const {
     std::vector<CapEdge> edges;
+    Unpacked known; // this block and those beside it
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
       const Index3 at = signs::nodeAt(builder_, static_cast<std::int32_t>(slot), n);
-      const Node node{builder_.distance[slot]->phi[n], builder_.face[slot]->face[n]};
+      const Node node = nodeAt(at, known);
       for (int axis = 0; axis < 3; ++axis) {
         for (const int way : {1, -1}) {
           if (!inPlate(node)) continue;
           Index3 to = at;
           to[static_cast<std::size_t>(axis)] += way;
-          const Node other = nodeAt(to);
+          const Node other = nodeAt(to, known);
           if (other.phi < 0 || std::abs(node.phi) + std::abs(other.phi) <= 1 + signs::kMargin)
             continue;
           edges.push_back(
@@ -169,18 +175,19 @@ PlateCaps plateCaps(const FieldBuilder& builder, const TriangleMesh& mesh, const
 void signLike(FieldBuilder& builder, const FieldBuilder& like) {
   SurfaceField& field = builder.field;
   const std::vector<std::int32_t>& top = like.field.top;
-  const auto block = [&](std::size_t i) { return static_cast<std::size_t>(top[i]); };
   for (std::size_t i = 0; i < field.top.size(); ++i)
     if (field.top[i] < 0)
-      field.top[i] = top[i] >= 0 && like.distance[block(i)]->phi[0] < 0 ? SurfaceField::kInside
-                     : top[i] >= 0                                      ? SurfaceField::kOutside
-                                                                        : top[i];
+      field.top[i] = top[i] >= 0 && phiAt(like, top[i], 0) < 0 ? SurfaceField::kInside
+                     : top[i] >= 0                             ? SurfaceField::kOutside
+                                                               : top[i];
   tbb::parallel_for(std::size_t{0}, field.top.size(), [&](std::size_t i) {
     if (field.top[i] < 0) return;
-    auto& phi = builder.distance[static_cast<std::size_t>(field.top[i])]->phi;
+    const auto slot = static_cast<std::size_t>(field.top[i]);
+    auto phi = phiOf(builder, slot);
+    const auto signs = top[i] < 0 ? phi : phiOf(like, static_cast<std::size_t>(top[i]));
     for (std::size_t n = 0; n < phi.size(); ++n)
-      if (top[i] < 0 ? top[i] == SurfaceField::kInside : like.distance[block(i)]->phi[n] < 0)
-        phi[n] = -phi[n];
+      if (top[i] < 0 ? top[i] == SurfaceField::kInside : signs[n] < 0) phi[n] = -phi[n];
+    setPhi(builder, slot, phi);
   });
 }
 

@@ -109,7 +109,7 @@ struct Linker {
   }
 
   void linkStored(std::int32_t slot, std::vector<Link>& links) const {
-    const float* here = builder.distance[static_cast<std::size_t>(slot)]->phi.data();
+    const auto here = phiOf(builder, static_cast<std::size_t>(slot));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t u = kStride[(axis + 1) % 3], v = kStride[(axis + 2) % 3];
       for (int side : {-1, 1}) {
@@ -119,8 +119,9 @@ struct Linker {
         if (index < 0) continue;
         const std::int32_t other = builder.field.top[static_cast<std::size_t>(index)];
         if (other >= 0 && side < 0) continue; // the other block's business
-        const float* there =
-            other >= 0 ? builder.distance[static_cast<std::size_t>(other)]->phi.data() : nullptr;
+        const bool there = other >= 0;
+        const auto beyond = there ? phiOf(builder, static_cast<std::size_t>(other))
+                                  : std::array<float, kBlockNodes>();
         const std::size_t last = (kBlockSide - 1) * kStride[axis];
         const std::size_t from = side > 0 ? last : 0;
         const std::size_t since = links.size();
@@ -128,7 +129,7 @@ struct Linker {
           for (std::size_t i = 0; i < kBlockSide; ++i) {
             const std::size_t node = from + i * u + j * v;
             const std::size_t opposite = last - from + i * u + j * v;
-            const float d = there ? there[opposite] : static_cast<float>(builder.field.band);
+            const float d = there ? beyond[opposite] : static_cast<float>(builder.field.band);
             if (!safe(here[node], d)) continue;
             addEdge(links, since, components.partOf(slot, node),
                     there ? components.partOf(other, opposite)
@@ -139,7 +140,8 @@ struct Linker {
     }
   }
 
-  void linkUnstored(std::size_t index, std::vector<Link>& links) const {
+  // visit(other) of those after it.
+  template <typename Visit> void besideUnstored(std::size_t index, const Visit& visit) const {
     const auto& top = builder.field.top;
     const auto& n = builder.field.blocks;
     const auto i = static_cast<std::ptrdiff_t>(index);
@@ -150,9 +152,7 @@ struct Linker {
       ++next[axis];
       const std::ptrdiff_t other = topIndex(next);
       if (other < 0 || top[static_cast<std::size_t>(other)] >= 0) continue;
-      links.push_back({components.partOfBlock(index),
-                       components.partOfBlock(static_cast<std::size_t>(other)),
-                       kBlockSide * kBlockSide});
+      visit(static_cast<std::size_t>(other));
     }
   }
 };
@@ -168,17 +168,24 @@ void collectLinks(std::size_t count, std::vector<Link>& links, const Body& body)
   for (const auto& chunk : chunks) links.insert(links.end(), chunk.begin(), chunk.end());
 }
 
-std::vector<std::uint32_t> rootsOf(std::size_t parts, const std::vector<Link>& links) {
+std::vector<std::uint32_t> rootsOf(const Linker& linker) {
+  const std::size_t parts = linker.components.parts.size();
   std::vector<std::uint32_t> root(parts);
   std::iota(root.begin(), root.end(), 0U);
   const auto find = [&](std::uint32_t part) {
     while (root[part] != part) part = root[part] = root[root[part]];
     return part;
   };
-  for (const Link& link : links) {
-    const std::uint32_t a = find(link.a), b = find(link.b);
+  const auto join = [&](std::uint32_t one, std::uint32_t other) {
+    const std::uint32_t a = find(one), b = find(other);
     root[std::max(a, b)] = std::min(a, b);
-  }
+  };
+  for (const Link& link : linker.components.links) join(link.a, link.b);
+  for (std::size_t i = 0; i < linker.builder.field.top.size(); ++i)
+    if (linker.builder.field.top[i] < 0)
+      linker.besideUnstored(i, [&](std::size_t other) {
+        join(linker.components.partOfBlock(i), linker.components.partOfBlock(other));
+      });
   for (std::uint32_t part = 0; part < parts; ++part) root[part] = root[root[part]]; // root <= part
   return root;
 }
@@ -191,7 +198,7 @@ Components connectedComponents(const FieldBuilder& builder) {
   std::vector<BlockParts> blocks(slots);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots, 16), [&](const auto& range) {
     for (std::size_t s = range.begin(); s < range.end(); ++s)
-      blocks[s] = partsOfBlock(builder.distance[s]->phi.data(), static_cast<std::int32_t>(s), most);
+      blocks[s] = partsOfBlock(phiOf(builder, s).data(), static_cast<std::int32_t>(s), most);
   });
 
   Components components;
@@ -201,6 +208,7 @@ Components connectedComponents(const FieldBuilder& builder) {
     components.first.push_back(static_cast<std::uint32_t>(components.parts.size()));
     components.parts.insert(components.parts.end(), block.parts.begin(), block.parts.end());
     components.labels.push_back(std::move(block.labels));
+    block.parts = {};
   }
   components.first.push_back(static_cast<std::uint32_t>(components.parts.size()));
   components.parts.resize(components.parts.size() + builder.field.top.size());
@@ -209,12 +217,18 @@ Components connectedComponents(const FieldBuilder& builder) {
   collectLinks(slots, components.links, [&](std::size_t s, std::vector<Link>& links) {
     linker.linkStored(static_cast<std::int32_t>(s), links);
   });
-  collectLinks(builder.field.top.size(), components.links,
-               [&](std::size_t i, std::vector<Link>& links) {
-                 if (builder.field.top[i] < 0) linker.linkUnstored(i, links);
-               });
-  components.root = rootsOf(components.parts.size(), components.links);
+  components.root = rootsOf(linker);
   return components;
+}
+
+void linkUnstored(const FieldBuilder& builder, Components& components) {
+  const Linker linker{builder, components};
+  for (std::size_t i = 0; i < builder.field.top.size(); ++i)
+    if (builder.field.top[i] < 0)
+      linker.besideUnstored(i, [&](std::size_t other) {
+        components.links.push_back(
+            {components.partOfBlock(i), components.partOfBlock(other), kBlockSide * kBlockSide});
+      });
 }
 
 } // namespace patina::signs

@@ -32,8 +32,8 @@ struct Components {
   std::vector<Part> parts; // by slot, then one for each entry of the top table, used or not
   std::vector<std::uint32_t> first;            // slot -> its first part; one entry past the end
   std::vector<std::unique_ptr<Labels>> labels; // by slot: node -> part - first; null if all 0
-  std::vector<Link> links;
-  std::vector<std::uint32_t> root; // part -> lowest part of its component
+  std::vector<Link> links;                     // but those between blocks that are not stored
+  std::vector<std::uint32_t> root;             // part -> lowest part of its component
 
   std::uint32_t partOf(std::int32_t slot, std::size_t node) const {
     const auto s = static_cast<std::size_t>(slot);
@@ -45,5 +45,7 @@ struct Components {
 };
 
 Components connectedComponents(const FieldBuilder& builder);
+// By far the most links, 36 bytes a block of the grid, and needed only where a surface leaks.
+void linkUnstored(const FieldBuilder& builder, Components& components);
 
 } // namespace patina::signs

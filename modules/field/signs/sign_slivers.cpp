@@ -23,7 +23,7 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
   std::array<Candidate, 26> candidates;
   std::size_t count = 0;
   const SurfaceField& field = builder.field;
-  const float depth = std::abs(builder.distance[static_cast<std::size_t>(slot)]->phi[node]);
+  const float depth = std::abs(phiAt(builder, slot, node));
   const std::array<int, 3> at = nodeAt(builder, slot, node);
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
@@ -38,10 +38,8 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
             static_cast<std::size_t>((bz * field.blocks[1] + by) * field.blocks[0] + bx);
         place.slot = std::max(field.top[place.top_index], -1);
         place.node = next.node;
-        const float d =
-            place.slot < 0
-                ? static_cast<float>(field.band)
-                : std::abs(builder.distance[static_cast<std::size_t>(place.slot)]->phi[place.node]);
+        const float d = place.slot < 0 ? static_cast<float>(field.band)
+                                       : std::abs(phiAt(builder, place.slot, place.node));
         if (d <= depth) continue;
         constexpr std::array<float, 4> kLength{0, 1, 1.41421356F, 1.73205081F};
         const float margin =

@@ -152,6 +152,7 @@ class Signer {
     for (std::uint32_t i : leaking)
       opinion[i] =
           std::isnan(vote_[i]) ? 0 : std::clamp(4 * (std::abs(vote_[i]) - 0.5F), -1.0F, 1.0F);
+    signs::linkUnstored(builder_, parts_);
     const std::vector<std::int8_t> cut = signs::cutLeaks(parts_, opinion);
     progress_.throwIfCancelled();
     for (std::uint32_t i : leaking) sign_[i] = cut[i];
@@ -167,7 +168,8 @@ class Signer {
     }
     std::atomic<std::size_t> doubtful{0};
     tbb::parallel_for(std::size_t{0}, slots.size(), [&](std::size_t s) {
-      auto& phi = builder_.distance[static_cast<std::size_t>(slots[s])]->phi;
+      const auto slot = static_cast<std::size_t>(slots[s]);
+      auto phi = phiOf(builder_, slot);
       std::size_t here = 0;
       for (std::size_t n = 0; n < phi.size(); ++n) {
         if (sign_[parts_.partOf(slots[s], n)] != kByNode || progress_.cancelled()) continue;
@@ -175,6 +177,7 @@ class Signer {
         if (saysInside(w)) phi[n] = -phi[n];
         here += std::abs(std::abs(w) - 0.5F) < 0.25F;
       }
+      setPhi(builder_, slot, phi);
       doubtful += here;
     });
     ambiguous_ += doubtful;
@@ -192,7 +195,7 @@ class Signer {
     const std::uint32_t part = parts_.partOf(place.slot, place.node);
     if (isSliver(part)) return sign_[parts_.root[part]];
     if (sign_[part] != kByNode) return sign_[part];
-    const float phi = builder_.distance[static_cast<std::size_t>(place.slot)]->phi[place.node];
+    const float phi = phiAt(builder_, place.slot, place.node);
     return std::signbit(phi) ? kInside : kOutside;
   }
 
@@ -263,8 +266,7 @@ class Signer {
   // On which side of its nearest face the deepest node stands: > 0 where the face turns to it, 0
   // unless it stands over the face's interior.
   double sideOfNearest(const Part& part) const {
-    const std::int32_t face =
-        builder_.face[static_cast<std::size_t>(part.slot)]->face[part.deepest];
+    const std::int32_t face = builder_.face[static_cast<std::size_t>(part.slot)]->at(part.deepest);
     if (face < 0) return 0;
     const auto f = static_cast<std::size_t>(face);
     if (open_.any() && open_.open[f]) return 0;
@@ -294,13 +296,14 @@ class Signer {
   }
 
   void writeBlock(std::size_t slot) {
-    auto& phi = builder_.distance[slot]->phi;
+    auto phi = phiOf(builder_, slot);
     const std::uint32_t first = parts_.first[slot];
     const signs::Labels* labels = parts_.labels[slot].get();
     for (std::size_t n = 0; n < phi.size(); ++n)
       if (sign_[first + (labels ? (*labels)[n] : 0U)] == kInside) phi[n] = -phi[n];
     for (float& value : phi)
       if (std::abs(value) <= kOnSurface) value = std::abs(value);
+    setPhi(builder_, slot, phi);
   }
 
   FieldBuilder& builder_;
@@ -323,15 +326,16 @@ void signPlates(FieldBuilder& builder, const TriangleMesh& mesh, const OpenParts
                 double thickness) {
   const FrontSide front(mesh, open.open);
   tbb::parallel_for(std::size_t{0}, builder.distance.size(), [&](std::size_t slot) {
-    auto& phi = builder.distance[slot]->phi;
-    const auto& faces = builder.face[slot]->face;
+    auto phi = phiOf(builder, slot);
     for (std::size_t n = 0; n < phi.size(); ++n) {
-      if (faces[n] < 0 || !open.open[static_cast<std::size_t>(faces[n])]) continue;
+      const std::int32_t face = builder.face[slot]->at(n);
+      if (face < 0 || !open.open[static_cast<std::size_t>(face)]) continue;
       if (!(phi[n] > kOnSurface) || !(static_cast<double>(phi[n]) < thickness)) continue;
       const std::array<int, 3> at = signs::nodeAt(builder, static_cast<std::int32_t>(slot), n);
       const Vec3 p = builder.field.grid.toWorld(Vec3(at[0], at[1], at[2]));
-      if (front.at(p, faces[n]) == Side::back) phi[n] = -phi[n];
+      if (front.at(p, face) == Side::back) phi[n] = -phi[n];
     }
+    setPhi(builder, slot, phi);
   });
 }
 
@@ -347,8 +351,7 @@ void signCoarse(FieldBuilder& builder) {
         // The last layer lies past the grid, and so outside.
         if (field.coarse.empty() || x == n[0] || y == n[1] || z == n[2]) continue;
         const std::int32_t slot = field.slotOf(x, y, z);
-        const bool inside = slot >= 0 ? builder.distance[static_cast<std::size_t>(slot)]->phi[0] < 0
-                                      : slot == SurfaceField::kInside;
+        const bool inside = slot >= 0 ? phiAt(builder, slot, 0) < 0 : slot == SurfaceField::kInside;
         if (!inside) continue;
         CoarseNode& node = field.coarse[corner];
         node = {-node.phi, -node.gx, -node.gy, -node.gz};

@@ -34,7 +34,7 @@ template <typename List> std::string spaced(const List& values) {
 // what each takes. Ours is one.
 std::string compressed(std::string_view bytes) {
   const vtkNew<vtkZLibDataCompressor> zlib;
-  zlib->SetCompressionLevel(2);
+  zlib->SetCompressionLevel(5); // what is in memory until all of it is written
   const std::size_t room = zlib->GetMaximumCompressionSpace(bytes.size());
   std::array<std::uint64_t, 4> head{1, bytes.size(), 0, 0};
   std::string out(sizeof head + room, '\0');
@@ -206,7 +206,9 @@ void VtiReader::read(const Places& places, const std::string& name, const char* 
   const auto place = places.find(name);
   if (place == places.end())
     throw FileError(path_, 0, "is not a Patina field: array '" + name + "' is missing");
-  const auto damaged = [&] { throw FileError(path_, 0, "is damaged: array '" + name + "'"); };
+  const auto damaged = [&] {
+    throw FileError(path_, 0, "cannot be read: truncated or damaged: array '" + name + "'");
+  };
   if (place->second.type != type) damaged();
   std::array<std::uint64_t, 4> head{};
   const std::uint64_t begin = appended_ + place->second.offset;
