@@ -38,6 +38,21 @@ void Unfinished::done() noexcept {
   known().paths.erase(place_);
 }
 
+NewFolder::NewFolder(const std::filesystem::path& folder) : folder_(folder) {
+  std::error_code unknown;
+  if (std::filesystem::symlink_status(folder, unknown).type() !=
+      std::filesystem::file_type::not_found)
+    kept_ = true;
+  else
+    unfinished_ = Unfinished(folder);
+}
+
+NewFolder::~NewFolder() {
+  if (kept_) return;
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
 void removeUnfinished() noexcept {
   known().guard.lock();
   for (const std::filesystem::path& path : known().paths) {

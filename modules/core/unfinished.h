@@ -22,6 +22,25 @@ class Unfinished {
   bool held_ = false;
 };
 
+// A folder that was not there before: gone again with what is in it, unless kept. One that was
+// there stays whatever happens.
+class NewFolder {
+ public:
+  explicit NewFolder(const std::filesystem::path& folder); // made by who uses it
+  ~NewFolder();
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+  void keep() noexcept {
+    unfinished_.done();
+    kept_ = true;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  Unfinished unfinished_;
+  bool kept_ = false;
+};
+
 // Removes all of them, folders with what is in them. Whoever begins or finishes one after this
 // waits for ever: for a process that ends at once.
 void removeUnfinished() noexcept;

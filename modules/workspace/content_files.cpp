@@ -110,6 +110,8 @@ ContentFile storeContent(const fs::path& folder, const std::string& prefix,
   const fs::path path = folder / file.path;
   if (storedBytes(path, bytes.size()) == bytes) return file;
   makeFolder(path.parent_path());
+  std::error_code code; // the file behind a link, which a write would reach, is another's
+  if (fs::is_symlink(path, code)) fs::remove(path, code);
   writeFileAtomically(path, bytes);
   return file;
 }
@@ -141,7 +143,8 @@ std::string loadNamed(const fs::path& folder, const std::string& relative, Conte
 }
 
 bool isStoredName(const std::string& folder, const std::string& name) {
-  if (folder.empty()) return isJournalName(name) || isTemporaryFor(kManifestName, name);
+  if (folder.empty())
+    return isJournalName(name) || isTemporaryFor(kManifestName, name) || name == kUnfinishedName;
   // What killed savers leave: of version 1, and ".NAME.123-0.tmp".
   if (name.starts_with(".saving-") || name.starts_with("..saving-")) return true;
   if (name.starts_with('.')) {

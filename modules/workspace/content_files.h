@@ -27,6 +27,10 @@ std::string loadContent(const std::filesystem::path& folder, const ContentFile& 
 std::string loadNamed(const std::filesystem::path& folder, const std::string& path,
                       ContentFile* found = nullptr);
 
+// Stands in a folder from before its first file until its workspace.json is there: what a killed
+// saver leaves, in place of which another may save.
+inline constexpr const char* kUnfinishedName = ".unfinished";
+
 // Absolute; throws FileError naming workspace.json.
 std::filesystem::path insidePath(const std::filesystem::path& folder, const std::string& relative);
 

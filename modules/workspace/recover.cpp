@@ -2,7 +2,7 @@
 #include <charconv>
 #include <optional>
 
-#include "core/error.h"
+#include "core/disk_error.h"
 #include "core/file.h"
 #include "workspace/content_files.h"
 #include "workspace/history_files.h"
@@ -13,13 +13,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What `read` returns, or nothing and a note.
+// What `read` returns, or nothing and a note. A disk that refuses is asked again: one failure must
+// not cost a history that is there.
 template <typename Read>
 auto attempt(std::vector<std::string>& notes, const Read& read) -> std::optional<decltype(read())> {
-  try {
-    return read();
-  } catch (const Error& error) {
-    notes.push_back(error.what());
+  for (int again = 2;; --again) {
+    try {
+      return read();
+    } catch (const DiskError& error) {
+      if (again > 0) continue;
+      notes.push_back(error.what());
+    } catch (const Error& error) {
+      notes.push_back(error.what());
+    }
     return std::nullopt;
   }
 }

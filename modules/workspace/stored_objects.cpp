@@ -130,6 +130,19 @@ SceneObject loadObject(const ManifestObject& stored, const fs::path& folder,
   return object;
 }
 
+bool isSameMesh(const TriangleMesh& a, const TriangleMesh& b) {
+  return &a == &b ||
+         (a.positions == b.positions && a.triangles == b.triangles && a.corner_uvs == b.corner_uvs);
+}
+
+// The file of an object before this one whose mesh is the same.
+std::optional<ContentFile> fileOfEqual(const Scene& scene, const Manifest& manifest) {
+  const TriangleMesh& mesh = *scene.objects[manifest.objects.size()].mesh;
+  for (std::size_t i = 0; i < manifest.objects.size(); ++i)
+    if (isSameMesh(*scene.objects[i].mesh, mesh)) return manifest.objects[i].mesh;
+  return std::nullopt;
+}
+
 } // namespace
 
 Manifest storeObjects(const Scene& scene, const fs::path& folder) {
@@ -140,7 +153,9 @@ Manifest storeObjects(const Scene& scene, const fs::path& folder) {
     ManifestObject stored;
     stored.name = object.name;
     stored.world_from_object = object.world_from_object;
-    stored.mesh = storeValue(folder, "meshes/" + object.name, ".ply", object.mesh, plyBytes);
+    const auto equal = fileOfEqual(scene, manifest);
+    stored.mesh =
+        equal ? *equal : storeValue(folder, "meshes/" + object.name, ".ply", object.mesh, plyBytes);
     stored.paint = storePaint(object, folder);
     manifest.objects.push_back(std::move(stored));
   }

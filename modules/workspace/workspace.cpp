@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/folder_lock.h"
+#include "core/unfinished.h"
 #include "workspace/content_files.h"
 #include "workspace/history_files.h"
 #include "workspace/stored_objects.h"
@@ -118,6 +119,14 @@ void commit(Manifest manifest, const std::string& journal, std::string_view jour
   removeUnused(folder, manifest, lines);
 }
 
+// The folder is there from here on, and says that it is no workspace yet.
+void begin(const fs::path& folder) {
+  makeFolder(folder);
+  std::error_code code;
+  if (!isWorkspace(folder) && !fs::exists(folder / kUnfinishedName, code))
+    createFile(folder / kUnfinishedName, "");
+}
+
 // Of scenes that were stored before: a history without one of them could not be opened.
 void requireStates(const fs::path& folder, const std::vector<JournalEvent>& events) {
   std::set<std::string> read;
@@ -174,7 +183,7 @@ Scene loadWorkspace(const fs::path& folder) {
 
 std::string storeState(const Scene& scene, std::uint64_t event, const fs::path& folder) {
   validate(scene);
-  makeFolder(folder);
+  begin(folder);
   Manifest manifest = storeObjects(scene, folder);
   manifest.event = event;
   return storeContent(folder, "states/" + std::to_string(event), ".json",
@@ -198,7 +207,7 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const std::vector<JournalEvent>& journal, const fs::path& folder) {
   validate(scene);
-  makeFolder(folder);
+  begin(folder);
   refuseNewer(folder);
   const auto lock = lockOld(folder);
   replace(scene, event, states, journal, folder);
@@ -206,11 +215,20 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
 
 void saveWorkspace(const Scene& scene, const fs::path& folder) {
   validate(scene);
-  makeFolder(folder);
-  const FolderLock alone(folder);
-  refuseNewer(folder);
-  const auto lock = lockOld(folder);
-  replace(scene, 0, {{0, storeState(scene, 0, folder)}}, {}, folder);
+  NewFolder fresh(folder);
+  begin(folder);
+  {
+    const FolderLock alone(folder);
+    refuseNewer(folder);
+    const auto lock = lockOld(folder);
+    replace(scene, 0, {{0, storeState(scene, 0, folder)}}, {}, folder);
+  }
+  fresh.keep();
+}
+
+bool isUnfinishedWorkspace(const fs::path& path) {
+  std::error_code code;
+  return !isWorkspace(path) && fs::is_regular_file(path / kUnfinishedName, code);
 }
 
 bool isWorkspace(const fs::path& path) {

@@ -67,5 +67,7 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
                    const std::vector<JournalEvent>& journal, const std::filesystem::path& folder);
 
 bool isWorkspace(const std::filesystem::path& path);
+// What a saver that was killed left of a new one: not to be opened, and free to be replaced.
+bool isUnfinishedWorkspace(const std::filesystem::path& path);
 
 } // namespace patina

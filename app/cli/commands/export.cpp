@@ -6,7 +6,7 @@
 #include "app/cli/output/stability_report.h"
 #include "core/csv.h"
 #include "core/error.h"
-#include "core/file.h"
+#include "core/staged_folder.h"
 #include "field/sampling/field_sampler.h"
 #include "field/surface/iso_surface.h"
 #include "visualization/export/export_files.h"
@@ -63,40 +63,42 @@ int runExport(const ExportOptions& options, Console& console) {
   if (options.stability) stability = requiredStability(*compiled, console.progress());
   console.progress().throwIfCancelled();
 
-  makeFolder(folder);
+  StagedFolder files_of(options.output);
+  const std::filesystem::path& staging = files_of.path();
   std::vector<std::pair<std::string, std::string>> blocks = {
       {"mesh", "mesh.vtp"}, {"surface", "surface.vtp"}, {"field", "field.vti"}};
-  writeMeshVtp(folder / "mesh.vtp", *compiled->mesh, {}, objectsOf(*compiled));
+  writeMeshVtp(staging / "mesh.vtp", *compiled->mesh, {}, objectsOf(*compiled));
   // With a finite tip the surface that is felt lies its radius outside.
   const double iso = compiled->scene.haptics.tip_radius.value_or(0.0);
   if (stability)
-    writeMeshVtp(folder / "surface.vtp", *stability->surface,
+    writeMeshVtp(staging / "surface.vtp", *stability->surface,
                  {{"stability [K*/K]", stability->map.ratio},
                   {"least stiffness [N/m]", stability->map.least}});
   else
-    writeMeshVtp(folder / "surface.vtp", isoSurface(*compiled->paint.field, iso));
-  writeField(folder / "field.vti", *compiled->paint.field);
-  writeCsv(folder / "vertices.csv", vertexTable(*compiled));
+    writeMeshVtp(staging / "surface.vtp", isoSurface(*compiled->paint.field, iso));
+  writeField(staging / "field.vti", *compiled->paint.field);
+  writeCsv(staging / "vertices.csv", vertexTable(*compiled));
   const std::vector<SceneObject>& objects = compiled->scene.objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const ObjectPaint* paint = objects[i].paint.get();
     if (paint == nullptr) continue;
     const std::string surface = "paint-" + objects[i].name + ".vtp";
-    writePaintVtp(folder / surface, compiled->scene, i);
+    writePaintVtp(staging / surface, compiled->scene, i);
     blocks.emplace_back(objects[i].name + " paint", surface);
     if (!paint->material || paint->material->blocks().empty()) continue;
     const std::string volume = "material-" + objects[i].name + ".vti";
-    writeMaterialVti(folder / volume, compiled->scene, i);
+    writeMaterialVti(staging / volume, compiled->scene, i);
     blocks.emplace_back(objects[i].name + " material", volume);
   }
   if (!samples.empty()) {
-    writeToolPathVtp(folder / "path.vtp", samples);
-    writeToolSamplesCsv(folder / "forces.csv", samples);
+    writeToolPathVtp(staging / "path.vtp", samples);
+    writeToolSamplesCsv(staging / "forces.csv", samples);
     blocks.emplace_back("path", "path.vtp");
   }
-  writeCollectionVtm(folder / "scene.vtm", blocks);
-
-  const std::vector<std::string> images = writePaintImages(compiled->scene, folder, console);
+  const std::vector<std::string> images = writePaintImages(compiled->scene, staging, console);
+  writeCollectionVtm(staging / "scene.vtm", blocks);
+  console.progress().throwIfCancelled();
+  files_of.commit("scene.vtm");
 
   Report report(kExportKeys);
   Json files = Json::array();

@@ -2,7 +2,7 @@
 #include "app/cli/input/scene_edits.h"
 #include "app/cli/input/workspace_place.h"
 #include "app/cli/output/reports.h"
-#include "core/error.h"
+#include "core/disk_error.h"
 #include "core/numbers.h"
 #include "core/output_target.h"
 #include "session/store/replay.h"
@@ -94,11 +94,14 @@ Scene recovered(const SceneCommandOptions& options, Console& console) {
   if (!options.edits.empty()) throw Error("--recover: change the scene in a second call");
   if (!std::filesystem::is_directory(from)) throw FileError(from.string(), 0, "no such folder");
   if (!sameFolder(from, to) && pathExists(to) &&
-      !(std::filesystem::is_directory(to) && std::filesystem::is_empty(to)))
+      !(std::filesystem::is_directory(to) &&
+        (std::filesystem::is_empty(to) || isUnfinishedWorkspace(to))))
     throw FileError(to.string(), 0, "exists; what is recovered goes into a new folder");
   const auto found = opened(from, false, true, console);
   try {
     WorkspaceLink::createOver(to, *found.history);
+  } catch (const DiskError&) { // of the disk, not of what is damaged: the history is still there
+    throw;
   } catch (const Error& error) {
     console.warn(std::string(error.what()) + ": recovered without its history");
     saveWorkspace(found.history->scene(), to);

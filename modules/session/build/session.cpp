@@ -142,6 +142,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
       throw FileError(path.string(), 0, "is a folder without workspace.json, not a workspace");
     openFolder(path, opened);
     if (options.unit_chosen) warnOf("--unit", "workspace");
+    if (options.up != UpAxis::z) warnOf("--up", "workspace");
     if (options.iso) warnOf("--iso", "workspace");
     const bool both_sides = opened.scene.field.sides == OpenSides::two ||
                             options.tip_radius_chosen ||
@@ -162,6 +163,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   TriangleMesh mesh = is_volume ? std::move(read.mesh) : zUp(std::move(read.mesh), options.up);
   if (options.unit_chosen && in_metres) warnOf("--unit", "field");
   if (options.iso && !is_volume) warnOf("--iso", "mesh");
+  if (options.up != UpAxis::z && is_volume) warnOf("--up", "volume");
   if (mesh.triangles.empty()) throw FileError(path.string(), 0, "there is no triangle in it");
   addWarnings(opened, path.string(), mesh, options.tip_radius_chosen);
   ScaledMesh scaled;

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/folder_lock.h"
+#include "core/unfinished.h"
 #include "session/store/journal_fold.h"
 
 namespace patina {
@@ -35,7 +36,7 @@ Edit editOf(const JournalEvent& event) {
 void requireWorkspacePlace(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   if (!pathExists(folder) || isWorkspace(folder)) return;
-  if (!fs::is_directory(folder) || !fs::is_empty(folder))
+  if (!fs::is_directory(folder) || !(fs::is_empty(folder) || isUnfinishedWorkspace(folder)))
     throw FileError(folder.string(), 0, "exists and is not a workspace; choose another folder");
 }
 
@@ -109,17 +110,23 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
 
 std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path& folder,
                                                      EditHistory& history) {
+  NewFolder fresh(folder);
   makeFolder(folder);
   const FolderLock alone(folder);
   requireWorkspacePlace(folder);
-  return write(folder, history);
+  auto link = write(folder, history);
+  fresh.keep();
+  return link;
 }
 
 std::unique_ptr<WorkspaceLink> WorkspaceLink::createOver(const std::filesystem::path& folder,
                                                          EditHistory& history) {
+  NewFolder fresh(folder);
   makeFolder(folder);
   const FolderLock alone(folder);
-  return write(folder, history);
+  auto link = write(folder, history);
+  fresh.keep();
+  return link;
 }
 
 std::unique_ptr<WorkspaceLink> WorkspaceLink::write(const std::filesystem::path& folder,

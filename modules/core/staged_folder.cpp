@@ -1,0 +1,74 @@
+#include "core/staged_folder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
+#include <unistd.h>
+#include <vector>
+
+#include "core/descriptor.h"
+#include "core/disk_error.h"
+#include "core/file.h"
+#include "core/file_kind.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Move {
+  fs::path from, to;
+};
+
+std::string headOf(const fs::path& path) {
+  const Descriptor file(openToRead(path));
+  std::string head(1024, '\0');
+  head.resize(readSome(file.get(), path.string(), head.data(), head.size()));
+  return head;
+}
+
+void move(const Move& one) {
+  if (::rename(one.from.c_str(), one.to.c_str()) != 0)
+    throw DiskError(one.to.string(), "cannot be replaced: " + reason(errno));
+}
+
+void flush(const fs::path& folder) {
+  const Descriptor directory(openRetrying(folder.c_str(), O_RDONLY | O_DIRECTORY));
+  if (directory.get() < 0 || !syncRetrying(directory.get()))
+    throw DiskError(folder.string(), "cannot be flushed to disk: " + reason(errno));
+}
+
+} // namespace
+
+StagedFolder::StagedFolder(const fs::path& folder)
+    : folder_(folder), staging_(folder / (".writing-" + std::to_string(::getpid()))),
+      fresh_(folder) {
+  makeFolder(folder_);
+  unfinished_ = Unfinished(staging_);
+  makeFolder(staging_);
+}
+
+StagedFolder::~StagedFolder() {
+  std::error_code ignored;
+  fs::remove_all(staging_, ignored);
+}
+
+void StagedFolder::commit(const std::string& last) {
+  std::vector<Move> moves;
+  for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
+    const OutputTarget target = outputTarget(folder_ / file.path().filename());
+    if (target.is_stream)
+      throw FileError(target.path, 0,
+                      "cannot be written: a folder's files are no pipes or devices");
+    requireSameKind(target.path, kindOf(headOf(file.path()), file.file_size()));
+    moves.push_back({file.path(), target.path});
+  }
+  const auto is_last = [&](const Move& one) { return one.from.filename() == last; };
+  std::partition(moves.begin(), moves.end(), [&](const Move& one) { return !is_last(one); });
+  if (::unlink((folder_ / last).c_str()) == 0) flush(folder_);
+  for (const Move& one : moves) move(one);
+  flush(folder_);
+  fresh_.keep();
+}
+
+} // namespace patina

@@ -1,0 +1,32 @@
+// Several files that belong together and come into a folder together.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/unfinished.h"
+
+namespace patina {
+
+// They are written into a hidden folder within `folder`, which is made if it is missing; commit()
+// moves them to where they belong. Without it nothing of them is left, and files that were there
+// before are as they were. All throw FileError.
+class StagedFolder {
+ public:
+  explicit StagedFolder(const std::filesystem::path& folder);
+  ~StagedFolder();
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+
+  const std::filesystem::path& path() const { return staging_; } // where to write
+  // `last` is the file that says that the others are whole: an old one goes first, the new one
+  // comes last. Refuses before it moves any: files of another kind, read-only ones. Once.
+  void commit(const std::string& last);
+
+ private:
+  std::filesystem::path folder_, staging_;
+  NewFolder fresh_;
+  Unfinished unfinished_;
+};
+
+} // namespace patina
