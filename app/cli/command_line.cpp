@@ -105,17 +105,6 @@ Given parse(const Command& command, const Words& words) {
   return given;
 }
 
-const Command& commandNamed(const std::vector<Command>& commands, const std::string& name) {
-  Words known;
-  for (const Command& command : commands) {
-    if (command.name == name) return command;
-    known.push_back(command.name);
-  }
-  const bool option = name.starts_with("-");
-  throw Error("unknown " + (option ? "option " + name : "command '" + name + "'") +
-              suggestion(name, known, "; see patina --help"));
-}
-
 // Of the words: what is read and written, and what was said more often than it counts.
 void checkFiles(const Command& command, const Given& given, Console& console) {
   std::size_t read = 0, written = 0;

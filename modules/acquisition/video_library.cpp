@@ -4,12 +4,14 @@
 
 #include "core/error.h"
 #include "core/loaded_library.h"
+#include "core/memory_left.h"
 
 namespace patina {
 
 const VideoLibrary& videoLibrary() {
   static std::string video_cause;
   static void* const video_symbol = [] {
+    requireRoomToLoad("the library of video");
     // Read while it loads: FFmpeg's lines on the console say nothing that an Error does not, and a
     // camera that sends nothing is given up sooner.
     ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);

@@ -33,10 +33,11 @@ int openRetrying(const char* path, int flags, mode_t mode) {
 
 namespace {
 
+constexpr std::chrono::seconds kPatience{5}; // with who is to be at a pipe's other end
+
 // The file system says only to a reader that waits whether anybody writes. Who waits too long is
 // let go by a writer of our own.
 int openPipe(const std::string& name) {
-  constexpr std::chrono::seconds kPatience{5};
   std::promise<int> opened;
   std::future<int> ready = opened.get_future();
   std::thread reader([&] { opened.set_value(openRetrying(name.c_str(), O_RDONLY)); });
@@ -64,6 +65,19 @@ int openToRead(const std::filesystem::path& path) {
   if (code == ENOENT || code == ENOTDIR || code == ELOOP || code == EACCES)
     throw FileError(name, 0, cause);
   throw DiskError(name, cause);
+}
+
+int openStream(const std::string& name) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  int fd = openRetrying(name.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
+  while (fd < 0 && errno == ENXIO && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    fd = openRetrying(name.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
+  }
+  if (fd < 0 && errno == ENXIO)
+    throw FileError(name, 0, "is a pipe that nobody reads: nobody came for 5 s");
+  if (fd >= 0) ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
+  return fd;
 }
 
 bool syncRetrying(int fd) {

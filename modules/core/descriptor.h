@@ -30,6 +30,9 @@ int openRetrying(const char* path, int flags, mode_t mode = 0);
 // Open for reading; "-" is standard input. FileError: missing, a ring of links, a pipe that nobody
 // has opened for writing after five seconds; DiskError: anything else.
 int openToRead(const std::filesystem::path& path);
+// Open for writing what is no file: a device, or a pipe. FileError if nobody has opened the pipe
+// for reading after five seconds; else -1 and errno.
+int openStream(const std::string& name);
 bool syncRetrying(int fd);
 // false and errno; part of the bytes may then be there.
 bool writeAll(int fd, std::string_view bytes); // where it stands

@@ -8,7 +8,6 @@
 
 #include "core/descriptor.h"
 #include "core/disk_error.h"
-#include "core/file_kind.h"
 
 namespace patina {
 namespace {
@@ -63,7 +62,7 @@ AtomicFile::AtomicFile(const fs::path& path)
     : path_(path.string()), target_(outputTarget(path)), file_(-1) {
   if (target_.is_stream) {
     file_.reset(target_.descriptor >= 0 ? ::fcntl(target_.descriptor, F_DUPFD_CLOEXEC, 3)
-                                        : openRetrying(target_.path.c_str(), O_WRONLY | O_NOCTTY));
+                                        : openStream(target_.path));
     if (file_.get() < 0) fail("cannot be written");
     return;
   }
@@ -89,8 +88,6 @@ void AtomicFile::fail(const std::string& what) const {
 }
 
 void AtomicFile::append(std::string_view bytes) {
-  if (target_.exists && !target_.is_stream && size_ == 0)
-    requireSameKind(target_.path, kindOf(bytes, bytes.size()));
   const bool written =
       target_.is_stream ? writeAll(file_.get(), bytes) : writeAllAt(file_.get(), bytes, size_);
   if (!written) fail("cannot be written");

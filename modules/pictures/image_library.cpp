@@ -6,12 +6,16 @@
 
 #include "core/error.h"
 #include "core/loaded_library.h"
+#include "core/memory_left.h"
 
 namespace patina {
 
 const ImageLibrary& imageLibrary(const std::string& name) {
   static std::string cause;
-  static void* const symbol = loadedSymbol("patina_images.so", kImageLibrarySymbol, cause);
+  static void* const symbol = [&] {
+    requireRoomToLoad(name + ": the library of pictures");
+    return loadedSymbol("patina_images.so", kImageLibrarySymbol, cause);
+  }();
   if (!symbol)
     throw FileError(name, 0,
                     "needs Patina's library of pictures, which cannot be loaded: " + cause);

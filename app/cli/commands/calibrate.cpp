@@ -234,7 +234,7 @@ int calibrateForce(const CalibrateOptions& options, Console& console) {
 }
 
 int runCalibrate(const CalibrateOptions& options, Console& console) {
-  requireWritable(options.output, {options.input});
+  requireWritable(options.output, {options.input}, options.board ? FileKind::yaml : FileKind::json);
   if (options.board && options.still) throw Error("--still: not with --board");
   if (options.force && (options.board || options.still))
     throw Error("--force: not with --board or --still");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/cli/input/suggestion.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
@@ -17,6 +18,17 @@ double numberIn(const std::string& text) {
 }
 
 } // namespace
+
+const Command& commandNamed(const std::vector<Command>& commands, const std::string& name) {
+  std::vector<std::string> known;
+  for (const Command& command : commands) {
+    if (command.name == name) return command;
+    known.push_back(command.name);
+  }
+  const bool option = name.starts_with("-");
+  throw Error("unknown " + (option ? "option " + name : "command '" + name + "'") +
+              suggestion(name, known, "; see patina --help"));
+}
 
 std::vector<Argument> commonArguments(const Command& command) {
   const Setter seen = [](const std::string&) {}; // the parser looks for them itself

@@ -47,6 +47,9 @@ struct Command {
   std::function<int(Console&)> run; // returns an exit code
 };
 
+// Throws Error for a name that none has, with the one that may be meant.
+const Command& commandNamed(const std::vector<Command>& commands, const std::string& name);
+
 // What every command has: --json where there are keys, --no-clobber where something is written, and
 // --help.
 std::vector<Argument> commonArguments(const Command& command);

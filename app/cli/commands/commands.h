@@ -35,25 +35,21 @@ Command latencyTestCommand();
 Command devicesCommand();
 Command guiCommand();
 Command manCommand();
+Command helpCommand();
+Command completionCommand();
 
 // In the order in which --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),         sceneCommand(),
-          fieldCommand(),        sampleCommand(),
-          feelCommand(),         simulateCommand(),
-          paintCommand(),        undoCommand(),
-          redoCommand(),         embossCommand(),
-          renderCommand(),       exportCommand(),
+  return {infoCommand(),         sceneCommand(),          fieldCommand(),    sampleCommand(),
+          feelCommand(),         simulateCommand(),       paintCommand(),    undoCommand(),
+          redoCommand(),         embossCommand(),         renderCommand(),   exportCommand(),
 #ifdef PATINA_HAS_ACQUISITION
-          simulateScanCommand(), simulateDeviceCommand(),
-          recordCommand(),       calibrateCommand(),
-          trackCommand(),        filterCommand(),
-          registerCommand(),     fitTextureCommand(),
+          simulateScanCommand(), simulateDeviceCommand(), recordCommand(),   calibrateCommand(),
+          trackCommand(),        filterCommand(),         registerCommand(), fitTextureCommand(),
           mapTextureCommand(),   demoCommand(),
 #endif
-          studyCommand(),        modelCommand(),
-          devicesCommand(),      latencyTestCommand(),
-          guiCommand(),          manCommand()};
+          studyCommand(),        modelCommand(),          devicesCommand(),  latencyTestCommand(),
+          guiCommand(),          helpCommand(),           manCommand(),      completionCommand()};
 }
 
 } // namespace patina::cli

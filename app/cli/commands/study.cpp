@@ -86,6 +86,8 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
       const WorkPrecisionTable& table = results[i];
       const std::string base = baseName(study, i, results.size());
       const Json json = toJson(table);
+      requireWritable(folder / (base + ".json"), {}, FileKind::json);
+      requireWritable(folder / (base + ".png"), {}, FileKind::png);
       writeCsv(folder / (base + ".csv"), table);
       writeFileAtomically(folder / (base + ".json"), json.dump() + "\n");
       files.push(base + ".csv");

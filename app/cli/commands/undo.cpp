@@ -73,6 +73,7 @@ Counts move(const std::filesystem::path& folder, std::size_t steps, Way way, Con
 }
 
 int runHistory(const HistoryOptions& options, Way way, Console& console) {
+  if (options.list && options.steps != 1) console.warn("--steps has no effect with --list");
   const std::filesystem::path folder = workspaceFolder(options.workspace);
   Counts counts;
   Report report(kUndoKeys);

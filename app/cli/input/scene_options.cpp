@@ -150,6 +150,36 @@ bool setsTipRadius(const Settings& settings) {
   return false;
 }
 
+namespace {
+
+// What a setting needs so that anything comes of it.
+void warnOfNoEffect(const Scene& scene, const SceneOptions& options, Console& console) {
+  const HapticProperties& haptics = scene.haptics;
+  const auto given = [&](std::string_view key) {
+    return std::ranges::any_of(options.settings,
+                               [&](const auto& setting) { return setting.first == key; });
+  };
+  const auto needs = [&](const std::string& key, bool there, const std::string& what) {
+    if (given(key) && !there) console.warn(optionFor(key) + " has no effect without " + what);
+  };
+  const auto some = [&](auto member) {
+    return std::ranges::any_of(scene.objects, [&](const SceneObject& object) {
+      return object.paint && (*object.paint).*member;
+    });
+  };
+  const bool painted = some(&ObjectPaint::material); // with any channel
+  needs("damping.cutoff", painted || haptics.damping, "--damping");
+  const bool rubs = haptics.friction && haptics.friction->static_coefficient > 0;
+  for (const char* key : {"friction.depth", "friction.slip"})
+    needs(key, painted || rubs, "--friction-static");
+  needs("magnet.fades", haptics.magnet && haptics.magnet->range > 0, "--magnet-range");
+  needs("texture.gain", some(&ObjectPaint::textures), "a texture");
+  if (given("voxel") && given("resolution"))
+    console.warn("--resolution has no effect beside --voxel");
+}
+
+} // namespace
+
 OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& options,
                        Console& console) {
   OpenOptions open = options.open;
@@ -158,6 +188,7 @@ OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& op
   for (const std::string& warning : opened.warnings) console.warn(warning);
   layTextures(opened.scene, options.textures);
   applySettings(opened.scene, options.settings);
+  warnOfNoEffect(opened.scene, options, console);
   return opened;
 }
 

@@ -185,7 +185,7 @@ std::string programHelp(const std::vector<Command>& commands) {
          "\n\nUsage: patina COMMAND INPUT... -o OUTPUT [options]\n\nCommands:\n" + table(rows) +
          "\n" + wrapped(kUnits, 0, 0) + "\n\nOptions:\n" +
          table({{"-h, --help", "Print this help; after a command, that of the command."},
-                {"--version", "Print the version."}}) +
+                {"-V, --version", "Print the version."}}) +
          "\nExample:\n  patina model dinosaur -o dino.ply\n  patina info dino.ply\n" + exitCodes();
 }
 

@@ -7,6 +7,7 @@
 #include <X11/Xlib.h>
 
 #include "core/error.h"
+#include "core/memory_left.h"
 
 namespace patina {
 
@@ -16,6 +17,8 @@ void requireDisplay(std::chrono::milliseconds patience) {
   const char* value = std::getenv("DISPLAY");
   if (value == nullptr || *value == '\0')
     throw Error("pictures need an X display and DISPLAY is not set" + remedy);
+  // What draws in software ends the program where it cannot have this much.
+  if (memoryIsLimited()) requireMemory(300e6, "a picture");
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + patience;
   Display* connection = XOpenDisplay(value);

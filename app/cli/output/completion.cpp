@@ -1,0 +1,126 @@
+#include "app/cli/output/completion.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace patina::cli {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words split(const std::string& text, char separator) {
+  std::istringstream in(text);
+  Words words;
+  for (std::string word; std::getline(in, word, separator);) words.push_back(word);
+  return words;
+}
+
+std::vector<Argument> argumentsOf(const Command& command) {
+  std::vector<Argument> all = command.arguments;
+  for (Argument& argument : commonArguments(command)) all.push_back(std::move(argument));
+  return all;
+}
+
+// "mm|cm|m": the words that an option may have; none where it may have any.
+Words choices(const Argument& argument) {
+  const Words words = split(argument.value, '|');
+  return words.size() > 1 ? words : Words();
+}
+
+// Only what no shell reads as anything else.
+std::string plain(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += std::string("'\\[]:\"`$").find(c) == std::string::npos ? c : ' ';
+  return out;
+}
+
+} // namespace
+
+std::string bashCompletion(const std::vector<Command>& commands) {
+  std::string names, cases, words_of;
+  for (const Command& command : commands) {
+    names += (names.empty() ? "" : " ") + command.name;
+    std::string options;
+    for (const Argument& argument : argumentsOf(command)) {
+      if (argument.isInput()) continue;
+      for (const std::string& name : split(argument.names, ',')) {
+        options += (options.empty() ? "" : " ") + name;
+        if (const Words words = choices(argument); !words.empty())
+          words_of +=
+              "    " + command.name + " " + name + ") words='" + joined(words, " ") + "' ;;\n";
+      }
+    }
+    cases += "    " + command.name + ") options='" + options + "' ;;\n";
+  }
+  // Case patterns with a space are quoted.
+  std::string quoted;
+  for (const std::string& line : split(words_of, '\n')) {
+    const std::size_t end = line.find(')');
+    quoted += "    '" + line.substr(4, end - 4) + "'" + line.substr(end) + "\n";
+  }
+  return "# bash completion of patina; made by: patina completion bash\n"
+         "_patina() {\n"
+         "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
+         "  local command=${COMP_WORDS[1]} options='' words=''\n"
+         "  COMPREPLY=()\n"
+         "  if [ \"$COMP_CWORD\" -eq 1 ] || { [ \"$COMP_CWORD\" -eq 2 ] && [ \"$command\" = help "
+         "]; }; then\n"
+         "    COMPREPLY=($(compgen -W '" +
+         names +
+         " --help --version' -- \"$word\"))\n"
+         "    return\n"
+         "  fi\n"
+         "  case \"$command $before\" in\n" +
+         quoted +
+         "  esac\n"
+         "  if [ -n \"$words\" ]; then\n"
+         "    COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
+         "    return\n"
+         "  fi\n"
+         "  case $command in\n" +
+         cases +
+         "  esac\n"
+         "  case $word in\n"
+         "    -*) COMPREPLY=($(compgen -W \"$options\" -- \"$word\")) ;;\n"
+         "    *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n"
+         "  esac\n"
+         "}\n"
+         "complete -o filenames -F _patina patina\n";
+}
+
+std::string zshCompletion(const std::vector<Command>& commands) {
+  std::string list, cases;
+  for (const Command& command : commands) {
+    list += "    '" + command.name + ":" + plain(command.summary) + "'\n";
+    cases += "    " + command.name + ")\n      _arguments -s";
+    for (const Argument& argument : argumentsOf(command)) {
+      if (argument.isInput()) continue;
+      const Words words = choices(argument);
+      const std::string value = argument.isFlag() ? ""
+                                : words.empty()
+                                    ? ":" + plain(argument.value) + ":_files"
+                                    : ":" + plain(argument.value) + ":(" + joined(words, " ") + ")";
+      for (const std::string& name : split(argument.names, ','))
+        cases += " \\\n        '" + std::string(argument.isRepeated() ? "*" : "") + name + "[" +
+                 plain(argument.caption) + "]" + value + "'";
+    }
+    cases += " \\\n        '*:file:_files'\n      ;;\n";
+  }
+  return "#compdef patina\n# zsh completion of patina; made by: patina completion zsh\n"
+         "local -a commands\n"
+         "if (( CURRENT == 2 )); then\n"
+         "  commands=(\n" +
+         list +
+         "  )\n"
+         "  _describe command commands\n"
+         "  return\n"
+         "fi\n"
+         "local command=$words[2]\n"
+         "shift words\n"
+         "(( CURRENT -= 1 ))\n"
+         "case $command in\n" +
+         cases + "esac\n";
+}
+
+} // namespace patina::cli
