@@ -84,11 +84,44 @@ TEST_F(BadInput, OutputsThatCannotBeWrittenAreNamed) {
   expectOneLineError(run({"field", box, "-o", folder / "field.raw"}), {".vti"});
   // Renaming a file over a device would take the device away.
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
-  expectOneLineError(run({"feel", box, "--path", path, "-o", folder / "pipe"}), {"not a file"});
-  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+  expectOneLineError(run({"feel", box, "--path", path, "-o", folder / "pipe"}),
+                     {"pipe", "nobody reads"});
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe")); // as it was
   expectOneLineError(run({"model", "box", "-o", folder / "box.xyz"}), {"box.xyz"});
   expectOneLineError(run({"export", box, "-o", box, "--resolution", "40"}), {"box.obj"});
   expectOneLineError(run({"man", "-o", box}), {"box.obj"});
+}
+
+TEST_F(BadInput, OptionsWithoutEffectAreWarnedOf) {
+  const auto warned = [&](const std::vector<std::string>& more, const std::string& part) {
+    std::vector<std::string> words = {"feel", box, "--path", path, "-o", folder / "f.csv"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("patina: warning: " + part), std::string::npos) << outcome.err;
+  };
+  warned({"--friction-depth", "1"}, "--friction-depth has no effect without --friction-static");
+  warned({"--magnet-fades", "on"}, "--magnet-fades has no effect without --magnet-range");
+  warned({"--damping-cutoff", "50"}, "--damping-cutoff has no effect without --damping");
+  warned({"--texture-gain", "2"}, "--texture-gain has no effect without a texture");
+  warned({"--voxel", "2mm", "--resolution", "60"}, "--resolution has no effect beside --voxel");
+  warned({"--stiffness", "5", "--stiffness", "6"}, "--stiffness is given 2 times");
+  const Outcome quiet = run({"feel", box, "--path", path, "-o", folder / "f.csv", "--damping", "1",
+                             "--damping-cutoff", "50"});
+  EXPECT_EQ(quiet.err.find("no effect"), std::string::npos) << quiet.err;
+}
+
+TEST_F(BadInput, NamesKeepTheirLettersAndPosesTheirMeasure) {
+  const std::string cup = folder / "Gef\xc3\xa4\xc3\x9f.obj", scene = folder / "w";
+  std::filesystem::copy(box, cup);
+  ASSERT_EQ(run({"scene", "-o", scene, "--add", cup}).exit, 0);
+  EXPECT_NE(run({"scene", "-o", scene}).out.find("Gef\xc3\xa4\xc3\x9f"), std::string::npos);
+  expectOneLineError(run({"scene", "-o", scene, "--add", box + "@"}), {"no pose after the '@'"});
+  const std::string far = folder.write("far.txt", "1 0 0 1e300\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  expectOneLineError(run({"scene", "-o", scene, "--add", box + "@" + far}), {"1e+300", "farthest"});
+  // Equal meshes are stored once, whatever their names.
+  ASSERT_EQ(run({"scene", "-o", scene, "--add", cup, "--add", box}).exit, 0);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scene + "/meshes"), {}), 1);
 }
 
 TEST_F(BadInput, WordsOfTheCommandLineAreChecked) {

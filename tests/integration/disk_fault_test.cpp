@@ -1,10 +1,12 @@
 // The program on a disk that refuses, and what it loads at its start.
+#include <csignal>
 #include <cstdlib>
 
 #include <gtest/gtest.h>
 
 #include "core/file.h"
-#include "integration/program.h"
+#include "integration/every_command.h"
+#include "support/longer.h"
 #include "support/places.h"
 
 namespace patina::test {
@@ -39,6 +41,114 @@ TEST(DiskFault, ARefusedSaveIsOneLineAndExit2AndTheWorkspaceStays) {
     if (readFile(folder + "/workspace.json") == before) ++refused;
   }
   EXPECT_GE(refused, 5); // fewer would mean that the shim is not there
+}
+
+// Each call that changes the disk fails in turn, for each command: nothing stands in the way of the
+// same command a second time, and what was there before is there.
+class RefusingDisk : public EveryCommand {
+ protected:
+  // False once the command makes no more calls than `at`.
+  bool refuse(const CommandLine& line, const std::string& fault, int at, const std::string& out) {
+    const std::string mark = folder / "mark",
+                      what = line.name + ", " + fault + " at call " + std::to_string(at);
+    std::filesystem::remove(mark);
+    Outcome outcome;
+    {
+      const Environment shim({{"LD_PRELOAD", programFolder() / "fault_shim.so"},
+                              {"PATINA_FAULT", fault},
+                              {"PATINA_FAULT_AT", std::to_string(at)},
+                              {"PATINA_FAULT_UNDER", folder.path()},
+                              {"PATINA_FAULT_MARK", mark}});
+      outcome = run(line.to(out));
+    }
+    if (!std::filesystem::exists(mark)) {
+      EXPECT_EQ(outcome.exit, 0) << what << outcome.err;
+      return false;
+    }
+    ++refused_;
+    if (fault == "kill") {
+      EXPECT_EQ(outcome.exit, 128 + SIGKILL) << what;
+    } else if (outcome.exit !=
+               0) { // not a call that may fail, as where what is left over is removed
+      expectOneLineError(outcome, {});
+    }
+    EXPECT_EQ(run({"info", workspace}).exit, 0) << what;
+    if (line.writes == Writes::folder && outcome.exit != 0) {
+      EXPECT_FALSE(std::filesystem::exists(out + "/scene.vtm")) << what;
+    }
+    const Outcome again = run(line.to(out));
+    EXPECT_EQ(again.exit, 0) << what << ": the retry is blocked: " << again.err;
+    if (line.writes == Writes::workspace) {
+      EXPECT_EQ(run({"info", out}).exit, 0) << what;
+    }
+    return true;
+  }
+
+  int refused_ = 0;
+};
+
+TEST_F(RefusingDisk, BlocksNoRetryAndBreaksNothing) {
+  const std::string kept = fingerprint(workspace);
+  std::vector<CommandLine> lines = folderCommands();
+  for (const CommandLine& line : fileCommands())
+    if (line.name == "sample" || line.name == "field") lines.push_back(line);
+  const int step = longer(1) > 1 ? 1 : 11;
+  int first = 0;
+  for (const CommandLine& line : lines)
+    for (const char* fault : {"kill", "enospc", "eio", "full"}) {
+      if (line.name == "man" && step > 1) continue;
+      const std::string out = folder / ("out" + line.extension);
+      for (int at = 1 + first++ % step; at < 500; at += step) {
+        std::filesystem::remove_all(out);
+        if (!refuse(line, fault, at, out)) break;
+      }
+    }
+  EXPECT_EQ(fingerprint(workspace), kept);
+  std::printf("%d refused calls\n", refused_);
+  EXPECT_GT(refused_, step > 1 ? 25 : 300);
+}
+
+TEST_F(RefusingDisk, LeavesAWorkspaceThatIsChangedInPlaceAsItWasOrAsItIsToBe) {
+  const CommandLine set{"set", {"scene", "-o", workspace, "--set", "stiffness=321"}, ""};
+  const CommandLine add{"add", {"scene", "-o", workspace, "--add", box}, ""};
+  const CommandLine paint{"paint", {"paint", workspace, "--strokes", strokes, "-o", workspace}, ""};
+  const CommandLine undo{"undo", {"undo", workspace}, ""};
+  const int step = longer(1) > 1 ? 1 : 7;
+  for (const CommandLine& line : {set, add, paint, undo})
+    for (const char* fault : {"kill", "eio", "full"})
+      for (int at = 1; at < 500; at += step)
+        if (!refuse(line, fault, at, workspace)) break;
+  EXPECT_GT(refused_, step > 1 ? 10 : 60);
+}
+
+// One failure while it reads must not cost the history.
+TEST_F(RefusingDisk, OneErrorOfTheDiskCostsARecoveryNoHistory) {
+  const std::int64_t edits = runJson({"undo", workspace, "--list"}).at("history").asInteger();
+  ASSERT_GE(edits, 3);
+  for (int at = 1; at < 60; ++at) {
+    const std::string out = folder / "mended", mark = folder / "mark";
+    std::filesystem::remove_all(out);
+    std::filesystem::remove(mark);
+    Outcome outcome;
+    {
+      const Environment shim({{"LD_PRELOAD", programFolder() / "fault_shim.so"},
+                              {"PATINA_FAULT", "eio"},
+                              {"PATINA_FAULT_READS", "1"},
+                              {"PATINA_FAULT_AT", std::to_string(at)},
+                              {"PATINA_FAULT_UNDER", folder.path()},
+                              {"PATINA_FAULT_MARK", mark}});
+      outcome = run({"scene", "-o", out, "--recover", workspace});
+    }
+    if (outcome.exit == 0) {
+      EXPECT_EQ(runJson({"undo", out, "--list"}).at("history").asInteger(), edits) << at;
+    } else {
+      expectOneLineError(outcome, {});
+    }
+    if (!std::filesystem::exists(mark)) {
+      EXPECT_GT(at, 10);
+      break;
+    }
+  }
 }
 
 TEST(Start, LoadsNoLibraryOfPictures) {

@@ -106,6 +106,7 @@ TEST(Help, FeelHasExactlyTheOptionsOfThisVersion) {
                                              "--up",
                                              "--iso",
                                              "--json",
+                                             "--no-clobber",
                                              "--help"};
   EXPECT_EQ(options("feel"), expected);
 }
@@ -126,8 +127,41 @@ TEST(Help, OfSceneNamesEveryKeyThatASceneHas) {
   EXPECT_GE(keys, 13) << error;
 }
 
+TEST(Help, HelpAndManShowWhatTheOptionDoes) {
+  for (const std::string& command : commands())
+    EXPECT_EQ(run({"help", command}).out, run({command, "--help"}).out);
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  expectOneLineError(run({"help", "feal"}), {"did you mean 'feel'?"});
+  const Outcome page = run({"man", "feel"});
+  EXPECT_EQ(page.exit, 0) << page.err;
+  EXPECT_NE(page.out.find("tip path"), std::string::npos);
+}
+
+// By bash itself, from the table of commands.
+TEST(Help, BashCompletesCommandsOptionsAndTheirWords) {
+  const auto completed = [](const std::string& words) {
+    return Running({"-c",
+                    "source <(\"$0\" completion bash); COMP_WORDS=(" + words +
+                        "); COMP_CWORD=$((${#COMP_WORDS[@]}-1)); _patina; echo \"${COMPREPLY[*]}\"",
+                    programPath().string()},
+                   "/bin/bash")
+        .wait()
+        .out;
+  };
+  EXPECT_EQ(completed("patina fee"), "feel\n");
+  EXPECT_EQ(completed("patina help unn"), "\n");
+  EXPECT_EQ(completed("patina feel --stiff"), "--stiffness\n");
+  EXPECT_EQ(completed("patina feel s.ply --unit c"), "cm\n");
+  for (const std::string& option : options("feel"))
+    EXPECT_NE((" " + completed("patina feel --")).find(option), std::string::npos) << option;
+  const std::string zsh = run({"completion", "zsh"}).out;
+  EXPECT_TRUE(zsh.starts_with("#compdef patina\n"));
+  for (const std::string& command : commands())
+    EXPECT_NE(zsh.find("    " + command + ")\n"), std::string::npos) << command;
+}
+
 TEST(Help, VersionIsOneLine) {
-  for (const auto& words : {std::vector<std::string>{"--version"}, {"info", "--version"}}) {
+  for (const auto& words : {std::vector<std::string>{"--version"}, {"-V"}, {"info", "--version"}}) {
     const Outcome version = run(words);
     EXPECT_EQ(version.exit, 0);
     EXPECT_TRUE(version.out.starts_with("patina 0.")) << version.out;

@@ -5,6 +5,7 @@
 //   folder; calls on files elsewhere do not count PATINA_FAULT_MARK   file that is made when the
 //   fault happens PATINA_NO_FLUSH     flushing does nothing: a program may die here, but not the
 //   machine
+//   PATINA_FAULT_READS  reads count and fail, too
 //   PATINA_FAULT_EARLY  an interrupt (Ctrl-C) before main()
 #include <cerrno>
 #include <cstdarg>
@@ -19,7 +20,7 @@
 
 namespace {
 
-enum class Call { create, write, flush, rename, cut };
+enum class Call { create, write, flush, rename, cut, read };
 
 // Read anew each time: the library may be called before any constructor of its own has run.
 const char* setting(const char* name) {
@@ -106,6 +107,12 @@ int open(const char* path, int flags, ...) {
 int mkdir(const char* path, mode_t mode) noexcept {
   if (isUnder(path) && judge(Call::create) == Verdict::fail) return -1;
   return next<int (*)(const char*, mode_t)>("mkdir")(path, mode);
+}
+
+ssize_t read(int fd, void* bytes, size_t size) {
+  if (*setting("PATINA_FAULT_READS") && isUnder(fd) && judge(Call::read) == Verdict::fail)
+    return -1;
+  return next<ssize_t (*)(int, void*, size_t)>("read")(fd, bytes, size);
 }
 
 ssize_t write(int fd, const void* bytes, size_t size) {

@@ -1,0 +1,153 @@
+// What is written where, what a file is, and what is gone when the program is ended.
+#include "core/output_target.h"
+
+#include <fcntl.h>
+#include <fstream>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/file_kind.h"
+#include "core/staged_folder.h"
+#include "core/utf8.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputTargets : public testing::Test {
+ protected:
+  OutputTargets()
+      : folder(fs::path(testing::TempDir()) / ("patina_target_" + std::to_string(getpid()))) {
+    fs::create_directories(folder);
+  }
+  ~OutputTargets() override { fs::remove_all(folder); }
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    return (folder / name).string();
+  }
+  fs::path folder;
+};
+
+TEST_F(OutputTargets, LinksLeadToTheirEnd) {
+  const std::string end = write("end", "");
+  fs::create_symlink("end", folder / "one");
+  fs::create_symlink(folder / "one", folder / "two");
+  EXPECT_EQ(fs::path(outputTarget(folder / "two").path).filename(), "end");
+  writeFileAtomically(folder / "two", "bytes");
+  EXPECT_TRUE(fs::is_symlink(folder / "two"));
+  EXPECT_EQ(readFile(end), "bytes");
+  fs::create_symlink("ring", folder / "ring");
+  EXPECT_THROW(outputTarget(folder / "ring"), FileError);
+  EXPECT_THROW(pathExists(folder / "ring"), FileError);
+  EXPECT_FALSE(pathExists(folder / "none"));
+}
+
+TEST_F(OutputTargets, StreamsAreThoseThatTheProgramWasGiven) {
+  const int fd = open((folder / "stream").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_EQ(::write(fd, "before ", 7), 7);
+  const OutputTarget target = outputTarget("/dev/fd/" + std::to_string(fd));
+  EXPECT_TRUE(target.is_stream);
+  EXPECT_EQ(target.descriptor, fd);
+  writeFileAtomically("/dev/fd/" + std::to_string(fd), "after");
+  close(fd);
+  EXPECT_EQ(readFile(folder / "stream"), "before after"); // not from the file's start
+  EXPECT_EQ(outputTarget("-").descriptor, 1);
+  EXPECT_EQ(outputTarget("./-").descriptor, -1);
+  EXPECT_THROW(outputTarget("/dev/fd/999"), FileError);
+}
+
+TEST_F(OutputTargets, FilesAreKnownByTheirContent) {
+  using enum FileKind;
+  const std::pair<const char*, FileKind> cases[] = {
+      {"", empty},
+      {"x [m],y [m]\n", table},
+      {"a,b\n1,2\n3,4\n", table},
+      {"Dear reader, hello\nand goodbye\n", other},
+      {" {\"a\": 1}", json},
+      {"[1]", json},
+      {"ply\nformat ascii 1.0\n", ply},
+      {"solid x\nfacet normal", stl},
+      {"# made by\n\nv 1 2 3\n", obj},
+      {"vase of flowers\n", other},
+      {"<?xml?>\n<VTKFile type=\"ImageData\"", image_data},
+      {"<?xml?>\n<VTKFile type=\"PolyData\"", poly_data},
+      {"\x89PNG\r\n", png},
+      {"%YAML:1.0\n", yaml}};
+  for (const auto& [text, kind] : cases)
+    EXPECT_EQ(kindOf(text, std::string_view(text).size()), kind) << text;
+  std::string binary(84 + 50 * 2, '\0');
+  binary[80] = 2;
+  EXPECT_EQ(kindOf(binary, binary.size()), stl);
+  EXPECT_NE(kindOf(binary, binary.size() + 1), stl);
+  const std::string mesh = write("g.obj", "v 1 2 3\n");
+  EXPECT_NO_THROW(requireSameKind(mesh, obj));
+  EXPECT_THROW(requireSameKind(mesh, table), FileError);
+  EXPECT_NO_THROW(requireSameKind(folder / "none", table));
+}
+
+TEST_F(OutputTargets, WhatIsUnfinishedIsGoneWhenTheProgramIsEnded) {
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile file(folder / "half.csv");
+    file.append("half");
+    StagedFolder staged(folder / "made");
+    writeFileAtomically(staged.path() / "a", "a");
+    NewFolder kept(folder / "kept");
+    makeFolder(folder / "kept");
+    kept.keep();
+    writeFileAtomically(folder / "whole.csv", "whole");
+    removeUnfinished();
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  std::vector<std::string> names;
+  for (const auto& item : fs::recursive_directory_iterator(folder))
+    names.push_back(item.path().filename());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"kept", "whole.csv"}));
+}
+
+TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
+  const fs::path out = folder / "out";
+  {
+    StagedFolder staged(out);
+    writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");
+  }
+  EXPECT_FALSE(fs::exists(out)) << "it was not there before";
+  fs::create_directory(out);
+  write("out/a.csv", "{\"another\": \"kind\"}");
+  write("out/last", "old");
+  {
+    StagedFolder staged(out);
+    writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");
+    writeFileAtomically(staged.path() / "last", "new");
+    EXPECT_THROW(staged.commit("last"), FileError);
+  }
+  EXPECT_EQ(readFile(out / "last"), "old");
+  fs::remove(out / "a.csv");
+  {
+    StagedFolder staged(out);
+    writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");
+    writeFileAtomically(staged.path() / "last", "new");
+    staged.commit("last");
+  }
+  EXPECT_EQ(readFile(out / "last"), "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 2);
+}
+
+TEST(Utf8, TakesAnyLanguageAndNoBrokenBytes) {
+  for (const char* good : {"", "cup", "Gef\xc3\xa4\xc3\x9f", "\xe6\x9d\xaf", "\xf0\x9f\x8f\xba"})
+    EXPECT_TRUE(isUtf8(good)) << good;
+  for (const char* bad : {"\xc3", "\xa4", "\xc0\xaf", "\xed\xa0\x80", "\xf5\x80\x80\x80",
+                          "\xe6\x9d", "a\nb", "\x7f", "\xc2\x85", "\xe0\x80\xaf"})
+    EXPECT_FALSE(isUtf8(bad)) << bad;
+}
+
+} // namespace
+} // namespace patina
