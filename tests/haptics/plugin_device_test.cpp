@@ -85,18 +85,24 @@ std::size_t firstWith(Fault fault) {
 const std::pair<double, double> kLaws[] = {{0, 0}, {400, 0}, {400, 0.3}};
 
 TEST(PluginDevice, CarriesForceAndStateOfTheExample) {
+  requestRealtime();
   const auto device = makePluginDevice("plugin:example:0.01,0.02,0.03");
   DeviceState state;
-  for (int i = 0;
-       i < 3000 && judge(state = device->exchange(Vec3::Zero(), kPeriod)) != DeviceStatus::ok; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto until = [&](const Vec3& force, const auto& done) {
+    for (int i = 0; i < 10000; ++i) {
+      std::this_thread::sleep_for(std::chrono::microseconds(900));
+      state = device->exchange(force, kPeriod);
+      if (judge(state) == DeviceStatus::ok && done()) return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(until(Vec3::Zero(), [] { return true; }));
   EXPECT_LT((state.position - Vec3(0.01, 0.02, 0.03)).norm(), 1e-9);
-  for (int i = 0; i < 2000; ++i) {
-    std::this_thread::sleep_for(std::chrono::microseconds(900));
-    state = device->exchange(Vec3(0, 0.3, 0), kPeriod);
-  }
-  ASSERT_TRUE(state.velocity);
-  EXPECT_NEAR(state.position.y(), 0.02 + 0.3 / 150, 2e-4); // rests where its spring bears the force
+  // It rests where its spring bears the force, which a busy machine may let fade in more than once.
+  const Vec3 rest(0.01, 0.02 + 0.3 / 150, 0.03);
+  EXPECT_TRUE(until(Vec3(0, 0.3, 0), [&] {
+    return (state.position - rest).norm() < 1e-5 && state.velocity && state.velocity->norm() < 1e-4;
+  })) << state.position.transpose();
 }
 
 TEST(PluginDevice, InEveryFaultSendsNoForceWithTheNextExchangeAndTellsTheLoop) {
