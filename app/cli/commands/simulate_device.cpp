@@ -48,18 +48,18 @@ struct Port {
     ::cfmakeraw(&raw);
     ::tcsetattr(theirs.get(), TCSANOW, &raw);
   }
-  // Whole frames: what does not fit goes first the next time, and meanwhile nothing else.
+  // Whole frames. What a reader does not take in time waits here, as it would in the kernel.
   bool send(std::span<const std::uint8_t> frame) {
-    const bool taken = flush();
-    if (taken) rest.assign(frame.begin(), frame.end());
+    const bool fits = rest.size() + frame.size() <= kBuffer;
+    if (fits) rest.insert(rest.end(), frame.begin(), frame.end());
     flush();
-    return taken;
+    return fits;
   }
-  bool flush() {
+  void flush() {
     const ssize_t wrote = rest.empty() ? 0 : ::write(ours.get(), rest.data(), rest.size());
     if (wrote > 0) rest.erase(rest.begin(), rest.begin() + wrote);
-    return rest.empty();
   }
+  static constexpr std::size_t kBuffer = 65536; // bytes
   Descriptor ours, theirs;
   std::string path;
   std::vector<std::uint8_t> rest;
