@@ -166,7 +166,8 @@ TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
   expectOneLineError(run({"info", box, "--offset=1mm"}), {"unknown option --offset;"});
   expectOneLineError(run({"info", box, "-q"}), {"unknown option -q;"});
   expectOneLineError(run({"info", box, "b"}), {"one FILE at a time: 'b' is one too many"});
-  expectOneLineError(run({"devices", "b"}), {"'b' is one word too many"});
+  expectOneLineError(run({"latency-test", "b"}), {"'b' is one word too many"});
+  expectOneLineError(run({"devices", "b"}), {"'b' is a folder for --install-udev alone"});
   // A value may look like an option or an input, and may hang on its option.
   EXPECT_EQ(run({"info", "--voxel=1mm", box}).exit, 0);
   EXPECT_EQ(run({"feel", "--path", path, box, "-o" + out}).exit, 0);
