@@ -37,7 +37,7 @@ TEST(GuideSteps, AreDoneWithAFigureEach) {
   }
   const auto steps = guideSteps({244, 244, 1203, 70e-6, 617, 0.8});
   const QString figures[] = {QStringLiteral("244 frames"), QStringLiteral("1,203 samples"),
-                             QStringLiteral("70 µm"), QStringLiteral("617 faces"),
+                             QStringLiteral("0.07 mm"), QStringLiteral("617 faces"),
                              QStringLiteral("0.80 N")};
   ASSERT_EQ(steps.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
@@ -110,8 +110,10 @@ TEST_F(GuideStripTest, AScanOfOnesOwnComesToATextureStepByStep) {
   wait(600);
   clickOn("align_fit");
   ASSERT_TRUE(waitUntil([&] { return !align.work(); }, 60000));
+  // The hand presses the surface in by some tenths of a millimetre to a millimetre, of which this
+  // fit knows nothing.
   const Vec3 middle = align.alignment().middle();
-  EXPECT_LT((belongs * align.alignment().pose().inverse() * middle - middle).norm(), 1e-3);
+  EXPECT_LT((belongs * align.alignment().pose().inverse() * middle - middle).norm(), 1.5e-3);
   EXPECT_TRUE(step(2).startsWith(QStringLiteral("✓"))) << step(2).toStdString();
   clickOn("guide_3");
   clickOn("tab_library");
