@@ -20,8 +20,8 @@ std::string readFile(const std::filesystem::path& path);
 // the same folder, writes, fsync, rename, fsync folder. Until commit() returns, and on any failure,
 // what stood at `path` is untouched; without commit() the temp file is gone. Where `path` is a
 // link, that is the file it leads to; what is no file (a pipe, a device, "-") is written as it
-// comes. All throw FileError, also over a read-only file; whether what is there is of another kind is
-// for the caller to ask (file_kind.h).
+// comes. All throw FileError, also over a read-only file; whether what is there is of another kind
+// is for the caller to ask (file_kind.h).
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path);

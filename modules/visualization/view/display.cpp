@@ -18,7 +18,7 @@ void requireDisplay(std::chrono::milliseconds patience) {
   if (value == nullptr || *value == '\0')
     throw Error("pictures need an X display and DISPLAY is not set" + remedy);
   // What draws in software ends the program where it cannot have this much.
-  if (memoryIsLimited()) requireMemory(300e6, "a picture");
+  if (memoryIsLimited()) requireMemory(400e6, "a picture");
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + patience;
   Display* connection = XOpenDisplay(value);
