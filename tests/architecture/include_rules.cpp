@@ -75,9 +75,10 @@ const std::vector<Library>& libraries() {
 // Headers of the system that end in .h; those of C++ have no dot.
 bool isSystem(const std::string& included) {
   if (included.find('.') == std::string::npos) return included.find('/') == std::string::npos;
-  static const Names kSystem{"unistd.h",    "fcntl.h",     "sched.h",  "time.h",  "stdlib.h",
-                             "stddef.h",    "stdint.h",    "string.h", "poll.h",  "dirent.h",
-                             "immintrin.h", "emmintrin.h", "signal.h", "dlfcn.h", "termios.h"};
+  static const Names kSystem{"malloc.h",    "unistd.h", "fcntl.h",  "sched.h",
+                             "time.h",      "stdlib.h", "stddef.h", "stdint.h",
+                             "string.h",    "poll.h",   "dirent.h", "immintrin.h",
+                             "emmintrin.h", "signal.h", "dlfcn.h",  "termios.h"};
   return kSystem.contains(included) || included.starts_with("sys/");
 }
 
