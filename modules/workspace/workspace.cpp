@@ -122,6 +122,7 @@ void commit(Manifest manifest, const std::string& journal, std::string_view jour
 // The folder is there from here on, and says that it is no workspace yet.
 void begin(const fs::path& folder) {
   makeFolder(folder);
+  for (const char* part : kStoredFolders) insidePath(folder, part); // nothing through a link
   std::error_code code;
   if (!isWorkspace(folder) && !fs::exists(folder / kUnfinishedName, code))
     createFile(folder / kUnfinishedName, "");
