@@ -68,10 +68,12 @@ TEST(Scene, RefusesBadObjects) {
   Scene scene;
   scene.objects = {object("cup"), object("cup")};
   EXPECT_EQ(errorOf(scene), "object name 'cup' is used twice");
-  for (const char* name : {"", "a b", "../cup", "cup.ply", "t\xC3\xA4sse", "a\n"}) {
+  for (const char* name : {"", "a b", "../cup", "cup.ply", "t\xE4sse", "a\n"}) {
     scene.objects = {object(name)};
     EXPECT_TRUE(errorOf(scene).starts_with("object name")) << name;
   }
+  scene.objects = {object("t\xC3\xA4sse")}; // letters of any language, in UTF-8
+  EXPECT_EQ(errorOf(scene), "");
   scene.objects = {{"cup", nullptr, Pose::Identity()}};
   EXPECT_EQ(errorOf(scene), "object 'cup' has no triangles");
   scene.objects[0].mesh = std::make_shared<const TriangleMesh>();
