@@ -1,7 +1,13 @@
 #include "core/unfinished.h"
 
+#include <cerrno>
+#include <fcntl.h>
 #include <mutex>
+#include <unistd.h>
 #include <utility>
+
+#include "core/descriptor.h"
+#include "core/disk_error.h"
 
 namespace patina {
 namespace {
@@ -41,13 +47,26 @@ void Unfinished::done() noexcept {
 NewFolder::NewFolder(const std::filesystem::path& folder) : folder_(folder) {
   std::error_code unknown;
   if (std::filesystem::symlink_status(folder, unknown).type() !=
-      std::filesystem::file_type::not_found)
+      std::filesystem::file_type::not_found) {
     kept_ = true;
-  else
-    unfinished_ = Unfinished(folder);
+    return;
+  }
+  for (int& one : spare_)
+    if ((one = openRetrying("/dev/null", O_RDONLY)) < 0) {
+      const int cause = errno;
+      giveSpareBack();
+      throw DiskError(folder.string(), "cannot be made a folder: " + reason(cause));
+    }
+  unfinished_ = Unfinished(folder);
+}
+
+void NewFolder::giveSpareBack() noexcept {
+  for (int& one : spare_)
+    if (one >= 0) ::close(std::exchange(one, -1));
 }
 
 NewFolder::~NewFolder() {
+  giveSpareBack();
   if (kept_) return;
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);

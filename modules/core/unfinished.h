@@ -1,6 +1,7 @@
 // What must not stay on disk if the program ends before it is finished.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <list>
 
@@ -26,7 +27,8 @@ class Unfinished {
 // there stays whatever happens.
 class NewFolder {
  public:
-  explicit NewFolder(const std::filesystem::path& folder); // made by who uses it
+  // The folder is made by who uses it. Throws FileError.
+  explicit NewFolder(const std::filesystem::path& folder);
   ~NewFolder();
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
@@ -36,8 +38,11 @@ class NewFolder {
   }
 
  private:
+  void giveSpareBack() noexcept;
+
   std::filesystem::path folder_;
   Unfinished unfinished_;
+  std::array<int, 2> spare_{-1, -1}; // descriptors for the removal, where all others are in use
   bool kept_ = false;
 };
 
