@@ -152,8 +152,9 @@ TEST(WindowState, EveryToolIsAtHandOnSomeDeskAndStaysWhereItCan) {
   const ToolChoice feel{Handling::feel, {}}, color{Handling::paint, Tool::color};
   for (const DeskRow& row : deskRows()) {
     EXPECT_TRUE(hasTool(row.desk, row.tool));
-    EXPECT_EQ(deskFor(feel, row.desk),
-              row.desk == Desk::scan || row.desk == Desk::texture ? Desk::feel : row.desk);
+    const bool no_tool =
+        row.desk == Desk::scan || row.desk == Desk::align || row.desk == Desk::texture;
+    EXPECT_EQ(deskFor(feel, row.desk), no_tool ? Desk::feel : row.desk);
     EXPECT_EQ(deskFor(color, row.desk), Desk::paint);
   }
 }

@@ -97,8 +97,9 @@ class RefusingDisk : public EveryCommand {
     const std::set<std::string> had = namesIn(out);
     const Outcome again = run(line.to(out));
     EXPECT_EQ(again.exit, 0) << what << ": the retry is blocked: " << again.err;
-    if (line.writes == Writes::folder && whole)
+    if (line.writes == Writes::folder && whole) {
       for (const std::string& name : namesIn(out)) EXPECT_TRUE(had.count(name)) << what << name;
+    }
     if (line.writes == Writes::workspace) {
       EXPECT_EQ(run({"info", out}).exit, 0) << what;
     }

@@ -77,7 +77,7 @@ TextureCard::TextureCard(QWidget* parent) : QGroupBox(tr("Textures"), parent) {
   remove_ = button("texture_remove", tr("Take off"), tr("Its faces have no texture any more"));
   keep_ = button("texture_keep", tr("Keep…"), tr("Writes it as a texture.json, for another mesh"));
   connect(list_, &QListWidget::currentRowChanged, this, [this] {
-    enable();
+    offer();
     emit chosenChanged();
   });
   connect(read_, &QPushButton::clicked, this, &TextureCard::readAsked);
@@ -87,7 +87,7 @@ TextureCard::TextureCard(QWidget* parent) : QGroupBox(tr("Textures"), parent) {
   connect(remove_, &QPushButton::clicked, this, &TextureCard::removeAsked);
   connect(keep_, &QPushButton::clicked, this, &TextureCard::keepAsked);
   setHint({});
-  enable();
+  offer();
 }
 
 void TextureCard::show(const std::vector<TextureRow>& rows) {
@@ -104,7 +104,7 @@ void TextureCard::show(const std::vector<TextureRow>& rows) {
   }
   if (!rows_.empty()) list_->setCurrentRow(0);
   choose(number);
-  enable();
+  offer();
   emit chosenChanged();
 }
 
@@ -120,12 +120,12 @@ const TextureRow* TextureCard::chosen() const {
              : nullptr;
 }
 
-void TextureCard::enable() {
+void TextureCard::offer() {
   const TextureRow* row = chosen();
-  draw_->setEnabled(row != nullptr && row->texture != nullptr);
-  keep_->setEnabled(row != nullptr && row->texture != nullptr);
-  swap_->setEnabled(row != nullptr && row->faces > 0);
-  remove_->setEnabled(row != nullptr && row->faces > 0);
+  list_->setVisible(!rows_.empty());
+  for (QPushButton* button : {draw_, keep_})
+    button->setVisible(row != nullptr && row->texture != nullptr);
+  for (QPushButton* button : {swap_, remove_}) button->setVisible(row != nullptr && row->faces > 0);
 }
 
 void TextureCard::setHint(const QString& words) {

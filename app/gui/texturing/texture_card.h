@@ -42,7 +42,7 @@ class TextureCard : public QGroupBox {
   void scanAsked();          // from the scan that is open
 
  private:
-  void enable();
+  void offer();
 
   std::vector<TextureRow> rows_;
   QListWidget* list_;
