@@ -54,6 +54,7 @@ TextureCard::TextureCard(QWidget* parent) : QGroupBox(tr("Textures"), parent) {
       button("texture_scan", tr("From the scan"),
              tr("Heights of the scan that is open, over the mesh, from where the desk Align has "
                 "laid its path: a texture, laid where it was scanned"));
+  keep_ = button("texture_keep", tr("Keep…"), tr("Writes it as a texture.json, for another mesh"));
   draw_ = button("texture_draw", tr("Lay along a path"),
                  tr("Draw on the mesh with the left button: the chosen texture is laid along what "
                     "you draw; Shift turns the picture, Esc ends it"));
@@ -75,7 +76,6 @@ TextureCard::TextureCard(QWidget* parent) : QGroupBox(tr("Textures"), parent) {
   swap_ = button("texture_swap", tr("Swap…"),
                  tr("A file's texture takes the chosen one's place on all of its faces"));
   remove_ = button("texture_remove", tr("Take off"), tr("Its faces have no texture any more"));
-  keep_ = button("texture_keep", tr("Keep…"), tr("Writes it as a texture.json, for another mesh"));
   connect(list_, &QListWidget::currentRowChanged, this, [this] {
     offer();
     emit chosenChanged();
