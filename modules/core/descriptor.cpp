@@ -38,13 +38,20 @@ constexpr std::chrono::seconds kPatience{5}; // with who is to be at a pipe's ot
 // The file system says only to a reader that waits whether anybody writes. Who waits too long is
 // let go by a writer of our own.
 int openPipe(const std::string& name) {
-  std::promise<int> opened;
-  std::future<int> ready = opened.get_future();
-  std::thread reader([&] { opened.set_value(openRetrying(name.c_str(), O_RDONLY)); });
+  struct Opened {
+    int fd, code; // errno is each thread's own
+  };
+  std::promise<Opened> opened;
+  std::future<Opened> ready = opened.get_future();
+  std::thread reader([&] {
+    const int fd = openRetrying(name.c_str(), O_RDONLY);
+    opened.set_value({fd, errno});
+  });
   const bool waits = ready.wait_for(kPatience) == std::future_status::timeout;
   if (waits) Descriptor(openRetrying(name.c_str(), O_WRONLY | O_NONBLOCK));
   reader.join();
-  const int fd = ready.get();
+  const auto [fd, code] = ready.get();
+  errno = code;
   if (!waits) return fd;
   Descriptor unused(fd);
   throw FileError(name, 0, "is a pipe that nobody writes: nothing came for 5 s");

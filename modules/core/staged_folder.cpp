@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -40,12 +41,16 @@ void flush(const fs::path& folder) {
 
 } // namespace
 
-StagedFolder::StagedFolder(const fs::path& folder)
-    : folder_(folder), staging_(folder / (".writing-" + std::to_string(::getpid()))),
-      fresh_(folder) {
+StagedFolder::StagedFolder(const fs::path& folder) : folder_(folder), fresh_(folder) {
   makeFolder(folder_);
+  // Never one that is there: a run that was killed may have left files in it.
+  for (int i = 0;; ++i) {
+    staging_ = folder_ / (".writing-" + std::to_string(::getpid()) + "-" + std::to_string(i));
+    if (::mkdir(staging_.c_str(), 0777) == 0) break;
+    if (errno != EEXIST)
+      throw DiskError(staging_.string(), "cannot be made a folder: " + reason(errno));
+  }
   unfinished_ = Unfinished(staging_);
-  makeFolder(staging_);
 }
 
 StagedFolder::~StagedFolder() {
@@ -65,7 +70,10 @@ void StagedFolder::commit(const std::string& last) {
   }
   const auto is_last = [&](const Move& one) { return one.from.filename() == last; };
   std::partition(moves.begin(), moves.end(), [&](const Move& one) { return !is_last(one); });
-  if (::unlink((folder_ / last).c_str()) == 0) flush(folder_);
+  if (::unlink((folder_ / last).c_str()) == 0)
+    flush(folder_);
+  else if (errno != ENOENT)
+    throw DiskError((folder_ / last).string(), "cannot be replaced: " + reason(errno));
   for (const Move& one : moves) move(one);
   flush(folder_);
   fresh_.keep();

@@ -52,6 +52,8 @@ struct ServoLoop::Impl {
         force.setZero();
         if (!holds(status)) break;
         law.lose(); // it may be anywhere when it is felt again
+        rate_mark = woke;
+        ticks_since_mark = 0;
         continue;
       }
       if (!law.fading()) {

@@ -14,9 +14,6 @@ struct CloseContext {
 struct CloseHandle {
   void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
 };
-struct FreeList {
-  void operator()(libusb_device** list) const { libusb_free_device_list(list, 1); }
-};
 using Context = std::unique_ptr<libusb_context, CloseContext>;
 using Handle = std::unique_ptr<libusb_device_handle, CloseHandle>;
 

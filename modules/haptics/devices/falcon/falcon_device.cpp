@@ -56,6 +56,7 @@ class FalconLink final : public DeviceLink {
     unsure_ = false;
     homed_ = 0;
     probes_ = 0;
+    loaded_ = false;
     place_at_ = -1;
   }
 
@@ -82,6 +83,7 @@ class FalconLink final : public DeviceLink {
     if (line_->purge() != UsbResult::ok)
       throw DeviceError("the Falcon's line cannot be set: plug it in without a hub");
     if (++probes_ < kProbes) return {};
+    if (loaded_) throw DeviceError("the Falcon took its firmware and does not answer: unplug it");
     if (firmware_.file.empty())
       throw DeviceError("the Falcon runs no firmware: set PATINA_FALCON_FIRMWARE to the maker's "
                         "file, which no other may ship (novint.bin or nvent.bin of its driver)");
@@ -100,6 +102,7 @@ class FalconLink final : public DeviceLink {
     }
     loader_.reset();
     probes_ = 0;
+    loaded_ = true;
     if (line_->toRunning() != UsbResult::ok)
       throw DeviceError("the Falcon's line cannot be set: plug it in without a hub");
     return {};
@@ -184,6 +187,7 @@ class FalconLink final : public DeviceLink {
   std::size_t homing_ = 1; // of kHomingBits; its first turn is over at once
   double homing_since_ = -2 * kHomingTurn;
   int probes_ = 0;
+  bool loaded_ = false; // a firmware, since it was attached
   bool unsure_ = false; // an answer may be on its way that is not the newest
 };
 

@@ -21,8 +21,8 @@ inline constexpr double kFalconPeak = 8.9;           // [N], as the maker states
 // Of a thigh at kMostMotor [N m]: what bears kFalconPeak along z in the middle.
 inline constexpr double kFalconFullTorque = 0.2242;
 
-// The force that the guard lets through: half the peak, and what we take the motors to bear for
-// ever; the handle's weight is y, downwards. None of the three is stated by the maker.
+// The force that the guard lets through: about half the peak, and what we take the motors to bear
+// for ever. Neither is stated by the maker. The handle's weight is not borne.
 GuardSpec falconGuard();
 
 // Opens the bus and gives what is there. Throws DeviceError.

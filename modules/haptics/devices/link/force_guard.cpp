@@ -36,6 +36,8 @@ ForceGuard::ForceGuard(const GuardSpec& spec) : spec_(spec) {
         spec.oldest_command > 0 && spec.oldest_look > 0 && spec.ramp > 0 &&
         spec.weight.allFinite()))
     throw std::invalid_argument("force guard: limits, ramp and times must be above 0");
+  if (std::isfinite(spec.motors.continuous) && std::isinf(spec.max_force))
+    throw std::invalid_argument("force guard: motors that warm need a greatest force");
 }
 
 Hold ForceGuard::holdFor(const Asked& asked, const DeviceState& reading) const noexcept {

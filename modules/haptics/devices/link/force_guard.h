@@ -51,7 +51,8 @@ class ForceGuard {
     double look_age = 0;       // [s]
     bool needs_button = false; // no force unless a person holds a button of the device
   };
-  // Throws std::invalid_argument unless limits, ramp and times are above 0.
+  // Throws std::invalid_argument unless limits, ramp and times are above 0, and where motors warm
+  // and nothing bounds the force.
   explicit ForceGuard(const GuardSpec& spec);
   // What may be sent for the next dt [s], after this reading of the device. Finite, whatever is
   // asked or read.
