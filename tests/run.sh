@@ -69,7 +69,7 @@ run_address() { # short or full
   leaks=$(leak_option build-asan/bin/core_tests)
   for folder in $folders; do
     ASAN_OPTIONS=$leaks:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
-      "build-asan/bin/${folder}_tests" --gtest_brief=1 --gtest_filter="$most" </dev/null
+      timeout 1800 "build-asan/bin/${folder}_tests" --gtest_brief=1 --gtest_filter="$most" </dev/null
   done
 }
 
@@ -92,7 +92,7 @@ run_thread() {
   # processor it starts none; races are found by order, not by chance, so one is enough.
   local processor
   processor=$(taskset -cp $$ | sed 's/.*: *//; s/[^0-9].*//')
-  taskset -c "$processor" "${run[@]}" build-tsan/bin/haptics_tests --gtest_brief=1 \
+  timeout 900 taskset -c "$processor" "${run[@]}" build-tsan/bin/haptics_tests --gtest_brief=1 \
     --gtest_filter='*Servo*:*TipTarget*:*Mouse*' </dev/null
 }
 

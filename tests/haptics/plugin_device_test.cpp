@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <pthread.h>
 #include <thread>
 #include <unistd.h>
 
@@ -42,15 +43,26 @@ bool has(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
 }
 
+// The test's own thread as a servo's. Given back: its children would have it, too, and one that
+// spins would let nobody else run on one processor.
+struct Realtime {
+  Realtime() { requestRealtime(); }
+  ~Realtime() {
+    const sched_param usual{};
+    ::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &usual);
+  }
+  Realtime(const Realtime&) = delete;
+  Realtime& operator=(const Realtime&) = delete;
+};
+
 // What a servo does, with a law of what it feels.
 struct Loop {
+  Realtime realtime;
   std::unique_ptr<Device> device = makeFaulty("", std::make_shared<LinkNotes>());
   double stiffness = 0, friction = 0; // free, in contact, in a stroke
   DeviceState state;
   Vec3 force = Vec3::Zero();
   double most_age = 0; // of a state that was felt [s]
-
-  Loop() { requestRealtime(); }
 
   void tick(int count) {
     for (int i = 0; i < count; ++i) {
@@ -85,7 +97,7 @@ std::size_t firstWith(Fault fault) {
 const std::pair<double, double> kLaws[] = {{0, 0}, {400, 0}, {400, 0.3}};
 
 TEST(PluginDevice, CarriesForceAndStateOfTheExample) {
-  requestRealtime();
+  const Realtime realtime;
   const auto device = makePluginDevice("plugin:example:0.01,0.02,0.03");
   DeviceState state;
   const auto until = [&](const Vec3& force, const auto& done) {
