@@ -19,20 +19,14 @@ const UsbLibrary& library() {
 void readSysfs(UsbDevice& device) {
   namespace fs = std::filesystem;
   std::error_code code;
-  const auto word = [](const fs::path& file) {
-    std::string text;
-    std::getline(std::ifstream(file), text);
-    for (char& c : text) c = c < 0x20 || c > 0x7e ? '?' : c; // it ends on a terminal
-    return text;
-  };
   for (const auto& item : fs::directory_iterator("/sys/bus/usb/devices", code)) {
-    if (word(item.path() / "busnum") != std::to_string(device.bus) ||
-        word(item.path() / "devnum") != std::to_string(device.address))
+    if (kernelLine(item.path() / "busnum") != std::to_string(device.bus) ||
+        kernelLine(item.path() / "devnum") != std::to_string(device.address))
       continue;
-    const std::string maker = word(item.path() / "manufacturer"),
-                      product = word(item.path() / "product");
+    const std::string maker = kernelLine(item.path() / "manufacturer"),
+                      product = kernelLine(item.path() / "product");
     device.name = maker.empty() || product.empty() ? maker + product : maker + " " + product;
-    device.serial = word(item.path() / "serial");
+    device.serial = kernelLine(item.path() / "serial");
     return;
   }
 }
@@ -60,6 +54,13 @@ UsbDevice described(const UsbFound& found) {
 }
 
 } // namespace
+
+std::string kernelLine(const std::filesystem::path& file) {
+  std::string text;
+  std::getline(std::ifstream(file), text);
+  for (char& c : text) c = c < 0x20 || c > 0x7e ? '?' : c; // it ends on a terminal
+  return text;
+}
 
 std::vector<UsbDevice> listUsbDevices() {
   std::string cause;
@@ -101,8 +102,13 @@ std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device) {
 }
 
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic) {
-  for (const UsbDevice& device : listUsbDevices())
-    if (device.haptic == haptic) return openUsb(device.vendor, device.product);
+  std::optional<UsbDevice> refused;
+  for (const UsbDevice& device : listUsbDevices()) {
+    if (device.haptic != haptic) continue;
+    if (device.openable) return openUsb(device);
+    if (!refused) refused = device;
+  }
+  if (refused) return openUsb(*refused); // which says why not
   throw DeviceError("no " + std::string(haptic) +
                     " is attached: plug it in, and its power supply too");
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,8 +33,8 @@ struct UsbDevice {
 // thread; slow.
 std::vector<UsbDevice> listUsbDevices();
 
-// The first device of these numbers, or of this hapticName(), that may be opened; nothing of it is
-// claimed yet. Throws DeviceError with what to do where there is none. Any thread; slow.
+// The first device of these numbers, or whose `haptic` is this, that may be opened; nothing of it
+// is claimed yet. Throws DeviceError with what to do where there is none. Any thread; slow.
 std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product);
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic);
 std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device); // this one, where it was listed
@@ -43,6 +44,9 @@ inline constexpr std::string_view kProbeName = "Patina probe";
 
 // The maker or model of a haptic device; empty if vendor and product are none that we know.
 std::string_view hapticName(std::uint16_t vendor, std::uint16_t product);
+
+// The first line of a file of the kernel's, fit for a terminal; empty where there is none.
+std::string kernelLine(const std::filesystem::path& file);
 
 // One line for a person; for a missing permission it holds the udev rule to add.
 std::string usbAdvice(UsbRefusal refusal, std::uint16_t vendor, std::uint16_t product);

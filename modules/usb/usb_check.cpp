@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <unistd.h>
 
 #include "core/error.h"
@@ -14,13 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr UsbRequest kGetStatus{0x80, 0, 0, 0}; // of the standard, chapter 9
-
-std::string lineOf(const fs::path& file) {
-  std::string text;
-  std::getline(std::ifstream(file), text);
-  for (char& c : text) c = c < 0x20 || c > 0x7e ? '?' : c; // it ends on a terminal
-  return text;
-}
 
 // Another program's open device; its own user's, for others may not be looked at.
 std::string holderOf(const UsbDevice& device) {
@@ -36,7 +28,7 @@ std::string holderOf(const UsbDevice& device) {
     for (fs::directory_iterator item(process.path() / "fd", denied), end; !denied && item != end;
          item.increment(denied))
       if (std::error_code none; fs::read_symlink(item->path(), none) == node)
-        return lineOf(process.path() / "comm") + " (" + id + ")";
+        return kernelLine(process.path() / "comm") + " (" + id + ")";
   }
   return {};
 }
@@ -108,7 +100,7 @@ std::vector<SerialProbe> listSerialProbes(const std::string& sys, const std::str
     fs::path above = fs::canonical(item->path() / "device", none);
     std::string name;
     for (int i = 0; i < 3 && name.empty() && !none; ++i, above = above.parent_path())
-      name = lineOf(above / "product");
+      name = kernelLine(above / "product");
     if (!name.starts_with(kProbeName)) continue;
     const std::string path = dev + "/" + port;
     list.push_back({path, name, ::access(path.c_str(), R_OK | W_OK) == 0});

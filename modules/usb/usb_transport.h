@@ -30,7 +30,8 @@ struct UsbRequest {
 };
 
 // One device, opened; closed when destroyed. Errors are values: nothing throws, so that a servo may
-// call it, and it waits no longer than timeout_ms (at least 1). One thread at a time.
+// call it, and it waits no longer than timeout_ms (at least 1; .2 s more where the system fails).
+// 4096 bytes a call at most. One thread at a time.
 class UsbTransport {
  public:
   virtual ~UsbTransport() = default;

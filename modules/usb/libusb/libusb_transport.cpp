@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
+#include <future>
+#include <thread>
 
 namespace patina {
 namespace {
 
-constexpr std::size_t kMostControl = 4096; // bytes of data of a control transfer
+constexpr std::size_t kMost = 4096;              // bytes of data of a transfer
+constexpr std::chrono::milliseconds kGrace{200}; // for what libusb itself would end by its time
+constexpr std::chrono::milliseconds kNap{1};     // where it cannot wait itself
 
 struct FreeTransfer {
   void operator()(libusb_transfer* transfer) const { libusb_free_transfer(transfer); }
@@ -44,7 +49,8 @@ UsbResult resultOf(libusb_transfer_status status) {
   }
 }
 
-// Transfers are made once and used again, so that a round trip allocates nothing of ours.
+// One transfer and its buffer are made once and used again, so that a round trip allocates nothing
+// of ours, and what never ends leaves no buffer of the caller's to the bus.
 class LibusbTransport final : public UsbTransport {
  public:
   LibusbTransport(Context context, Handle handle)
@@ -54,7 +60,9 @@ class LibusbTransport final : public UsbTransport {
                                          1); // no driver to detach: an error, no harm
   }
   ~LibusbTransport() override {
+    if (mending_.valid()) mending_.wait();
     if (claimed_ >= 0) libusb_release_interface(handle_.get(), claimed_);
+    handle_.reset(); // before the transfer, which may be on its way still
   }
   bool sound() const { return transfer_ != nullptr; }
 
@@ -68,37 +76,43 @@ class LibusbTransport final : public UsbTransport {
 
   UsbCount controlOut(const UsbRequest& request, std::span<const std::byte> data,
                       unsigned timeout_ms) noexcept override {
-    if (data.size() > kMostControl) return {UsbResult::failed, 0};
-    unsigned char* room = control_.data() + LIBUSB_CONTROL_SETUP_SIZE;
-    if (!data.empty()) std::memcpy(room, data.data(), data.size());
+    if (data.size() > kMost) return {UsbResult::failed, 0};
+    take(data, LIBUSB_CONTROL_SETUP_SIZE);
     return control(request, data.size(), timeout_ms);
   }
 
   UsbCount controlIn(const UsbRequest& request, std::span<std::byte> data,
                      unsigned timeout_ms) noexcept override {
-    if (data.size() > kMostControl) return {UsbResult::failed, 0};
-    const UsbCount count = control(request, data.size(), timeout_ms);
-    if (count.bytes > 0)
-      std::memcpy(data.data(), control_.data() + LIBUSB_CONTROL_SETUP_SIZE, count.bytes);
-    return count;
+    if (data.size() > kMost) return {UsbResult::failed, 0};
+    return given(control(request, data.size(), timeout_ms), LIBUSB_CONTROL_SETUP_SIZE, data);
   }
 
   UsbCount write(std::uint8_t endpoint, std::span<const std::byte> data,
                  unsigned timeout_ms) noexcept override {
-    // libusb never writes to what it sends.
-    auto* bytes = reinterpret_cast<unsigned char*>(const_cast<std::byte*>(data.data()));
-    return move(endpoint & 0x7fU, bytes, data.size(), timeout_ms);
+    if (data.size() > kMost) return {UsbResult::failed, 0};
+    take(data, 0);
+    return move(endpoint & 0x7fU, data.size(), timeout_ms);
   }
 
   UsbCount read(std::uint8_t endpoint, std::span<std::byte> data,
                 unsigned timeout_ms) noexcept override {
-    return move(endpoint | 0x80U, reinterpret_cast<unsigned char*>(data.data()), data.size(),
-                timeout_ms);
+    if (data.size() > kMost) return {UsbResult::failed, 0};
+    return given(move(endpoint | 0x80U, data.size(), timeout_ms), 0, data);
   }
 
  private:
   static void LIBUSB_CALL done(libusb_transfer* transfer) {
     *static_cast<int*>(transfer->user_data) = 1;
+  }
+
+  void take(std::span<const std::byte> data, std::size_t at) noexcept {
+    if (!data.empty() && !lost_) std::memcpy(buffer_.data() + at, data.data(), data.size());
+  }
+
+  UsbCount given(UsbCount count, std::size_t at, std::span<std::byte> data) const noexcept {
+    count.bytes = std::min(count.bytes, data.size());
+    if (count.bytes > 0) std::memcpy(data.data(), buffer_.data() + at, count.bytes);
+    return count;
   }
 
   void learnEndpoints() noexcept {
@@ -118,50 +132,74 @@ class LibusbTransport final : public UsbTransport {
   }
 
   UsbCount control(const UsbRequest& request, std::size_t size, unsigned timeout_ms) noexcept {
-    libusb_fill_control_setup(control_.data(), request.request_type, request.request, request.value,
+    if (lost_ || gone_) return {UsbResult::gone, 0};
+    libusb_fill_control_setup(buffer_.data(), request.request_type, request.request, request.value,
                               request.index, static_cast<std::uint16_t>(size));
-    libusb_fill_control_transfer(transfer_.get(), handle_.get(), control_.data(), &done,
-                                 &completed_, std::max(timeout_ms, 1U));
+    libusb_fill_control_transfer(transfer_.get(), handle_.get(), buffer_.data(), &done, &completed_,
+                                 std::max(timeout_ms, 1U));
     return finish();
   }
 
-  UsbCount move(unsigned endpoint, unsigned char* data, std::size_t size,
-                unsigned timeout_ms) noexcept {
+  UsbCount move(unsigned endpoint, std::size_t size, unsigned timeout_ms) noexcept {
+    if (lost_ || gone_) return {UsbResult::gone, 0};
+    if (mending_.valid()) { // this endpoint or another's: one at a time
+      if (mending_.wait_for(std::chrono::milliseconds(timeout_ms)) != std::future_status::ready)
+        return {UsbResult::stall, 0};
+      mending_.get();
+    }
     const auto address = static_cast<unsigned char>(endpoint);
-    libusb_fill_bulk_transfer(transfer_.get(), handle_.get(), address, data, static_cast<int>(size),
-                              &done, &completed_, std::max(timeout_ms, 1U));
+    libusb_fill_bulk_transfer(transfer_.get(), handle_.get(), address, buffer_.data(),
+                              static_cast<int>(size), &done, &completed_, std::max(timeout_ms, 1U));
     if (interrupt_[address]) transfer_->type = LIBUSB_TRANSFER_TYPE_INTERRUPT;
     return finish();
   }
 
-  // A transfer never outlives the call: its buffer is the caller's.
   UsbCount finish() noexcept {
-    if (gone_) return {UsbResult::gone, 0};
+    using Clock = std::chrono::steady_clock;
     completed_ = 0;
     if (const int code = libusb_submit_transfer(transfer_.get()); code != LIBUSB_SUCCESS) {
       gone_ = code == LIBUSB_ERROR_NO_DEVICE;
       return {resultOf(code), 0};
     }
+    const auto until = Clock::now() + std::chrono::milliseconds(transfer_->timeout) + kGrace;
     while (completed_ == 0) {
-      const int code = libusb_handle_events_completed(context_.get(), &completed_);
+      timeval wait{0, 100'000};
+      const int code = libusb_handle_events_timeout_completed(context_.get(), &wait, &completed_);
+      if (completed_ != 0) break;
       if (code != LIBUSB_SUCCESS && code != LIBUSB_ERROR_INTERRUPTED)
-        libusb_cancel_transfer(transfer_.get());
+        libusb_cancel_transfer(transfer_.get()), std::this_thread::sleep_for(kNap);
+      if (Clock::now() < until) continue;
+      lost_ = true; // nobody tells any more what becomes of it: only closing ends that
+      return {UsbResult::gone, 0};
     }
     gone_ = transfer_->status == LIBUSB_TRANSFER_NO_DEVICE;
     const UsbResult result = resultOf(transfer_->status);
     if (result == UsbResult::stall && transfer_->type != LIBUSB_TRANSFER_TYPE_CONTROL)
-      libusb_clear_halt(handle_.get(), transfer_->endpoint);
+      mend(transfer_->endpoint);
     return {result, static_cast<std::size_t>(std::max(transfer_->actual_length, 0))};
+  }
+
+  // The kernel may take 5 s to end a halt, and takes no other time: so in a thread of its own.
+  void mend(unsigned char endpoint) noexcept {
+    try {
+      mending_ = std::async(std::launch::async, [handle = handle_.get(), endpoint] {
+        libusb_clear_halt(handle, endpoint);
+      });
+    } catch (const std::exception&) {
+      lost_ = true; // it stays halted: to be closed
+    }
   }
 
   Context context_;
   Handle handle_;
   Transfer transfer_;
-  std::array<unsigned char, LIBUSB_CONTROL_SETUP_SIZE + kMostControl> control_{};
+  std::array<unsigned char, LIBUSB_CONTROL_SETUP_SIZE + kMost> buffer_{};
   std::array<bool, 256> interrupt_{}; // by address of the endpoint
+  std::future<void> mending_;         // an endpoint that had stalled
   int completed_ = 0;
   int claimed_ = -1;
   bool gone_ = false;
+  bool lost_ = false; // a transfer that never ended, or an endpoint that stays halted
 };
 
 } // namespace

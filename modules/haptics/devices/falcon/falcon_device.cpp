@@ -41,7 +41,7 @@ class FalconLink final : public DeviceLink {
     const double sent_at = clock_->now();
     if (const UsbResult result = line_->send(encoded(command)); result != UsbResult::ok)
       return fault(statusOf(result));
-    if (unsure_) return settle();
+    if (unsure_) return settle(sent_at);
     FalconBytes bytes;
     const LineRead read = line_->receive(bytes, kAnswerWait);
     if (read.result != UsbResult::ok) return fault(statusOf(read.result));
@@ -139,8 +139,8 @@ class FalconLink final : public DeviceLink {
   }
 
   // What is owed comes, until nothing does.
-  DeviceState settle() noexcept {
-    const LineRead heard = line_->listen(kAnswerWait + 1e-3);
+  DeviceState settle(double sent_at) noexcept {
+    const LineRead heard = line_->listen(sent_at + kLongestTurn - clock_->now());
     if (heard.result == UsbResult::gone) return fault(DeviceStatus::gone);
     // Quiet after an answer to the frame of just now: nothing older can be on its way.
     unsure_ = !(heard.result == UsbResult::ok && heard.surplus >= kFalconFrame &&

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint8_t kOut = 0x02, kIn = 0x81;
 constexpr std::size_t kPacket = 64, kStatus = 2;
 constexpr unsigned kWait = 100; // [ms], for what the bridge itself answers
-constexpr unsigned kWriteWait = 2;
+constexpr unsigned kWriteWait = 1;
 
 enum Request : std::uint8_t {
   kReset = 0,
@@ -21,8 +21,9 @@ enum Request : std::uint8_t {
   kLatency = 9
 };
 
+// Whole ones, none too many; what is left of a wait that has begun is none.
 unsigned milliseconds(double seconds) {
-  return static_cast<unsigned>(std::clamp(std::ceil(1e3 * seconds), 1.0, 1000.0));
+  return static_cast<unsigned>(std::clamp(std::floor(1e3 * seconds + 1e-6), 0.0, 1000.0));
 }
 
 } // namespace
@@ -69,11 +70,11 @@ LineRead FalconLine::receive(std::span<std::byte> into, double seconds) noexcept
   const double until = clock_->now() + seconds;
   LineRead read;
   for (;;) {
-    const double left = until - clock_->now();
     if (read.bytes == into.size()) return read;
-    if (left <= 0) break;
+    const unsigned left = milliseconds(until - clock_->now());
+    if (left == 0) break;
     std::array<std::byte, kPacket> packet;
-    const UsbCount got = usb_->read(kIn, packet, milliseconds(left));
+    const UsbCount got = usb_->read(kIn, packet, left);
     if (got.result == UsbResult::timeout) continue; // what is left decides
     if (got.result != UsbResult::ok) {
       read.result = got.result;
@@ -95,13 +96,13 @@ LineRead FalconLine::listen(double seconds) noexcept {
   const double until = clock_->now() + seconds;
   LineRead read;
   for (int empty = 0; empty < 2;) {
-    const double left = until - clock_->now();
-    if (left <= 0) {
+    const unsigned left = milliseconds(until - clock_->now());
+    if (left == 0) {
       read.result = UsbResult::timeout;
       return read;
     }
     std::array<std::byte, kPacket> packet;
-    const UsbCount got = usb_->read(kIn, packet, milliseconds(left));
+    const UsbCount got = usb_->read(kIn, packet, left);
     if (got.result != UsbResult::ok && got.result != UsbResult::timeout) {
       read.result = got.result;
       return read;

@@ -30,8 +30,9 @@ class FalconLine {
   UsbResult toRunning() noexcept;    // 1.5 Mbaud, packets after 1 ms at the latest
   UsbResult purge() noexcept;        // what the bridge holds in both directions
 
-  UsbResult send(std::span<const std::byte> bytes) noexcept;
-  // Fills `into`, waiting `seconds` at most.
+  UsbResult send(std::span<const std::byte> bytes) noexcept; // 1 ms at most
+  // Fills `into`, waiting `seconds` at most; a transport waits for whole milliseconds, so that the
+  // last one of them may be missing.
   LineRead receive(std::span<std::byte> into, double seconds) noexcept;
   // Bytes that come until two packets in a row hold none, waiting `seconds` at most; ok: it is
   // quiet.

@@ -64,6 +64,24 @@ class Witness {
   std::atomic<std::size_t> count_{0};
 };
 
+// Around the driver: a frame whose answer was spoilt gives no state.
+class JudgedLink final : public DeviceLink {
+ public:
+  JudgedLink(std::unique_ptr<DeviceLink> link, WireRun& run) : link_(std::move(link)), run_(run) {}
+  Opening open() noexcept override { return link_->open(); }
+  DeviceState turn(const Vec3& force) noexcept override {
+    const std::uint64_t before = run_.injected;
+    const DeviceState state = link_->turn(force);
+    if (run_.injected != before && judge(state) == DeviceStatus::ok) ++run_.unnoticed;
+    return state;
+  }
+  void close() noexcept override { link_->close(); }
+
+ private:
+  std::unique_ptr<DeviceLink> link_;
+  WireRun& run_;
+};
+
 // Between servo and link: holds each state against the witness.
 class Judged final : public Device {
  public:
@@ -73,6 +91,8 @@ class Judged final : public Device {
         ages_(ages) {}
   DeviceState exchange(const Vec3& force, double dt) noexcept override {
     const double asked = clock_->now();
+    if (exchanges_++ == 0) first_ = asked;
+    periods_ = std::llround((asked - first_) * kRate);
     const DeviceState state = device_->exchange(force, dt);
     if (judge(state) != DeviceStatus::ok) return state;
     const double now = clock_->now();
@@ -84,6 +104,12 @@ class Judged final : public Device {
     if (off < 0 || off > kOff) ++run_.stale;
     return state;
   }
+  // Periods between its first and its last exchange that are neither an exchange nor missed. Both
+  // may be late by part of one.
+  std::int64_t uncounted(std::uint64_t missed) const noexcept {
+    const auto known = static_cast<std::int64_t>(exchanges_ + missed) - 1;
+    return std::max<std::int64_t>(std::abs(periods_ - known) - 1, 0);
+  }
 
  private:
   std::unique_ptr<Device> device_;
@@ -92,6 +118,9 @@ class Judged final : public Device {
   WireRun& run_;
   std::vector<double>& ages_;
   Vec3 last_ = Vec3::Zero();
+  std::uint64_t exchanges_ = 0;
+  double first_ = 0;         // [s]
+  std::int64_t periods_ = 0; // since
 };
 
 // The same device turned by a timer and nothing else.
@@ -138,7 +167,7 @@ WireRun runOnEmulatedWire(const WireRunSpec& spec, Progress& progress) {
   std::vector<double> ages, late;
   ages.reserve(room);
   late.reserve(room);
-  const LinkedSpec linked{.guard = falconGuard()};
+  const LinkedSpec linked{.guard = falconGuard(), .notes = std::make_shared<LinkNotes>(room)};
   FalconBench bench(held(), linked.clock);
   std::mt19937 random(spec.seed);
   bench.on_frame = [&](double t, const std::array<int, 3>&) {
@@ -151,11 +180,12 @@ WireRun runOnEmulatedWire(const WireRunSpec& spec, Progress& progress) {
   std::atomic<bool> stop{false};
   Bare bare(room);
   {
-    ServoLoop loop(std::make_unique<Judged>(
-                       makeLinkedDevice(
-                           makeFalconLink([&] { return bench.plug(); }, {}, linked.clock), linked),
-                       linked.clock, witness, run, ages),
-                   kRate);
+    auto link = std::make_unique<JudgedLink>(
+        makeFalconLink([&] { return bench.plug(); }, {}, linked.clock), run);
+    auto judged = std::make_unique<Judged>(makeLinkedDevice(std::move(link), linked), linked.clock,
+                                           witness, run, ages);
+    const Judged& counts = *judged; // the loop's, but for the end
+    ServoLoop loop(std::move(judged), kRate);
     HapticProperties haptics;
     haptics.stiffness = 500;
     loop.publish(planeSnapshot(haptics, {}));
@@ -194,6 +224,7 @@ WireRun runOnEmulatedWire(const WireRunSpec& spec, Progress& progress) {
     run.realtime = timing.realtime;
     run.ticks = timing.ticks;
     run.missed = timing.missed;
+    run.uncounted = static_cast<std::uint64_t>(counts.uncounted(timing.missed));
   }
   run.turns = linked.notes->turns;
   run.faults = linked.notes->faults;

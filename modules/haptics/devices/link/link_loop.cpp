@@ -68,19 +68,16 @@ void LinkLoop::turn(const LinkCommand& command) noexcept {
 
   reading_ = link_->turn(force);
   const double after = clock_->now();
-  notes_->round_trip.record(static_cast<std::int64_t>(1e9 * (after - before)));
   notes_->hold.store(guard_.hold(), std::memory_order_relaxed);
   notes_->gain.store(guard_.gain(), std::memory_order_relaxed);
   notes_->heat.store(guard_.heat(), std::memory_order_relaxed);
-  const bool held = holds(reading_.status); // calibrating: it answers, but nowhere
-  if (judge(reading_) == DeviceStatus::ok && reading_.position.allFinite()) {
+  const bool somewhere = judge(reading_) == DeviceStatus::ok && reading_.position.allFinite();
+  if (somewhere || reading_.status == DeviceStatus::calibrating) { // it answers, if from nowhere
     shown_ = reading_;
     good_at_ = after;
-    measured_at_ = before - reading_.age; // not earlier, whoever had the processor meanwhile
-    notes_->turns.fetch_add(1, std::memory_order_relaxed);
-  } else if (held && reading_.status != DeviceStatus::away) {
-    shown_ = reading_;
-    good_at_ = after;
+    if (somewhere)
+      measured_at_ = before - reading_.age; // not earlier, whoever had the processor meanwhile
+    notes_->round_trip.record(static_cast<std::int64_t>(1e9 * (after - before)));
     notes_->turns.fetch_add(1, std::memory_order_relaxed);
   } else {
     notes_->faults.fetch_add(1, std::memory_order_relaxed);

@@ -14,6 +14,8 @@ namespace patina {
 
 // Any thread, but where it says otherwise.
 struct LinkNotes {
+  explicit LinkNotes(std::size_t round_trips = 8192) : round_trip(round_trips) {}
+
   std::atomic<DeviceStatus> status{DeviceStatus::away};
   std::atomic<Hold> hold{Hold::device};
   std::atomic<double> gain{0}, heat{0};   // of the force; of the motors
@@ -23,7 +25,7 @@ struct LinkNotes {
   std::atomic<std::uint64_t> openings{0}; // times that it began to answer
   std::atomic<double> looked_at{-1};      // [s], of the device's clock; below 0: nobody looks
   std::atomic<bool> needs_button{false};  // the dead man's: force while one is held, no longer
-  TimingWindow round_trip{8192};          // [ns]; the device's thread writes
+  TimingWindow round_trip; // [ns], of the last that were answered; the device's thread writes
 
   std::string cause() const {
     const std::lock_guard lock(text_);
