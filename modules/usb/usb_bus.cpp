@@ -1,5 +1,7 @@
 #include "usb/usb_bus.h"
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -80,8 +82,8 @@ std::unique_ptr<UsbTransport> opened(const std::function<bool(const UsbFound&)>&
   if (usb) return usb;
   if (!cause.empty()) throw DeviceError(cause);
   who += " (USB " + usbNumbers(vendor, product) + ")";
-  throw DeviceError(refusal ? who + ": " + usbAdvice(*refusal, vendor, product)
-                            : who + " is not attached: plug it in, and its power supply too");
+  if (refusal) throw DeviceError(who + ": " + usbAdvice(*refusal, vendor, product));
+  throw NotAttached(who + " is not attached: plug it in, and its power supply too");
 }
 
 } // namespace
@@ -109,8 +111,44 @@ std::unique_ptr<UsbTransport> openUsb(std::string_view haptic) {
     if (!refused) refused = device;
   }
   if (refused) return openUsb(*refused); // which says why not
-  throw DeviceError("no " + std::string(haptic) +
+  throw NotAttached("no " + std::string(haptic) +
                     " is attached: plug it in, and its power supply too");
+}
+
+std::shared_ptr<void> watchUsb(std::function<void()> changed) {
+  std::string cause;
+  const UsbLibrary* table = usbLibrary(cause);
+  return table ? table->watch(std::move(changed)) : nullptr;
+}
+
+std::function<std::unique_ptr<UsbTransport>()> usbOpener(std::string_view haptic) {
+  using Clock = std::chrono::steady_clock;
+  struct Seen {
+    std::atomic<bool> changed{false};
+    std::shared_ptr<void> watch{}; // begun when there first is none
+    std::optional<NotAttached> absent{};
+    Clock::time_point looked{};
+  };
+  return [haptic, seen = std::make_shared<Seen>()]() -> std::unique_ptr<UsbTransport> {
+    const bool changed = seen->changed.exchange(false);
+    if (seen->absent && !changed && Clock::now() - seen->looked < std::chrono::seconds(2))
+      throw NotAttached(*seen->absent);
+    seen->absent.reset();
+    try {
+      return openUsb(haptic);
+    } catch (const NotAttached& absent) {
+      // What comes in between is told, and looked for at the next call.
+      if (!seen->watch) {
+        seen->watch = watchUsb([all = seen.get()] { all->changed = true; });
+        seen->changed = true;
+      }
+      seen->looked = Clock::now();
+      if (!seen->watch) throw;
+      seen->absent = absent;
+      seen->absent->told = true;
+      throw NotAttached(*seen->absent);
+    }
+  };
 }
 
 } // namespace patina

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/error.h"
 #include "usb/usb_library.h"
 #include "usb/usb_transport.h"
 
@@ -38,6 +39,18 @@ std::vector<UsbDevice> listUsbDevices();
 std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product);
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic);
 std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device); // this one, where it was listed
+
+// None is plugged in. `told`: what threw it is told of arrivals, so that asking again costs
+// nothing.
+struct NotAttached : DeviceError {
+  explicit NotAttached(const std::string& message) : DeviceError(message) {}
+  bool told = false;
+};
+// openUsb(haptic), again and again: once there was none, it looks at the bus when something has
+// been plugged in, and every two seconds in case that nobody tells. One thread's at a time.
+std::function<std::unique_ptr<UsbTransport>()> usbOpener(std::string_view haptic);
+// UsbLibrary::watch; empty where there is no libusb, either.
+std::shared_ptr<void> watchUsb(std::function<void()> changed);
 
 // What `haptic` says of a probe (docs/usb_protocol.md): whatever its numbers, its name begins so.
 inline constexpr std::string_view kProbeName = "Patina probe";

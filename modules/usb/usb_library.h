@@ -34,6 +34,9 @@ struct UsbLibrary {
   // The first for which `wanted`. nullptr: there is none, or `refusal` of the last that there is.
   std::unique_ptr<UsbTransport> (*open)(const std::function<bool(const UsbFound&)>& wanted,
                                         std::optional<UsbRefusal>& refusal, std::string& cause);
+  // Calls `changed` in a thread of its own when a device has come or gone, until what it returns
+  // is let go. Empty where libusb does not tell.
+  std::shared_ptr<void> (*watch)(std::function<void()> changed);
 };
 
 // Loaded with the first call. nullptr where it cannot be, or where this build has none; `cause`

@@ -17,9 +17,9 @@ Command redoCommand();
 Command embossCommand();
 Command renderCommand();
 Command exportCommand();
+Command simulateDeviceCommand();
 #ifdef PATINA_HAS_ACQUISITION
 Command simulateScanCommand();
-Command simulateDeviceCommand();
 Command recordCommand();
 Command calibrateCommand();
 Command trackCommand();
@@ -40,16 +40,17 @@ Command completionCommand();
 
 // In the order in which --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),         sceneCommand(),          fieldCommand(),    sampleCommand(),
-          feelCommand(),         simulateCommand(),       paintCommand(),    undoCommand(),
-          redoCommand(),         embossCommand(),         renderCommand(),   exportCommand(),
+  return {infoCommand(),           sceneCommand(),    fieldCommand(),      sampleCommand(),
+          feelCommand(),           simulateCommand(), paintCommand(),      undoCommand(),
+          redoCommand(),           embossCommand(),   renderCommand(),     exportCommand(),
 #ifdef PATINA_HAS_ACQUISITION
-          simulateScanCommand(), simulateDeviceCommand(), recordCommand(),   calibrateCommand(),
-          trackCommand(),        filterCommand(),         registerCommand(), fitTextureCommand(),
-          mapTextureCommand(),   demoCommand(),
+          simulateScanCommand(),   recordCommand(),   calibrateCommand(),  trackCommand(),
+          filterCommand(),         registerCommand(), fitTextureCommand(), mapTextureCommand(),
+          demoCommand(),
 #endif
-          studyCommand(),        modelCommand(),          devicesCommand(),  latencyTestCommand(),
-          guiCommand(),          helpCommand(),           manCommand(),      completionCommand()};
+          simulateDeviceCommand(), studyCommand(),    modelCommand(),      devicesCommand(),
+          latencyTestCommand(),    guiCommand(),      helpCommand(),       manCommand(),
+          completionCommand()};
 }
 
 } // namespace patina::cli

@@ -1,10 +1,15 @@
 #include <cstdlib>
+#include <thread>
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
+#include "core/error.h"
 #include "core/numbers.h"
+#include "haptics/contact/plane.h"
+#include "haptics/devices/device_catalog.h"
 #include "haptics/devices/falcon/wire_run.h"
 #include "haptics/servo/latency.h"
+#include "haptics/servo/servo_loop.h"
 
 namespace patina::cli {
 
@@ -14,6 +19,7 @@ struct LatencyOptions {
   double seconds = 5, rate = 1000;
   bool wire = false;
   WireRunSpec on_wire;
+  std::string device; // empty: none
 };
 
 const Keys kLatencyTestKeys = {
@@ -37,6 +43,8 @@ const Keys kLatencyTestKeys = {
     {"overruns", "", "round trips without a new command"},
     {"uncounted", "", "periods neither ticked nor missed"},
     {"stale", "", "old places felt as new"},
+    {"openings", "", "times it began to answer", "with --device, as the next"},
+    {"held", "", "held back", "why no force, or not all of it, is given at the end", Shown::if_any},
     {"load", "", "load", "1-minute average at the start"}};
 
 void setSpread(const char* key, const std::string& caption, const Percentiles& us, Report& report) {
@@ -73,10 +81,60 @@ int runOnWire(const LatencyOptions& options, double load, Console& console) {
   return run.stale + run.unnoticed + run.uncounted == 0 ? kDone : kNotSolved;
 }
 
+// A device of the list, whose hand feels the plane through the middle of its workspace.
+int runOnDevice(const LatencyOptions& options, double load, Console& console) {
+  const DeviceEntry& entry = deviceNamed(options.device);
+  DeviceSetup setup;
+  setup.name = options.device;
+  setup.target = std::make_shared<TipTarget>(Vec3(0, 0, -2e-3));
+  setup.model = entry.model;
+  ServoLoop loop(openDevice(entry, setup, mountAt(entry, Vec3::Zero())), options.rate);
+  HapticProperties haptics;
+  haptics.stiffness = 500;
+  loop.publish(planeSnapshot(haptics, {}));
+  loop.start();
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<double> late;
+  double t = 0;
+  while (t < options.seconds && !console.progress().cancelled()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    t = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    console.progress().report(std::min(t / options.seconds, 1.0), "turning with the device");
+    for (ToolSample sample; loop.samples().pop(sample);) late.push_back(1e-3 * sample.late_ns);
+  }
+  const std::string held = entry.linked ? heldBack(*setup.notes) : "";
+  loop.stop();
+  if (console.progress().cancelled()) throw Cancelled();
+  if (entry.linked && setup.notes->openings == 0)
+    throw DeviceError(setup.notes->cause().empty() ? options.device + " did not answer in time"
+                                                   : setup.notes->cause());
+  const ServoTiming timing = loop.timing();
+  Report report(kLatencyTestKeys);
+  report.set("policy", timing.policy).set("realtime", timing.realtime);
+  report.set("wakeups", static_cast<std::int64_t>(timing.ticks));
+  report.set("rate_hz", timing.rate_hz);
+  setSpread("late_us", "late", percentiles(std::move(late)), report);
+  if (entry.linked) {
+    const Percentiles round = setup.notes->round_trip.late();
+    setSpread("round_us", "round trip",
+              {1e-3 * round.p50, 1e-3 * round.p99, 1e-3 * round.p999, 1e-3 * round.max}, report);
+    for (const auto& [key, count] : {std::pair{"turns", setup.notes->turns.load()},
+                                     {"faults", setup.notes->faults.load()},
+                                     {"overruns", setup.notes->overruns.load()},
+                                     {"openings", setup.notes->openings.load()}})
+      report.set(key, static_cast<std::int64_t>(count));
+    report.set("held", held);
+  }
+  report.set("missed", static_cast<std::int64_t>(timing.missed)).set("load", load, rounded(load));
+  console.report(report);
+  return kDone;
+}
+
 int runLatencyTest(const LatencyOptions& options, Console& console) {
   double load = 0;
   if (getloadavg(&load, 1) != 1) load = 0;
   if (options.wire) return runOnWire(options, load, console);
+  if (!options.device.empty()) return runOnDevice(options, load, console);
   console.endOnInterrupt();
   const Latency latency = measureLatency(options.seconds, options.rate);
 
@@ -107,16 +165,21 @@ Command latencyTestCommand() {
           "lateness, the kernel tells what was waiting for a processor that something else "
           "had; the rest is the timer's or, in a virtual machine, the host's, and no priority "
           "helps against it.\n"
+          "With --device the servo turns with a device, on a plane through the middle of its "
+          "workspace, and the round trips to it are timed: the device's hand is to be held.\n"
           "With --wire servo and driver turn with an emulated Falcon, while a bare timer of the "
           "same priority does with another. Every place that is felt is held against where the "
           "emulated handle was; one that is older than it says ends the command with 1, as do a "
           "fault that was not noticed and a period of the clock that is neither a tick nor missed.",
       .examples = {"patina latency-test --seconds 60",
+                   "patina latency-test --device falcon --seconds 20",
                    "patina latency-test --wire --seconds 600 --load 2 --faults 5"},
       .keys = kLatencyTestKeys,
       .arguments =
           {{"--seconds", "T", "s", "5", "How long, up to 3600.",
             inRange(1e-3, 3600, [options](double s) { options->seconds = s; })},
+           {"--device", "NAME", "", "", "With this device, as the key device of a scene has it.",
+            [options](const std::string& name) { options->device = (deviceNamed(name), name); }},
            {"--wire", "", "", "", "With an emulated Falcon, at 1000 Hz.", into(options->wire)},
            {"--load", "N", "threads", "0", "With --wire: that only take time.",
             inRange(

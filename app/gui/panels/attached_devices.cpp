@@ -106,6 +106,10 @@ AttachedDevices::AttachedDevices(QWidget* parent)
 void AttachedDevices::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
   if (!std::exchange(looked_, true)) look();
+  if (watch_) return;
+  watch_ = watchUsb([this] {
+    QMetaObject::invokeMethod(this, [this] { isVisible() ? look() : void(looked_ = false); });
+  });
 }
 
 void AttachedDevices::look() {

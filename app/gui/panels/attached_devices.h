@@ -27,7 +27,7 @@ struct AttachedRow {
 };
 std::vector<AttachedRow> attachedRows(const AttachedFindings& findings);
 
-// Looks when it is first shown, and when asked to.
+// Looks when it is first shown, when something was plugged in or out, and when asked to.
 class AttachedDevices : public QWidget {
   Q_OBJECT
  public:
@@ -50,6 +50,7 @@ class AttachedDevices : public QWidget {
   QVBoxLayout* column_;
   QWidget* rows_ = nullptr;
   bool looked_ = false;
+  std::shared_ptr<void> watch_; // of the bus
 };
 
 } // namespace patina

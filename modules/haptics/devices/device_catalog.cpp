@@ -26,16 +26,15 @@ constexpr DeviceModel kFalconModel{.mass = 0.25, .damping = 3, .encoder_step = 4
 
 std::unique_ptr<Device> openFalcon(const DeviceSetup& setup) {
   const LinkedSpec spec{.guard = falconGuard(), .notes = setup.notes};
-  return makeLinkedDevice(
-      makeFalconLink([] { return openUsb(kFalcon); }, falconFirmwareSource(), spec.clock), spec);
+  return makeLinkedDevice(makeFalconLink(usbOpener(kFalcon), falconFirmwareSource(), spec.clock),
+                          spec);
 }
 
 std::unique_ptr<Device> openSpaceMouse(const DeviceSetup& setup) {
   const LinkedSpec spec{.notes = setup.notes};
   const GlidingTip tip(setup.target);
-  return makeLinkedDevice(makeSpaceMouseLink([] { return openUsb(kSpaceMouse); },
-                                             {.start = tip.position()}, spec.clock),
-                          spec);
+  return makeLinkedDevice(
+      makeSpaceMouseLink(usbOpener(kSpaceMouse), {.start = tip.position()}, spec.clock), spec);
 }
 
 // A row a device; the order is the one that a person is shown.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "usb/libusb/libusb_transport.h"
+#include "usb/libusb/libusb_watch.h"
 
 namespace patina {
 namespace {
@@ -149,6 +150,7 @@ std::unique_ptr<UsbTransport> openFirst(const std::function<bool(const UsbFound&
 } // namespace patina
 
 extern "C" __attribute__((visibility("default"))) const patina::UsbLibrary* patinaUsbLibrary() {
-  static const patina::UsbLibrary kLibrary{&patina::listAll, &patina::openFirst};
+  static const patina::UsbLibrary kLibrary{&patina::listAll, &patina::openFirst,
+                                           &patina::watchLibusb};
   return &kLibrary;
 }

@@ -5,12 +5,15 @@
 
 #include "core/error.h"
 #include "haptics/devices/falcon/falcon_frame.h"
+#include "usb/usb_bus.h"
 
 namespace patina {
 namespace {
 
 constexpr double kAnswerWait = 2e-3; // [s]
 constexpr double kSoonest = 2.1e-4;  // [s]: 16 bytes out, 16 back, at 1.5 Mbaud; sooner is old
+constexpr double kSlowSend = 1e-4;   // [s]; after it, what is early looks as if it came in time
+constexpr double kOwed = 0.01;       // [s], that an answer may be on its way
 constexpr double kFastest = 2.5;     // [m/s], of a hand
 constexpr double kJump = 2e-3;       // [m], that is none in itself: counts, and a late answer
 constexpr double kHomingTurn = 1;    // [s], of either way to ask for it
@@ -25,6 +28,9 @@ class FalconLink final : public DeviceLink {
   Opening open() noexcept override {
     try {
       return !line_ ? attach() : loader_ ? load() : probe();
+    } catch (const NotAttached& absent) {
+      close();
+      return {false, absent.what(), absent.told};
     } catch (const std::exception& error) {
       close();
       return {false, error.what()};
@@ -41,23 +47,32 @@ class FalconLink final : public DeviceLink {
     const double sent_at = clock_->now();
     if (const UsbResult result = line_->send(encoded(command)); result != UsbResult::ok)
       return fault(statusOf(result));
+    ++owed_;
     if (unsure_) return settle(sent_at);
+    const bool slow = clock_->now() - sent_at > kSlowSend;
     FalconBytes bytes;
     const LineRead read = line_->receive(bytes, kAnswerWait);
+    hear(read.bytes + read.surplus, sent_at);
     if (read.result != UsbResult::ok) return fault(statusOf(read.result));
     if (read.surplus > 0 || clock_->now() - sent_at < kSoonest) return fault(DeviceStatus::garbled);
     const std::optional<FalconAnswer> answer = decoded(bytes);
-    return answer ? stateOf(*answer) : fault(DeviceStatus::garbled);
+    if (!answer) return fault(DeviceStatus::garbled);
+    DeviceState state = stateOf(*answer);
+    // It may be the answer to the frame before, which the next turn will show.
+    if (slow && before_ >= 0) state.age = sent_at - before_;
+    before_ = sent_at;
+    return state;
   }
 
   void close() noexcept override {
     loader_.reset();
     line_.reset();
     unsure_ = false;
+    owed_ = 0;
     homed_ = 0;
     probes_ = 0;
     loaded_ = false;
-    place_at_ = -1;
+    place_at_ = before_ = -1;
   }
 
  private:
@@ -131,6 +146,13 @@ class FalconLink final : public DeviceLink {
                                           : DeviceStatus::garbled;
   }
 
+  // One that does not come in its turn may come later.
+  void hear(std::size_t bytes, double sent_at) noexcept {
+    const auto answers = static_cast<int>(bytes / kFalconFrame);
+    if (answers < 1) owed_until_ = sent_at + kOwed;
+    owed_ = std::max(owed_ - answers, 0);
+  }
+
   DeviceState fault(DeviceStatus status) noexcept {
     unsure_ = true;
     DeviceState state;
@@ -142,9 +164,12 @@ class FalconLink final : public DeviceLink {
   DeviceState settle(double sent_at) noexcept {
     const LineRead heard = line_->listen(sent_at + kLongestTurn - clock_->now());
     if (heard.result == UsbResult::gone) return fault(DeviceStatus::gone);
-    // Quiet after an answer to the frame of just now: nothing older can be on its way.
-    unsure_ = !(heard.result == UsbResult::ok && heard.surplus >= kFalconFrame &&
+    hear(heard.surplus, sent_at);
+    // Quiet after an answer to the frame of just now, and nothing older can be on its way.
+    unsure_ = (owed_ > 0 && clock_->now() < owed_until_) ||
+              !(heard.result == UsbResult::ok && heard.surplus >= kFalconFrame &&
                 heard.surplus % kFalconFrame == 0);
+    if (!unsure_) owed_ = 0;
     DeviceState state;
     state.status = DeviceStatus::silent;
     return state;
@@ -182,7 +207,10 @@ class FalconLink final : public DeviceLink {
   FalconShape shape_;
   FalconPose pose_;
   Angles angles_ = Angles::Zero();
-  double place_at_ = -1; // [s]; below 0: its place is not known
+  double place_at_ = -1;   // [s]; below 0: its place is not known
+  double before_ = -1;     // [s], when the last frame was sent that was answered; below 0: none was
+  double owed_until_ = -1; // [s]
+  int owed_ = 0;           // answers that have not come
   std::uint8_t homed_ = 0;
   std::size_t homing_ = 1; // of kHomingBits; its first turn is over at once
   double homing_since_ = -2 * kHomingTurn;

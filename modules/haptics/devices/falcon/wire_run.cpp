@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <sched.h>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -21,6 +22,7 @@ namespace {
 constexpr double kRate = 1000;
 constexpr double kOff = 1.2e-4; // [m]: counts; the hand goes twice as far from frame to frame
 constexpr double kSlack = 1e-4; // [s], of the time that a state says
+constexpr double kLate = 8e-3;  // [s], of an answer that is spoilt so
 
 // A hand that holds it without swinging.
 FalconBenchSpec held() {
@@ -67,18 +69,24 @@ class Witness {
 // Around the driver: a frame whose answer was spoilt gives no state.
 class JudgedLink final : public DeviceLink {
  public:
-  JudgedLink(std::unique_ptr<DeviceLink> link, WireRun& run) : link_(std::move(link)), run_(run) {}
+  JudgedLink(std::unique_ptr<DeviceLink> link, std::shared_ptr<DeviceClock> clock, WireRun& run)
+      : link_(std::move(link)), clock_(std::move(clock)), run_(run) {}
   Opening open() noexcept override { return link_->open(); }
   DeviceState turn(const Vec3& force) noexcept override {
     const std::uint64_t before = run_.injected;
+    const double begun = clock_->now();
     const DeviceState state = link_->turn(force);
-    if (run_.injected != before && judge(state) == DeviceStatus::ok) ++run_.unnoticed;
+    // What says that it may be old is noticed; a turn that took this long has none that is late.
+    if (run_.injected != before && judge(state) == DeviceStatus::ok && state.age == 0 &&
+        clock_->now() - begun < kLate)
+      ++run_.unnoticed;
     return state;
   }
   void close() noexcept override { link_->close(); }
 
  private:
   std::unique_ptr<DeviceLink> link_;
+  std::shared_ptr<DeviceClock> clock_;
   WireRun& run_;
 };
 
@@ -92,6 +100,7 @@ class Judged final : public Device {
   DeviceState exchange(const Vec3& force, double dt) noexcept override {
     const double asked = clock_->now();
     if (exchanges_++ == 0) first_ = asked;
+    processor.store(sched_getcpu(), std::memory_order_relaxed);
     periods_ = std::llround((asked - first_) * kRate);
     const DeviceState state = device_->exchange(force, dt);
     if (judge(state) != DeviceStatus::ok) return state;
@@ -104,6 +113,7 @@ class Judged final : public Device {
     if (off < 0 || off > kOff) ++run_.stale;
     return state;
   }
+  std::atomic<int> processor{-1}; // that the servo has
   // Periods between its first and its last exchange that are neither an exchange nor missed. Both
   // may be late by part of one.
   std::int64_t uncounted(std::uint64_t missed) const noexcept {
@@ -123,13 +133,14 @@ class Judged final : public Device {
   std::int64_t periods_ = 0; // since
 };
 
-// The same device turned by a timer and nothing else.
+// The same device turned by a timer and nothing else, on the processor on which the servo is: what
+// else a processor has to do, interrupts of the disk above all, is not shared evenly.
 struct Bare {
   explicit Bare(std::size_t room) {
     late.reserve(room);
     round.reserve(room);
   }
-  void turn(const std::atomic<bool>& stop) {
+  void turn(const std::atomic<bool>& stop, const std::atomic<int>& processor) {
     requestRealtime();
     const auto clock = systemClock();
     FalconBench bench(held(), clock);
@@ -138,6 +149,12 @@ struct Bare {
     PeriodicClock timer(monotonicNs() + 500'000, 1'000'000); // between the servo's ticks
     while (!stop.load(std::memory_order_relaxed)) {
       const std::int64_t due = timer.nextDeadline();
+      if (const int servos = processor.load(std::memory_order_relaxed); servos != on_) {
+        cpu_set_t set;
+        CPU_ZERO(&set);
+        CPU_SET(static_cast<std::size_t>(servos), &set);
+        if (sched_setaffinity(0, sizeof set, &set) == 0) on_ = servos;
+      }
       sleepUntil(due);
       const std::int64_t woke = monotonicNs();
       timer.woke(woke);
@@ -150,6 +167,9 @@ struct Bare {
     }
   }
   std::vector<double> late, round; // [us]
+
+ private:
+  int on_ = -1; // processor
 };
 
 constexpr WireFault kKinds[] = {WireFault::mute,    WireFault::shortened,   WireFault::corrupt,
@@ -181,15 +201,15 @@ WireRun runOnEmulatedWire(const WireRunSpec& spec, Progress& progress) {
   Bare bare(room);
   {
     auto link = std::make_unique<JudgedLink>(
-        makeFalconLink([&] { return bench.plug(); }, {}, linked.clock), run);
+        makeFalconLink([&] { return bench.plug(); }, {}, linked.clock), linked.clock, run);
     auto judged = std::make_unique<Judged>(makeLinkedDevice(std::move(link), linked), linked.clock,
                                            witness, run, ages);
-    const Judged& counts = *judged; // the loop's, but for the end
+    const Judged& counts = *judged; // the loop's, but for its atomic and the end
     ServoLoop loop(std::move(judged), kRate);
     HapticProperties haptics;
     haptics.stiffness = 500;
     loop.publish(planeSnapshot(haptics, {}));
-    std::thread timer([&] { bare.turn(stop); });
+    std::thread timer([&] { bare.turn(stop, counts.processor); });
     std::vector<std::thread> load;
     for (int i = 0; i < spec.load; ++i)
       load.emplace_back([&] {

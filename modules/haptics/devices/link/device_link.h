@@ -16,6 +16,7 @@ class DeviceLink {
   struct Opening {
     bool answers = false;
     std::string cause{}; // one line, what keeps it from answering; empty while it merely takes time
+    bool told = false;   // of what would mend that: asking again costs nothing
   };
   // A step towards its answering, again and again until it does; after a failure, too, from
   // wherever that has left it. 50 ms or so a step.

@@ -44,7 +44,7 @@ void LinkLoop::tryToOpen() noexcept {
   if (!opening.answers) {
     if (opening.cause.empty()) return; // it merely takes time
     notes_->setCause(opening.cause);
-    next_try_ = clock_->now() + kTryAgain;
+    next_try_ = clock_->now() + (opening.told ? kNap : kTryAgain);
     return;
   }
   notes_->setCause({});
@@ -83,9 +83,11 @@ void LinkLoop::turn(const LinkCommand& command) noexcept {
     notes_->faults.fetch_add(1, std::memory_order_relaxed);
     if (reading_.status == DeviceStatus::ok) reading_.status = DeviceStatus::garbled; // no number
     const bool for_good = reading_.status == DeviceStatus::gone;
-    if (for_good || after - good_at_ > kOldestAge) leave();
+    if (for_good || after - good_at_ > kGiveUp) leave();
   }
   shown_.age = after - measured_at_;
+  if (shown_.status == DeviceStatus::ok && shown_.age > kOldestAge)
+    shown_.status = DeviceStatus::away;
 }
 
 void LinkLoop::leave() noexcept {

@@ -15,10 +15,13 @@ struct LinkCommand {
   double at = -1;            // [s], of the clock, when it was asked for; below 0: never
 };
 
-inline constexpr double kTryAgain = 0.25; // [s], after a device could not be opened
+inline constexpr double kTryAgain =
+    0.25; // [s], after a device could not be opened, unless it is told
+
+inline constexpr double kGiveUp = 0.05; // [s], of nothing but faults
 
 // The force at the wire is that of the guard: zero from the first turn after a fault was seen.
-// Faults that last longer than kOldestAge, or that are for good, close the device and open it anew,
+// Faults that last longer than kGiveUp, or that are for good, close the device and open it anew,
 // for as long as it takes.
 class LinkLoop {
  public:

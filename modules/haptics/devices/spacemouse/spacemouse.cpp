@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "usb/usb_bus.h"
 
 namespace patina {
 namespace {
@@ -44,6 +45,9 @@ class SpaceMouseLink final : public DeviceLink {
       usb_ = open_();
       if (usb_->claim(0) != UsbResult::ok)
         throw DeviceError("the SpaceMouse is held by another program: close it, or spacenavd");
+    } catch (const NotAttached& absent) {
+      close();
+      return {false, absent.what(), absent.told};
     } catch (const std::exception& error) {
       close();
       return {false, error.what()};
