@@ -250,6 +250,9 @@ struct EmulatedPlug::Impl {
     case UsbfsMessage::release:
       session.transport.reset();
       break;
+    case UsbfsMessage::clear_halt:
+      std::this_thread::sleep_for(std::chrono::duration<double>(device.halt_time));
+      break;
     default:
       break;
     }
@@ -353,6 +356,7 @@ EmulatedPlug::EmulatedPlug(const fs::path& folder, const EmulatedUsb& device,
     : impl_(std::make_unique<Impl>(folder, device, std::move(open))) {}
 
 EmulatedPlug::~EmulatedPlug() = default;
+EmulatedPlug::EmulatedPlug(EmulatedPlug&&) noexcept = default;
 
 std::size_t EmulatedPlug::claims() const noexcept {
   return impl_->claims;

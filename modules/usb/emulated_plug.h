@@ -25,6 +25,7 @@ struct EmulatedUsb {
   // What it refuses: to be opened, to be claimed, or, as `other`, every transfer after that, as
   // behind a hub that has dropped it.
   std::optional<UsbRefusal> refusal{};
+  double halt_time = 0; // [s], that the kernel takes to end a halt
 };
 
 // Plugged in as long as it lives. `folder` has the bus: sys/bus/usb and dev/bus/usb in it, as the
@@ -37,6 +38,7 @@ class EmulatedPlug {
   EmulatedPlug(const std::filesystem::path& folder, const EmulatedUsb& device,
                std::function<std::unique_ptr<UsbTransport>()> open);
   ~EmulatedPlug();
+  EmulatedPlug(EmulatedPlug&&) noexcept;
   std::size_t claims() const noexcept;                // so far
   const std::filesystem::path& node() const noexcept; // its socket
 

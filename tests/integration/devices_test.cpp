@@ -51,7 +51,7 @@ TEST(SimulatedProbe, IsReadFromItsPortWithNothingLostOnTheWay) {
 
 TEST(SimulatedProbe, ThatIsNotThereIsOneLine) {
   const ScratchFolder folder;
-  expectOneLineError(run({"simulate-device", "telephone"}), {"it must be probe"});
+  expectOneLineError(run({"simulate-device", "telephone"}), {"it must be falcon, spacemouse or probe"});
 }
 #endif
 

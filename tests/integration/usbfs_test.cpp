@@ -1,0 +1,344 @@
+// The shipped path over libusb, against devices on an emulated bus (modules/usb/emulated_plug.h):
+// the program as a stranger starts it, and the library's own calls in a process that runs under
+// usbfs_shim.so.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <malloc.h>
+#include <sched.h>
+#include <thread>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "haptics/devices/device_catalog.h"
+#include "haptics/devices/falcon/emulated_falcon.h"
+#include "haptics/devices/falcon/falcon_device.h"
+#include "haptics/devices/link/linked_device.h"
+#include "haptics/devices/spacemouse/emulated_spacemouse.h"
+#include "haptics/servo/realtime.h"
+#include "integration/program.h"
+#include "support/longer.h"
+#include "support/places.h"
+#include "usb/emulated_plug.h"
+#include "usb/usb_bus.h"
+
+namespace patina::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+void pause(int milliseconds) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+}
+
+EmulatedUsb falcon(std::optional<UsbRefusal> refusal = std::nullopt) {
+  return {.vendor = 0x0403,
+          .product = 0xcb48,
+          .maker = "Novint",
+          .name = "Falcon",
+          .serial = "17",
+          .endpoints = {{0x02}, {0x81}},
+          .refusal = refusal};
+}
+
+FalconBenchSpec held() {
+  return {.body = {.mass = 0.25, .damping = 12, .spring = 300, .friction = 0}};
+}
+
+// A device keeps its time, whatever else the machine does.
+EmulatedPlug plugged(const fs::path& folder, const EmulatedUsb& device,
+                     std::function<std::unique_ptr<UsbTransport>()> open) {
+  sched_param urgent{}, before{};
+  const int policy = sched_getscheduler(0);
+  sched_getparam(0, &before);
+  urgent.sched_priority = 60;
+  sched_setscheduler(0, SCHED_FIFO, &urgent);
+  EmulatedPlug plug(folder, device, std::move(open)); // its thread has it from this one
+  sched_setscheduler(0, policy, &before);
+  return plug;
+}
+
+// What programs that are started in its lifetime see.
+struct Bus {
+  ScratchFolder folder;
+  Environment environment{{{"LD_PRELOAD", (programFolder() / "usbfs_shim.so").string()},
+                           {"PATINA_USBFS", folder.path().string()}}};
+  FalconBench bench{held(), systemClock()};
+  EmulatedPlug plug(const EmulatedUsb& device = falcon()) {
+    return plugged(folder.path(), device, [this] { return bench.plug(); });
+  }
+};
+
+const Json* usbEntry(const Json& report) {
+  for (const Json& device : report.at("devices").asArray())
+    if (device.at("kind").asString() == "usb") return &device;
+  return nullptr;
+}
+
+TEST(EmulatedBus, AProgramThatKnowsNothingOfItListsAndTimesTheFalcon) {
+  Bus bus;
+  const EmulatedPlug plug = bus.plug();
+  const Json report = runJson({"devices", "--diagnose"});
+  const Json* entry = usbEntry(report);
+  ASSERT_TRUE(entry) << "the bus is empty";
+  EXPECT_EQ(entry->at("name").asString(), "Novint Falcon");
+  EXPECT_EQ(entry->at("state").asString(), "ready");
+  EXPECT_EQ(entry->at("serial").asString(), "17");
+  EXPECT_EQ(entry->at("device").asString(), "falcon");
+  EXPECT_EQ(entry->at("cable_mbit").asNumber(), 12);
+  EXPECT_GT(entry->at("round_trip_us").at("p50").asNumber(), 0);
+  EXPECT_EQ(bus.bench.frames(), 0u) << "it was asked for its status alone";
+}
+
+TEST(EmulatedBus, FirmwareIsLoadedTheAxesAreHomedAndTheServoTurns) {
+  Bus bus;
+  std::string image(8000, 0);
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<char>(i * 37 + i / 251);
+  FalconBenchSpec spec = held();
+  spec.runs_firmware = spec.homed = false;
+  const auto bytes = std::as_bytes(std::span(image));
+  spec.firmware.assign(bytes.begin(), bytes.end());
+  spec.chunk_loss = 0.01;
+  FalconBench bench(spec, systemClock());
+  bench.push = Vec3(0, 0, -1);
+  const EmulatedPlug plug = plugged(bus.folder.path(), falcon(), [&] { return bench.plug(); });
+  expectOneLineError(run({"latency-test", "--device", "falcon", "--seconds", "1"}),
+                     {"runs no firmware", "set PATINA_FALCON_FIRMWARE"});
+  const std::string file = bus.folder.write("firmware.bin", image);
+  {
+    const Environment half{{{"PATINA_FALCON_FIRMWARE", bus.folder.write("half", "no firmware")}}};
+    expectOneLineError(run({"latency-test", "--device", "falcon", "--seconds", "1"}),
+                       {"half", "it has 11 bytes, a firmware has 7324 to 8492"});
+  }
+  const Environment named{{{"PATINA_FALCON_FIRMWARE", file}, {"PATINA_FALCON_SHA256", "any"}}};
+  const Json report = runJson({"latency-test", "--device", "falcon", "--seconds", "8"});
+  EXPECT_TRUE(bench.runsFirmware());
+  EXPECT_GE(report.at("openings").asInteger(), 1);
+  EXPECT_GT(report.at("turns").asInteger(), 500);
+  EXPECT_GT(report.at("wakeups").asInteger(), 100) << "it is felt, so it is homed";
+  EXPECT_GT(report.at("round_us").at("p50").asNumber(), 200) << "sooner is no answer of a Falcon's";
+}
+
+TEST(EmulatedBus, UnpluggingIsNoticedAndTheSameProgramGoesOnWhenItIsBack) {
+  Bus bus;
+  auto plug = std::make_unique<EmulatedPlug>(bus.plug());
+  Running program({"latency-test", "--device", "falcon", "--seconds", "5", "--json"},
+                  programPath());
+  const auto waitForClaim = [&] {
+    for (int i = 0; i < 2000 && plug->claims() == 0; ++i) pause(1);
+    return plug->claims() > 0;
+  };
+  ASSERT_TRUE(waitForClaim());
+  for (int round = 0; round < 2; ++round) {
+    pause(400);
+    plug.reset();
+    pause(300);
+    const auto back = Clock::now();
+    plug = std::make_unique<EmulatedPlug>(bus.plug());
+    ASSERT_TRUE(waitForClaim());
+    EXPECT_LT(since(back), 2);
+  }
+  const Outcome outcome = program.wait();
+  ASSERT_EQ(outcome.exit, 0) << outcome.err;
+  const Json report = parseJson(outcome.out, "report");
+  EXPECT_GE(report.at("openings").asInteger(), 3);
+  EXPECT_GE(report.at("faults").asInteger(), 2);
+}
+
+TEST(EmulatedBus, WhatForbidsADeviceIsOneSentenceWithItsRemedy) {
+  const struct {
+    UsbRefusal refusal;
+    const char *state, *said, *remedy;
+  } kCases[] = {
+      {UsbRefusal::permission, "no permission", "no permission", "--install-udev"},
+      {UsbRefusal::held_by_driver, "in use by a driver or another program", "held by",
+       "close that program"},
+      {UsbRefusal::other, "ready", "cannot be set", "without a hub"},
+  };
+  for (const auto& [refusal, state, said, remedy] : kCases) {
+    Bus bus;
+    const EmulatedPlug plug = bus.plug(falcon(refusal));
+    const Json report = runJson({"devices", "--diagnose"});
+    ASSERT_TRUE(usbEntry(report)) << state;
+    EXPECT_EQ(usbEntry(report)->at("state").asString(), state);
+    EXPECT_EQ(usbEntry(report)->at("haptic").asString(), "Novint Falcon");
+    expectOneLineError(run({"latency-test", "--device", "falcon", "--seconds", "0.5"}),
+                       {"Falcon", said, remedy});
+  }
+  Bus bus;
+  expectOneLineError(run({"latency-test", "--device", "spacemouse", "--seconds", "0.3"}),
+                     {"no 3Dconnexion SpaceMouse is attached: plug it in"});
+}
+
+TEST(EmulatedBus, TheCommandsDevicesAreSeenTooAndAreUnpluggedAsTheyAreTold) {
+  Bus bus;
+  Running device({"simulate-device", "spacemouse", "--bus", bus.folder.path().string(), "--unplug",
+                  "0.8", "--seconds", "4", "--json"},
+                 programPath());
+  for (int i = 0; i < 3000 && !fs::exists(bus.folder.path() / "sys/bus/usb/devices"); ++i) pause(1);
+  const Json report = runJson({"latency-test", "--device", "spacemouse", "--seconds", "2.5"});
+  EXPECT_GE(report.at("openings").asInteger(), 2);
+  EXPECT_GT(report.at("turns").asInteger(), 200);
+  const Outcome outcome = device.wait();
+  EXPECT_EQ(outcome.exit, 0) << outcome.err;
+  const Json told = parseJson(outcome.out, "report");
+  EXPECT_GE(told.at("unpluggings").asInteger(), 2);
+  EXPECT_GE(told.at("claims").asInteger(), report.at("openings").asInteger());
+}
+
+// What runs under the shim, each in a process of its own.
+
+void runUnderTheShim(const char* name) {
+  Bus bus;
+  const Outcome outcome = Running({std::string("--gtest_filter=UnderTheShim.DISABLED_") + name,
+                                   "--gtest_also_run_disabled_tests"},
+                                  fs::read_symlink("/proc/self/exe"))
+                              .wait();
+  EXPECT_EQ(outcome.exit, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("1 test from 1 test suite ran"), std::string::npos) << outcome.out;
+  std::fputs(outcome.out.substr(0, outcome.out.find("[  ")).c_str(), stdout);
+}
+
+std::string sharedFolder() {
+  return std::getenv("PATINA_USBFS");
+}
+
+TEST(UnderTheShim, DISABLED_Leaks) {
+  struct Counts {
+    std::ptrdiff_t files = 0, threads = 0, bytes = 0;
+  };
+  const auto counts = [] {
+    const auto entries = [](const char* folder) {
+      return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+    };
+    return Counts{entries("/proc/self/fd"), entries("/proc/self/task"),
+                  static_cast<std::ptrdiff_t>(mallinfo2().uordblks)};
+  };
+  requestRealtime(); // as a servo is
+  const LinkedSpec spec{.guard = falconGuard()};
+  FalconBench bench(held(), spec.clock);
+  const auto device =
+      makeLinkedDevice(makeFalconLink(usbOpener("Novint Falcon"), {}, spec.clock), spec);
+  double longest = 0;
+  std::string why; // it took long
+  const auto away = [&] {
+    while (device->exchange(Vec3::Zero(), 1e-3).status != DeviceStatus::away) pause(1);
+  };
+  const auto cycle = [&] {
+    away();
+    const EmulatedPlug plug = plugged(sharedFolder(), falcon(), [&] { return bench.plug(); });
+    const auto begin = Clock::now();
+    while (device->exchange(Vec3(0, 0, 1), 1e-3).status != DeviceStatus::ok && since(begin) < 5)
+      pause(1), why = spec.notes->cause().empty() ? why : spec.notes->cause();
+    if (since(begin) > 0.5) std::printf("%.3f s: %s\n", since(begin), why.c_str());
+    longest = std::max(longest, since(begin));
+    for (int i = 0; i < 5; ++i) device->exchange(Vec3(0, 0, 1), 1e-3);
+  };
+  const auto settled = [&] { // nothing is plugged in
+    away();
+    pause(100);
+    return counts();
+  };
+  for (int i = 0; i < 30; ++i) { // what is made once, is
+    cycle();
+    if (i == 10 || i == 20) settled();
+  }
+  const Counts before = settled();
+  for (int i = 0; i < 100; ++i) cycle();
+  const Counts after = settled();
+  std::printf("100 times: back within %.3f s, %+td bytes of heap, %+td files, %+td threads\n",
+              longest, after.bytes - before.bytes, after.files - before.files,
+              after.threads - before.threads);
+  EXPECT_GE(spec.notes->openings, 130u);
+  EXPECT_LT(longest, 2);
+  EXPECT_EQ(after.files, before.files);
+  EXPECT_EQ(after.threads, before.threads);
+  EXPECT_LE(after.bytes - before.bytes, 2048) << "a hundred of anything is more";
+}
+
+TEST(EmulatedBus, AHundredUnpluggingsLeaveNoFileThreadOrMemoryBehind) {
+  runUnderTheShim("Leaks");
+}
+
+TEST(UnderTheShim, DISABLED_Numbers) {
+  const auto cap = std::make_shared<EmulatedCap>();
+  cap->hand = [](double) { return CapState{}; };
+  const auto open = [&] { return emulateSpaceMouse(cap, systemClock()); };
+  EmulatedUsb thing{
+      .vendor = 0x1209, .product = 1, .maker = "Nobody", .name = "Thing", .endpoints = {{0x81}}};
+  EmulatedUsb probe = thing;
+  probe.name = "Patina probe";
+  const EmulatedPlug first(sharedFolder(), thing, open), second(sharedFolder(), probe, open),
+      third(sharedFolder(), thing, open);
+  EXPECT_EQ(openUsb(kProbeName)->claim(0), UsbResult::ok);
+  EXPECT_EQ(first.claims() + third.claims(), 0u);
+  EXPECT_EQ(second.claims(), 1u);
+}
+
+TEST(EmulatedBus, OfTwoDevicesWithTheSameNumbersTheNamedOneIsOpened) {
+  runUnderTheShim("Numbers");
+}
+
+// An endpoint that halts; a system whose waiting fails.
+class Halting final : public UsbTransport {
+ public:
+  UsbResult claim(int) noexcept override { return UsbResult::ok; }
+  UsbCount controlOut(const UsbRequest&, std::span<const std::byte>, unsigned) noexcept override {
+    return {};
+  }
+  UsbCount controlIn(const UsbRequest&, std::span<std::byte>, unsigned) noexcept override {
+    return {UsbResult::stall, 0};
+  }
+  UsbCount write(std::uint8_t, std::span<const std::byte> data, unsigned) noexcept override {
+    return ++writes_ == 2 ? UsbCount{UsbResult::stall, 0} : UsbCount{UsbResult::ok, data.size()};
+  }
+  UsbCount read(std::uint8_t, std::span<std::byte>, unsigned timeout_ms) noexcept override {
+    pause(static_cast<int>(timeout_ms));
+    return {UsbResult::timeout, 0};
+  }
+
+ private:
+  int writes_ = 0;
+};
+
+TEST(UnderTheShim, DISABLED_Waits) {
+  EmulatedUsb device = falcon();
+  device.halt_time = 0.5;
+  const EmulatedPlug plug(sharedFolder(), device, [] { return std::make_unique<Halting>(); });
+  const auto usb = openUsb("Novint Falcon");
+  ASSERT_EQ(usb->claim(0), UsbResult::ok);
+  std::array<std::byte, 16> bytes{};
+  EXPECT_EQ(usb->write(2, bytes, 100).result, UsbResult::ok);
+  EXPECT_EQ(usb->write(2, bytes, 100).result, UsbResult::stall);
+  auto begin = Clock::now();
+  EXPECT_EQ(usb->write(2, bytes, 10).result, UsbResult::stall) << "it is being mended";
+  EXPECT_LT(since(begin), 0.3);
+  while (usb->write(2, bytes, 10).result == UsbResult::stall && since(begin) < 5) pause(1);
+  EXPECT_GT(since(begin), 0.3) << "the kernel took half a second";
+  EXPECT_EQ(usb->write(2, bytes, 100).bytes, 16u);
+  begin = Clock::now();
+  EXPECT_EQ(usb->read(0x81, bytes, 20).result, UsbResult::timeout);
+  EXPECT_LT(since(begin), 0.5);
+
+  std::ofstream(fs::path(sharedFolder()) / "deaf") << "";
+  begin = Clock::now();
+  const std::clock_t spent = std::clock();
+  EXPECT_EQ(usb->read(0x81, bytes, 20).result, UsbResult::gone);
+  EXPECT_LT(since(begin), 2);
+  EXPECT_LT(static_cast<double>(std::clock() - spent) / CLOCKS_PER_SEC, 0.1) << "it spins";
+  EXPECT_EQ(usb->write(2, bytes, 100).result, UsbResult::gone) << "it is to be closed";
+  fs::remove(fs::path(sharedFolder()) / "deaf");
+}
+
+TEST(EmulatedBus, AHaltThatLastsAndASystemThatFailsEndWithinTheTimeThatWasGiven) {
+  runUnderTheShim("Waits");
+}
+
+} // namespace
+} // namespace patina::test
