@@ -31,12 +31,11 @@ TEST(DeviceStudy, ACountIsSomeFortyMicrometresEverywhere) {
   }
 }
 
-TEST(DeviceStudy, AWallBuzzesWithinATenthOfWhereTheEigenvaluesPutIt) {
+TEST(DeviceStudy, AWallBuzzesWithinATenthOfThePredictionWithFrictionAndPlayToo) {
   const WorkPrecisionTable& table = quickTables().at(1);
-  EXPECT_GE(table.rows.size(), 3U);
+  EXPECT_GE(table.rows.size(), 5U);
   for (const WorkPrecisionRow& row : table.rows)
-    EXPECT_LT(row.error, 10) << more(row, "measured [N/m]") << " "
-                             << more(row, "eigenvalues [N/m]");
+    EXPECT_LT(row.error, 10) << more(row, "measured [N/m]") << " " << more(row, "predicted [N/m]");
 }
 
 TEST(DeviceStudy, EveryStiffnessUpToAHundredThousandSettlesAsStiffAsItsSprings) {

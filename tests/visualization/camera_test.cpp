@@ -152,5 +152,31 @@ TEST(ViewOptions, WordsReadBackAndUnknownOnesListTheChoices) {
   EXPECT_THROW(parseView("front"), Error);
 }
 
+// Against the rotation and the shift of the thing itself, seen by a camera that stands still.
+TEST(Camera, CarriesWhatItLooksAtAsAThingInTheHand) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int round = 0; round < 50; ++round) {
+    const vtkNew<vtkCamera> camera;
+    turnCamera(*camera, ViewPreset::iso);
+    fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1);
+    const Vec3 focus(camera->GetFocalPoint());
+    const Vec3 back = -viewDirection(*camera), up(camera->GetViewUp()), right = up.cross(back);
+    Eigen::Matrix3d axes;
+    axes << right, up, back;
+    const Vec3 turn = 1e-4 * Vec3(unit(random), unit(random), unit(random));
+    const Vec3 shift = 1e-4 * Vec3(unit(random), unit(random), 0);
+    const double high = 2 * camera->GetDistance() * std::tan(camera->GetViewAngle() * M_PI / 360);
+    const vtkNew<vtkCamera> still;
+    still->DeepCopy(camera);
+    carry(*camera, shift, turn);
+    for (const Vec3& point : cloud()) {
+      const Vec3 arm = point - focus;
+      const Vec3 moved = point + (axes * turn).cross(arm) + high * (axes * shift);
+      EXPECT_LT((projected(*camera, point) - projected(*still, moved)).norm(), 1e-7);
+    }
+  }
+}
+
 } // namespace
 } // namespace patina

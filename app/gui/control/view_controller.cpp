@@ -85,7 +85,19 @@ void ViewController::showStability(const std::shared_ptr<const SurfaceStability>
                       stability ? shownRatios(stability->map) : std::vector<float>{});
 }
 
+void ViewController::setCameraHand(std::unique_ptr<CameraHand> hand) {
+  hand_ = std::move(hand);
+  hand_problem_.clear();
+}
+
 void ViewController::refresh() {
+  if (hand_) {
+    if (hand_->move(*view().renderer().GetActiveCamera())) at_.view.frames().cameraMoved();
+    if (const std::string problem = hand_->problem(); problem != hand_problem_) {
+      hand_problem_ = problem;
+      if (!problem.empty()) emit said({QString::fromStdString(problem), true});
+    }
+  }
   at_.view.frames().refresh();
   if (const auto shown = at_.paint.shown(); shown && *shown != PaintQuantity::color)
     at_.paint.setRange(view().paintRange(*shown));

@@ -5,9 +5,11 @@
 
 #include <QObject>
 
+#include "app/gui/control/camera_hand.h"
 #include "app/gui/control/scene_change.h"
 #include "app/gui/painting/paint_display.h"
 #include "app/gui/panels/display_panel.h"
+#include "app/gui/panels/message_panel.h"
 #include "app/gui/panels/object_panel.h"
 #include "app/gui/widgets/scene_widget.h"
 #include "app/gui/window/window_state.h"
@@ -35,6 +37,10 @@ class ViewController : public QObject {
   void showStability(const std::shared_ptr<const SurfaceStability>& stability); // null: none
   void refresh(); // draws what has changed; of every window tick
   void exportPicture();
+  void setCameraHand(std::unique_ptr<CameraHand> hand); // null: none
+
+ signals:
+  void said(const patina::Message& message);
 
  private:
   void showMesh(std::shared_ptr<const TriangleMesh> mesh);
@@ -43,6 +49,8 @@ class ViewController : public QObject {
   Parts at_;
   Content content_ = Content::nothing;
   bool has_paint_ = false;
+  std::unique_ptr<CameraHand> hand_;
+  std::string hand_problem_; // that was said
 };
 
 } // namespace patina

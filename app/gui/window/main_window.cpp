@@ -91,6 +91,7 @@ void MainWindow::connectFiles() {
     documents_.openAsked(request);
   });
   connect(&feel_, &FeelController::said, this, &MainWindow::say);
+  connect(&view_, &ViewController::said, this, &MainWindow::say);
   connect(parts_.notice, &NoticeLine::opened, &desks_, [this] { desks_.open(Panel::messages); });
   connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
   connect(parts_.objects, &ObjectList::addAsked, &documents_,

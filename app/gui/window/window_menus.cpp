@@ -228,6 +228,13 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   QObject::connect(parallel, &QAction::toggled, view, [view](bool on) {
     setParallel(*view->view().renderer().GetActiveCamera(), on);
   });
+  QAction* hand = camera->addAction(tr("Moved by a SpaceMouse"));
+  hand->setObjectName(QStringLiteral("camera_hand"));
+  hand->setCheckable(true);
+  hand->setToolTip(tr("What you look at goes with its cap, whatever else feels"));
+  QObject::connect(hand, &QAction::toggled, view, [view](bool on) {
+    view->setCameraHand(on ? std::make_unique<CameraHand>() : nullptr);
+  });
   camera->menuAction()->setToolTip(tr("Look from a side: keys 1 to 7"));
   bar.addAction(camera->menuAction());
   auto* from = qobject_cast<QToolButton*>(bar.widgetForAction(camera->menuAction()));

@@ -102,6 +102,13 @@ void zoom(vtkCamera& camera, double factor) {
   keepScale(camera);
 }
 
+void carry(vtkCamera& camera, const Vec3& shift, const Vec3& turn) {
+  orbit(camera, turn.y() / M_PI, -turn.x() / M_PI);
+  camera.Roll(turn.z() * 180 / M_PI);
+  pan(camera, shift.x(), shift.y());
+  zoom(camera, std::exp(3 * shift.z())); // as a drag does
+}
+
 void setParallel(vtkCamera& camera, bool on) {
   camera.SetParallelProjection(on);
   keepScale(camera);

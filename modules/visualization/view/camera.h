@@ -22,6 +22,9 @@ void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& p
 void orbit(vtkCamera& camera, double dx, double dy);
 void pan(vtkCamera& camera, double dx, double dy);
 void zoom(vtkCamera& camera, double factor); // > 1 comes nearer
+// What it looks at, carried as a thing in the hand: shift in fractions of the picture's height to
+// the right, up and towards the eye; turn about the same axes, a small rotation vector [rad].
+void carry(vtkCamera& camera, const Vec3& shift, const Vec3& turn);
 // Without perspective; what it looks at keeps its size.
 void setParallel(vtkCamera& camera, bool on);
 
