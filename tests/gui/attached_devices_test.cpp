@@ -22,11 +22,11 @@ UsbCheck found(const char* name, std::optional<UsbRefusal> refusal) {
 TEST(AttachedRows, NameEachStateAndOneRemedy) {
   UsbCheck held = found("Novint Falcon", UsbRefusal::held_by_driver);
   held.holder = "spacenavd (813)";
-  const auto rows = attachedRows({.usb = {found("Patina probe", std::nullopt),
-                                          found("Novint Falcon", UsbRefusal::permission), held,
-                                          found("3D Systems Touch", UsbRefusal::gone)},
-                                  .serial = {{"/dev/ttyACM0", "Patina probe", false}},
-                                  .plugins = {{.name = "old", .problem = "made for version 9"}}});
+  const auto rows = attachedRows(
+      {.usb = {found("Patina probe", std::nullopt), found("Novint Falcon", UsbRefusal::permission),
+               held, found("3D Systems Touch", UsbRefusal::gone)},
+       .serial = {{"/dev/ttyACM0", "Patina probe", false}},
+       .plugins = {{.name = "old", .problem = "made for version 9"}}});
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows[0].words, "Patina probe: ready, for the Record card: usb:");
   EXPECT_EQ(rows[0].tip, "12 Mbit/s, answers within 130 µs, 99 of 100 times within 900 µs");
@@ -63,7 +63,8 @@ TEST_F(AttachedCard, OffersThePluginsThatAreInstalledAndLooksAgain) {
       if (button->text() == "Look again" && button->isVisible()) return button;
     return static_cast<QPushButton*>(nullptr);
   };
-  ASSERT_TRUE(again()) << "no device is attached to a machine that builds";
+  ASSERT_TRUE(waitUntil([&] { return again() != nullptr; }, 5000))
+      << "no device is attached to a machine that builds";
   again()->click();
   EXPECT_FALSE(again()) << "it looks";
   EXPECT_TRUE(waitUntil([&] { return again() != nullptr; }, 10000));

@@ -1,5 +1,5 @@
-// How stiff a sampled wall may be where the device has dry friction or its gears have play (MATH
-// 2.1.8): then it depends on how fast the handle swings.
+// How stiff a sampled wall may be where the device has dry friction or its gears have play: then it
+// depends on how fast the handle swings (MATH 2.1.8).
 #pragma once
 
 #include <functional>

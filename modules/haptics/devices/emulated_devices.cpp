@@ -1,6 +1,7 @@
 #include "haptics/devices/emulated_devices.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "haptics/devices/falcon/emulated_falcon.h"
 #include "haptics/devices/falcon/falcon_device.h"
@@ -38,7 +39,11 @@ struct LedCap {
     cap.shift = 4 / SpaceMouseSpec{}.speed * kSpaceMouseFull * (hand.follow(dt) - tip);
     cap.shift = cap.shift.cwiseMax(-kSpaceMouseFull).cwiseMin(kSpaceMouseFull);
     cap.shift = cap.shift.array().round();
-    speed = SpaceMouseSpec{}.speed / kSpaceMouseFull * cap.shift;
+    for (int i = 0; i < 3; ++i) {
+      const double past = std::max(std::abs(cap.shift[i]) - kSpaceMouseDead, 0.0);
+      speed[i] = std::copysign(SpaceMouseSpec{}.speed * past / (kSpaceMouseFull - kSpaceMouseDead),
+                               cap.shift[i]);
+    }
     return cap;
   }
   GlidingTip hand;

@@ -11,7 +11,6 @@ namespace patina {
 namespace {
 
 constexpr std::uint8_t kIn = 0x81;
-constexpr double kDead = 8;           // counts, of a cap at rest
 constexpr double kMost = 500;         // counts; more is clipped
 constexpr double kReleased = 60e-3;   // [s] without a report
 constexpr double kLongestStep = 0.02; // [s], of the tip's way
@@ -28,8 +27,8 @@ Vec3 axesAt(std::span<const std::byte> report, std::size_t at) {
 }
 
 double pushed(double counts) {
-  const double past = std::abs(counts) - kDead;
-  return past > 0 ? std::copysign(past / (kSpaceMouseFull - kDead), counts) : 0;
+  const double past = std::abs(counts) - kSpaceMouseDead;
+  return past > 0 ? std::copysign(past / (kSpaceMouseFull - kSpaceMouseDead), counts) : 0;
 }
 
 class SpaceMouseLink final : public DeviceLink {

@@ -13,6 +13,7 @@
 namespace patina {
 
 inline constexpr double kSpaceMouseFull = 350; // counts of a cap that is pushed all the way
+inline constexpr double kSpaceMouseDead = 8;   // counts, of a cap at rest: they move nothing
 
 // As a hand at the desk sees it: x right, y up, z towards the person; counts.
 struct CapState {
