@@ -34,7 +34,7 @@ std::vector<std::vector<WorkPrecisionRow>> settings() {
 }
 
 TEST(RegistrationStudy, EveryRowHasErrorAndTime) {
-  ASSERT_EQ(quickTables().size(), 4u);
+  ASSERT_EQ(quickTables().size(), 5u);
   EXPECT_EQ(settings().size(), 18u);
   for (const WorkPrecisionTable& table : quickTables())
     for (const WorkPrecisionRow& row : table.rows) {

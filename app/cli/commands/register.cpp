@@ -27,45 +27,62 @@ struct RegisterOptions {
   std::optional<PoseValues> align;
   MeshUnit unit = MeshUnit::mm;
   Method method = Method::distance;
-  double tip_radius = 0, compliance = 0;
-  std::optional<double> noise;
+  double tip_radius = 0;
+  std::optional<double> compliance, noise;
   bool no_search = false;
 };
 
 const Keys kRegisterKeys = {
-    {"mesh_from_scan", "", "mesh from scan", "4 x 4"},
+    {"rms", "m", "off the mesh",
+     "rms distance of the samples that count from where they should be"},
     {"samples",
      "",
      "samples",
      "in contact; and how many of them count",
      Shown::always,
      {{"all", "", ""}, {"count", "", ""}}},
-    {"mean_distance", "m", "mean distance"},
-    {"rms", "m", "rms", "distance of what counts from where it should be"},
-    {"noise", "m", "noise", "that was expected of the samples", Shown::if_any},
-    {"converged", "", "converged", "residual and pose are at rest, and as small as the noise"},
-    {"last_step",
-     "",
-     "last step",
-     "of the pose",
-     Shown::always,
-     {{"turn", "rad", ""}, {"shift", "m", ""}}},
     {"deviation",
      "",
-     "deviation",
-     "of the pose, rms of the axes; of what is seen",
+     "place known to",
+     "one deviation of the pose, rms of the axes; of what is seen, errors of neighbouring samples "
+     "counted once",
      Shown::if_any,
      {{"turn", "rad", ""}, {"shift", "m", ""}}},
+    {"unique", "", "unique", "no other place on the mesh fits as well; absent: nobody looked"},
+    {"rivals",
+     "",
+     "other places",
+     "that fit as well: where, and how far from this one the samples lie there",
+     Shown::never,
+     {{"mesh_from_scan", "", ""},
+      {"rms", "m", ""},
+      {"count", "", ""},
+      {"away", "m", ""},
+      {"turn", "rad", ""}}},
     {"unobservable",
      "",
      "free",
      "motions that the surface does not see, left where they were",
      Shown::if_any,
      {{"axis", "", ""}, {"kind", "", ""}, {"through", "m", ""}, {"pitch", "m", ""}}},
-    {"iterations", "", "iterations"},
-    {"evaluations", "", "evaluations", "of a sample's distance", Shown::if_any},
-    {"starts", "", "starts", "poses that were fitted from", Shown::if_any},
+    {"converged", "", "converged", "residual and pose are at rest, and as small as the noise"},
+    {"compliance", "m/N", "gives way", "the surface, to a newton: told, or found by the forces",
+     Shown::if_any},
     {"error", "m", "error", "against the truth: of the samples, rms", Shown::if_any},
+    {"mesh_from_scan", "", "mesh from scan", "4 x 4"},
+    {"mean_distance", "m", "mean distance"},
+    {"noise", "m", "noise", "that was expected of the samples", Shown::if_any},
+    {"together", "", "worth one", "so many samples in a row, as their errors go together",
+     Shown::if_any},
+    {"last_step",
+     "",
+     "last step",
+     "of the pose",
+     Shown::always,
+     {{"turn", "rad", ""}, {"shift", "m", ""}}},
+    {"iterations", "", "iterations", "of the fit"},
+    {"evaluations", "", "evaluations", "of a sample's distance, in the fit", Shown::if_any},
+    {"starts", "", "starts", "poses that were fitted from", Shown::if_any},
     {"seconds", "s", "registered in"}};
 
 // X,Y,Z as lengths, then degrees about the fixed axes x, y and z (A09).
@@ -129,35 +146,60 @@ Json freeJson(const std::vector<FreeMotion>& motions) {
   return list;
 }
 
-Report reportOf(const Registration& found, const RegisterOptions& options, double seconds) {
+Json rivalsJson(const std::vector<Rival>& rivals) {
+  Json list = Json::array();
+  for (const Rival& rival : rivals)
+    list.push(Json::object()
+                  .set("mesh_from_scan", poseJson(rival.mesh_from_path))
+                  .set("rms", rival.rms)
+                  .set("count", rival.counts)
+                  .set("away", rival.away)
+                  .set("turn", rival.turn));
+  return list;
+}
+
+Report reportOf(const Registration& found, const RegisterOptions& options, double seconds,
+                const std::optional<double>& error) {
   Report report(kRegisterKeys);
+  const std::size_t all = found.counts.size();
   const auto count =
       static_cast<std::size_t>(std::count(found.counts.begin(), found.counts.end(), true));
-  const Eigen::AngleAxisd turn(found.mesh_from_path.linear());
-  const Vec3& shift = found.mesh_from_path.translation();
-  report.set("mesh_from_scan", poseJson(found.mesh_from_path),
-             "turned by " + rounded(turn.angle() * 180 / std::numbers::pi) +
-                 " degrees, shifted by " + formatLength(shift.norm()));
-  report.set("samples", Json::object().set("all", found.counts.size()).set("count", count),
-             formatCount(found.counts.size()) + ", of which " + formatCount(count) + " count");
-  report.set("mean_distance", found.mean_distance).set("rms", found.rms);
-  if (found.noise > 0 && options.noise) report.set("noise", *options.noise);
-  report.set("converged", found.converged);
-  report.set("last_step",
-             Json::object().set("turn", found.last_turn).set("shift", found.last_shift),
-             rounded(1e3 * found.last_turn) + " mrad, " + formatLength(found.last_shift));
+  report.set("rms", found.rms, formatLength(found.rms) + " rms, of the samples that count");
+  report.set("samples", Json::object().set("all", all).set("count", count),
+             formatCount(all) + ", of which " +
+                 (count == all ? "none is" : formatCount(all - count) + " are") + " left out");
   if (options.method == Method::distance) {
     const double turns = std::sqrt(found.covariance.topLeftCorner<3, 3>().trace() / 3),
                  shifts = std::sqrt(found.covariance.bottomRightCorner<3, 3>().trace() / 3);
     report.set("deviation", Json::object().set("turn", turns).set("shift", shifts),
-               rounded(1e3 * turns) + " mrad, " + formatLength(shifts));
+               formatLength(shifts) + ", " + rounded(turns * 180 / std::numbers::pi) +
+                   " degrees (one deviation)");
+    if (found.rivals) {
+      report.set("unique", found.rivals->empty(),
+                 found.rivals->empty() ? "yes" : "no: " + inWords(*found.rivals));
+      report.set("rivals", rivalsJson(*found.rivals));
+    }
     std::string words;
     for (const FreeMotion& motion : found.free)
       words += (words.empty() ? "" : "; ") + inWords(motion);
     report.set("unobservable", freeJson(found.free), words);
+    const double compliance = options.compliance.value_or(found.compliance);
+    report.set("compliance", compliance, formatLength(compliance) + " a newton");
+    report.set("together", found.together, rounded(found.together) + " samples in a row");
     report.set("evaluations", found.evaluations)
         .set("starts", static_cast<std::size_t>(found.starts));
   }
+  report.set("converged", found.converged);
+  if (error) report.set("error", *error);
+  const Eigen::AngleAxisd turn(found.mesh_from_path.linear());
+  report.set("mesh_from_scan", poseJson(found.mesh_from_path),
+             "turned by " + rounded(turn.angle() * 180 / std::numbers::pi) +
+                 " degrees, shifted by " + formatLength(found.mesh_from_path.translation().norm()));
+  report.set("mean_distance", found.mean_distance);
+  if (found.noise > 0 && options.noise) report.set("noise", *options.noise);
+  report.set("last_step",
+             Json::object().set("turn", found.last_turn).set("shift", found.last_shift),
+             rounded(1e3 * found.last_turn) + " mrad, " + formatLength(found.last_shift));
   report.set("iterations", static_cast<std::size_t>(found.iterations));
   return report.set("seconds", seconds);
 }
@@ -175,7 +217,7 @@ int runRegister(RegisterOptions options, Console& console) {
   if (options.align && !options.initial.empty())
     throw Error("--align: --initial is a first guess too; one of them");
   if (options.method != Method::distance &&
-      (options.tip_radius > 0 || options.compliance > 0 || options.noise || options.no_search))
+      (options.tip_radius > 0 || options.compliance || options.noise || options.no_search))
     throw Error("--method: --tip-radius, --compliance, --noise and --no-search are of 'distance'");
   ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
@@ -196,19 +238,24 @@ int runRegister(RegisterOptions options, Console& console) {
   RegistrationOptions fitting;
   for (const PathSample& sample : path) {
     points.push_back(sample.position);
-    if (options.compliance > 0) fitting.pressed.push_back(options.compliance * sample.force);
+    if (options.compliance) fitting.pressed.push_back(*options.compliance * sample.force);
+    if (!options.compliance) fitting.force.push_back(sample.force);
   }
+  // Without a force nothing is known of what yields.
+  if (std::all_of(fitting.force.begin(), fitting.force.end(), [](double f) { return f == 0; }))
+    fitting.force.clear();
   const Pose start = options.align             ? poseOf(*options.align)
                      : options.initial.empty() ? middleOnMiddle(mesh, points)
                                                : readPose(options.initial);
   if (!options.noise) options.noise = medianSigma(path);
   fitting.noise = *options.noise;
   fitting.place = scaleOf(points, Pose::Identity()).radius / 200;
-  fitting.search = !options.no_search;
+  fitting.search = fitting.rivals = !options.no_search;
   if (options.initial.empty() && !options.align) {
     fitting.around = {std::numbers::pi, bounds(mesh).sizes().norm() / 2, 12, 8000};
   }
-  const SurfaceTarget target(std::move(mesh), options.tip_radius, options.compliance > 0);
+  const SurfaceTarget target(std::move(mesh), options.tip_radius,
+                             !fitting.force.empty() || options.compliance.value_or(0) > 0);
 
   const auto begin = std::chrono::steady_clock::now();
   const Registration found = options.method == Method::distance
@@ -217,12 +264,13 @@ int runRegister(RegisterOptions options, Console& console) {
                                           console, options.path.string());
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   console.progress().throwIfCancelled();
-  Report report = reportOf(found, options, taken.count());
+  std::optional<double> error;
   if (truth) {
     double squares = 0;
     for (const Vec3& p : points) squares += (found.mesh_from_path * p - *truth * p).squaredNorm();
-    report.set("error", std::sqrt(squares / static_cast<double>(points.size())));
+    error = std::sqrt(squares / static_cast<double>(points.size()));
   }
+  const Report report = reportOf(found, options, taken.count(), error);
   path.resize(static_cast<std::size_t>(own));
   writeRegisteredPath(options.output, path, found);
   if (!options.report.empty()) writeFileAtomically(options.report, report.json().dump() + "\n");
@@ -230,7 +278,12 @@ int runRegister(RegisterOptions options, Console& console) {
   if (!found.converged)
     console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
                                          "noise lets expect");
-  return found.converged ? kDone : kNotSolved;
+  const bool unique = !found.rivals || found.rivals->empty();
+  if (!unique)
+    console.warn(options.path.string() + ": its place is not unique: " + inWords(*found.rivals) +
+                 "; scan more of the body, add a scan (--also), or, where you know about where it "
+                 "lies, --initial with --no-search");
+  return found.converged && unique ? kDone : kNotSolved;
 }
 
 } // namespace
@@ -253,8 +306,9 @@ Command registerCommand() {
           "the path's sigma lets expect, many poses about it are tried. loop: nearest points and a "
           "fit of points onto points, in turns, as Andrews and Lang have it (2007); literal: its 4 "
           "x 4 matrix by least squares.\n"
-          "Motions that the surface does not see are named and left where they were. Exit code 1 "
-          "where no pose explains the path.",
+          "Motions that the surface does not see are named and left where they were. Other places "
+          "all over the mesh that fit as well are looked for, and how far the surface yields to "
+          "the forces is found. Exit code 1 where no pose explains the path, or several do.",
       .examples = {"patina register dinosaur.obj path.csv -o registered.csv --report r.json",
                    "patina register plate.obj path.csv -o r.csv --initial pose.txt --tip-radius "
                    "0.5mm --json"},
@@ -277,12 +331,15 @@ Command registerCommand() {
             parsedInto(options->method, parseMethod)},
            {"--tip-radius", "LENGTH", "m", "0", "Of the probe: its middle stays that far off.",
             length(options->tip_radius)},
-           {"--compliance", "M_PER_N", "m/N", "0", "How far the surface yields to a newton.",
+           {"--compliance", "M_PER_N", "m/N", "found by the forces",
+            "How far the surface yields to a newton.",
             inRange(0, 1, [options](double c) { options->compliance = c; })},
            {"--noise", "LENGTH", "m", "the path's median sigma", "Deviation of the samples.",
             inRange(
                 1e-9, 1, [options](double n) { options->noise = n; }, NumberKind::length)},
-           {"--no-search", "", "", "", "Fit from the first guess alone.", into(options->no_search)},
+           {"--no-search", "", "", "",
+            "Fit from the first guess alone, and look for no other place.",
+            into(options->no_search)},
            {"--truth", "TRUTH.json", "", "", "Of a simulated scan, to compare with.",
             into(options->truth)},
            {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",

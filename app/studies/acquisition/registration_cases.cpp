@@ -3,6 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/filtering/filtered_scan.h"
+#include "acquisition/registration/first_guess.h"
+#include "acquisition/simulation/mesh_strokes.h"
+#include "acquisition/simulation/simulated_scan.h"
+#include "acquisition/simulation/simulated_streams.h"
 #include "acquisition/simulation/simulated_surface.h"
 #include "geometry/mesh/shapes.h"
 
@@ -57,6 +62,23 @@ RegistrationCase drawCase(const SurfaceTarget& target, const RegistrationSetting
     if (unit(random) < setting.outliers) p += far * aside;
   }
   return drawn;
+}
+
+ScannedCase scanCase(const TriangleMesh& mesh, double seconds, unsigned seed, Progress& progress) {
+  constexpr double kRough = 25e-6; // [m]
+  SimulatedHand hand = strokesOver(mesh, seed, seconds, 0.05);
+  hand.relief = [shape = hand.relief, rough = roughSurface(seed, kRough)](const Vec2& place) {
+    return shape(place) + rough(place);
+  };
+  const ProbeModel probe;
+  SimulatedCamera camera;
+  camera.camera_from_world = cameraOver(bounds(mesh), 0);
+  ScanFilter filter;
+  filter.gravity = camera.camera_from_world.linear() * kGravity;
+  const FilteredScan scan =
+      filterScan(simulateCamera(hand, probe, camera, seed),
+                 simulateProbe(hand, probe, {}, seed + 1), probe, filter, progress);
+  return {inContact(scan.path), camera.camera_from_world.inverse(), hand.compliance};
 }
 
 double trueError(const Pose& mesh_from_path, const std::vector<Vec3>& truth) {

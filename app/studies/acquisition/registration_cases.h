@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "acquisition/registration/surface_target.h"
+#include "acquisition/scan_samples.h"
+#include "core/progress.h"
 
 namespace patina {
 
@@ -25,6 +27,14 @@ struct RegistrationCase {
 // what is added to the points.
 RegistrationCase drawCase(const SurfaceTarget& target, const RegistrationSetting& setting,
                           unsigned seed);
+
+// A simulated scan of a mesh from above, filtered, in contact.
+struct ScannedCase {
+  std::vector<PathSample> path;
+  Pose mesh_from_path; // the truth
+  double compliance;   // of the surface [m/N]
+};
+ScannedCase scanCase(const TriangleMesh& mesh, double seconds, unsigned seed, Progress& progress);
 
 // How far the points are taken from where they belong, rms [m].
 double trueError(const Pose& mesh_from_path, const std::vector<Vec3>& truth);

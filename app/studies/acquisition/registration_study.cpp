@@ -7,6 +7,7 @@
 #include "acquisition/registration/closest_point_loop.h"
 #include "acquisition/registration/register_path.h"
 #include "app/studies/acquisition/registration_cases.h"
+#include "app/studies/acquisition/registration_trust.h"
 #include "app/studies/query_timing.h"
 #include "core/percentiles.h"
 #include "field/surface/models.h"
@@ -211,7 +212,8 @@ std::vector<WorkPrecisionTable> registrationStudy(const StudyOptions& options, P
           return convergence("Closest points (F11)", {0, 1, 2, 5, 10, 20, 50, 100, 200, 500}, 1,
                              afterRounds, options, progress);
         }},
-       {0.9, "number of points", [&] { return numbers(target, options, progress); }}},
+       {0.9, "number of points", [&] { return numbers(target, options, progress); }},
+       {0.95, "simulated scans", [&] { return trustTable(options, progress); }}},
       progress);
 }
 

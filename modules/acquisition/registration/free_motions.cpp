@@ -15,7 +15,7 @@ struct Trial {
   const SurfaceTarget& target;
   const std::vector<Vec3>& points;
   const PathFit& fit;
-  double noise;
+  double noise, together;
   const std::vector<double>& pressed;
   MotionScale scale;
 
@@ -68,7 +68,7 @@ struct Trial {
     const double facets = facetError();
     double n = 0;
     for (const double w : fit.weights) n += w > 0 ? 1 : 0;
-    const double shared = sharing(fit) * noise * noise / std::max(n - 6, 1.0);
+    const double shared = together * noise * noise / std::max(n - 6, 1.0);
     const double most = fit.rms * fit.rms + facets * facets + shared;
     // Well beyond what facets explain, but still on the body.
     const double length = std::min(kFar * std::max(noise, 2 * facets), scale.radius / 2);
@@ -123,8 +123,10 @@ std::string inWords(const FreeMotion& motion) {
 }
 
 FreeMotions freeMotions(const SurfaceTarget& target, const std::vector<Vec3>& points,
-                        const PathFit& fit, double noise, const std::vector<double>& pressed) {
-  const Trial trial{target, points, fit, noise, pressed, scaleOf(points, fit.mesh_from_path)};
+                        const PathFit& fit, double noise, double together,
+                        const std::vector<double>& pressed) {
+  const Trial trial{
+      target, points, fit, noise, together, pressed, scaleOf(points, fit.mesh_from_path)};
   const Eigen::SelfAdjointEigenSolver<Mat6> eigen(fit.normal);
   FreeMotions free;
   for (int k = 0; k < 6; ++k) {

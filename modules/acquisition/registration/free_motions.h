@@ -24,8 +24,9 @@ std::string inWords(const FreeMotion& motion); // "free to slide along (1, 0, 0)
 
 // Motions that the fit cannot tell to ten times `noise` [m]: each that the normal equations call
 // weak is tried, to both sides, by as much. What the mesh's flat faces make of it counts as unseen.
-// `pressed`: see FitOptions.
+// `together`: see ErrorLaw; `pressed`: see FitOptions.
 FreeMotions freeMotions(const SurfaceTarget& target, const std::vector<Vec3>& points,
-                        const PathFit& fit, double noise, const std::vector<double>& pressed);
+                        const PathFit& fit, double noise, double together,
+                        const std::vector<double>& pressed);
 
 } // namespace patina

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace patina {
@@ -122,22 +121,6 @@ Vec6 MotionScale::gradient(const Vec3& at, const Vec3& direction) const {
   Vec6 g;
   g << (at - centre).cross(direction) / radius, direction;
   return g;
-}
-
-double sharing(const PathFit& fit) {
-  std::vector<double> r;
-  for (std::size_t i = 0; i < fit.misses.size(); ++i)
-    if (fit.weights[i] > 0) r.push_back(fit.misses[i].distance);
-  const double all = std::inner_product(r.begin(), r.end(), r.begin(), 0.0);
-  double sum = 1;
-  for (std::size_t lag = 1; lag < r.size() / 4 && all > 0; ++lag) {
-    const double like =
-        std::inner_product(r.begin() + static_cast<std::ptrdiff_t>(lag), r.end(), r.begin(), 0.0) /
-        all;
-    if (like < 2 / std::sqrt(static_cast<double>(r.size()))) break;
-    sum += 2 * like;
-  }
-  return sum;
 }
 
 void limit(Vec6& step, const MotionScale& scale, double extent) {

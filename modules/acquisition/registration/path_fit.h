@@ -54,8 +54,4 @@ struct FitOptions {
 PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,
                 const FitOptions& options = {});
 
-// So many samples in a row are worth one: the sum of their distances' correlations, up to where
-// these vanish.
-double sharing(const PathFit& fit);
-
 } // namespace patina

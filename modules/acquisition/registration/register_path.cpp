@@ -3,9 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
+
+#include "acquisition/registration/yielding_fit.h"
 
 namespace patina {
 namespace {
@@ -33,40 +36,30 @@ double cappedCost(const PathFit& fit, double far) {
   return sum;
 }
 
-Mat6 covarianceOf(const PathFit& fit, const MotionScale& scale, double noise,
-                  const FreeMotions& free) {
-  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(fit.normal);
-  Mat6 covariance = Mat6::Zero();
-  for (int k = 0; k < 6; ++k) {
-    const Vec6 v = eigen.eigenvectors().col(k);
-    if ((free.basis.transpose() * v).norm() < 0.5)
-      covariance += noise * noise / eigen.eigenvalues()[k] * v * v.transpose();
-  }
-  covariance.topRows<3>() /= scale.radius;
-  covariance.leftCols<3>() /= scale.radius;
-  return covariance;
-}
-
 struct Places {
   std::vector<Vec3> points;
-  std::vector<double> pressed;
   std::vector<std::size_t> of; // by point, in `points`
+
+  // Means of what each point has.
+  std::vector<double> meansOf(const std::vector<double>& values) const {
+    std::vector<double> means(values.empty() ? 0 : points.size(), 0), counts(means.size(), 0);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      means[of[i]] += (values[i] - means[of[i]]) / ++counts[of[i]];
+    return means;
+  }
 };
 
-Places placesOf(const std::vector<Vec3>& points, const std::vector<double>& pressed, double reach) {
+Places placesOf(const std::vector<Vec3>& points, double reach) {
   Places places;
   Vec3 first = Vec3::Zero();
   double count = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (count == 0 || !((points[i] - first).norm() < reach)) {
-      first = points[i];
+  for (const Vec3& point : points) {
+    if (count == 0 || !((point - first).norm() < reach)) {
+      first = point;
       count = 0;
       places.points.push_back(Vec3::Zero());
-      if (!pressed.empty()) places.pressed.push_back(0);
     }
-    ++count;
-    places.points.back() += (points[i] - places.points.back()) / count;
-    if (!pressed.empty()) places.pressed.back() += (pressed[i] - places.pressed.back()) / count;
+    places.points.back() += (point - places.points.back()) / ++count;
     places.of.push_back(places.points.size() - 1);
   }
   return places;
@@ -74,10 +67,12 @@ Places placesOf(const std::vector<Vec3>& points, const std::vector<double>& pres
 
 Registration registerPlaces(const SurfaceTarget& target, const std::vector<Vec3>& points,
                             const Pose& start, RegistrationOptions options, Progress& progress) {
-  Places places = placesOf(points, options.pressed, options.place);
-  const std::vector<double> pressed = std::exchange(options.pressed, std::move(places.pressed));
+  const Places places = placesOf(points, options.place);
+  std::vector<double> pressed = std::exchange(options.pressed, places.meansOf(options.pressed));
+  const std::vector<double> force = std::exchange(options.force, places.meansOf(options.force));
   options.place = 0;
   Registration found = registerPath(target, places.points, start, options, progress);
+  for (const double f : force) pressed.push_back(found.compliance * f);
   std::vector<Miss> misses;
   std::vector<bool> counts;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -98,6 +93,8 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
                           Progress& progress) {
   if (!options.pressed.empty() && options.pressed.size() != points.size())
     throw std::invalid_argument("registerPath: a depth for each point, or none");
+  if (!options.force.empty() && (options.force.size() != points.size() || !options.pressed.empty()))
+    throw std::invalid_argument("registerPath: a force for each point and no depth, or none");
   if (options.place > 0) return registerPlaces(target, points, start, options, progress);
   const double extent = scaleOf(points, start).radius;
   const double floor = 1e-4 * extent;
@@ -117,7 +114,8 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   PathFit best = fitFrom(start, points); // where nothing is amiss, all that it takes
   fitting.noise = options.robust ? std::max(options.noise, floor) : 0;
   if (options.robust && !isGood(best, good)) best = fitFrom(start, points);
-  if (options.search && !isGood(best, good)) {
+  const bool anywhere = !(options.around.turn < std::numbers::pi);
+  if (options.search && !isGood(best, good) && !(options.rivals && anywhere)) {
     progress.report(0.2, "search");
     const double far = 4 * std::max(options.noise, 10 * floor);
     const std::vector<Pose> guesses = coarsePoses(target, points, start, options.around, progress);
@@ -140,10 +138,45 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     std::swap(fitting.pressed, few_pressed);
     best = fitFrom(nearest.mesh_from_path, points);
   }
+  const auto noiseOf = [&](const PathFit& fit) {
+    return std::max({fit.rms, options.noise, floor});
+  };
+  ErrorLaw law;
+  FreeMotions free;
+  const auto judge = [&] {
+    law = errorLaw(points, best, noiseOf(best), options.force);
+    if (!options.force.empty()) {
+      YieldingFit yielding =
+          fitYielding(target, points, options.force, best, law.together, fitting);
+      best = std::move(yielding.fit);
+      result.compliance = yielding.compliance;
+      law = errorLaw(points, best, noiseOf(best), options.force);
+      fitting.pressed.clear();
+      for (const double f : options.force) fitting.pressed.push_back(result.compliance * f);
+    }
+    free = freeMotions(target, points, best, noiseOf(best), law.together, fitting.pressed);
+  };
+  judge();
+  if (options.rivals) {
+    progress.report(0.5, "other places");
+    // A first guess decides among places that cannot be told apart.
+    const double better = anywhere ? 0 : kToldApart;
+    std::vector<Pose> places =
+        placesAllOver(target, points, best.mesh_from_path, fitting, progress);
+    for (int round = 0;; ++round) {
+      result.rivals = rivalsOf(target, points, places, best, fitting, law, free, progress);
+      result.starts += static_cast<int>(places.size());
+      if (round == 3 || result.rivals->empty() || result.rivals->front().better <= better) break;
+      places.push_back(best.mesh_from_path);
+      best = fitFrom(result.rivals->front().mesh_from_path, points);
+      judge();
+    }
+  }
   const MotionScale scale = scaleOf(points, best.mesh_from_path);
   result.mesh_from_path = best.mesh_from_path;
   result.rms = best.rms;
-  result.noise = std::max({best.rms, options.noise, floor});
+  result.noise = noiseOf(best);
+  result.together = law.together;
   double sum = 0, n = 0;
   for (std::size_t i = 0; i < best.misses.size(); ++i) {
     result.counts.push_back(best.weights[i] > 0);
@@ -152,8 +185,9 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     ++n;
   }
   result.mean_distance = sum / std::max(n, 1.0);
-  FreeMotions free = freeMotions(target, points, best, result.noise, options.pressed);
-  result.covariance = covarianceOf(best, scale, std::sqrt(sharing(best)) * result.noise, free);
+  result.covariance = law.covariance(free.basis);
+  result.covariance.topRows<3>() /= scale.radius;
+  result.covariance.leftCols<3>() /= scale.radius;
   result.free = std::move(free.named);
   result.middle = scale.centre;
   result.last_turn = best.last_turn;

@@ -4,6 +4,7 @@
 
 #include "acquisition/registration/coarse_search.h"
 #include "acquisition/registration/free_motions.h"
+#include "acquisition/registration/rivals.h"
 
 namespace patina {
 
@@ -12,9 +13,12 @@ struct RegistrationOptions {
   // search.
   double noise = 0;
   std::vector<double> pressed; // see FitOptions
+  std::vector<double> force;   // one a point [N]: how far the surface yields is found, too;
+                               // `pressed` is empty then. Asks for a target with sides
   bool robust = true;          // finds what counts; else all points do
   bool search = true;          // where the fit from `start` is not as good as the noise lets expect
-  CoarseSearch around;         // how
+  CoarseSearch around;         // how; `turn` of pi: nothing is known of the place
+  bool rivals = false;         // looks all over the mesh for other places, half a second or so
   // Points in a row that lie within this of the first of them are one place, their mean, so that
   // where the probe stood counts no more than where it passed; 0: each point counts [m].
   double place = 0;
@@ -24,13 +28,17 @@ struct Registration {
   Pose mesh_from_path = Pose::Identity();
   double mean_distance = 0, rms = 0; // of what counts, from where it should be [m]
   // Of a small turn about the path's middle [rad], then of its shift [m], in the mesh's frame; what
-  // is free adds nothing. Errors that neighbouring samples share count once.
+  // is free adds nothing. Errors that neighbouring samples share count once (ErrorLaw).
   Mat6 covariance = Mat6::Zero();
-  Vec3 middle = Vec3::Zero();           // [m]
-  std::vector<FreeMotion> free;         // the path stays where it was in these
+  Vec3 middle = Vec3::Zero();   // [m]
+  std::vector<FreeMotion> free; // the path stays where it was in these
+  // Places that cannot be told from this one, the best first; nullopt: nobody looked.
+  std::optional<std::vector<Rival>> rivals;
   std::vector<Miss> misses;             // one a point
   std::vector<bool> counts;             // one a point
   double noise = 0;                     // that the fit shows [m]
+  double compliance = 0;                // where `force` let it be found [m/N]
+  double together = 1;                  // so many samples in a row are worth one
   double last_turn = 0, last_shift = 0; // of the last step [rad, m]
   int iterations = 0, starts = 1;
   std::size_t evaluations = 0; // of a point's distance

@@ -1,0 +1,168 @@
+#include "acquisition/registration/error_law.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/registration/yielding_fit.h"
+
+namespace patina {
+namespace {
+
+constexpr std::size_t kBlocks = 128; // points are averaged down to about so many
+
+struct Blocks {
+  double size = 1; // points in one
+  Eigen::MatrixXd gradients;
+  Eigen::VectorXd misses;
+};
+
+Blocks blocksOf(const std::vector<Vec3>& points, const PathFit& fit,
+                const std::vector<double>& force) {
+  const MotionScale scale = scaleOf(points, fit.mesh_from_path);
+  const double usual = usualForce(force);
+  std::vector<std::size_t> counting;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (fit.weights[i] > 0) counting.push_back(i);
+  const std::size_t size = counting.size() / kBlocks + 1;
+  const auto count = static_cast<Eigen::Index>((counting.size() + size - 1) / size);
+  Blocks blocks{static_cast<double>(size), Eigen::MatrixXd::Zero(count, force.empty() ? 6 : 7),
+                Eigen::VectorXd::Zero(count)};
+  for (std::size_t k = 0; k < counting.size(); ++k) {
+    const std::size_t i = counting[k], first = k / size * size;
+    const double share = 1. / static_cast<double>(std::min(size, counting.size() - first));
+    const auto row = static_cast<Eigen::Index>(k / size);
+    blocks.gradients.row(row).head<6>() +=
+        share * scale.gradient(fit.mesh_from_path * points[i], fit.misses[i].direction).transpose();
+    if (!force.empty()) blocks.gradients(row, 6) += share * force[i] / usual;
+    blocks.misses[row] += share * fit.misses[i].distance;
+  }
+  return blocks;
+}
+
+// Matern's of order 3/2: as smooth as what a filter leaves of velocities.
+double likeness(double lag, double reach) {
+  const double a = std::sqrt(3.) * lag / reach;
+  return (1 + a) * std::exp(-a);
+}
+
+// One law that is tried: the part `alone` of a block's variance is its own.
+struct TriedLaw {
+  double reach = 1, alone = 1; // [blocks], of 1
+  double weight = 0;           // logarithm of the restricted likelihood
+  double variance = 0;         // of a block's miss [m^2]
+  Eigen::MatrixXd scatter = {};
+};
+
+void judgeLaw(TriedLaw& tried, const Blocks& blocks, const Eigen::MatrixXd& design) {
+  const Eigen::Index n = blocks.misses.size(), seen = design.cols();
+  Eigen::MatrixXd law(n, n);
+  Eigen::VectorXd by_lag(n);
+  for (Eigen::Index lag = 0; lag < n; ++lag)
+    by_lag[lag] = (1 - tried.alone) * likeness(static_cast<double>(lag), tried.reach);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) law(i, j) = law(j, i) = by_lag[i - j];
+  law.diagonal().array() += tried.alone;
+  const Eigen::LLT<Eigen::MatrixXd> root(law);
+  Eigen::MatrixXd whole(n, seen + 1);
+  whole << design, blocks.misses;
+  const Eigen::MatrixXd white = root.matrixL().solve(whole);
+  const Eigen::LLT<Eigen::MatrixXd> normal(white.leftCols(seen).transpose() * white.leftCols(seen));
+  const Eigen::VectorXd right = white.leftCols(seen).transpose() * white.col(seen);
+  const double left = white.col(seen).squaredNorm() - right.dot(normal.solve(right));
+  const auto logOf = [](const Eigen::LLT<Eigen::MatrixXd>& llt) {
+    return 2 * Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
+  };
+  const auto freedom = static_cast<double>(n - seen);
+  tried.variance = std::max(left, 1e-300) / (freedom - 2);
+  tried.weight = -0.5 * (logOf(root) + logOf(normal) + freedom * std::log(tried.variance));
+  tried.scatter = tried.variance * blocks.gradients.transpose() * law * blocks.gradients;
+}
+
+// A surface that gives way by so much as kYields is nothing out of the ordinary: that keeps a force
+// which never changes from being taken for a shift.
+ErrorLaw withPrior(ErrorLaw law, double block, double force) {
+  if (law.normal.cols() == 6) return law;
+  const double known = kYields * force; // [m]
+  const double weight = law.deviation * law.deviation * law.together / block / (known * known);
+  law.normal(6, 6) += weight;
+  law.scatter(6, 6) += weight * weight * known * known;
+  return law;
+}
+
+} // namespace
+
+Mat6 ErrorLaw::covariance(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free) const {
+  const Eigen::Index count = 6 - free.cols();
+  if (count == 0) return Mat6::Zero();
+  Mat6 turn = Mat6::Identity();
+  if (free.cols() > 0) turn = Eigen::HouseholderQR<Eigen::MatrixXd>(free).householderQ();
+  const Eigen::Index more = normal.cols() - 6;
+  Eigen::MatrixXd seen = Eigen::MatrixXd::Identity(normal.cols(), count + more);
+  seen.topLeftCorner(6, count) = turn.rightCols(count);
+  seen.block(0, count, 6, more).setZero();
+  if (more > 0) seen.row(6).setZero(), seen(6, count) = 1;
+  const Eigen::LDLT<Eigen::MatrixXd> ours(seen.transpose() * normal * seen);
+  const Eigen::MatrixXd whole =
+      seen * ours.solve(ours.solve(seen.transpose() * scatter * seen).transpose()) *
+      seen.transpose();
+  return whole.topLeftCorner<6, 6>();
+}
+
+ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double noise,
+                  const std::vector<double>& force) {
+  const Blocks blocks = blocksOf(points, fit, force);
+  ErrorLaw law;
+  law.normal = blocks.gradients.transpose() * blocks.gradients;
+  const auto count = static_cast<double>(
+      std::count_if(fit.weights.begin(), fit.weights.end(), [](double w) { return w > 0; }));
+  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(law.normal.topLeftCorner<6, 6>());
+  Eigen::Index seen = 0;
+  while (seen < 6 && eigen.eigenvalues()[5 - seen] > kBlind * eigen.eigenvalues()[5]) ++seen;
+  const double alike = blocks.misses.size() < 2
+                           ? 0
+                           : blocks.misses.head(blocks.misses.size() - 1)
+                                     .dot(blocks.misses.tail(blocks.misses.size() - 1)) /
+                                 std::max(blocks.misses.squaredNorm(), 1e-300);
+  if (static_cast<double>(blocks.misses.size()) < 16 ||
+      alike < 2 / std::sqrt(static_cast<double>(blocks.misses.size()))) {
+    law.deviation = std::max(
+        noise, fit.rms * std::sqrt(count / std::max(count - static_cast<double>(seen), 1.0)));
+    law.scatter = law.deviation * law.deviation / blocks.size * law.normal;
+    return withPrior(std::move(law), blocks.size, usualForce(force));
+  }
+  Eigen::MatrixXd design(blocks.gradients.rows(), seen + (force.empty() ? 0 : 1));
+  design.leftCols(seen) = blocks.gradients.leftCols<6>() * eigen.eigenvectors().rightCols(seen);
+  if (!force.empty()) design.col(seen) = blocks.gradients.col(6);
+  std::vector<TriedLaw> all;
+  for (const double alone : {1e-3, 0.03, 0.2, 0.6})
+    for (double reach = 1; reach < 0.3 * static_cast<double>(blocks.misses.size()); reach *= 1.5) {
+      all.push_back({reach, alone});
+      judgeLaw(all.back(), blocks, design);
+    }
+  const double most =
+      std::max_element(all.begin(), all.end(), [](const TriedLaw& a, const TriedLaw& b) {
+        return a.weight < b.weight;
+      })->weight;
+  double sum = 0, variance = 0, together = 0;
+  Eigen::MatrixXd scatter = 0 * law.normal;
+  for (const TriedLaw& tried : all) {
+    const double weight = std::exp(tried.weight - most), shared = 1 - tried.alone;
+    sum += weight;
+    variance += weight * tried.variance * (shared + tried.alone * blocks.size);
+    // Of Matern's law the sum over all lags is 4 / sqrt 3 of its reach.
+    together += weight * tried.variance * blocks.size *
+                (tried.alone + shared * std::max(1., 4 / std::sqrt(3.) * tried.reach));
+    scatter += weight * tried.scatter;
+  }
+  variance /= sum;
+  law.together = std::max(1., together / sum / variance);
+  const double stated = std::max(1., noise * noise / variance);
+  law.deviation = std::sqrt(stated * variance);
+  law.scatter = stated / sum * scatter;
+  return withPrior(std::move(law), blocks.size, usualForce(force));
+}
+
+} // namespace patina

@@ -1,0 +1,172 @@
+// What a registration says of itself: other places that fit as well, how well it is known, and how
+// far the surface yields.
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "acquisition/registration/register_path.h"
+#include "acquisition/registration_shapes.h"
+
+namespace patina {
+namespace {
+
+using test::Draw;
+using test::missOf;
+
+constexpr double kNoise = 1e-4; // [m]
+
+// Half a turn about z brings it onto itself.
+TriangleMesh twofold() {
+  TriangleMesh mesh = icosphere(1, 40);
+  for (Vec3& p : mesh.positions) {
+    p *= 0.035 + 0.008 * p.x() * p.y() + 0.004 * std::sin(3 * p.z()) + 0.004 * p.x() * p.x();
+    p.x() *= 1.3;
+  }
+  return mesh;
+}
+
+Registration compared(const SurfaceTarget& target, std::vector<Vec3> path, Draw& draw) {
+  for (Vec3& p : path) p += draw.normal(kNoise);
+  RegistrationOptions options;
+  options.noise = kNoise;
+  options.rivals = true;
+  Progress progress;
+  return registerPath(target, path, draw.off(path, 5, 2e-3), options, progress);
+}
+
+TEST(Rivals, OfABodyWithTwoAlikeHalvesThereIsOneAndItIsHalfATurnAway) {
+  const SurfaceTarget target(twofold(), 0);
+  Draw draw(21);
+  for (int round = 0; round < 3; ++round) {
+    const auto truth = draw.pathOn(target, 300);
+    const Registration found = compared(target, truth, draw);
+    ASSERT_TRUE(found.rivals.has_value());
+    ASSERT_EQ(found.rivals->size(), 1U);
+    const Rival& rival = found.rivals->front();
+    const Pose half(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitZ()));
+    EXPECT_LT(missOf(half * rival.mesh_from_path, truth), 0.5e-3);
+    EXPECT_NEAR(rival.turn, std::numbers::pi, 0.02);
+    EXPECT_GT(rival.away, 0.02);
+    EXPECT_NEAR(rival.rms, found.rms, 0.2 * found.rms);
+    EXPECT_NE(inWords(*found.rivals).find("another place"), std::string::npos);
+  }
+}
+
+TEST(Rivals, OfABodyWithoutSymmetryThereAreNoneForALongPath) {
+  const SurfaceTarget target(test::lumpy(), 0);
+  Draw draw(22);
+  for (int round = 0; round < 3; ++round) {
+    const auto truth = draw.pathOn(target, 300);
+    const Registration found = compared(target, truth, draw);
+    ASSERT_TRUE(found.rivals.has_value());
+    EXPECT_TRUE(found.rivals->empty()) << inWords(*found.rivals);
+    EXPECT_LT(missOf(found.mesh_from_path, truth), 0.2e-3);
+  }
+}
+
+TEST(Rivals, AFewMillimetresOfPathFitInManyPlaces) {
+  const SurfaceTarget target(test::lumpy(), 0);
+  Draw draw(23);
+  std::vector<Vec3> path;
+  for (int i = 0; i < 200; ++i)
+    path.push_back(target.tree()
+                       .closestPoint(Vec3(0.01 * std::sin(0.03 * i), 0.008 * std::cos(0.05 * i), 1))
+                       .point);
+  EXPECT_GT(compared(target, path, draw).rivals->size(), 2U);
+}
+
+// What a ball does not see is no other place, however far it leads.
+TEST(Rivals, WhatIsFreeIsNone) {
+  const SurfaceTarget target(icosphere(0.04, 60), 0);
+  Draw draw(24);
+  const Registration found = compared(target, draw.pathOn(target, 300), draw);
+  EXPECT_EQ(found.free.size(), 3U);
+  EXPECT_TRUE(found.rivals->empty()) << inWords(*found.rivals);
+}
+
+TEST(Rivals, AreNotLookedForUnlessAsked) {
+  const SurfaceTarget target(test::lumpy(12), 0);
+  Draw draw(25);
+  const auto truth = draw.pathOn(target, 100);
+  Progress progress;
+  EXPECT_FALSE(registerPath(target, truth, Pose::Identity(), {}, progress).rivals.has_value());
+}
+
+TEST(Rivals, ASampleThatIsLeftOutCostsAsMuchAsOneOnTheVerge) {
+  ErrorLaw law;
+  law.deviation = 1e-4;
+  law.together = 10;
+  std::vector<Miss> misses(100);
+  EXPECT_EQ(costOf(misses, law), 0);
+  for (int i = 0; i < 18; ++i) misses[static_cast<std::size_t>(i)].distance = 5e-3;
+  EXPECT_NEAR(costOf(misses, law), 18 * 9 / 10., 1e-9);
+}
+
+// Errors that are a mean of `width` draws in a row: their integrated autocorrelation is the width,
+// in closed form.
+TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
+  const SurfaceTarget target(test::lumpy(), 0);
+  Draw draw(26);
+  const auto truth = draw.pathOn(target, 800);
+  for (const int width : {1, 20, 60}) {
+    double squares = 0, together = 0, alone = 0;
+    const int rounds = 40;
+    for (int round = 0; round < rounds; ++round) {
+      std::vector<Vec3> drawn(truth.size() + static_cast<std::size_t>(width));
+      for (Vec3& v : drawn) v = draw.normal(kNoise * std::sqrt(width));
+      auto path = truth;
+      for (std::size_t i = 0; i < path.size(); ++i)
+        for (int k = 0; k < width; ++k) path[i] += drawn[i + static_cast<std::size_t>(k)] / width;
+      RegistrationOptions options;
+      options.noise = kNoise;
+      Progress progress;
+      const Registration fit =
+          registerPath(target, path, draw.off(truth, 3, 1e-3), options, progress);
+      const Eigen::AngleAxisd turn(fit.mesh_from_path.linear());
+      Vec6 error;
+      error << turn.angle() * turn.axis(), fit.mesh_from_path * fit.middle - fit.middle;
+      squares += error.dot(fit.covariance.ldlt().solve(error)) / 6 / rounds;
+      together += fit.together / rounds;
+      alone += fit.rms / rounds;
+    }
+    std::printf("%d alike: NEES %.2f, worth one %.1f, rms %.4f mm\n", width, squares, together,
+                1e3 * alone);
+    EXPECT_GT(squares, 0.5);
+    EXPECT_LT(squares, 2);
+    EXPECT_GT(together, 0.5 * width);
+    EXPECT_LT(together, 2.0 * width + 1);
+  }
+}
+
+TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
+  const SurfaceTarget target(test::lumpy(), 0, true);
+  Draw draw(27);
+  const auto truth = draw.pathOn(target, 400);
+  const double compliance = 4e-4; // [m/N]
+  RegistrationOptions options;
+  options.noise = kNoise;
+  std::vector<Vec3> path;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    options.force.push_back(1 + 0.5 * std::sin(0.07 * static_cast<double>(i)));
+    const std::int32_t face = target.tree().closestPoint(truth[i]).surface.face;
+    path.push_back(truth[i] -
+                   compliance * options.force.back() * faceNormal(target.mesh(), index(face)) +
+                   draw.normal(kNoise));
+  }
+  Progress progress;
+  const Registration found =
+      registerPath(target, path, draw.off(truth, 5, 2e-3), options, progress);
+  EXPECT_NEAR(found.compliance, compliance, 0.1 * compliance);
+  EXPECT_NEAR(found.rms, kNoise, 0.2 * kNoise);
+  EXPECT_LT(missOf(found.mesh_from_path, truth), 0.1e-3);
+  // Against a hard surface there is nothing to find.
+  for (std::size_t i = 0; i < truth.size(); ++i) path[i] = truth[i] + draw.normal(kNoise);
+  const Registration hard = registerPath(target, path, draw.off(truth, 5, 2e-3), options, progress);
+  EXPECT_LT(hard.compliance, 0.1 * compliance);
+  options.force.pop_back();
+  EXPECT_THROW(registerPath(target, path, Pose::Identity(), options, progress),
+               std::invalid_argument);
+}
+
+} // namespace
+} // namespace patina
