@@ -278,12 +278,11 @@ int runRegister(RegisterOptions options, Console& console) {
   if (!found.converged)
     console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
                                          "noise lets expect");
-  const bool unique = !found.rivals || found.rivals->empty();
-  if (!unique)
+  if (found.rivals && !found.rivals->empty())
     console.warn(options.path.string() + ": its place is not unique: " + inWords(*found.rivals) +
                  "; scan more of the body, add a scan (--also), or, where you know about where it "
                  "lies, --initial with --no-search");
-  return found.converged && unique ? kDone : kNotSolved;
+  return isDoubtful(found) ? kNotSolved : kDone;
 }
 
 } // namespace

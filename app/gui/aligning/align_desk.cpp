@@ -36,9 +36,21 @@ std::string poseText(const Pose& pose) {
 }
 
 QString wordsOf(const Registration& found) {
-  QString words = found.converged
-                      ? AlignDesk::tr("Fitted: rms %1 of what counts").arg(lengthWords(found.rms))
-                      : AlignDesk::tr("No fit explains the path from here");
+  if (!found.converged) return AlignDesk::tr("No fit explains the path from here");
+  const auto count = std::count(found.counts.begin(), found.counts.end(), true);
+  const auto left_out = static_cast<std::ptrdiff_t>(found.counts.size()) - count;
+  const auto deviation = [&](int from) {
+    return std::sqrt(found.covariance.block<3, 3>(from, from).trace() / 3);
+  };
+  QString words = AlignDesk::tr("Fitted: rms %1 of the %2 samples that count, %3 left out; place "
+                                "known to %4 and %5°")
+                      .arg(lengthWords(found.rms))
+                      .arg(count)
+                      .arg(left_out)
+                      .arg(lengthWords(deviation(3)))
+                      .arg(deviation(0) * 180 / M_PI, 0, 'g', 2);
+  if (isDoubtful(found))
+    words += AlignDesk::tr("; not unique: ") + QString::fromStdString(inWords(*found.rivals));
   for (const FreeMotion& motion : found.free)
     words += QStringLiteral("; ") + QString::fromStdString(inWords(motion));
   return words;
@@ -52,7 +64,13 @@ AlignDesk::AlignDesk(QWidget& window)
   auto* column = new QVBoxLayout(empty);
   empty_->setWordWrap(true);
   empty_->setAlignment(Qt::AlignCenter);
+  column->addStretch(1);
   column->addWidget(empty_);
+  column->addWidget(offer_, 0, Qt::AlignCenter);
+  column->addStretch(1);
+  offer_->setObjectName(QStringLiteral("align_mesh"));
+  connect(offer_, &QPushButton::clicked, this,
+          [this] { emit meshAsked(QString::fromStdString(offered_.string())); });
   cells_->addWidget(empty);
   settle_.setSingleShot(true);
   connect(&settle_, &QTimer::timeout, this, &AlignDesk::settle);
@@ -60,6 +78,7 @@ AlignDesk::AlignDesk(QWidget& window)
   connect(panel_, &AlignPanel::keepAsked, this, &AlignDesk::keepDialog);
   connect(panel_, &AlignPanel::edited, this, [this](const PoseValues& values) {
     if (!alignment_.isReady() || work_) return;
+    found_.reset();
     alignment_.setPose(poseOf(values));
     stale_ = true;
     settle_.start(kSettle);
@@ -135,6 +154,12 @@ void AlignDesk::setPath(const QString& name, std::vector<PathSample> path) {
   begin();
 }
 
+void AlignDesk::offerMesh(const std::filesystem::path& file) {
+  offered_ = file;
+  offer_->setText(tr("Open the scan's %1").arg(QString::fromStdString(file.filename().string())));
+  offer_->setVisible(!offered_.empty() && !alignment_.path().empty());
+}
+
 void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
   cancel();
   alignment_.setMesh(std::move(mesh));
@@ -143,6 +168,7 @@ void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
 
 void AlignDesk::begin() {
   settle_.stop();
+  found_.reset();
   setPicking(false);
   panel_->setPath(name_, alignment_.path().size());
   panel_->setReady(alignment_.isReady(), false);
@@ -153,6 +179,7 @@ void AlignDesk::begin() {
                            "Scan, or a path.csv by Open path.")
                       : tr("There is a path, and no mesh to lay it onto.\n\nOpen the mesh that was "
                            "scanned: Ctrl + O."));
+  offerMesh(offered_);
   cells_->setCurrentIndex(0);
   if (alignment_.isReady()) {
     makeViews();
@@ -207,6 +234,7 @@ void AlignDesk::keep(const std::filesystem::path& file) {
 
 void AlignDesk::move(const Pose& pose) {
   if (!alignment_.isReady() || work_) return;
+  found_.reset();
   alignment_.setPose(pose);
   settle_.stop();
   draw();
@@ -215,6 +243,7 @@ void AlignDesk::move(const Pose& pose) {
 void AlignDesk::settle() {
   if (!alignment_.isReady() || work_) return;
   settle_.stop();
+  found_.reset();
   alignment_.commit();
   panel_->setFit({});
   draw();
@@ -238,10 +267,10 @@ void AlignDesk::draw() {
   const Pose& pose = alignment_.pose();
   const Residuals off = residualsOf(*alignment_.target(), alignment_.points(), pose);
   panel_->setResiduals(off);
-  off_ = off.rms;
   if (!settle_.isActive()) panel_->setValues(valuesOf(pose), reach_);
   DrawnPath path;
   path.title = tr("distance [mm]").toStdString();
+  path.through = true;
   for (std::size_t i = 0; i < alignment_.points().size(); ++i)
     path.samples.push_back({static_cast<double>(i), pose * alignment_.points()[i],
                             1e3 * off.distances[i], false, false});
@@ -285,16 +314,18 @@ void AlignDesk::registerFromHere() {
   work_ = Work{title, title};
   panel_->setReady(true, true);
   emit changed();
+  RegistrationOptions options;
   std::vector<Vec3> points;
   std::vector<double> sigmas;
   for (const PathSample& sample : alignment_.path()) {
     points.push_back(sample.position);
     sigmas.push_back(sample.sigma);
+    if (alignment_.hasForces()) options.force.push_back(sample.force);
   }
-  RegistrationOptions options;
   options.noise = percentiles(sigmas).p50;
   options.place = kPlaces * scaleOf(points, Pose::Identity()).radius;
   options.search = false; // the hand has said where
+  options.rivals = true;
   fit_job_.start([this, options, points, target = alignment_.target(), start = alignment_.pose()](
                      Progress& progress, const Background::Deliver& deliver) {
     const auto rest = [this] {
@@ -307,6 +338,7 @@ void AlignDesk::registerFromHere() {
         rest();
         move(found.mesh_from_path);
         settle();
+        found_ = found;
         panel_->setFit(wordsOf(found));
         emit changed();
       });

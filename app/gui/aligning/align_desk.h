@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <QLabel>
+#include <QPushButton>
 #include <QStackedWidget>
 #include <QTimer>
 
@@ -29,13 +30,16 @@ class AlignDesk : public QObject {
   QWidget* basin() const { return plot_; }
 
   const Alignment& alignment() const { return alignment_; }
-  double off() const { return off_; }           // rms of the path from the mesh [m]
+  // Of the fit that put the path where it is; nullopt: a hand did.
+  const std::optional<Registration>& found() const { return found_; }
   const QString& name() const { return name_; } // of the path
   const std::optional<Work>& work() const { return work_; }
 
   void openPath(const std::filesystem::path& file);
   void setPath(const QString& name, std::vector<PathSample> path); // not yet told by contact
-  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);     // nullptr: no scene is open
+  // That lies beside the path, to be opened where no scene is; empty: none.
+  void offerMesh(const std::filesystem::path& file);
+  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: no scene is open
   void cancel();
   void fit();
   void undo();
@@ -44,6 +48,7 @@ class AlignDesk : public QObject {
 
  signals:
   void changed();
+  void meshAsked(const QString& file);
   void said(const patina::Message& message);
 
  private:
@@ -67,11 +72,13 @@ class AlignDesk : public QObject {
   QString name_;
   QStackedWidget* cells_ = new QStackedWidget;
   QLabel* empty_ = new QLabel;
+  QPushButton* offer_ = new QPushButton;
+  std::filesystem::path offered_;
   AlignPanel* panel_ = new AlignPanel;
   BasinPlot* plot_ = new BasinPlot;
   std::vector<AlignView*> views_; // made with the first path
   QTimer settle_;
-  double off_ = 0;
+  std::optional<Registration> found_;
   double reach_ = 1;                    // of the sliders [m]
   Pose held_ = Pose::Identity();        // as it was when a drag began
   std::vector<Vec3> on_path_, on_mesh_; // that were picked

@@ -132,7 +132,7 @@ void AlignPanel::setValues(const PoseValues& values, double reach) {
 }
 
 void AlignPanel::setResiduals(const Residuals& residuals) {
-  off_->setText(tr("mean %1 · rms %2 · worst %3")
+  off_->setText(tr("All samples: mean %1 · rms %2 · worst %3")
                     .arg(lengthWords(residuals.mean), lengthWords(residuals.rms),
                          lengthWords(residuals.worst)));
 }

@@ -1,5 +1,6 @@
 #include "app/gui/aligning/alignment.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "acquisition/registration/first_guess.h"
@@ -111,6 +112,11 @@ void Alignment::setPath(std::vector<PathSample> path) {
   begin();
 }
 
+bool Alignment::hasForces() const {
+  return std::any_of(path_.begin(), path_.end(),
+                     [](const PathSample& sample) { return sample.force != 0; });
+}
+
 void Alignment::begin() {
   steps_.clear();
   at_ = 0;
@@ -118,7 +124,7 @@ void Alignment::begin() {
   if (target_ == nullptr) {
     TriangleMesh clean = cleaned(*mesh_).mesh;
     if (clean.triangles.empty()) return;
-    target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0);
+    target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0, true);
   }
   pose_ = middleOnMiddle(target_->mesh(), points_);
   steps_ = {pose_};

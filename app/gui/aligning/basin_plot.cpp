@@ -41,8 +41,12 @@ void BasinPlot::setBasin(const std::optional<Basin>& basin) {
       const double reach = turns ? basin->turn * 180 / M_PI : kMilli * basin->shift;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::vector<double>& rms = basin->along[axis + (turns ? 3 : 0)];
-        GraphCurve curve{
-            (turns ? tr("turn %1") : tr("shift %1")).arg(names[axis]), kInks[axis], {}};
+        GraphCurve curve{(axis > 0 ? tr("%1")
+                          : turns  ? tr("rms if turned about %1")
+                                   : tr("rms if shifted along %1"))
+                             .arg(names[axis]),
+                         kInks[axis],
+                         {}};
         for (std::size_t i = 0; i < rms.size(); ++i)
           curve.points << QPointF(
               reach * (2. * static_cast<double>(i) / static_cast<double>(rms.size() - 1) - 1),
@@ -68,7 +72,7 @@ void BasinPlot::setBasin(const std::optional<Basin>& basin) {
 }
 
 void BasinPlot::setSteps(const std::vector<double>& rms) {
-  steps_ = Graph{tr("steps"), tr("mm"), false, false, {{tr("rms"), "accent", {}}}};
+  steps_ = Graph{tr("steps"), tr("mm"), false, false, {{tr("rms"), "accent", {}}}, true};
   for (std::size_t i = 0; i < rms.size(); ++i)
     steps_.curves[0].points << QPointF(static_cast<double>(i), kMilli * rms[i]);
   update();

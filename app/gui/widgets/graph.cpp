@@ -49,8 +49,12 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
                      graph.logarithmic && shown < 1 ? QString::number(shown, 'g', 3)
                                                     : QString::number(shown, 'f', decimals));
   }
+  painter.setPen(ink("quiet"));
+  painter.drawText(QRectF(whole.left(), whole.top() + 3, 42, line), Qt::AlignRight, graph.y_unit);
   std::vector<double> marks;
-  const double across = stepFor(box.width(), std::clamp(static_cast<int>(area.width() / 45), 2, 8));
+  const double across =
+      std::max(stepFor(box.width(), std::clamp(static_cast<int>(area.width() / 60), 2, 8)),
+               graph.counted ? 1. : 0.);
   if (graph.logarithmic)
     marks = {0.2, 0.5, 1, 2, 5, 10};
   else
@@ -59,8 +63,10 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
   for (const double x : marks) {
     if (x < box.left() || x > box.right()) continue;
     painter.setPen(ink("quiet"));
-    painter.drawText(QRectF(xAt(x) - 30, area.bottom() + 3, 60, line), Qt::AlignCenter,
-                     QString::number(x) + (x == marks.back() ? ' ' + graph.x_unit : QString()));
+    const QString words = QString::number(x) + (x == marks.back() ? ' ' + graph.x_unit : QString());
+    const double wide = painter.fontMetrics().horizontalAdvance(words) + 2;
+    const double from = std::min(xAt(x) - wide / 2, whole.right() - wide);
+    painter.drawText(QRectF(from, area.bottom() + 3, wide, line), Qt::AlignCenter, words);
   }
   painter.setRenderHint(QPainter::Antialiasing);
   double legend = area.left();
@@ -77,9 +83,10 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     painter.drawLine(QPointF(legend, whole.top() + line / 2. + 3),
                      QPointF(legend + 12, whole.top() + line / 2. + 3));
     painter.setPen(ink("text"));
-    const QString words = curve.name + (graph.curves.size() == 1 || &curve == &graph.curves.back()
-                                            ? " [" + graph.y_unit + "]"
-                                            : QString());
+    // A graph that is narrow has what fits of it.
+    const double room = whole.right() - legend - 17;
+    const QString words = painter.fontMetrics().elidedText(curve.name, Qt::ElideRight,
+                                                           static_cast<int>(std::max(0., room)));
     painter.drawText(QPointF(legend + 17, whole.top() + painter.fontMetrics().ascent() + 3), words);
     legend += 34 + painter.fontMetrics().horizontalAdvance(words);
   }

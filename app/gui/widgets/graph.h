@@ -18,6 +18,7 @@ struct Graph {
   QString x_unit, y_unit;
   bool bars = false, logarithmic = false;
   std::vector<GraphCurve> curves;
+  bool counted = false; // along x are whole numbers
 };
 // Nothing where its curves have no width or there is no room.
 void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph);

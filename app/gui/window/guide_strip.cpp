@@ -25,10 +25,13 @@ std::vector<GuideStep> guideSteps(const GuideFacts& facts) {
        facts.frames + facts.poses > 0},
       {Desk::scan, tr("Path"), tr("Its frames are tracked and its poses filtered to a path"),
        counted(facts.samples, tr("samples")), facts.samples > 0},
-      {Desk::align, tr("Place"), tr("Lay the path onto the mesh, and fit it"),
-       facts.off ? QString::fromStdString(formatLength(*facts.off)).replace(" um", " µm")
+      {Desk::align, tr("Place"),
+       tr("Lay the path onto the mesh, and fit it: rms distance of the samples that count"),
+       facts.off ? tr("%1 off%2")
+                       .arg(QString::fromStdString(formatLength(*facts.off)).replace(" um", " µm"),
+                            facts.doubt ? tr(", not sure") : QString())
                  : QString(),
-       facts.off.has_value()},
+       facts.off && !facts.doubt},
       {Desk::texture, tr("Texture"),
        tr("Make a texture of the scan, or lay one along a path that you draw"),
        counted(facts.faces, tr("faces")), facts.faces > 0},

@@ -17,9 +17,10 @@ namespace patina {
 struct GuideFacts {
   std::size_t frames = 0, poses = 0; // of the scan that is open
   std::size_t samples = 0;           // of a path, on a mesh or not yet
-  std::optional<double> off; // rms of the path from the mesh, where a hand or a fit put it [m]
-  std::size_t faces = 0;     // that have a texture
-  double force = 0;          // the greatest that was felt [N]
+  std::optional<double> off;         // rms of what counts from the mesh, where a fit put it [m]
+  std::size_t faces = 0;             // that have a texture
+  double force = 0;                  // the greatest that was felt [N]
+  bool doubt = false;                // the fit itself says that the path may lie elsewhere
   bool operator==(const GuideFacts&) const = default;
 };
 

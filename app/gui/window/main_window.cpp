@@ -25,7 +25,10 @@ GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, doub
   if (const ScanPath* path = parts.scan->scan().path()) facts.poses = path->poses.size();
   const Alignment& aligned = parts.align->alignment();
   facts.samples = aligned.path().size();
-  if (aligned.isReady() && aligned.done() > 0) facts.off = parts.align->off();
+  if (const auto& found = parts.align->found()) {
+    facts.off = found->rms;
+    facts.doubt = isDoubtful(*found);
+  }
   if (scene != nullptr)
     for (const SceneObject& object : scene->scene.objects)
       if (object.paint && object.paint->textures)
@@ -158,7 +161,18 @@ void MainWindow::connectScan() {
     return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
   });
   connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
-  connect(parts_.scan, &ScanDesk::pathMade, parts_.align, &AlignDesk::setPath);
+  connect(parts_.scan, &ScanDesk::pathMade, parts_.align,
+          [this](const QString& name, const std::vector<PathSample>& path) {
+            parts_.align->setPath(name, path);
+            const ScanFiles* files = parts_.scan->scan().files();
+            const bool has = files != nullptr && files->mesh != nullptr;
+            parts_.align->offerMesh(has ? files->folder / "mesh.obj" : std::filesystem::path());
+          });
+  connect(parts_.align, &AlignDesk::meshAsked, &documents_, [this](const QString& file) {
+    LoadRequest request;
+    request.path = file.toStdString();
+    documents_.openAsked(request);
+  });
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);

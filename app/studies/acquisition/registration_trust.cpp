@@ -59,7 +59,7 @@ TrustTrial trustTrial(const SurfaceTarget& target, double seconds, unsigned seed
   const Registration found =
       registerPath(target, points, middleOnMiddle(target.mesh(), points), options, progress);
   trial.seconds = threadSeconds() - begin;
-  trial.warned = !found.converged || !found.rivals->empty();
+  trial.warned = isDoubtful(found);
   trial.free = found.free.size();
   // As lengths of the points: turns by their radius.
   const double radius = scaleOf(points, Pose::Identity()).radius;

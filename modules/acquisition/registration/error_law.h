@@ -1,4 +1,4 @@
-// How the errors of a path's samples hang together (A10b): a camera's poses err smoothly in time,
+// How the errors of a path's samples hang together (A28): a camera's poses err smoothly in time,
 // so that many samples in a row are worth one.
 #pragma once
 

@@ -47,6 +47,11 @@ struct Registration {
   bool converged = false;
 };
 
+// Not as good a fit as the noise lets expect, or one of several.
+inline bool isDoubtful(const Registration& found) {
+  return !found.converged || (found.rivals && !found.rivals->empty());
+}
+
 // Throws std::invalid_argument: no finite point, `pressed` of another number; Cancelled.
 Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& points,
                           const Pose& start, const RegistrationOptions& options,

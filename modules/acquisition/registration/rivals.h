@@ -1,4 +1,4 @@
-// Where else on its mesh a path lies as well as at its best place (A10c): a shape that is alike in
+// Where else on its mesh a path lies as well as at its best place (A29): a shape that is alike in
 // several places, or a path so short that it fits many.
 #pragma once
 

@@ -1,5 +1,5 @@
 // A surface that yields to the force that a probe presses with, by so much a newton: found together
-// with the pose (A10d).
+// with the pose (A30).
 #pragma once
 
 #include "acquisition/registration/path_fit.h"

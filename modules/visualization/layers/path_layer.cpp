@@ -109,12 +109,14 @@ vtkSmartPointer<vtkLookupTable> pathColors(const ValueRange& range) {
 
 PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : tube_(surfaceActor(palette::kForce)), line_(surfaceActor(palette::kForce)),
-      bridge_(surfaceActor(palette::kQuiet)), mark_actor_(vtkSmartPointer<vtkActor>::New()),
+      thread_(surfaceActor(palette::kToolShaft)), bridge_(surfaceActor(palette::kQuiet)),
+      mark_actor_(vtkSmartPointer<vtkActor>::New()),
       mark_mapper_(vtkSmartPointer<vtkGlyph3DMapper>::New()), bar_(scalarBar("")) {
   tube_->GetProperty()->SetAmbient(0.35);
   line_->GetProperty()->SetLineWidth(3);
   bridge_->GetProperty()->SetLineWidth(2);
-  for (const auto& actor : {line_, bridge_}) actor->GetProperty()->LightingOff();
+  thread_->GetProperty()->SetLineWidth(1.5);
+  for (const auto& actor : {line_, thread_, bridge_}) actor->GetProperty()->LightingOff();
   const vtkNew<vtkSphereSource> ball;
   ball->SetRadius(1);
   mark_mapper_->SetSourceConnection(ball->GetOutputPort());
@@ -123,6 +125,7 @@ PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
   mark_actor_->SetMapper(mark_mapper_);
   mark_actor_->GetProperty()->SetColor(palette::forVtk(palette::kForce));
   for (const auto& actor : {tube_, line_, bridge_, mark_actor_}) scene.AddActor(actor);
+  overlay.AddActor(thread_);
   bar_->SetLabelFormat("%.3g");
   bar_->SetVisibility(false);
   overlay.AddActor2D(bar_);
@@ -148,6 +151,10 @@ void PathLayer::setPath(const DrawnPath& path) {
   tube->Update();
   meshMapper(*tube_)->SetInputData(tube->GetOutput());
   meshMapper(*line_)->SetInputData(lines);
+  const vtkNew<vtkPolyData> thread; // without the values: in one colour
+  thread->SetPoints(lines->GetPoints());
+  if (path.through) thread->SetLines(lines->GetLines());
+  meshMapper(*thread_)->SetInputData(thread);
   meshMapper(*bridge_)->SetInputData(linesOf(drawn_, true));
   setMarks(marks_);
   if (!has_values) return;

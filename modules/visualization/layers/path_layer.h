@@ -28,6 +28,7 @@ struct DrawnPath {
   std::vector<DrawnSample> samples; // in the order of time
   std::string title;                // of the values: "force [N]"
   bool bar = true;                  // says what the colours are
+  bool through = false;             // a dark thread along it is seen through what hides it
 };
 
 // What was seen and is not part of the path.
@@ -54,7 +55,8 @@ class PathLayer {
  private:
   std::vector<DrawnSample> drawn_;
   std::vector<DrawnMark> marks_;
-  vtkSmartPointer<vtkActor> tube_, line_, bridge_, mark_actor_; // a line is seen from afar, too
+  vtkSmartPointer<vtkActor> tube_, line_, thread_, bridge_,
+      mark_actor_; // a line is seen from afar, too
   vtkSmartPointer<vtkGlyph3DMapper> mark_mapper_;
   vtkSmartPointer<vtkScalarBarActor> bar_;
   bool has_bar_ = false;
