@@ -34,6 +34,7 @@ Registration compared(const SurfaceTarget& target, std::vector<Vec3> path, Draw&
   return registerPath(target, path, draw.off(path, 5, 2e-3), options, progress);
 }
 
+// T-A29
 TEST(Rivals, OfABodyWithTwoAlikeHalvesThereIsOneAndItIsHalfATurnAway) {
   const SurfaceTarget target(twofold(), 0);
   Draw draw(21);
@@ -103,7 +104,7 @@ TEST(Rivals, ASampleThatIsLeftOutCostsAsMuchAsOneOnTheVerge) {
 }
 
 // Errors that are a mean of `width` draws in a row: their integrated autocorrelation is the width,
-// in closed form.
+// in closed form. T-A28
 TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(26);
@@ -138,6 +139,7 @@ TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
   }
 }
 
+// T-A30
 TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
   const SurfaceTarget target(test::lumpy(), 0, true);
   Draw draw(27);

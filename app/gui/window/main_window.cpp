@@ -165,8 +165,9 @@ void MainWindow::connectScan() {
           [this](const QString& name, const std::vector<PathSample>& path) {
             parts_.align->setPath(name, path);
             const ScanFiles* files = parts_.scan->scan().files();
-            const bool has = files != nullptr && files->mesh != nullptr;
-            parts_.align->offerMesh(has ? files->folder / "mesh.obj" : std::filesystem::path());
+            const auto mesh =
+                files != nullptr ? files->folder / "mesh.obj" : std::filesystem::path();
+            parts_.align->offerMesh(std::filesystem::exists(mesh) ? mesh : std::filesystem::path());
           });
   connect(parts_.align, &AlignDesk::meshAsked, &documents_, [this](const QString& file) {
     LoadRequest request;
