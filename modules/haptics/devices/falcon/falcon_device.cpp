@@ -16,6 +16,7 @@ constexpr double kSlowSend = 1e-4;   // [s]; after it, what is early looks as if
 constexpr double kOwed = 0.01;       // [s], that an answer may be on its way
 constexpr double kFastest = 2.5;     // [m/s], of a hand
 constexpr double kJump = 2e-3;       // [m], that is none in itself: counts, and a late answer
+constexpr double kLongGap = 4e-3;    // [s], after which a hand may have come anywhere
 constexpr double kHomingTurn = 1;    // [s], of either way to ask for it
 constexpr int kProbes = 3;
 constexpr double kProbeWait = 0.03; // [s]
@@ -186,16 +187,18 @@ class FalconLink final : public DeviceLink {
     }
     for (std::size_t i = 0; i < 3; ++i)
       angles_[static_cast<int>(i)] = kFalconIndex + kFalconCount * answer.encoders[i];
-    const double now = clock_->now();
-    const bool known = place_at_ >= 0 && now - place_at_ <= kOldestAge;
+    const double now = clock_->now(), gap = now - place_at_;
+    const bool first = place_at_ < 0, lone = first || gap > kLongGap;
     const FalconPose pose =
-        falconPose(shape_, angles_, known ? std::optional(pose_.handle) : std::nullopt);
+        falconPose(shape_, angles_, lone ? std::nullopt : std::optional(pose_.handle));
     if (pose.singular || pose.residual > kFalconResidual) return fault(DeviceStatus::garbled);
-    if (known && (pose.handle - pose_.handle).norm() > kJump + kFastest * (now - place_at_))
+    if (!lone && (pose.handle - pose_.handle).norm() > kJump + kFastest * gap)
       return fault(DeviceStatus::garbled);
     pose_ = pose;
     place_at_ = now;
     state.position = pose.handle - kFalconCentre;
+    // There is nothing near to hold it against: it may be spoilt, and the next one tells.
+    if (lone) state.status = first ? DeviceStatus::calibrating : DeviceStatus::silent;
     return state;
   }
 

@@ -31,7 +31,8 @@ using OpenTransport = std::function<std::unique_ptr<UsbTransport>()>;
 // Asks first whether a firmware runs, and loads the user's file only where none does. An answer
 // counts only if it came alone, whole, in the time that it takes at least, and says a place where
 // the hand can have come since the last; anything else is a fault, after which no answer counts
-// before the line was quiet once and all that are owed have come, or had 10 ms for it. Where
+// before the line was quiet once and all that are owed have come, or had 10 ms for it. After
+// 4 ms without a place the next one is not used, but the one after it must agree with it. Where
 // sending took so long that an older answer would look as if it came in time, the state says the
 // age that this one would have.
 std::unique_ptr<DeviceLink> makeFalconLink(OpenTransport open, FalconFirmwareSource firmware,

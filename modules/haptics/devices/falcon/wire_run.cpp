@@ -69,10 +69,12 @@ class Witness {
 // Around the driver: a frame whose answer was spoilt gives no state.
 class JudgedLink final : public DeviceLink {
  public:
-  JudgedLink(std::unique_ptr<DeviceLink> link, std::shared_ptr<DeviceClock> clock, WireRun& run)
-      : link_(std::move(link)), clock_(std::move(clock)), run_(run) {}
+  JudgedLink(std::unique_ptr<DeviceLink> link, std::shared_ptr<DeviceClock> clock, WireRun& run,
+             std::atomic<int>& processor)
+      : link_(std::move(link)), clock_(std::move(clock)), run_(run), processor_(processor) {}
   Opening open() noexcept override { return link_->open(); }
   DeviceState turn(const Vec3& force) noexcept override {
+    processor_.store(sched_getcpu(), std::memory_order_relaxed);
     const std::uint64_t before = run_.injected;
     const double begun = clock_->now();
     const DeviceState state = link_->turn(force);
@@ -88,19 +90,20 @@ class JudgedLink final : public DeviceLink {
   std::unique_ptr<DeviceLink> link_;
   std::shared_ptr<DeviceClock> clock_;
   WireRun& run_;
+  std::atomic<int>& processor_;
 };
 
 // Between servo and link: holds each state against the witness.
 class Judged final : public Device {
  public:
   Judged(std::unique_ptr<Device> device, std::shared_ptr<DeviceClock> clock, const Witness& witness,
-         WireRun& run, std::vector<double>& ages)
+         WireRun& run, std::vector<double>& ages, std::atomic<int>& processor)
       : device_(std::move(device)), clock_(std::move(clock)), witness_(witness), run_(run),
-        ages_(ages) {}
+        ages_(ages), processor_(processor) {}
   DeviceState exchange(const Vec3& force, double dt) noexcept override {
     const double asked = clock_->now();
     if (exchanges_++ == 0) first_ = asked;
-    processor.store(sched_getcpu(), std::memory_order_relaxed);
+    processor_.store(sched_getcpu(), std::memory_order_relaxed);
     periods_ = std::llround((asked - first_) * kRate);
     const DeviceState state = device_->exchange(force, dt);
     if (judge(state) != DeviceStatus::ok) return state;
@@ -113,7 +116,6 @@ class Judged final : public Device {
     if (off < 0 || off > kOff) ++run_.stale;
     return state;
   }
-  std::atomic<int> processor{-1}; // that the servo has
   // Periods between its first and its last exchange that are neither an exchange nor missed. Both
   // may be late by part of one.
   std::int64_t uncounted(std::uint64_t missed) const noexcept {
@@ -127,20 +129,23 @@ class Judged final : public Device {
   const Witness& witness_;
   WireRun& run_;
   std::vector<double>& ages_;
+  std::atomic<int>& processor_;
   Vec3 last_ = Vec3::Zero();
   std::uint64_t exchanges_ = 0;
   double first_ = 0;         // [s]
   std::int64_t periods_ = 0; // since
 };
 
-// The same device turned by a timer and nothing else, on the processor on which the servo is: what
-// else a processor has to do, interrupts of the disk above all, is not shared evenly.
+// The same device turned by a timer and nothing else: .1 s on the processor on which the servo
+// is, to hold its wake-ups against, and .1 s on the link's, for the round trips. What else a
+// processor has to do, interrupts of the disk above all, is not shared evenly.
 struct Bare {
   explicit Bare(std::size_t room) {
     late.reserve(room);
     round.reserve(room);
   }
-  void turn(const std::atomic<bool>& stop, const std::atomic<int>& processor) {
+  void turn(const std::atomic<bool>& stop, const std::atomic<int>& servos,
+            const std::atomic<int>& links) {
     requestRealtime();
     const auto clock = systemClock();
     FalconBench bench(held(), clock);
@@ -149,11 +154,13 @@ struct Bare {
     PeriodicClock timer(monotonicNs() + 500'000, 1'000'000); // between the servo's ticks
     while (!stop.load(std::memory_order_relaxed)) {
       const std::int64_t due = timer.nextDeadline();
-      if (const int servos = processor.load(std::memory_order_relaxed); servos != on_) {
+      const bool with_servo = due % 200'000'000 < 100'000'000;
+      if (const int wanted = (with_servo ? servos : links).load(std::memory_order_relaxed);
+          wanted != on_ && wanted >= 0) {
         cpu_set_t set;
         CPU_ZERO(&set);
-        CPU_SET(static_cast<std::size_t>(servos), &set);
-        if (sched_setaffinity(0, sizeof set, &set) == 0) on_ = servos;
+        CPU_SET(static_cast<std::size_t>(wanted), &set);
+        if (sched_setaffinity(0, sizeof set, &set) == 0) on_ = wanted;
       }
       sleepUntil(due);
       const std::int64_t woke = monotonicNs();
@@ -161,15 +168,16 @@ struct Bare {
       FalconBytes bytes;
       line.send(encoded({}));
       line.receive(bytes, 2e-3);
-      if (late.size() == late.capacity()) continue;
-      late.push_back(1e-3 * static_cast<double>(woke - due));
-      round.push_back(1e-3 * static_cast<double>(monotonicNs() - woke));
+      if (with_servo && late.size() < late.capacity())
+        late.push_back(1e-3 * static_cast<double>(woke - due));
+      if (!with_servo && round.size() < round.capacity())
+        round.push_back(1e-3 * static_cast<double>(monotonicNs() - woke));
     }
   }
   std::vector<double> late, round; // [us]
 
  private:
-  int on_ = -1; // processor
+  int on_ = -1; // which processor
 };
 
 constexpr WireFault kKinds[] = {WireFault::mute,    WireFault::shortened,   WireFault::corrupt,
@@ -198,18 +206,19 @@ WireRun runOnEmulatedWire(const WireRunSpec& spec, Progress& progress) {
     ++run.injected;
   };
   std::atomic<bool> stop{false};
+  std::atomic<int> servos{-1}, links{-1}; // their processors
   Bare bare(room);
   {
     auto link = std::make_unique<JudgedLink>(
-        makeFalconLink([&] { return bench.plug(); }, {}, linked.clock), linked.clock, run);
+        makeFalconLink([&] { return bench.plug(); }, {}, linked.clock), linked.clock, run, links);
     auto judged = std::make_unique<Judged>(makeLinkedDevice(std::move(link), linked), linked.clock,
-                                           witness, run, ages);
-    const Judged& counts = *judged; // the loop's, but for its atomic and the end
+                                           witness, run, ages, servos);
+    const Judged& counts = *judged; // the loop's, but for the end
     ServoLoop loop(std::move(judged), kRate);
     HapticProperties haptics;
     haptics.stiffness = 500;
     loop.publish(planeSnapshot(haptics, {}));
-    std::thread timer([&] { bare.turn(stop, counts.processor); });
+    std::thread timer([&] { bare.turn(stop, servos, links); });
     std::vector<std::thread> load;
     for (int i = 0; i < spec.load; ++i)
       load.emplace_back([&] {
