@@ -14,13 +14,17 @@ namespace {
 class RegisteredScans : public testing::Test {
  protected:
   // Filtered from a simulated scan of a model.
-  void scan(const std::string& model, const std::string& from) {
+  void scan(const std::string& model, const std::string& from, const std::string& seconds = "20",
+            const std::string& seed = "5") {
     mesh = folder / (model + ".ply");
     scanned = folder / "scan";
     path = folder / "path.csv";
     out = folder / "registered.csv";
     ASSERT_EQ(run({"model", model, "-o", mesh}).exit, 0);
-    ASSERT_EQ(run({"simulate-scan", mesh, "-o", scanned, "--seed", "5", "--from", from}).exit, 0);
+    ASSERT_EQ(run({"simulate-scan", mesh, "-o", scanned, "--seed", seed, "--from", from,
+                   "--seconds", seconds})
+                  .exit,
+              0);
     ASSERT_EQ(run({"filter", scanned, "-o", path}).exit, 0);
   }
 
@@ -47,6 +51,24 @@ TEST_F(RegisteredScans, LandOnTheirMeshWithoutAGuess) {
     EXPECT_NEAR(row[11] + row[12] + row[13], 1, 1e-9);
     EXPECT_LT(std::abs(row[14]), 2e-3);
   }
+}
+
+// Four seconds of a smooth back lie as well elsewhere, and the one fit is some millimetres off.
+TEST_F(RegisteredScans, ThatAreShortAreWarnedOfOtherPlaces) {
+  scan("dinosaur", "+z", "4", "2");
+  const Outcome outcome = run({"register", mesh, path, "-o", out, "--json"});
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_NE(outcome.err.find("not unique"), std::string::npos) << outcome.err;
+  const Json report = parseJson(outcome.out, "report");
+  EXPECT_FALSE(report.at("unique").asBool());
+  ASSERT_FALSE(report.at("rivals").asArray().empty());
+  const Json& rival = report.at("rivals").asArray()[0];
+  EXPECT_EQ(rival.at("mesh_from_scan").asArray().size(), 4U);
+  EXPECT_GT(rival.at("away").asNumber(), 1e-3);
+  // Nobody looks where the first guess is all that is asked for.
+  const Json alone =
+      parseJson(run({"register", mesh, path, "-o", out, "--no-search", "--json"}).out, "report");
+  EXPECT_EQ(alone.find("unique"), nullptr);
 }
 
 // The body's shape is the mesh's: what is left is as low as the roughness that was laid on.
