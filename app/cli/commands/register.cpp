@@ -13,6 +13,7 @@
 #include "core/numbers.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/mesh_unit.h"
 #include "geometry/mesh/pose_values.h"
 
 namespace patina::cli {

@@ -147,13 +147,14 @@ std::vector<Rival> rivalsOf(const SurfaceTarget& target, const std::vector<Vec3>
       std::max(kOnePlace * radius, kDeviations * std::sqrt(law.covariance(free.basis).trace()));
   const PathFit start = fitOf(target, many, best.mesh_from_path, fitting);
   const double here = costOf(start, law, points.size()), most = here + kToldApart;
+  const double roughly = 2 * here + 4 * kToldApart; // as few points tell it
   std::vector<FoundFit> found;
   for (const Pose& place : places) {
     progress.throwIfCancelled();
     const double rough = costOf(missesAt(target, few, place), law) *
                          static_cast<double>(points.size()) /
                          static_cast<double>(few.points.size());
-    if (rough > most + kToldApart) continue; // few points tell it roughly
+    if (rough > roughly) continue;
     PathFit fit = fitOf(target, many, place, fitting);
     const double cost = costOf(fit, law, points.size());
     if (cost > most) continue;
@@ -173,8 +174,7 @@ std::vector<Rival> rivalsOf(const SurfaceTarget& target, const std::vector<Vec3>
   const double share = static_cast<double>(few.points.size()) / static_cast<double>(points.size());
   for (const FoundFit& one : found) {
     if (free.basis.cols() > 0 &&
-        isOneValley(target, few, best.mesh_from_path, one.fit.mesh_from_path, law,
-                    (std::max(one.cost, here) + kToldApart) * share))
+        isOneValley(target, few, best.mesh_from_path, one.fit.mesh_from_path, law, share * roughly))
       continue;
     const Pose& pose = one.fit.mesh_from_path;
     const auto counts = static_cast<double>(std::count_if(
