@@ -11,6 +11,7 @@
 #include "acquisition/files/scan_files.h"
 #include "acquisition/registration/first_guess.h"
 #include "acquisition/registration/rigid_fit.h"
+#include "app/gui/aligning/fit_words.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/scanning/scan_path.h"
 #include "core/error.h"
@@ -33,27 +34,6 @@ std::string poseText(const Pose& pose) {
     text += '\n';
   }
   return text;
-}
-
-QString wordsOf(const Registration& found) {
-  if (!found.converged) return AlignDesk::tr("No fit explains the path from here");
-  const auto count = std::count(found.counts.begin(), found.counts.end(), true);
-  const auto left_out = static_cast<std::ptrdiff_t>(found.counts.size()) - count;
-  const auto deviation = [&](int from) {
-    return std::sqrt(found.covariance.block<3, 3>(from, from).trace() / 3);
-  };
-  QString words = AlignDesk::tr("Fitted: rms %1 of the %2 samples that count, %3 left out; place "
-                                "known to %4 and %5°")
-                      .arg(lengthWords(found.rms))
-                      .arg(count)
-                      .arg(left_out)
-                      .arg(lengthWords(deviation(3)))
-                      .arg(deviation(0) * 180 / M_PI, 0, 'g', 2);
-  if (isDoubtful(found))
-    words += AlignDesk::tr("; not unique: ") + QString::fromStdString(inWords(*found.rivals));
-  for (const FreeMotion& motion : found.free)
-    words += QStringLiteral("; ") + QString::fromStdString(inWords(motion));
-  return words;
 }
 
 } // namespace
@@ -339,7 +319,7 @@ void AlignDesk::registerFromHere() {
         move(found.mesh_from_path);
         settle();
         found_ = found;
-        panel_->setFit(wordsOf(found));
+        panel_->setFit(fitWords(found));
         emit changed();
       });
     } catch (const std::exception& error) {

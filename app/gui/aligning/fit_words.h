@@ -1,0 +1,12 @@
+// What a fit says of itself, in a line for the panel.
+#pragma once
+
+#include <QString>
+
+#include "acquisition/registration/register_path.h"
+
+namespace patina {
+
+QString fitWords(const Registration& found);
+
+} // namespace patina
