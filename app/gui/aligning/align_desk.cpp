@@ -58,7 +58,6 @@ AlignDesk::AlignDesk(QWidget& window)
   connect(panel_, &AlignPanel::keepAsked, this, &AlignDesk::keepDialog);
   connect(panel_, &AlignPanel::edited, this, [this](const PoseValues& values) {
     if (!alignment_.isReady() || work_) return;
-    found_.reset();
     alignment_.setPose(poseOf(values));
     stale_ = true;
     settle_.start(kSettle);
@@ -214,7 +213,6 @@ void AlignDesk::keep(const std::filesystem::path& file) {
 
 void AlignDesk::move(const Pose& pose) {
   if (!alignment_.isReady() || work_) return;
-  found_.reset();
   alignment_.setPose(pose);
   settle_.stop();
   draw();
@@ -233,7 +231,6 @@ void AlignDesk::settle() {
 
 void AlignDesk::undo() {
   if (work_ || !alignment_.undo()) return;
-  settle_.stop();
   settle();
 }
 
