@@ -171,10 +171,14 @@ std::vector<Rival> rivalsOf(const SurfaceTarget& target, const std::vector<Vec3>
   std::vector<Rival> rivals;
   std::sort(found.begin(), found.end(),
             [](const FoundFit& a, const FoundFit& b) { return a.cost < b.cost; });
-  const double share = static_cast<double>(few.points.size()) / static_cast<double>(points.size());
+  const double stands_for =
+      static_cast<double>(points.size()) / static_cast<double>(many.points.size());
   for (const FoundFit& one : found) {
-    if (free.basis.cols() > 0 &&
-        isOneValley(target, few, best.mesh_from_path, one.fit.mesh_from_path, law, share * roughly))
+    // Along what is free the ends differ by chance, and nothing between them is worse than that.
+    const double chance = 1.25 * std::max(one.cost, here) + kToldApart;
+    if (free.basis.cols() > 0 && one.cost > here - kToldApart &&
+        isOneValley(target, many, best.mesh_from_path, one.fit.mesh_from_path, law,
+                    chance / stands_for))
       continue;
     const Pose& pose = one.fit.mesh_from_path;
     const auto counts = static_cast<double>(std::count_if(
