@@ -5,12 +5,13 @@
 #include <chrono>
 #include <cstring>
 #include <fcntl.h>
-#include <future>
+#include <poll.h>
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
 
 #include "core/disk_error.h"
+#include "core/numbers.h"
 #include "core/output_target.h"
 
 namespace patina {
@@ -33,39 +34,44 @@ int openRetrying(const char* path, int flags, mode_t mode) {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{5}; // with who is to be at a pipe's other end
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kPause{20}; // between two looks at a pipe
 
-// The file system says only to a reader that waits whether anybody writes. Who waits too long is
-// let go by a writer of our own.
-int openPipe(const std::string& name) {
-  struct Opened {
-    int fd, code; // errno is each thread's own
-  };
-  std::promise<Opened> opened;
-  std::future<Opened> ready = opened.get_future();
-  std::thread reader([&] {
-    const int fd = openRetrying(name.c_str(), O_RDONLY);
-    opened.set_value({fd, errno});
-  });
-  const bool waits = ready.wait_for(kPatience) == std::future_status::timeout;
-  if (waits) Descriptor(openRetrying(name.c_str(), O_WRONLY | O_NONBLOCK));
-  reader.join();
-  const auto [fd, code] = ready.get();
-  errno = code;
-  if (!waits) return fd;
-  Descriptor unused(fd);
-  throw FileError(name, 0, "is a pipe that nobody writes: nothing came for 5 s");
+// A copy of its next byte, which stays: bytes, or a writer that has none yet, are an other end.
+bool hasOtherEnd(int pipe, int copy) {
+  const ssize_t copied = ::tee(pipe, copy, 1, SPLICE_F_NONBLOCK);
+  return copied > 0 || (copied < 0 && errno == EAGAIN);
+}
+
+// An open that waits for a writer could not be ended by a clock.
+int openPipe(const std::string& name, std::chrono::milliseconds patience) {
+  Descriptor pipe(openRetrying(name.c_str(), O_RDONLY | O_NONBLOCK));
+  int copies[2] = {-1, -1};
+  if (pipe.get() < 0 || ::pipe2(copies, O_CLOEXEC) != 0) return -1;
+  const Descriptor out(copies[0]), in(copies[1]);
+  const auto end = Clock::now() + patience;
+  while (!hasOtherEnd(pipe.get(), in.get())) {
+    pollfd wait{pipe.get(), POLLIN, 0};
+    ::poll(&wait, 1, static_cast<int>(kPause.count()));
+    if (wait.revents & POLLHUP) break; // somebody came and left
+    if (Clock::now() > end)
+      throw FileError(name, 0,
+                      "is a pipe that nobody writes: nothing came for " +
+                          formatNumber(std::chrono::duration<double>(patience).count()) + " s");
+  }
+  ::fcntl(pipe.get(), F_SETFL, ::fcntl(pipe.get(), F_GETFL) & ~O_NONBLOCK);
+  return pipe.release();
 }
 
 } // namespace
 
-int openToRead(const std::filesystem::path& path) {
+int openToRead(const std::filesystem::path& path, std::chrono::milliseconds patience) {
   if (isStandardStream(path)) return ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
   const std::string name = path.string();
   struct stat info {};
   const bool pipe = ::stat(name.c_str(), &info) == 0 && S_ISFIFO(info.st_mode) &&
                     !path.string().starts_with("/dev/") && !path.string().starts_with("/proc/");
-  const int fd = pipe ? openPipe(name) : openRetrying(name.c_str(), O_RDONLY);
+  const int fd = pipe ? openPipe(name, patience) : openRetrying(name.c_str(), O_RDONLY);
   if (fd >= 0) return fd;
   const int code = errno;
   const std::string cause = "cannot be opened: " + reason(code);
@@ -75,10 +81,10 @@ int openToRead(const std::filesystem::path& path) {
 }
 
 int openStream(const std::string& name) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = Clock::now() + kPipePatience;
   int fd = openRetrying(name.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
-  while (fd < 0 && errno == ENXIO && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (fd < 0 && errno == ENXIO && Clock::now() < end) {
+    std::this_thread::sleep_for(kPause);
     fd = openRetrying(name.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
   }
   if (fd < 0 && errno == ENXIO)

@@ -1,11 +1,13 @@
 // System calls on files, with what signals interrupt done again. Internal to core's files.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <sys/types.h>
+#include <utility>
 
 namespace patina {
 
@@ -19,6 +21,9 @@ class Descriptor {
   void reset(int fd) { // of one that is closed
     fd_ = fd;
   }
+  int release() { // whose it is from now on
+    return std::exchange(fd_, -1);
+  }
   // A full disk may show only here: 0, or -1 and errno.
   int close();
 
@@ -27,9 +32,12 @@ class Descriptor {
 };
 
 int openRetrying(const char* path, int flags, mode_t mode = 0);
+// With who is to be at a pipe's other end.
+constexpr std::chrono::milliseconds kPipePatience{5000};
 // Open for reading; "-" is standard input. FileError: missing, a ring of links, a pipe that nobody
-// has opened for writing after five seconds; DiskError: anything else.
-int openToRead(const std::filesystem::path& path);
+// has opened for writing in time; DiskError: anything else.
+int openToRead(const std::filesystem::path& path,
+               std::chrono::milliseconds patience = kPipePatience);
 // Open for writing what is no file: a device, or a pipe. FileError if nobody has opened the pipe
 // for reading after five seconds; else -1 and errno.
 int openStream(const std::string& name);

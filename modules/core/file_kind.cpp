@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
 
 #include "core/descriptor.h"
-#include "core/error.h"
+#include "core/disk_error.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -100,7 +101,8 @@ void requireSameKind(const std::filesystem::path& path, FileKind kind) {
   struct stat info {};
   if (::stat(name.c_str(), &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0) return;
   const Descriptor file(openRetrying(name.c_str(), O_RDONLY));
-  if (file.get() < 0) return; // one that only may be written
+  if (file.get() < 0 && errno == EACCES) return; // one that only may be written
+  if (file.get() < 0) throw DiskError(name, "cannot be opened: " + reason(errno));
   std::array<char, kHead> buffer{};
   const std::size_t got = readSome(file.get(), name, buffer.data(), buffer.size());
   const FileKind old =

@@ -41,7 +41,8 @@ void flush(const fs::path& folder) {
 
 } // namespace
 
-StagedFolder::StagedFolder(const fs::path& folder) : folder_(folder), fresh_(folder) {
+StagedFolder::StagedFolder(const fs::path& folder, const std::string& last)
+    : folder_(folder), last_(last), fresh_(folder, last) {
   makeFolder(folder_);
   // Never one that is there: a run that was killed may have left files in it.
   for (int i = 0;; ++i) {
@@ -58,7 +59,7 @@ StagedFolder::~StagedFolder() {
   fs::remove_all(staging_, ignored);
 }
 
-void StagedFolder::commit(const std::string& last) {
+void StagedFolder::commit() {
   std::vector<Move> moves;
   for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
     const OutputTarget target = outputTarget(folder_ / file.path().filename());
@@ -68,14 +69,16 @@ void StagedFolder::commit(const std::string& last) {
     requireSameKind(target.path, kindOf(headOf(file.path()), file.file_size()));
     moves.push_back({file.path(), target.path});
   }
-  const auto is_last = [&](const Move& one) { return one.from.filename() == last; };
+  const auto is_last = [&](const Move& one) { return one.from.filename() == last_; };
   std::partition(moves.begin(), moves.end(), [&](const Move& one) { return !is_last(one); });
-  if (::unlink((folder_ / last).c_str()) == 0)
-    flush(folder_);
+  const fs::path old = outputTarget(folder_ / last_).path; // where the new one comes, too
+  if (::unlink(old.c_str()) == 0)
+    flush(old.parent_path());
   else if (errno != ENOENT)
-    throw DiskError((folder_ / last).string(), "cannot be replaced: " + reason(errno));
+    throw DiskError(old.string(), "cannot be replaced: " + reason(errno));
   for (const Move& one : moves) move(one);
   flush(folder_);
+  if (old.parent_path() != folder_) flush(old.parent_path());
   fresh_.keep();
 }
 

@@ -13,18 +13,20 @@ namespace patina {
 // before are as they were. All throw FileError.
 class StagedFolder {
  public:
-  explicit StagedFolder(const std::filesystem::path& folder);
+  // `last` is the file that says that the others are whole.
+  StagedFolder(const std::filesystem::path& folder, const std::string& last);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
   const std::filesystem::path& path() const { return staging_; } // where to write
-  // `last` is the file that says that the others are whole: an old one goes first, the new one
-  // comes last. Refuses before it moves any: files of another kind, read-only ones. Once.
-  void commit(const std::string& last);
+  // An old `last` goes first, the new one comes last. Refuses before it moves any: files of another
+  // kind, read-only ones. Once.
+  void commit();
 
  private:
   std::filesystem::path folder_, staging_;
+  std::string last_;
   NewFolder fresh_;
   Unfinished unfinished_;
 };

@@ -15,18 +15,37 @@ namespace {
 // Names of files are the whole process's, as the files are.
 struct Known {
   std::mutex guard;
-  std::list<std::filesystem::path> paths;
+  std::list<Unfinished::Place> places;
 };
 Known& known() {
   static Known* const all = new Known; // never destroyed: the last to use it is exit itself
   return *all;
 }
 
+// Set aside first: whoever is about to finish it either has, which is seen then, or cannot.
+void removeUnlessWhole(const Unfinished::Place& place) noexcept {
+  namespace fs = std::filesystem;
+  const auto isWhole = [&](const fs::path& folder) {
+    return !place.whole.empty() && ::access((folder / place.whole).c_str(), F_OK) == 0;
+  };
+  if (isWhole(place.path)) return;
+  fs::path aside = place.path;
+  if (!place.whole.empty()) {
+    aside = place.path.parent_path() /
+            ("." + place.path.filename().string() + "." + std::to_string(::getpid()) + ".tmp");
+    if (::rename(place.path.c_str(), aside.c_str()) != 0) return;
+    if (isWhole(aside) && ::rename(aside.c_str(), place.path.c_str()) == 0) return;
+  }
+  std::error_code ignored;
+  fs::remove_all(aside, ignored);
+}
+
 } // namespace
 
-Unfinished::Unfinished(const std::filesystem::path& path) : held_(true) {
+Unfinished::Unfinished(const std::filesystem::path& path, const std::string& whole) : held_(true) {
   const std::lock_guard hold(known().guard);
-  place_ = known().paths.insert(known().paths.end(), std::filesystem::absolute(path));
+  auto& places = known().places;
+  place_ = places.insert(places.end(), {std::filesystem::absolute(path), whole});
 }
 
 Unfinished::Unfinished(Unfinished&& other) noexcept
@@ -41,12 +60,14 @@ Unfinished& Unfinished::operator=(Unfinished&& other) noexcept {
 void Unfinished::done() noexcept {
   if (!std::exchange(held_, false)) return;
   const std::lock_guard hold(known().guard);
-  known().paths.erase(place_);
+  known().places.erase(place_);
 }
 
-NewFolder::NewFolder(const std::filesystem::path& folder) : folder_(folder) {
+NewFolder::NewFolder(const std::filesystem::path& folder, const std::string& whole)
+    : place_{std::filesystem::absolute(folder), whole} {
+  if (!place_.path.has_filename()) place_.path = place_.path.parent_path(); // of "folder/"
   std::error_code unknown;
-  if (std::filesystem::symlink_status(folder, unknown).type() !=
+  if (std::filesystem::symlink_status(place_.path, unknown).type() !=
       std::filesystem::file_type::not_found) {
     kept_ = true;
     return;
@@ -57,7 +78,7 @@ NewFolder::NewFolder(const std::filesystem::path& folder) : folder_(folder) {
       giveSpareBack();
       throw DiskError(folder.string(), "cannot be made a folder: " + reason(cause));
     }
-  unfinished_ = Unfinished(folder);
+  unfinished_ = Unfinished(place_.path, whole);
 }
 
 void NewFolder::giveSpareBack() noexcept {
@@ -67,17 +88,12 @@ void NewFolder::giveSpareBack() noexcept {
 
 NewFolder::~NewFolder() {
   giveSpareBack();
-  if (kept_) return;
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+  if (!kept_) removeUnlessWhole(place_);
 }
 
 void removeUnfinished() noexcept {
   known().guard.lock();
-  for (const std::filesystem::path& path : known().paths) {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
+  for (const Unfinished::Place& place : known().places) removeUnlessWhole(place);
 }
 
 } // namespace patina

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <list>
+#include <string>
 
 namespace patina {
 
@@ -11,24 +12,28 @@ namespace patina {
 // Any thread.
 class Unfinished {
  public:
+  struct Place {
+    std::filesystem::path path;
+    std::string whole; // the file in it that says that somebody has finished it; may be empty
+  };
   Unfinished() = default;
-  explicit Unfinished(const std::filesystem::path& path);
+  explicit Unfinished(const std::filesystem::path& path, const std::string& whole = {});
   ~Unfinished() { done(); }
   Unfinished(Unfinished&& other) noexcept;
   Unfinished& operator=(Unfinished&& other) noexcept;
   void done() noexcept; // whole, or gone already
 
  private:
-  std::list<std::filesystem::path>::iterator place_{};
+  std::list<Place>::iterator place_{};
   bool held_ = false;
 };
 
-// A folder that was not there before: gone again with what is in it, unless kept. One that was
-// there stays whatever happens.
+// A folder that was not there before: gone again with what is in it, unless kept, or finished by
+// another program meanwhile. One that was there stays whatever happens.
 class NewFolder {
  public:
-  // The folder is made by who uses it. Throws FileError.
-  explicit NewFolder(const std::filesystem::path& folder);
+  // The folder is made by who uses it; `whole` is the file in it that comes last. Throws FileError.
+  NewFolder(const std::filesystem::path& folder, const std::string& whole);
   ~NewFolder();
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
@@ -40,7 +45,7 @@ class NewFolder {
  private:
   void giveSpareBack() noexcept;
 
-  std::filesystem::path folder_;
+  Unfinished::Place place_;
   Unfinished unfinished_;
   std::array<int, 2> spare_{-1, -1}; // descriptors for the removal, where all others are in use
   bool kept_ = false;

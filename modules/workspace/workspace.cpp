@@ -216,7 +216,7 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
 
 void saveWorkspace(const Scene& scene, const fs::path& folder) {
   validate(scene);
-  NewFolder fresh(folder);
+  NewFolder fresh(folder, kManifestName);
   begin(folder);
   {
     const FolderLock alone(folder);

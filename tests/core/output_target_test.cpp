@@ -1,12 +1,15 @@
 // What is written where, what a file is, and what is gone when the program is ended.
 #include "core/output_target.h"
 
+#include <chrono>
 #include <fcntl.h>
 #include <fstream>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/descriptor.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_kind.h"
@@ -94,9 +97,9 @@ TEST_F(OutputTargets, WhatIsUnfinishedIsGoneWhenTheProgramIsEnded) {
   if (child == 0) {
     AtomicFile file(folder / "half.csv");
     file.append("half");
-    StagedFolder staged(folder / "made");
+    StagedFolder staged(folder / "made", "a");
     writeFileAtomically(staged.path() / "a", "a");
-    NewFolder kept(folder / "kept");
+    NewFolder kept(folder / "kept", "index");
     makeFolder(folder / "kept");
     kept.keep();
     writeFileAtomically(folder / "whole.csv", "whole");
@@ -116,7 +119,7 @@ TEST_F(OutputTargets, WhatIsUnfinishedIsGoneWhenTheProgramIsEnded) {
 TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
   const fs::path out = folder / "out";
   {
-    StagedFolder staged(out);
+    StagedFolder staged(out, "last");
     writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");
   }
   EXPECT_FALSE(fs::exists(out)) << "it was not there before";
@@ -124,21 +127,129 @@ TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
   write("out/a.csv", "{\"another\": \"kind\"}");
   write("out/last", "old");
   {
-    StagedFolder staged(out);
+    StagedFolder staged(out, "last");
     writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");
     writeFileAtomically(staged.path() / "last", "new");
-    EXPECT_THROW(staged.commit("last"), FileError);
+    EXPECT_THROW(staged.commit(), FileError);
   }
   EXPECT_EQ(readFile(out / "last"), "old");
   fs::remove(out / "a.csv");
   {
-    StagedFolder staged(out);
+    StagedFolder staged(out, "last");
     writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");
     writeFileAtomically(staged.path() / "last", "new");
-    staged.commit("last");
+    staged.commit();
   }
   EXPECT_EQ(readFile(out / "last"), "new");
   EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 2);
+}
+
+// What cannot be looked into for want of a descriptor may be anything.
+TEST_F(OutputTargets, AFileThatCannotBeOpenedForNowIsNotReplaced) {
+  const std::string mesh = write("g.obj", "v 1 2 3\n");
+  rlimit usual{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &usual), 0);
+  rlimit none = usual;
+  none.rlim_cur = 0;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  std::string said;
+  try {
+    requireSameKind(mesh, FileKind::table);
+  } catch (const FileError& error) {
+    said = error.what();
+  }
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &usual), 0);
+  EXPECT_NE(said.find("Too many open files"), std::string::npos) << said;
+}
+
+// Two programs begin the same new folder; the one that fails must not take the other's work along.
+TEST_F(OutputTargets, WhatAnotherFinishedInTheSameNewFolderStays) {
+  const fs::path shared = folder / "shared";
+  {
+    const NewFolder first(shared, "index");
+    makeFolder(shared);
+    write("shared/part", "of the first");
+    NewFolder second(shared, "index");
+    write("shared/index", "the second's");
+    second.keep();
+  }
+  EXPECT_EQ(readFile(shared / "index"), "the second's");
+  {
+    StagedFolder first(folder / "staged", "last");
+    writeFileAtomically(first.path() / "last", "of the first");
+    StagedFolder second(folder / "staged", "last");
+    writeFileAtomically(second.path() / "last", "the second's");
+    second.commit();
+  }
+  EXPECT_EQ(readFile(folder / "staged" / "last"), "the second's");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "staged"), {}), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2) << "nothing hidden is left";
+}
+
+TEST_F(OutputTargets, AnIndexThatIsALinkStaysOne) {
+  const fs::path out = folder / "out";
+  fs::create_directory(out);
+  fs::create_symlink(folder / "elsewhere", out / "last");
+  for (const char* text : {"one", "two"}) { // to nothing, then to a file
+    StagedFolder staged(out, "last");
+    writeFileAtomically(staged.path() / "last", text);
+    staged.commit();
+    EXPECT_TRUE(fs::is_symlink(out / "last"));
+    EXPECT_EQ(readFile(out / "last"), text);
+    EXPECT_EQ(readFile(folder / "elsewhere"), text);
+  }
+}
+
+class Pipes : public OutputTargets {
+ protected:
+  Pipes() : pipe(folder / "pipe") { mkfifo(pipe.c_str(), 0600); }
+  fs::path pipe;
+  static constexpr std::chrono::milliseconds kShort{60}, kLong{20000};
+};
+
+TEST_F(Pipes, ThatNobodyWritesAreAnErrorAndNoWait) {
+  EXPECT_THROW(openToRead(pipe, kShort), FileError);
+  // One that may not be written, by whom it belongs to: nobody can let a waiting reader go.
+  ASSERT_EQ(chmod(pipe.c_str(), 0444), 0);
+  ASSERT_EQ(chmod(folder.c_str(), 0755), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(20);
+    if (geteuid() == 0 && setuid(65534) != 0) _exit(3);
+    try {
+      openToRead(pipe, kShort);
+    } catch (const FileError&) {
+      _exit(0);
+    }
+    _exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(Pipes, AreReadOnceSomebodyWritesAndMayBeSilentFirst) {
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(20);
+    Descriptor writer(openRetrying(pipe.c_str(), O_WRONLY)); // waits for the reader
+    usleep(100000);                                          // longer than it would wait for us
+    _exit(writeAll(writer.get(), "late") ? 0 : 1);
+  }
+  const Descriptor reader(openToRead(pipe, kLong));
+  EXPECT_EQ(readAll(reader.get(), "pipe"), "late");
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(Pipes, ThatAWriterLeftAreAtTheirEnd) {
+  const Descriptor held(openRetrying(pipe.c_str(), O_RDONLY | O_NONBLOCK));
+  Descriptor writer(openRetrying(pipe.c_str(), O_WRONLY));
+  ASSERT_TRUE(writeAll(writer.get(), "all"));
+  writer.close();
+  const Descriptor reader(openToRead(pipe, kLong)); // the bytes are there, their writer is not
+  EXPECT_EQ(readAll(reader.get(), "pipe"), "all");
 }
 
 TEST(Utf8, TakesAnyLanguageAndNoBrokenBytes) {

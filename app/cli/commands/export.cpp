@@ -63,7 +63,7 @@ int runExport(const ExportOptions& options, Console& console) {
   if (options.stability) stability = requiredStability(*compiled, console.progress());
   console.progress().throwIfCancelled();
 
-  StagedFolder files_of(options.output);
+  StagedFolder files_of(options.output, "scene.vtm");
   const std::filesystem::path& staging = files_of.path();
   std::vector<std::pair<std::string, std::string>> blocks = {
       {"mesh", "mesh.vtp"}, {"surface", "surface.vtp"}, {"field", "field.vti"}};
@@ -98,7 +98,7 @@ int runExport(const ExportOptions& options, Console& console) {
   const std::vector<std::string> images = writePaintImages(compiled->scene, staging, console);
   writeCollectionVtm(staging / "scene.vtm", blocks);
   console.progress().throwIfCancelled();
-  files_of.commit("scene.vtm");
+  files_of.commit();
 
   Report report(kExportKeys);
   Json files = Json::array();

@@ -43,10 +43,10 @@ int runMan(const ManOptions& options, Console& console) {
     return show(commandManPage(command), commandHelp(command), console);
   }
   const std::vector<Command> commands = allCommands();
-  StagedFolder files(folder);
+  StagedFolder files(folder, options.markdown ? "command_line.md" : "patina.1");
   if (options.markdown) {
     writeFileAtomically(files.path() / "command_line.md", markdown(commands));
-    files.commit("command_line.md");
+    files.commit();
     console.print((folder / "command_line.md").string() + "\n");
     return kDone;
   }
@@ -57,7 +57,7 @@ int runMan(const ManOptions& options, Console& console) {
     writeFileAtomically(files.path() / page, commandManPage(command));
     list += (folder / page).string() + "\n";
   }
-  files.commit("patina.1");
+  files.commit();
   console.print(list);
   return kDone;
 }

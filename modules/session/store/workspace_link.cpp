@@ -9,6 +9,7 @@
 #include "core/folder_lock.h"
 #include "core/unfinished.h"
 #include "session/store/journal_fold.h"
+#include "workspace/manifest.h"
 
 namespace patina {
 namespace {
@@ -110,7 +111,7 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
 
 std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path& folder,
                                                      EditHistory& history) {
-  NewFolder fresh(folder);
+  NewFolder fresh(folder, kManifestName);
   makeFolder(folder);
   const FolderLock alone(folder);
   requireWorkspacePlace(folder);
@@ -121,7 +122,7 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::create(const std::filesystem::path
 
 std::unique_ptr<WorkspaceLink> WorkspaceLink::createOver(const std::filesystem::path& folder,
                                                          EditHistory& history) {
-  NewFolder fresh(folder);
+  NewFolder fresh(folder, kManifestName);
   makeFolder(folder);
   const FolderLock alone(folder);
   auto link = write(folder, history);
