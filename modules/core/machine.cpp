@@ -1,5 +1,4 @@
 #include <array>
-#include <ctime>
 #include <sched.h>
 #include <stdlib.h>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/utc_time.h"
 #include "core/work_precision.h"
 
 namespace patina {
@@ -47,15 +47,6 @@ std::string policyName() {
   }
 }
 
-std::string nowUtc() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
-}
-
 } // namespace
 
 Json machineDescription() {
@@ -75,7 +66,7 @@ Json machineDescription() {
   std::array<double, 3> load{};
   if (getloadavg(load.data(), 3) == 3)
     json.set("load", Json::Array{Json(load[0]), Json(load[1]), Json(load[2])});
-  json.set("date", nowUtc());
+  json.set("date", formatUtc(utcSeconds()));
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include "core/append_file.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/utc_time.h"
 #include "workspace/journal_lines.h"
 #include "workspace/older_values.h"
 
@@ -10,6 +11,7 @@ namespace patina {
 namespace {
 
 constexpr std::int64_t kMostSteps = 1'000'000'000;
+constexpr std::int64_t kLatest = 100'000'000'000; // [s], the year 5138
 
 struct Writer {
   Json& json;
@@ -50,7 +52,7 @@ int stepsFrom(const Json& json) {
   return static_cast<int>(steps);
 }
 
-JournalEvent eventFrom(const Json& json) {
+JournalEvent whatFrom(const Json& json) {
   if (const Json* stroke = json.find("stroke")) return strokeFrom(*stroke);
   if (const Json* list = json.find("values")) return valuesFrom(*list);
   if (const Json* stored = json.find("scene"))
@@ -58,6 +60,15 @@ JournalEvent eventFrom(const Json& json) {
   if (const Json* steps = json.find("undo")) return UndoEvent{stepsFrom(*steps)};
   if (const Json* steps = json.find("redo")) return RedoEvent{stepsFrom(*steps)};
   throw Error("holds no edit that this program knows");
+}
+
+JournalEvent eventFrom(const Json& json) {
+  JournalEvent event = whatFrom(json);
+  const Json* time = json.find("time");
+  if (!time) return event;
+  event.time = time->asInteger();
+  if (event.time < 1 || event.time > kLatest) throw Error("time must be seconds since 1970");
+  return event;
 }
 
 } // namespace
@@ -95,6 +106,7 @@ std::string journalHeading(const std::string& from) {
 std::string journalLine(std::uint64_t number, const JournalEvent& event) {
   Json json = Json::object();
   json.set("n", static_cast<std::int64_t>(number));
+  if (event.time != 0) json.set("time", event.time);
   std::visit(Writer{json}, event);
   return sealed(json.dump(-1));
 }
@@ -129,7 +141,8 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, std::uint64_t ev
 
 JournalWriter::~JournalWriter() = default;
 
-void JournalWriter::append(const JournalEvent& event) {
+void JournalWriter::append(JournalEvent event) {
+  if (event.time == 0) event.time = utcSeconds();
   if (const Stroke* stroke = std::get_if<Stroke>(&event)) validate(*stroke);
   impl_->file.append(journalLine(impl_->events + 1, event));
   ++impl_->events;

@@ -27,7 +27,11 @@ struct StoredSceneEdit {
   std::string state; // path relative to the folder
   bool operator==(const StoredSceneEdit&) const = default;
 };
-using JournalEvent = std::variant<Stroke, ValueEdit, StoredSceneEdit, UndoEvent, RedoEvent>;
+// Equal where the variants are, whenever they were done.
+struct JournalEvent : std::variant<Stroke, ValueEdit, StoredSceneEdit, UndoEvent, RedoEvent> {
+  using variant::variant;
+  std::int64_t time = 0; // when, in seconds since 1970 UTC; 0 = not known: an older journal
+};
 
 struct JournalText {
   std::string from; // the state file that the first record follows; "" where no heading says so
@@ -54,7 +58,9 @@ class JournalWriter {
   // then another program has written it since it was read.
   JournalWriter(const std::filesystem::path& path, std::uint64_t events);
   ~JournalWriter();
-  void append(const JournalEvent& event); // Error, too, for a stroke that could not be read again
+  // Stamped with the time now if it has none. Error, too, for a stroke that could not be read
+  // again.
+  void append(JournalEvent event);
   std::uint64_t events() const;
 
  private:

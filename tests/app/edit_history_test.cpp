@@ -137,7 +137,7 @@ TEST_F(Histories, AnEditThatCannotBeRecordedChangesNothing) {
   const Scene second = history.scene();
   history.undo();
   const std::size_t bytes = history.bytes();
-  const auto refuse = [](const Edit&) { throw std::runtime_error("disk full"); };
+  const auto refuse = [](const Edit&, std::int64_t) { throw std::runtime_error("disk full"); };
   EXPECT_THROW(history.append(stroke(3), painted(first, stroke(3)), refuse), std::runtime_error);
   EXPECT_EQ(history.undoable(), 1U);
   EXPECT_EQ(history.redoable(), 1U);

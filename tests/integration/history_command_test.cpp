@@ -1,8 +1,13 @@
 // patina undo and redo: bit for bit, across processes, over every kind of edit.
+#include <ctime>
+
+#include "core/utc_time.h"
 #include "integration/painted.h"
 
 namespace patina::test {
 namespace {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
 
 class History : public Painted {};
 
@@ -83,6 +88,29 @@ TEST_F(History, ListNamesEveryEditAndWhatIsUndone) {
   EXPECT_NE(run({"redo", workspace, "--list"}).out.find("stiffness = 700  (undone)"),
             std::string::npos);
   EXPECT_EQ(fingerprint(workspace), before);
+}
+
+TEST_F(History, ListSaysWhenEachEditWasMadeWhereTheJournalKnows) {
+  const auto paintAt = [&](const char* clock) { // the clock's place, as builds have it
+    const Environment fixed(Settings{{"SOURCE_DATE_EPOCH", clock}});
+    ASSERT_EQ(
+        run({"scene", "-o", workspace, "--set", "stiffness=70" + std::string(1, *clock)}).exit, 0);
+  };
+  paintAt("0"); // a record of an older version has no time
+  paintAt("1795597607");
+  const std::int64_t before = std::time(nullptr);
+  ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", folder / "copy"}).exit, 0);
+  const Json list = runJson({"undo", folder / "copy", "--list"}); // times go with a copy
+  const auto& edits = list.at("edits").asArray();
+  ASSERT_EQ(edits.size(), 5U);
+  EXPECT_FALSE(edits[0].find("time"));
+  EXPECT_EQ(list.at("untimed").asInteger(), 1);
+  EXPECT_EQ(edits[1].at("time").asString(), "2026-11-25T09:06:47Z");
+  EXPECT_GE(edits[2].at("time").asString(), formatUtc(before));
+  EXPECT_LE(edits[4].at("time").asString(), formatUtc(std::time(nullptr)));
+  const std::string text = run({"undo", folder / "copy", "--list"}).out;
+  EXPECT_NE(text.find("2026-11-25T09:06:47Z  stiffness = 701"), std::string::npos) << text;
+  EXPECT_NE(text.find("without a time  1"), std::string::npos) << text;
 }
 
 TEST_F(History, AnEditAfterUndoDropsWhatWasUndone) {
@@ -228,6 +256,8 @@ TEST_F(History, AListReadsNoPicture) {
 
 // The same strokes on the same mesh: every file, byte for byte.
 TEST_F(History, TwoReplaysOfAJournalGiveTheSameFiles) {
+  const Environment fixed(
+      Settings{{"SOURCE_DATE_EPOCH", "1795597607"}}); // the journal tells the time
   const std::string strokes = script(
       "s.json", {stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
                  stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),

@@ -37,6 +37,19 @@ TEST(Journal, EveryKindOfRecordComesBack) {
   EXPECT_EQ(journal.events, everyKind());
 }
 
+TEST(Journal, RecordsKeepTheirTimeAndOlderOnesHaveNone) {
+  JournalEvent stroke = someStroke(1, 800);
+  stroke.time = 1795597607;
+  const JournalText journal = parseJournal(journalLine(1, stroke) + journalLine(2, UndoEvent{}));
+  ASSERT_EQ(journal.events.size(), 2u);
+  EXPECT_EQ(journal.events[0].time, 1795597607);
+  EXPECT_EQ(journal.events[1].time, 0);
+  for (const std::int64_t never : {std::int64_t{-1}, std::int64_t{1} << 60}) {
+    stroke.time = never;
+    EXPECT_NE(parseJournal(journalLine(1, stroke)).damaged_line, 0u) << never;
+  }
+}
+
 // A record's place in the history stays, whatever is left of it.
 TEST(Journal, ValuesOfOlderVersionsAreThoseOfToday) {
   const JournalText journal = parseJournal(

@@ -73,8 +73,9 @@ Scene changed(const std::filesystem::path& folder, const SceneCommandOptions& op
   if (own.events != read.events)
     throw FileError(folder.string(), 0, "another program has just changed it; try again");
   const Edit edit = editOf(options.edits, after);
-  own.link->recordEdit(edit, history.undoable() + 1);
-  history.append(edit, after);
+  history.append(edit, after, [&](const Edit& made, std::int64_t time) {
+    own.link->recordEdit(made, history.undoable() + 1, time);
+  });
   own.link->save(history);
   return after;
 }

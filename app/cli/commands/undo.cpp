@@ -4,6 +4,7 @@
 #include "app/cli/input/workspace_place.h"
 #include "app/cli/output/reports.h"
 #include "core/numbers.h"
+#include "core/utc_time.h"
 #include "session/store/journal_fold.h"
 #include "session/store/replay.h"
 #include "session/store/workspace_link.h"
@@ -20,16 +21,18 @@ struct HistoryOptions {
 
 enum class Way { back, forth };
 
-const Keys kUndoKeys = {{"edits",
-                         "",
-                         "edits",
-                         "oldest first, with --list",
-                         Shown::never,
-                         {{"what", "", ""}, {"done", "", ""}}},
-                        {"undone", "", "undone", "by this command", Shown::if_any},
-                        {"redone", "", "redone", "by this command", Shown::if_any},
-                        {"history", "", "history", "edits that can be undone"},
-                        {"redo", "", "redo", "edits that can be redone", Shown::never}};
+const Keys kUndoKeys = {
+    {"edits",
+     "",
+     "edits",
+     "oldest first, with --list",
+     Shown::never,
+     {{"what", "", ""}, {"done", "", ""}, {"time", "", "UTC, where known"}}},
+    {"untimed", "", "without a time", "edits of an older version, which kept none", Shown::if_any},
+    {"undone", "", "undone", "by this command", Shown::if_any},
+    {"redone", "", "redone", "by this command", Shown::if_any},
+    {"history", "", "history", "edits that can be undone"},
+    {"redo", "", "redo", "edits that can be redone", Shown::never}};
 
 std::string describeEvent(const JournalEvent& event) {
   if (const auto* stroke = std::get_if<Stroke>(&event)) return describe(*stroke);
@@ -39,13 +42,20 @@ std::string describeEvent(const JournalEvent& event) {
 
 void listEdits(const FoldedJournal& fold, Report& report) {
   Json edits = Json::array();
+  std::size_t untimed = 0;
   for (std::size_t i = 0; i < fold.steps.size(); ++i) {
     const std::string what = describeEvent(*fold.steps[i].event);
     const bool done = i < fold.position;
-    edits.push(Json::object().set("what", what).set("done", done));
-    report.tell(std::to_string(i + 1), what + (done ? "" : "  (undone)"));
+    const std::int64_t time = fold.steps[i].event->time;
+    Json edit = Json::object().set("what", what).set("done", done);
+    if (time != 0) edit.set("time", formatUtc(time));
+    edits.push(std::move(edit));
+    const std::string when = time != 0 ? formatUtc(time) + "  " : "";
+    report.tell(std::to_string(i + 1), when + what + (done ? "" : "  (undone)"));
+    untimed += time == 0;
   }
   report.set("edits", edits);
+  report.set("untimed", untimed);
 }
 
 struct Counts {

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/utc_time.h"
+
 namespace patina {
 namespace {
 
@@ -53,11 +55,11 @@ EditHistory::EditHistory(Scene start, Replay replay, std::size_t budget_bytes)
 
 void EditHistory::append(Edit edit, Scene after, const Record& record) {
   Scene present = after;
-  Entry entry{std::move(edit), std::move(after), {}};
+  Entry entry{std::move(edit), std::move(after), {}, utcSeconds()};
   if (entries_.capacity() <= position_) entries_.reserve(2 * position_ + 1);
   count(*entry.after);
   try {
-    if (record) record(entry.edit);
+    if (record) record(entry.edit, entry.time);
   } catch (...) {
     discount(*entry.after);
     throw;
@@ -69,9 +71,9 @@ void EditHistory::append(Edit edit, Scene after, const Record& record) {
   thin();
 }
 
-void EditHistory::appendStored(Edit edit, Load load) {
+void EditHistory::appendStored(Edit edit, Load load, std::int64_t time) {
   truncate();
-  push(std::move(edit), std::nullopt, std::move(load));
+  entries_.push_back({std::move(edit), std::nullopt, std::move(load), time});
   position_ = entries_.size();
 }
 
@@ -92,11 +94,6 @@ void EditHistory::truncate() {
     if (entries_.back().after) discount(*entries_.back().after);
     entries_.pop_back();
   }
-}
-
-void EditHistory::push(Edit edit, std::optional<Scene> after, Load load) {
-  if (after) count(*after);
-  entries_.push_back({std::move(edit), std::move(after), std::move(load)});
 }
 
 bool EditHistory::undo(std::size_t steps) {

@@ -31,14 +31,16 @@ class EditHistory {
   std::size_t redoable() const { return entries_.size() - position_; }
   std::vector<std::string> descriptions() const; // of all edits, oldest first
   const Edit& edit(std::size_t index) const { return entries_[index].edit; }
+  // When it was made, in seconds since 1970 UTC; 0 = not known.
+  std::int64_t time(std::size_t index) const { return entries_[index].time; }
 
   // Drops what could be redone. `record`, if any, is called when nothing after it can fail; nothing
   // changes if it throws.
-  using Record = std::function<void(const Edit& edit)>;
+  using Record = std::function<void(const Edit& edit, std::int64_t time)>;
   void append(Edit edit, Scene after, const Record& record = {});
   // For a history that was stored: `load` is called if the scene is needed and may be null where
   // the edit can be replayed. place() then sets where the history stands.
-  void appendStored(Edit edit, Load load);
+  void appendStored(Edit edit, Load load, std::int64_t time = 0);
   void place(std::size_t position, Scene present);
   // Where the scene after edit `index` is stored now; null = nowhere, where the edit can be
   // replayed.
@@ -62,10 +64,10 @@ class EditHistory {
     Edit edit;
     std::optional<Scene> after;
     Load load;
+    std::int64_t time = 0;
   };
   static const Scene* sceneOf(const Edit& edit); // of a SceneEdit
   void truncate();
-  void push(Edit edit, std::optional<Scene> after, Load load);
   bool goTo(std::size_t position);
   void count(const Scene& scene);
   void discount(const Scene& scene);

@@ -69,8 +69,8 @@ struct Editor::Impl {
 
   // Once the journal holds it nothing can fail: if that is refused nothing has happened.
   void commit(Edit edit, std::shared_ptr<const CompiledScene> after) {
-    history->append(std::move(edit), after->scene, [this](const Edit& made) {
-      if (link) link->recordEdit(made, history->undoable() + 1);
+    history->append(std::move(edit), after->scene, [this](const Edit& made, std::int64_t time) {
+      if (link) link->recordEdit(made, history->undoable() + 1, time);
     });
     compiled = std::move(after);
     unsaved = true;

@@ -82,7 +82,8 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
       load = place.loader(scene->state);
     else if (const auto state = state_at.find(i + 1); state != state_at.end())
       load = place.loader(state->second);
-    opened.history->appendStored(editOf(*fold.steps[i].event), std::move(load));
+    opened.history->appendStored(editOf(*fold.steps[i].event), std::move(load),
+                                 fold.steps[i].event->time);
   }
   // The saved scene, where the history still has it; what the journal says beyond is replayed.
   const std::uint64_t saved_event = std::min<std::uint64_t>(found.event, found.journal.size());
@@ -149,6 +150,7 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::write(const std::filesystem::path&
       journal.emplace_back(
           StoredSceneEdit{std::get<SceneEdit>(edit).what,
                           scenes[i] = storeState(history.sceneAt(event), event, folder)});
+    journal.back().time = history.time(i);
     link->event_of_.push_back(event);
   }
   for (const std::size_t position : history.landmarks(kLandmarkCost))
@@ -162,17 +164,20 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::write(const std::filesystem::path&
   return link;
 }
 
-void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after) {
+void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after, std::int64_t time) {
   // What is on disk must be known here: no memory is taken after that.
   if (event_of_.capacity() <= position_after) event_of_.reserve(2 * position_after + 1);
+  const auto append = [&](JournalEvent event) {
+    event.time = time;
+    journal_->append(std::move(event));
+  };
   if (const auto* stroke = std::get_if<Stroke>(&edit)) {
-    journal_->append(*stroke);
+    append(*stroke);
   } else if (const auto* values = std::get_if<ValueEdit>(&edit)) {
-    journal_->append(*values);
+    append(*values);
   } else {
     const SceneEdit& whole = std::get<SceneEdit>(edit);
-    const std::string state = storeState(*whole.scene, journal_->events() + 1, folder_);
-    journal_->append(StoredSceneEdit{whole.what, state});
+    append(StoredSceneEdit{whole.what, storeState(*whole.scene, journal_->events() + 1, folder_)});
   }
   event_of_.resize(position_after);
   event_of_.push_back(journal_->events());

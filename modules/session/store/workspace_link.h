@@ -40,7 +40,7 @@ class WorkspaceLink {
                                                    EditHistory& history);
 
   const std::filesystem::path& folder() const { return folder_; }
-  void recordEdit(const Edit& edit, std::size_t position_after);
+  void recordEdit(const Edit& edit, std::size_t position_after, std::int64_t time);
   void recordUndo(std::size_t steps);
   void recordRedo(std::size_t steps);
   void save(EditHistory& history); // states that are dropped are not loaded any more
