@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "geometry/mesh/shapes.h"
+#include "haptics/servo/feel.h"
 
 namespace patina {
 namespace {
@@ -39,6 +42,69 @@ TEST(CompileWarnings, PartsThatAreFeltTooThickAreTold) {
   round.objects.push_back(
       {"torus", std::make_shared<const TriangleMesh>(torus(0.03, 0.01, 64, 32)), Pose::Identity()});
   EXPECT_TRUE(warningsOf(round).empty());
+}
+
+// A bar along x whose sections are turned by `turn`, and how it is pressed: K = 500 N/m, 5 mm deep,
+// beside its middle.
+Scene bar(double thickness, double turn) {
+  Scene scene;
+  scene.field.voxel = 1e-3;
+  scene.haptics.stiffness = 500;
+  scene.objects.push_back(
+      {"bar", std::make_shared<const TriangleMesh>(box(Vec3(0.06, thickness, thickness))),
+       Pose(Eigen::AngleAxisd(turn, Vec3::UnitX()))});
+  return scene;
+}
+
+// Of 40 presses, how many end with less than half of the force.
+int letGo(const Scene& scene, double thickness, double turn) {
+  Progress progress;
+  const auto compiled = compile(scene, progress);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(-1, 1);
+  int lost = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 from(0.02 * part(random), 0.3 * thickness * part(random), thickness / 2);
+    const double lean = 0.2 * part(random);
+    std::vector<TimedTip> path;
+    for (int k = 0; k <= 600; ++k) {
+      const double depth = 1e-5 * k - 1e-3;
+      path.push_back(
+          {1e-3 * k, Eigen::AngleAxisd(turn, Vec3::UnitX()) * (from + depth * Vec3(lean, 0, -1))});
+    }
+    const auto felt = feel(*compiled->snapshot, path, progress);
+    lost += felt.back().force.norm() < 0.5 * 500 * 5e-3;
+  }
+  return lost;
+}
+
+TEST(CompileWarnings, BarsAreToldFromWhereContactLetsThemGo) {
+  int told_that_let_go = 0;
+  for (const double turn : {0.0, 0.47})
+    for (const double voxels : {2.2, 2.6, 3.2, 4.2, 5.0}) {
+      const Scene scene = bar(1e-3 * voxels, turn);
+      const auto lines = warningsOf(scene);
+      const bool told = !lines.empty() && lines.back().find("bar: a part") == 0;
+      const int lost = letGo(scene, 1e-3 * voxels, turn);
+      EXPECT_EQ(told, voxels < 4) << voxels << " turned by " << turn;
+      if (told) {
+        EXPECT_NE(lines.back().find("under four voxels (4 mm)"), std::string::npos);
+      } else {
+        EXPECT_EQ(lost, 0) << voxels << " turned by " << turn;
+      }
+      told_that_let_go += told && lost > 0;
+    }
+  EXPECT_GE(told_that_let_go, 4); // of six
+}
+
+TEST(CompileWarnings, PlatesAndWhatAnOffsetMakesThickAreNotBars) {
+  for (const double thickness : {2.2e-3, 3e-3})
+    EXPECT_TRUE(warningsOf(plate(thickness, 1e-3)).empty()) << thickness;
+  Scene scene = bar(2.5e-3, 0);
+  scene.haptics.offset = 0.5e-3;
+  for (const std::string& line : warningsOf(scene))
+    EXPECT_EQ(line.find("both ways"), std::string::npos) << line;
+  EXPECT_EQ(letGo(scene, 2.5e-3, 0), 0);
 }
 
 TEST(CompileWarnings, AnOffsetMakesThinPartsFelt) {

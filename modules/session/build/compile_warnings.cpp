@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/numbers.h"
+#include "core/percentiles.h"
 #include "field/sampling/field_sampler.h"
 #include "haptics/stability/stabilisers.h"
 
@@ -15,41 +17,115 @@ constexpr double kProbeDepth = 0.5;    // voxels
 constexpr double kToldVanished = 0.01; // of the area; slivers beside sharp edges are less
 constexpr double kToldMoved = 0.1;     // of the area; a fine mesh has much of it beside edges
 constexpr double kMoved = 0.05;        // voxels; a smooth surface is felt far closer
+constexpr double kFeltInPlace = 2;     // voxels: of thicker parts only edges are moved
+// A bar, thin both ways, lets a tip go that presses hard and not on its middle: below this always
+// somewhere, from it on never. A plate of one voxel holds it.
+constexpr double kHeldBar = 4;         // voxels
+constexpr double kHoldingOffset = 0.5; // voxels; with it bars of two voxels hold
+constexpr double kToldBars = 0.005;    // of an object's area
 constexpr double kLargestScene = 2;    // [m]
+
+// Whole turns in the plane of a face, halved: lines through a part, not rays.
+constexpr int kAcross = 8;
 
 struct ThinParts {
   double vanished = 0, moved = 0; // of the area
   double by = 0;                  // [m], mean over what is moved
+  struct Bar {
+    std::size_t object;
+    double thickness; // [m], median
+  };
+  std::vector<Bar> bars;
 };
+
+// How far the inside goes on from a place that is in it, at most kHeldBar [voxel].
+double insideAlong(const FieldSampler& sampler, const Vec3& from, const Vec3& way) {
+  constexpr double kStep = 0.25;
+  double before = sampler.phiAtGrid(from);
+  for (double at = kStep; at <= kHeldBar; at += kStep) {
+    const double phi = sampler.phiAtGrid(from + at * way);
+    if (phi >= 0) return at - kStep * phi / (phi - before);
+    before = phi;
+  }
+  return kHeldBar;
+}
+
+// What a part measures at a face, through it and in the narrowest direction along it [voxel];
+// `inside` is a place just below the face. At most kHeldBar.
+struct Section {
+  double through, along;
+};
+Section sectionAt(const FieldSampler& sampler, const Vec3& inside, const Vec3& inwards) {
+  const double ahead = insideAlong(sampler, inside, inwards),
+               behind = insideAlong(sampler, inside, -inwards);
+  Section section{std::min(ahead + behind, kHeldBar), kHeldBar};
+  if (section.through >= kHeldBar) return section;
+  const Vec3 middle = inside + (ahead - behind) / 2 * inwards;
+  const Vec3 u = inwards.unitOrthogonal(), v = inwards.cross(u);
+  for (int i = 0; i < kAcross; ++i) {
+    const double turn = std::numbers::pi * i / kAcross;
+    const Vec3 way = std::cos(turn) * u + std::sin(turn) * v;
+    section.along = std::min(section.along, insideAlong(sampler, middle, way) +
+                                                insideAlong(sampler, middle, -way));
+  }
+  return section;
+}
 
 // Nothing where the tip's radius or an offset makes such parts thick.
 ThinParts thinParts(const CompiledScene& compiled) {
   const HapticProperties& haptics = compiled.scene.haptics;
   const SurfaceField& field = *compiled.built.field;
+  const double voxel = field.grid.voxel;
   const double iso = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
-  if (iso >= field.grid.voxel || compiled.mesh_report.boundary_edges > 0) return {};
+  if (iso >= voxel || compiled.mesh_report.boundary_edges > 0) return {};
   const FieldSampler sampler(field, compiled.scene.sampler);
-  const TriangleMesh& mesh = *compiled.mesh;
-  const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / kMostProbes);
-  double all = 0, vanished = 0, moved = 0, by = 0;
-  for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
-    const Vec3 a = mesh.corner(i, 0), b = mesh.corner(i, 1), c = mesh.corner(i, 2);
-    const Vec3 across = (b - a).cross(c - a);
-    const double twice_area = across.norm();
-    if (!(twice_area > 0) || !std::isfinite(twice_area)) continue;
-    all += twice_area;
-    const Vec3 centre = field.grid.toGrid((a + b + c) / 3);
-    const Vec3 aside = kProbeDepth / twice_area * across;
-    // Whichever way the triangle is turned, one side of it is the inside.
-    if (std::min(sampler.phiAtGrid(centre + aside), sampler.phiAtGrid(centre - aside)) >= 0) {
-      vanished += twice_area;
-    } else if (const double off = std::abs(sampler.phiAtGrid(centre)); off > kMoved) {
-      moved += twice_area;
-      by += twice_area * off;
+  const std::size_t faces = compiled.mesh->triangles.size();
+  const std::size_t stride = std::max<std::size_t>(1, faces / kMostProbes);
+  ThinParts found;
+  double all = 0, by = 0;
+  std::size_t first = 0;
+  for (std::size_t object = 0; object < compiled.objects.size(); ++object) {
+    const std::size_t end = first + compiled.objects[object]->mesh->triangles.size();
+    double own = 0, thin = 0; // area
+    std::vector<double> thicknesses;
+    for (std::size_t i = (first + stride - 1) / stride * stride; i < end; i += stride) {
+      const TriangleMesh& mesh = *compiled.mesh;
+      const Vec3 a = mesh.corner(i, 0), b = mesh.corner(i, 1), c = mesh.corner(i, 2);
+      const Vec3 across = (b - a).cross(c - a);
+      const double area = across.norm();
+      if (!(area > 0) || !std::isfinite(area)) continue;
+      own += area;
+      const Vec3 centre = field.grid.toGrid((a + b + c) / 3);
+      Vec3 inwards = across / area;
+      const double one = sampler.phiAtGrid(centre + kProbeDepth * inwards),
+                   other = sampler.phiAtGrid(centre - kProbeDepth * inwards);
+      // Whichever way the triangle is turned, one side of it is the inside.
+      if (std::min(one, other) >= 0) {
+        found.vanished += area;
+        continue;
+      }
+      if (other < one) inwards = -inwards;
+      const Section section = sectionAt(sampler, centre + kProbeDepth * inwards, inwards);
+      const double off = std::abs(sampler.phiAtGrid(centre));
+      if (section.through < kFeltInPlace && off > kMoved) {
+        found.moved += area;
+        by += area * off;
+      }
+      const double thickness = std::max(section.through, section.along);
+      if (thickness >= kHeldBar || iso >= kHoldingOffset * voxel) continue;
+      thin += area;
+      thicknesses.push_back(thickness * voxel);
     }
+    if (thin > kToldBars * own)
+      found.bars.push_back({object, percentiles(std::move(thicknesses)).p50});
+    all += own;
+    first = end;
   }
   if (!(all > 0)) return {};
-  return {vanished / all, moved / all, moved > 0 ? by / moved * field.grid.voxel : 0};
+  if (found.moved > 0) found.by = by / found.moved * voxel;
+  found.vanished /= all;
+  found.moved /= all;
+  return found;
 }
 
 // Numbers that faces have and no texture.
@@ -103,6 +179,12 @@ std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
                     " of the surface belongs to parts thinner than two voxels (" +
                     formatLength(2 * voxel) + ") and is felt " + formatLength(thin.by) +
                     " from where it is: set a smaller voxel, an offset or a tip radius");
+  for (const ThinParts::Bar& bar : thin.bars)
+    lines.push_back(compiled.scene.objects[bar.object].name + ": a part " +
+                    formatLength(bar.thickness) + " thick is under four voxels (" +
+                    formatLength(kHeldBar * voxel) +
+                    ") both ways and lets go when it is pressed hard: set a smaller voxel, an "
+                    "offset or a tip radius");
   const std::optional<Magnet>& magnet = compiled.scene.haptics.magnet;
   if (magnet && magnet->range * magnet->strength == 0)
     lines.push_back(magnet->range > 0 ? "magnet.range has no effect without magnet.strength"

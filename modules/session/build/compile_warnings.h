@@ -8,7 +8,7 @@
 
 namespace patina {
 
-// One line each: parts that vanish between the nodes or are felt from where they are not,
+// One line each: parts that vanish between the nodes, are felt from where they are not or let go,
 // faces of textures that nobody knows, layers too sharp for the device, a magnet
 // without range or strength, objects whose poses make the scene larger than any hand reaches.
 std::vector<std::string> compileWarnings(const CompiledScene& compiled);
