@@ -150,14 +150,47 @@ TEST(Help, BashCompletesCommandsOptionsAndTheirWords) {
   };
   EXPECT_EQ(completed("patina fee"), "feel\n");
   EXPECT_EQ(completed("patina help unn"), "\n");
+  EXPECT_EQ(completed("patina man comp"), "completion\n");
+  EXPECT_EQ(completed("patina man --mark"), "--markdown\n");
   EXPECT_EQ(completed("patina feel --stiff"), "--stiffness\n");
   EXPECT_EQ(completed("patina feel s.ply --unit c"), "cm\n");
   for (const std::string& option : options("feel"))
     EXPECT_NE((" " + completed("patina feel --")).find(option), std::string::npos) << option;
-  const std::string zsh = run({"completion", "zsh"}).out;
-  EXPECT_TRUE(zsh.starts_with("#compdef patina\n"));
+}
+
+// In a shell at a pseudo-terminal: what TAB makes of each line.
+TEST(Help, ZshCompletesCommandsOptionsAndTheirWords) {
+  const ScratchFolder folder;
+  folder.write("_patina", run({"completion", "zsh"}).out);
+  const std::string script = folder.write("tab.zsh", R"(
+zmodload zsh/zpty zsh/datetime || exit 3
+zpty z zsh -f -i
+zpty -w z "fpath=($1 \$fpath); path=($2 \$path); autoload -U compinit; compinit -u -D; bindkey -e
+tell() { print -r -- \"\$BUFFER\" >> $1/told; BUFFER=; }; zle -N tell; bindkey '^Xt' tell; : > $1/told"
+settled() { # the file has so many lines
+  local end=$(( EPOCHREALTIME + 60 ))
+  until [[ -f $dir/told ]] && (( $(wc -l < $dir/told) >= $1 )); do
+    (( EPOCHREALTIME < end )) || exit 4
+    zpty -r -t z seen; sleep 0.02
+  done
+}
+dir=$1; shift 2; typeset -i n=0
+settled 0
+for line in "$@"; do zpty -w -n z "$line"$'\t\C-xt'; settled $((++n)); done
+zpty -d z
+)");
+  const Outcome outcome = Running({"-f", script, folder.path(), programFolder(), "patina fee",
+                                   "patina feel --stiff", "patina feel s.ply --unit c",
+                                   "patina help comp", "patina man --mark", "patina simulate-s"},
+                                  "zsh")
+                              .wait();
+  EXPECT_EQ(outcome.exit, 0) << outcome.err << ": is zsh installed?";
+  EXPECT_EQ(readFile(folder / "told"),
+            "patina feel \npatina feel --stiffness \npatina feel s.ply --unit cm \n"
+            "patina help completion \npatina man --markdown \npatina simulate-scan \n");
+  const std::string text = readFile(folder / "_patina");
   for (const std::string& command : commands())
-    EXPECT_NE(zsh.find("    " + command + ")\n"), std::string::npos) << command;
+    EXPECT_NE(text.find("    " + command + ")\n"), std::string::npos) << command;
 }
 
 TEST(Help, VersionIsOneLine) {

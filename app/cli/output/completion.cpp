@@ -35,6 +35,18 @@ std::string plain(const std::string& text) {
   return out;
 }
 
+// Between single quotes, and where _arguments has it in brackets.
+std::string quoted(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\'')
+      out += "'\\''";
+    else
+      out += c == '[' ? '(' : c == ']' ? ')' : c == '\\' ? ' ' : c;
+  }
+  return out;
+}
+
 } // namespace
 
 std::string bashCompletion(const std::vector<Command>& commands) {
@@ -54,25 +66,26 @@ std::string bashCompletion(const std::vector<Command>& commands) {
     cases += "    " + command.name + ") options='" + options + "' ;;\n";
   }
   // Case patterns with a space are quoted.
-  std::string quoted;
+  std::string patterns;
   for (const std::string& line : split(words_of, '\n')) {
     const std::size_t end = line.find(')');
-    quoted += "    '" + line.substr(4, end - 4) + "'" + line.substr(end) + "\n";
+    patterns += "    '" + line.substr(4, end - 4) + "'" + line.substr(end) + "\n";
   }
   return "# bash completion of patina; made by: patina completion bash\n"
          "_patina() {\n"
          "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
          "  local command=${COMP_WORDS[1]} options='' words=''\n"
          "  COMPREPLY=()\n"
-         "  if [ \"$COMP_CWORD\" -eq 1 ] || { [ \"$COMP_CWORD\" -eq 2 ] && [ \"$command\" = help "
-         "]; }; then\n"
+         "  if [[ $COMP_CWORD -eq 1 || ($COMP_CWORD -eq 2 && $command = @(help|man) && $word != "
+         "-*) "
+         "]]; then\n"
          "    COMPREPLY=($(compgen -W '" +
          names +
          " --help --version' -- \"$word\"))\n"
          "    return\n"
          "  fi\n"
          "  case \"$command $before\" in\n" +
-         quoted +
+         patterns +
          "  esac\n"
          "  if [ -n \"$words\" ]; then\n"
          "    COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
@@ -92,7 +105,7 @@ std::string bashCompletion(const std::vector<Command>& commands) {
 std::string zshCompletion(const std::vector<Command>& commands) {
   std::string list, cases;
   for (const Command& command : commands) {
-    list += "    '" + command.name + ":" + plain(command.summary) + "'\n";
+    list += "    '" + command.name + ":" + quoted(command.summary) + "'\n";
     cases += "    " + command.name + ")\n      _arguments -s";
     for (const Argument& argument : argumentsOf(command)) {
       if (argument.isInput()) continue;
@@ -103,13 +116,14 @@ std::string zshCompletion(const std::vector<Command>& commands) {
                                     : ":" + plain(argument.value) + ":(" + joined(words, " ") + ")";
       for (const std::string& name : split(argument.names, ','))
         cases += " \\\n        '" + std::string(argument.isRepeated() ? "*" : "") + name + "[" +
-                 plain(argument.caption) + "]" + value + "'";
+                 quoted(argument.caption) + "]" + value + "'";
     }
     cases += " \\\n        '*:file:_files'\n      ;;\n";
   }
   return "#compdef patina\n# zsh completion of patina; made by: patina completion zsh\n"
          "local -a commands\n"
-         "if (( CURRENT == 2 )); then\n"
+         "if (( CURRENT == 2 )) ||\n"
+         "   [[ $CURRENT == 3 && $words[2] == (help|man) && $words[3] != -* ]]; then\n"
          "  commands=(\n" +
          list +
          "  )\n"
