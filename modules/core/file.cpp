@@ -1,5 +1,6 @@
 #include "core/file.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <fcntl.h>
@@ -15,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTemporaryEnd = ".tmp";
+constexpr std::int64_t kPart = std::int64_t{4} << 20; // bytes that go to the disk together
 
 struct Temporary {
   int fd;
@@ -88,10 +90,26 @@ void AtomicFile::fail(const std::string& what) const {
 }
 
 void AtomicFile::append(std::string_view bytes) {
-  const bool written =
-      target_.is_stream ? writeAll(file_.get(), bytes) : writeAllAt(file_.get(), bytes, size_);
-  if (!written) fail("cannot be written");
-  size_ += static_cast<std::int64_t>(bytes.size());
+  while (!bytes.empty()) {
+    const std::string_view part = bytes.substr(0, std::size_t{kPart});
+    const bool written =
+        target_.is_stream ? writeAll(file_.get(), part) : writeAllAt(file_.get(), part, size_);
+    if (!written) fail("cannot be written");
+    size_ += static_cast<std::int64_t>(part.size());
+    bytes.remove_prefix(part.size());
+    if (!target_.is_stream) sendToDisk();
+  }
+}
+
+// Of what is left to commit() the program cannot be ended until it is on the disk.
+void AtomicFile::sendToDisk() {
+  if (size_ - sent_ < kPart) return;
+  const std::int64_t before = std::max<std::int64_t>(0, sent_ - kPart);
+  ::sync_file_range(file_.get(), sent_, size_ - sent_, SYNC_FILE_RANGE_WRITE);
+  ::sync_file_range(file_.get(), before, sent_ - before,
+                    SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE |
+                        SYNC_FILE_RANGE_WAIT_AFTER);
+  sent_ = size_;
 }
 
 void AtomicFile::commit() {
@@ -101,9 +119,9 @@ void AtomicFile::commit() {
   }
   if (!syncRetrying(file_.get())) fail("cannot be flushed to disk");
   if (file_.close() != 0) fail("cannot be written");
-  if (renameRetrying(temporary_.c_str(), target_.path.c_str()) != 0) fail("cannot be replaced");
+  const auto rename = [&] { return renameRetrying(temporary_.c_str(), target_.path.c_str()); };
+  if (unfinished_.finish(rename) != 0) fail("cannot be replaced");
   temporary_.clear();
-  unfinished_.done();
   // Without this the new name may be lost with the power, though the bytes are safe.
   if (!syncFolder(folder_.c_str())) fail("was written, but its folder cannot be flushed");
 }

@@ -33,12 +33,13 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
+  void sendToDisk();
 
   std::string path_, folder_, temporary_; // temporary_ is empty once it has been renamed
   OutputTarget target_;
   Unfinished unfinished_;
   Descriptor file_;
-  std::int64_t size_ = 0;
+  std::int64_t size_ = 0, sent_ = 0; // bytes; sent_: on their way to the disk
 };
 
 // The whole of an AtomicFile.

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <sstream>
 #include <sys/stat.h>
 
 #include "core/descriptor.h"
@@ -56,6 +57,21 @@ bool isObj(std::string_view text) {
   return false;
 }
 
+// Lines of eight numbers, after comments; without any the heading that we write.
+bool isPoses(std::string_view text) {
+  for (; !text.empty(); text = afterFirstLine(text)) {
+    const std::string_view line = firstLine(text);
+    if (line.starts_with("# t [s] tx ty tz")) return true;
+    if (line.empty() || line.starts_with('#')) continue;
+    std::istringstream cells{std::string(line)};
+    int numbers = 0;
+    for (std::string cell; cells >> cell; ++numbers)
+      if (!isNumber(cell)) return false;
+    return numbers >= 8;
+  }
+  return false;
+}
+
 bool isBinaryStl(std::string_view head, std::uint64_t size) {
   constexpr std::size_t kHeader = 80, kTriangle = 50;
   if (head.size() < kHeader + 4) return false;
@@ -72,6 +88,9 @@ FileKind kindOf(std::string_view head, std::uint64_t size) {
   head = head.substr(0, kHead);
   if (isBinaryStl(head, size)) return FileKind::stl;
   if (head.starts_with("\x89PNG"sv)) return FileKind::png;
+  if (head.size() > 2 && head[0] == 'P' && head[1] >= '1' && head[1] <= '6' && head[2] <= ' ')
+    return FileKind::pnm;
+  if (head.starts_with(".TH ")) return FileKind::roff;
   if (head.starts_with("\x76\x2f\x31\x01"sv)) return FileKind::exr;
   if (head.starts_with("\xEF\xBB\xBF"sv)) head.remove_prefix(3);
   if (head.starts_with("ply\n"sv) || head.starts_with("ply\r"sv)) return FileKind::ply;
@@ -85,14 +104,15 @@ FileKind kindOf(std::string_view head, std::uint64_t size) {
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   if (first != head.npos && (head[first] == '{' || head[first] == '[')) return FileKind::json;
   if (isTable(head)) return FileKind::table;
+  if (isPoses(head)) return FileKind::poses;
   return isObj(head) ? FileKind::obj : FileKind::other;
 }
 
 std::string_view nameOf(FileKind kind) {
-  constexpr std::array<std::string_view, 12> names = {
-      "empty",         "a table",        "a JSON file",   "an OBJ mesh",
-      "a PLY mesh",    "an STL mesh",    "a .vti volume", "a .vtp surface",
-      "a PNG picture", "an EXR picture", "a YAML file",   "a file of another kind"};
+  constexpr std::array<std::string_view, 15> names = {
+      "empty",       "a table",       "a JSON file",    "an OBJ mesh",   "a PLY mesh",
+      "an STL mesh", "a .vti volume", "a .vtp surface", "a PNG picture", "an EXR picture",
+      "a YAML file", "a PNM picture", "poses",          "a manual page", "a file of another kind"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -19,6 +19,9 @@ enum class FileKind : std::uint8_t {
   png,
   exr,
   yaml,
+  pnm,   // .pgm, a recording's frames
+  poses, // .tum: eight numbers a line
+  roff,  // a manual page
   other
 };
 

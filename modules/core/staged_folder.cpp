@@ -61,24 +61,34 @@ StagedFolder::~StagedFolder() {
 
 void StagedFolder::commit() {
   std::vector<Move> moves;
-  for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
-    const OutputTarget target = outputTarget(folder_ / file.path().filename());
+  std::vector<fs::path> folders = {folder_};
+  for (const fs::directory_entry& file : fs::recursive_directory_iterator(staging_)) {
+    const fs::path to = folder_ / file.path().lexically_relative(staging_);
+    if (file.is_directory()) {
+      folders.push_back(to);
+      continue;
+    }
+    const OutputTarget target = outputTarget(to);
     if (target.is_stream)
-      throw FileError(target.path, 0,
+      throw FileError(to.string(), 0,
                       "cannot be written: a folder's files are no pipes or devices");
     requireSameKind(target.path, kindOf(headOf(file.path()), file.file_size()));
     moves.push_back({file.path(), target.path});
   }
-  const auto is_last = [&](const Move& one) { return one.from.filename() == last_; };
-  std::partition(moves.begin(), moves.end(), [&](const Move& one) { return !is_last(one); });
+  for (const fs::path& folder : folders) makeFolder(folder);
+  const fs::path index = staging_ / last_;
+  std::partition(moves.begin(), moves.end(), [&](const Move& one) { return one.from != index; });
   const fs::path old = outputTarget(folder_ / last_).path; // where the new one comes, too
-  if (::unlink(old.c_str()) == 0)
-    flush(old.parent_path());
-  else if (errno != ENOENT)
-    throw DiskError(old.string(), "cannot be replaced: " + reason(errno));
-  for (const Move& one : moves) move(one);
-  flush(folder_);
-  if (old.parent_path() != folder_) flush(old.parent_path());
+  unfinished_.finish([&] {
+    if (::unlink(old.c_str()) == 0)
+      flush(old.parent_path());
+    else if (errno != ENOENT)
+      throw DiskError(old.string(), "cannot be replaced: " + reason(errno));
+    for (const Move& one : moves) move(one);
+    for (const fs::path& folder : folders) flush(folder);
+    if (old.parent_path() != folder_) flush(old.parent_path());
+    return 0;
+  });
   fresh_.keep();
 }
 

@@ -8,9 +8,9 @@
 
 namespace patina {
 
-// They are written into a hidden folder within `folder`, which is made if it is missing; commit()
-// moves them to where they belong. Without it nothing of them is left, and files that were there
-// before are as they were. All throw FileError.
+// They are written into a hidden folder within `folder`, which is made if it is missing, and into
+// folders in that; commit() moves them to where they belong. Without it nothing of them is left,
+// and files that were there before are as they were. All throw FileError.
 class StagedFolder {
  public:
   // `last` is the file that says that the others are whole.

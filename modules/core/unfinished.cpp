@@ -1,5 +1,6 @@
 #include "core/unfinished.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <fcntl.h>
 #include <mutex>
@@ -16,6 +17,7 @@ namespace {
 struct Known {
   std::mutex guard;
   std::list<Unfinished::Place> places;
+  bool any_finished = false;
 };
 Known& known() {
   static Known* const all = new Known; // never destroyed: the last to use it is exit itself
@@ -63,6 +65,18 @@ void Unfinished::done() noexcept {
   known().places.erase(place_);
 }
 
+int Unfinished::finish(const std::function<int()>& last) {
+  const std::lock_guard hold(known().guard);
+  const int result = last();
+  if (result != 0 || !std::exchange(held_, false)) return result;
+  const std::string path = place_->path.string();
+  known().places.erase(place_);
+  known().any_finished |=
+      std::none_of(known().places.begin(), known().places.end(),
+                   [&](const Place& place) { return path.starts_with(place.path.string() + "/"); });
+  return result;
+}
+
 NewFolder::NewFolder(const std::filesystem::path& folder, const std::string& whole)
     : place_{std::filesystem::absolute(folder), whole} {
   if (!place_.path.has_filename()) place_.path = place_.path.parent_path(); // of "folder/"
@@ -81,6 +95,13 @@ NewFolder::NewFolder(const std::filesystem::path& folder, const std::string& who
   unfinished_ = Unfinished(place_.path, whole);
 }
 
+void NewFolder::keep() noexcept {
+  unfinished_.done();
+  kept_ = true;
+  const std::lock_guard hold(known().guard);
+  known().any_finished = true;
+}
+
 void NewFolder::giveSpareBack() noexcept {
   for (int& one : spare_)
     if (one >= 0) ::close(std::exchange(one, -1));
@@ -94,6 +115,11 @@ NewFolder::~NewFolder() {
 void removeUnfinished() noexcept {
   known().guard.lock();
   for (const Unfinished::Place& place : known().places) removeUnlessWhole(place);
+}
+
+bool anyFinished() noexcept {
+  const std::lock_guard hold(known().guard);
+  return known().any_finished;
 }
 
 } // namespace patina

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <list>
 #include <string>
 
@@ -22,6 +23,9 @@ class Unfinished {
   Unfinished(Unfinished&& other) noexcept;
   Unfinished& operator=(Unfinished&& other) noexcept;
   void done() noexcept; // whole, or gone already
+  // The call that makes it whole, such as a rename, and done() if that returns 0:
+  // removeUnfinished() comes before both or after both. Returns what `last` does.
+  int finish(const std::function<int()>& last);
 
  private:
   std::list<Place>::iterator place_{};
@@ -37,10 +41,7 @@ class NewFolder {
   ~NewFolder();
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
-  void keep() noexcept {
-    unfinished_.done();
-    kept_ = true;
-  }
+  void keep() noexcept;
 
  private:
   void giveSpareBack() noexcept;
@@ -54,5 +55,8 @@ class NewFolder {
 // Removes all of them, folders with what is in them. Whoever begins or finishes one after this
 // waits for ever: for a process that ends at once.
 void removeUnfinished() noexcept;
+// Whether a folder was kept, or a file finished that lies in no unfinished folder: an output is
+// whole.
+bool anyFinished() noexcept;
 
 } // namespace patina

@@ -79,6 +79,12 @@ TEST_F(OutputTargets, FilesAreKnownByTheirContent) {
       {"<?xml?>\n<VTKFile type=\"ImageData\"", image_data},
       {"<?xml?>\n<VTKFile type=\"PolyData\"", poly_data},
       {"\x89PNG\r\n", png},
+      {"P5\n4 4\n255\n", pnm},
+      {"Patina\n", other},
+      {"# t [s] tx ty tz [m] qx qy qz qw\n", poses},
+      {"# of a camera\n0.1 1 2 3 0 0 0 1\n", poses},
+      {"0.1 1 2 3\n", other},
+      {".TH PATINA 1\n", roff},
       {"%YAML:1.0\n", yaml}};
   for (const auto& [text, kind] : cases)
     EXPECT_EQ(kindOf(text, std::string_view(text).size()), kind) << text;
@@ -95,14 +101,17 @@ TEST_F(OutputTargets, FilesAreKnownByTheirContent) {
 TEST_F(OutputTargets, WhatIsUnfinishedIsGoneWhenTheProgramIsEnded) {
   const pid_t child = fork();
   if (child == 0) {
+    const bool earlier = anyFinished(); // by another test
     AtomicFile file(folder / "half.csv");
     file.append("half");
     StagedFolder staged(folder / "made", "a");
     writeFileAtomically(staged.path() / "a", "a");
+    if (anyFinished() != earlier) _exit(2); // of a folder that is not whole
     NewFolder kept(folder / "kept", "index");
     makeFolder(folder / "kept");
     kept.keep();
     writeFileAtomically(folder / "whole.csv", "whole");
+    if (!anyFinished()) _exit(3);
     removeUnfinished();
     _exit(0);
   }
@@ -138,10 +147,13 @@ TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
     StagedFolder staged(out, "last");
     writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");
     writeFileAtomically(staged.path() / "last", "new");
+    makeFolder(staged.path() / "within");
+    writeFileAtomically(staged.path() / "within" / "b", "b");
     staged.commit();
   }
   EXPECT_EQ(readFile(out / "last"), "new");
-  EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 2);
+  EXPECT_EQ(readFile(out / "within" / "b"), "b");
+  EXPECT_EQ(std::distance(fs::recursive_directory_iterator(out), {}), 4);
 }
 
 // What cannot be looked into for want of a descriptor may be anything.

@@ -52,6 +52,47 @@ class EveryCommand : public Painted {
     return all;
   }
 
+#ifdef PATINA_HAS_ACQUISITION
+  // What the commands of a scan read: made once, where a test wants them.
+  void makeScan() const {
+    const std::string scan = folder / "scan", path = folder / "path.csv";
+    (void)runJson({"simulate-scan", box, "-o", folder / "film", "--seconds", "1", "--frames"});
+    (void)runJson({"simulate-scan", box, "-o", scan, "--seconds", "3"});
+    (void)runJson({"filter", scan, "-o", path, "--heights", folder / "heights.csv"});
+    ASSERT_LT(run({"register", box, path, "-o", folder / "registered.csv"}).exit, 2);
+    folder.write("weights.csv", "force [N],reading\n0,0.2\n1,0.7\n2,1.2\n4,2.2\n");
+  }
+  std::vector<CommandLine> scanFileCommands() const {
+    return {{"track", {"track", folder / "film", "-o", "OUT"}, ".tum"},
+            {"filter", {"filter", folder / "scan", "-o", "OUT"}, ".csv"},
+            {"register", {"register", box, folder / "path.csv", "-o", "OUT"}, ".csv"},
+            {"fit-texture", {"fit-texture", folder / "heights.csv", "-o", "OUT"}, ".json"},
+            {"map-texture", {"map-texture", box, folder / "registered.csv", "-o", "OUT"}, ".obj"},
+            { "calibrate",
+              {"calibrate", folder / "weights.csv", "--force", "-o", "OUT"},
+              ".json" }};
+  }
+  std::vector<CommandLine> scanFolderCommands() const {
+    const std::string film = "replay:" + (folder / "film");
+    return {{"simulate-scan",
+             {"simulate-scan", box, "-o", "OUT", "--seconds", "1"},
+             "",
+             Writes::folder},
+            { "record",
+              {"record", film, "--probe", film, "-o", "OUT"},
+              "",
+              Writes::folder }};
+  }
+#else
+  void makeScan() const {}
+  std::vector<CommandLine> scanFileCommands() const {
+    return {};
+  }
+  std::vector<CommandLine> scanFolderCommands() const {
+    return {};
+  }
+#endif
+
   // Names in the folder, sorted; to see what a command leaves.
   std::vector<std::string> names() const {
     std::vector<std::string> all;

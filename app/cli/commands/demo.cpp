@@ -4,6 +4,7 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/staged_folder.h"
 #include "pipeline/demo_pictures.h"
 #include "pipeline/demo_report.h"
 #include "visualization/view/display.h"
@@ -49,8 +50,10 @@ std::vector<std::string> pictures(const Demo& demo, Console& console) {
 }
 
 int runDemo(const DemoOptions& options, Console& console) {
-  makeFolder(options.output);
-  Demo demo(options.output, options.seed);
+  if (std::filesystem::is_directory(options.output))
+    requireWritable(options.output / "report.json", {}, FileKind::json);
+  StagedFolder staged(options.output, "report.json");
+  Demo demo(staged.path(), options.seed);
   while (!isDone(demo)) {
     const std::size_t step = demo.seconds.size();
     const DemoStep& next = demoSteps()[step];
@@ -63,8 +66,10 @@ int runDemo(const DemoOptions& options, Console& console) {
   }
   const std::vector<std::string> drawn = pictures(demo, console);
   const Json found = demoJson(demo);
-  writeFileAtomically(options.output / "report.json", found.dump() + "\n");
-  writeFileAtomically(options.output / "report.md", demoMarkdown(demo, drawn));
+  writeFileAtomically(demo.folder / "report.json", found.dump() + "\n");
+  writeFileAtomically(demo.folder / "report.md", demoMarkdown(demo, drawn));
+  console.progress().throwIfCancelled();
+  staged.commit();
   Report report(kDemoKeys);
   for (const char* key : {"seed", "steps", "scans", "materials", "figures"})
     report.set(key, found.at(key));

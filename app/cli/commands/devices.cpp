@@ -211,6 +211,10 @@ void addSerial(Json& list, Report& report) {
 
 void installRules(const std::filesystem::path& folder, Report& report) {
   const std::filesystem::path file = folder / kUdevFile;
+  const auto heading = [](const std::string& text) { return text.substr(0, text.find('\n')); };
+  if (pathExists(file) && std::filesystem::is_regular_file(file) &&
+      std::filesystem::file_size(file) > 0 && heading(readFile(file)) != heading(udevRules()))
+    throw FileError(file.string(), 0, "holds other rules than Patina's; remove it first");
   try {
     writeFileAtomically(file, udevRules());
   } catch (const FileError& error) {

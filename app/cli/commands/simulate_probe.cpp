@@ -11,6 +11,7 @@
 #include "app/cli/commands/simulated_devices.h"
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "core/unfinished.h"
 
 namespace patina::cli {
 
@@ -54,6 +55,7 @@ struct Link {
     std::error_code failed;
     std::filesystem::create_symlink(to, path, failed);
     if (failed) throw FileError(path.string(), 0, "cannot be made: " + failed.message());
+    unfinished = Unfinished(path);
   }
   ~Link() {
     std::error_code ignored;
@@ -62,6 +64,7 @@ struct Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
   std::filesystem::path path;
+  Unfinished unfinished; // gone, too, where Ctrl-C ends what does not end
 };
 
 } // namespace

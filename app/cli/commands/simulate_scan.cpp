@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
+#include "core/staged_folder.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/mesh_report.h"
 
@@ -120,8 +121,9 @@ int runSimulateScan(ScanOptions options, Console& console) {
   const std::vector<PathSample> truth = truthAt(hand, camera_from_hand, times);
   console.progress().throwIfCancelled();
 
-  makeFolder(folder);
-  writeMeshIn(folder / "mesh.obj", mesh, writtenUnit(options));
+  StagedFolder staged(folder, "truth.json");
+  const std::filesystem::path& staging = staged.path();
+  writeMeshIn(staging / "mesh.obj", mesh, writtenUnit(options));
   std::vector<std::string> files = {"mesh.obj", "probe.csv", "rig.json", "truth.csv", "truth.json"};
   std::size_t frames = 0;
   if (options.frames) {
@@ -131,16 +133,19 @@ int runSimulateScan(ScanOptions options, Console& console) {
     course.look = options.look;
     course.seed = options.seed;
     frames =
-        writeFrames(folder, camera, hand, rig.probe, options.family, course, console.progress());
+        writeFrames(staging, camera, hand, rig.probe, options.family, course, console.progress());
     files.insert(files.end(), {"frames", "frames.csv", "camera.yml"});
   } else {
-    writePoses(folder / "poses.tum", poses);
+    writePoses(staging / "poses.tum", poses);
     files.emplace_back("poses.tum");
   }
-  writeProbeStream(folder / "probe.csv", samples);
-  writeFileAtomically(folder / "rig.json", rigText(rig, cube));
-  writePath(folder / "truth.csv", truth);
-  writeFileAtomically(folder / "truth.json", truthText(options, camera_from_hand * hand_from_mesh));
+  writeProbeStream(staging / "probe.csv", samples);
+  writeFileAtomically(staging / "rig.json", rigText(rig, cube));
+  writePath(staging / "truth.csv", truth);
+  writeFileAtomically(staging / "truth.json",
+                      truthText(options, camera_from_hand * hand_from_mesh));
+  console.progress().throwIfCancelled();
+  staged.commit();
 
   double touching = 0;
   for (const PathSample& sample : truth) touching += sample.touching;

@@ -8,6 +8,7 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/staged_folder.h"
 #include "visualization/plots/plot.h"
 #include "visualization/view/display.h"
 
@@ -73,27 +74,29 @@ void addRows(const Json& table, Json& rows) {
 int runStudy(const StudyCommandOptions& options, Console& console) {
   const std::vector<Study> list = chosen(options.name);
   const std::filesystem::path& folder = options.output;
-  makeFolder(folder);
   const bool draws = canDraw(console);
+  // All of them before any is written: Ctrl-C leaves none.
+  std::vector<std::vector<WorkPrecisionTable>> found;
+  for (const Study& study : list)
+    found.push_back(tablesOf(study, options.study, console.progress()));
+  console.progress().throwIfCancelled();
+  StagedFolder staged(folder, baseName(list.back(), found.back().size() - 1, found.back().size()) +
+                                  ".json");
 
   Json tables = Json::array(), rows = Json::array(), files = Json::array();
   Json order_fitted, order_expected; // of the first table that has a theory to be held against
   std::string text;
-  for (const Study& study : list) {
-    const std::vector<WorkPrecisionTable> results =
-        tablesOf(study, options.study, console.progress());
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const WorkPrecisionTable& table = results[i];
-      const std::string base = baseName(study, i, results.size());
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    for (std::size_t i = 0; i < found[k].size(); ++i) {
+      const WorkPrecisionTable& table = found[k][i];
+      const std::string base = baseName(list[k], i, found[k].size());
       const Json json = toJson(table);
-      requireWritable(folder / (base + ".json"), {}, FileKind::json);
-      requireWritable(folder / (base + ".png"), {}, FileKind::png);
-      writeCsv(folder / (base + ".csv"), table);
-      writeFileAtomically(folder / (base + ".json"), json.dump() + "\n");
+      writeCsv(staged.path() / (base + ".csv"), table);
+      writeFileAtomically(staged.path() / (base + ".json"), json.dump() + "\n");
       files.push(base + ".csv");
       files.push(base + ".json");
       if (draws && hasTimes(table)) {
-        writePlot(workPrecisionPlot(table), folder / (base + ".png"));
+        writePlot(workPrecisionPlot(table), staged.path() / (base + ".png"));
         files.push(base + ".png");
       }
       if (order_expected.isNull() && table.order_expected) {
@@ -106,6 +109,8 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
               (draws && hasTimes(table) ? " .png\n\n" : "\n\n");
     }
   }
+  console.progress().throwIfCancelled();
+  staged.commit();
   Report report(kStudyKeys);
   report.set("rows", rows).set("order_fitted", order_fitted).set("order_expected", order_expected);
   report.set("tables", tables).set("files", files);

@@ -60,7 +60,7 @@ int runTrack(TrackOptions options, Console& console) {
   options.rig = besideFrames(options.rig, "--rig", "rig.json", options.frames);
   const Camera camera = readCamera(options.camera);
   const std::vector<RigMarker> rig = readMarkers(options.rig);
-  requireWritable(options.output, {options.frames, options.camera, options.rig}, FileKind::other);
+  requireWritable(options.output, {options.frames, options.camera, options.rig}, FileKind::poses);
   const std::unique_ptr<FrameSource> frames = openFrames(options.frames, options.rate);
   const auto begin = std::chrono::steady_clock::now();
   TrackedFrames found;

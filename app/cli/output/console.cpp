@@ -93,6 +93,11 @@ void Console::endWhatDoesNot() {
   if (endsWithin(descriptor, -1) || endsWithin(descriptor, static_cast<int>(kPatience.count())))
     return;
   if (ending.exchange(true) && endsWithin(descriptor, static_cast<int>(kPatience.count()))) return;
+  if (anyFinished() && endsWithin(descriptor, static_cast<int>(kPatience.count()))) return;
+  if (anyFinished() && reported_) { // nothing is left but to give memory back
+    std::fflush(stdout);
+    _exit(kDone);
+  }
   removeUnfinished();
   static constexpr std::string_view kLine = "patina: cancelled\n";
   const ssize_t unused = ::write(STDERR_FILENO, kLine.data(), kLine.size());
@@ -135,6 +140,7 @@ void Console::warn(const std::string& line) {
 
 void Console::report(const Report& report, const std::string& below) {
   print(json ? report.json().dump() + "\n" : report.text() + below);
+  reported_ = true;
 }
 
 void Console::print(const std::string& text) {

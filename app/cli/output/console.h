@@ -2,6 +2,7 @@
 // cancel.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -26,9 +27,10 @@ class Console {
   bool data_on_stdout = false; // of an output named "-": reports go to stderr then
 
   // Cancelled by the first Ctrl-C. What has not ended kPatience after it is ended (exit 130): files
-  // and folders that are being made are removed, what stood on disk stays. A second one does not
-  // wait that long.
-  static constexpr std::chrono::milliseconds kPatience{250};
+  // and folders that are being made are removed, what stood on disk stays. Where an output is whole
+  // already it gets as long again to end as if nothing had come. A second one does not wait that
+  // long.
+  static constexpr std::chrono::milliseconds kPatience{200};
   Progress& progress() { return progress_; }
   // From here on Ctrl-C ends the process: for work that touches no file and cannot be polled.
   void endOnInterrupt();
@@ -50,6 +52,7 @@ class Console {
 
   bool stderr_is_terminal_;
   bool bar_drawn_ = false;
+  std::atomic<bool> reported_{false};
   std::chrono::steady_clock::time_point last_draw_;
   Progress progress_;
   std::thread impatient_;

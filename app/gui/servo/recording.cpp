@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "core/file_kind.h"
+#include "core/output_target.h"
 #include "visualization/export/export_files.h"
 
 namespace patina {
@@ -36,14 +38,16 @@ void Recording::save(const std::filesystem::path& path) {
 }
 
 void requireWritable(const std::filesystem::path& path) {
+  const OutputTarget target = outputTarget(path);
+  if (target.is_stream) return;
+  const std::filesystem::path end = target.path;
   std::error_code code;
-  if (std::filesystem::is_directory(path, code))
-    throw FileError(path.string(), 0, "cannot be written: it is a folder");
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const std::filesystem::path folder = end.has_parent_path() ? end.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, code))
     throw FileError(path.string(), 0, "cannot be written: no folder " + folder.string());
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw FileError(path.string(), 0, std::string("cannot be written: ") + std::strerror(errno));
+  requireSameKind(end, FileKind::table);
 }
 
 } // namespace patina

@@ -32,8 +32,15 @@ std::string greyText(const GreyFrame& image) {
 
 void requireNoScan(const fs::path& folder) {
   for (const char* name : {"frames", "frames.csv", "probe.csv", "poses.tum"})
-    if (fs::exists(folder / name))
+    if (fs::symlink_status(folder / name).type() != fs::file_type::not_found)
       throw FileError(folder.string(), 0, "holds a scan already: name another folder");
+}
+
+// Beside the frames; what is there already may be the same, as where a scan was prepared.
+void writeBeside(const fs::path& path, const std::string& text) {
+  if (!pathExists(path)) return writeFileAtomically(path, text);
+  if (readFile(path) != text)
+    throw FileError(path.string(), 0, "is another than the recording's: name another folder");
 }
 
 } // namespace
@@ -49,12 +56,15 @@ class Recorder::Work {
       throw Error("frames and probe share no clock: both must be live, or both recorded");
     requireNoScan(folder_);
     const std::string camera_text = readFile(setup.camera), rig_text = readFile(setup.rig);
+    NewFolder fresh(folder_, "frames/000000.pgm");
+    makeFolder(folder_);
+    writeBeside(folder_ / "camera.yml", camera_text);
+    writeBeside(folder_ / "rig.json", rig_text);
     makeFolder(folder_ / "frames");
-    writeFileAtomically(folder_ / "camera.yml", camera_text);
-    writeFileAtomically(folder_ / "rig.json", rig_text);
     frame_rows_.emplace(folder_ / "frames.csv", frameListHeader());
     pose_rows_.emplace(folder_ / "poses.tum", posesHeader());
     if (probe_) probe_rows_.emplace(folder_ / "probe.csv", probeHeader());
+    fresh.keep();
     state_.paused = setup.paused;
     probe_done_ = !probe_;
     const auto start = [&](void (Work::*work)()) {
