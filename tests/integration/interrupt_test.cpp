@@ -61,52 +61,82 @@ TEST(Interrupt, IsNotLostBeforeMain) {
 
 // Ctrl-C at any time, of every command: it ends at once, with 130 or as if it had not come, and
 // nothing that is half made stays.
-class AnyTime : public EveryCommand {};
+class AnyTime : public EveryCommand {
+ protected:
+  // Each with so much to do that it may be in the middle of it.
+  std::vector<CommandLine> busyCommands() {
+    const std::string ball = folder / "ball.ply";
+    EXPECT_EQ(run({"model", "sphere", "-o", ball, "--frequency", "100"}).exit, 0);
+    std::string many = "x [m],y [m],z [m]\n", path = "t [s],x [m],y [m],z [m]\n",
+                heights = "along [m],height [m]\n";
+    for (long i = 0; i < longer(100000); ++i) {
+      many += "0,0,0.0" + std::to_string(10000 + i % 50000) + "\n";
+      path += std::to_string(i) + "e-3,0,0,0.0" + std::to_string(45000 + i % 6000) + "\n";
+      heights += std::to_string(i) + "e-5," + std::to_string(i * i % 17) + "e-6\n";
+    }
+    const std::string points_of = folder.write("many.csv", many),
+                      path_of = folder.write("path.csv", path),
+                      heights_of = folder.write("waves.csv", heights);
+    std::vector<CommandLine> lines = {
+        {"model", {"model", "sphere", "-o", "OUT", "--frequency", "500"}, ".ply"},
+        {"field", {"field", ball, "-o", "OUT", "--resolution", "500"}, ".vti"},
+        {"sample", {"sample", ball, "--points", points_of, "-o", "OUT"}, ".csv"},
+        {"feel", {"feel", ball, "--path", path_of, "-o", "OUT"}, ".csv"},
+        {"simulate", {"simulate", "--plane", "--seconds", "1000", "-o", "OUT"}, ".csv"},
+        {"emboss", {"emboss", ball, "-o", "OUT", "--resolution", "400"}, ".stl"},
+        {"export", {"export", ball, "-o", "OUT", "--resolution", "300"}, "", Writes::folder},
+        {"scene", {"scene", "-o", "OUT", "--add", ball}, "", Writes::workspace},
+        {"paint", {"paint", workspace, "--strokes", strokes, "-o", "OUT"}, "", Writes::workspace},
+        {"study", {"study", "all", "-o", "OUT"}, "", Writes::folder},
+        {"info", {"info", ball, "--resolution", "400"}, ""},
+        {"undo", {"undo", workspace, "--list"}, ""},
+        {"redo", {"redo", workspace}, ""},
+        {"man", {"man", "-o", "OUT"}, "", Writes::folder},
+        {"help", {"help", "feel"}, ""},
+        {"completion", {"completion", "zsh"}, ""},
+        {"devices", {"devices", "--diagnose"}, ""},
+        {"latency-test", {"latency-test"}, ""},
+        {"latency-test --wire", {"latency-test", "--wire"}, ""}};
+    if (std::getenv("DISPLAY"))
+      lines.push_back({"render", {"render", ball, "-o", "OUT", "--resolution", "400"}, ".png"});
+#ifdef PATINA_HAS_ACQUISITION
+    makeScan();
+    for (CommandLine line : scanFileCommands()) lines.push_back(std::move(line));
+    for (CommandLine line : scanFolderCommands()) lines.push_back(std::move(line));
+    lines.push_back({"simulate-scan --frames",
+                     {"simulate-scan", ball, "-o", "OUT", "--frames"},
+                     "",
+                     Writes::folder});
+    lines.push_back({"fit-texture", {"fit-texture", heights_of, "-o", "OUT"}, ".json"});
+    lines.push_back({"demo", {"demo", "-o", "OUT"}, "", Writes::folder});
+    lines.push_back({"simulate-device", {"simulate-device", "probe", "--link", "OUT"}, ".tty"});
+#endif
+    return lines;
+  }
+};
 
 TEST_F(AnyTime, EveryCommandEndsAtOnceAndLeavesNothingHalfMade) {
   using Clock = std::chrono::steady_clock;
   const auto seconds = [](Clock::time_point since) {
     return std::chrono::duration<double>(Clock::now() - since).count();
   };
-  const std::string ball = folder / "ball.ply";
-  ASSERT_EQ(run({"model", "sphere", "-o", ball, "--frequency", "100"}).exit, 0);
-  std::string many = "x [m],y [m],z [m]\n", path = "t [s],x [m],y [m],z [m]\n";
-  for (int i = 0; i < 300000; ++i) {
-    many += "0,0,0.0" + std::to_string(10000 + i % 50000) + "\n";
-    path += std::to_string(i) + "e-3,0,0,0.0" + std::to_string(45000 + i % 6000) + "\n";
-  }
-  const std::string points_of = folder.write("many.csv", many),
-                    path_of = folder.write("path.csv", path);
-  std::vector<CommandLine> lines = {
-      {"model", {"model", "sphere", "-o", "OUT", "--frequency", "700"}, ".ply"},
-      {"field", {"field", ball, "-o", "OUT", "--resolution", "500"}, ".vti"},
-      {"sample", {"sample", ball, "--points", points_of, "-o", "OUT"}, ".csv"},
-      {"feel", {"feel", ball, "--path", path_of, "-o", "OUT"}, ".csv"},
-      {"simulate", {"simulate", "--plane", "--seconds", "1000", "-o", "OUT"}, ".csv"},
-      {"emboss", {"emboss", ball, "-o", "OUT", "--resolution", "400"}, ".stl"},
-      {"export", {"export", ball, "-o", "OUT", "--resolution", "300"}, "", Writes::folder},
-      {"scene", {"scene", "-o", "OUT", "--add", ball}, "", Writes::workspace},
-      {"paint", {"paint", workspace, "--strokes", strokes, "-o", "OUT"}, "", Writes::workspace},
-      {"study", {"study", "field", "-o", "OUT"}, "", Writes::folder},
-      {"info", {"info", ball, "--resolution", "400"}, ""},
-      {"undo", {"undo", workspace, "--list"}, ""}};
-#ifdef PATINA_HAS_ACQUISITION
-  lines.push_back({"simulate-scan", {"simulate-scan", ball, "-o", "OUT"}, "", Writes::folder});
-#endif
+  const std::vector<CommandLine> lines = busyCommands();
   const auto begun = Clock::now();
   for (int i = 0; i < 3; ++i) run({"--version"});
   const double limit = 0.5 + 4 * seconds(begun) / 3; // a machine that is busy starts slowly, too
+  const long rounds = longer(1) > 1 ? 20 : 1;
   std::mt19937 random(5);
-  double slowest = 0;
+  double slowest_of_all = 0;
   for (const CommandLine& line : lines) {
     // One that was too slow goes again, for another program may have been in its way: five times.
     int slow = 0;
-    for (long round = 0; round < 2 * longer(1) + slow; ++round) {
+    double slowest = 0;
+    for (long round = 0; round < rounds + slow; ++round) {
       const std::string out = folder / ("out" + line.extension);
       std::filesystem::remove_all(out);
       const std::vector<std::string> before = names();
       Running running(line.to(out), programPath());
-      std::this_thread::sleep_for(std::chrono::milliseconds(random() % 1500));
+      std::this_thread::sleep_for(std::chrono::milliseconds(random() % (rounds > 1 ? 2500 : 400)));
       const auto since = Clock::now();
       running.signal(SIGINT);
       const Outcome outcome = running.wait();
@@ -117,18 +147,20 @@ TEST_F(AnyTime, EveryCommandEndsAtOnceAndLeavesNothingHalfMade) {
         EXPECT_LE(++slow, 5) << line.name << " took " << took << " s of " << limit;
       if (slow > 5) break;
       std::vector<std::string> left = names();
-      const bool may_stay = outcome.exit == 0 || line.writes == Writes::folder; // whole, or tables
-      if (may_stay) std::erase(left, std::filesystem::path(out).filename().string());
-      if (!may_stay) {
+      if (outcome.exit <= 1) { // it was done, or as a recording ends so
+        std::erase(left, std::filesystem::path(out).filename().string());
+        if (!std::filesystem::is_directory(out)) continue;
+        for (const auto& item : std::filesystem::recursive_directory_iterator(out))
+          EXPECT_FALSE(item.path().filename().string().starts_with(".")) << item.path();
+      } else {
         EXPECT_EQ(outcome.exit, 130) << line.name << outcome.err;
       }
       EXPECT_EQ(left, before) << line.name << " left something";
-      if (line.writes != Writes::folder || !std::filesystem::exists(out)) continue;
-      for (const auto& item : std::filesystem::directory_iterator(out))
-        EXPECT_FALSE(item.path().filename().string().starts_with(".")) << item.path();
     }
+    if (rounds > 1) std::printf("%s %.3f s, again %d\n", line.name.c_str(), slowest, slow);
+    slowest_of_all = std::max(slowest_of_all, slowest);
   }
-  std::printf("the slowest took %.3f s of %.3f\n", slowest, limit);
+  std::printf("the slowest took %.3f s of %.3f\n", slowest_of_all, limit);
   EXPECT_EQ(run({"info", workspace}).exit, 0);
 }
 
