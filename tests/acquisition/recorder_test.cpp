@@ -204,36 +204,47 @@ class RecordingChild : public Recordings {
     waitpid(child, &status, 0);
     return status;
   }
+  void isWhole(const fs::path& into) const {
+    // Pictures are on disk as they come: how far it had come.
+    std::size_t pictures = 0;
+    for (const auto& file : fs::directory_iterator(into / "frames"))
+      pictures += file.path().extension() == ".pgm";
+    const auto frames = framesOf(into, 0);
+    EXPECT_GE(frames.size() + static_cast<std::size_t>(kRate), pictures);
+    const auto samples = readProbeStream(into / "probe.csv").values;
+    EXPECT_GT(samples.back().t, frames[0].t + static_cast<double>(pictures) / kRate - 1);
+    EXPECT_GT(readPoses(into / "poses.tum").values.size(), 5u);
+    // All that is listed is whole.
+    Progress progress;
+    const TrackedFrames found =
+        trackFrames(*openFrames(into.string(), 0), rig.camera, rig.markers, {}, progress);
+    EXPECT_EQ(found.poses.size(), frames.size());
+    EXPECT_EQ(found.unreadable, 0u);
+  }
 };
 
 TEST_F(RecordingChild, KilledAtAnyMomentLeavesAScanThatLacksLessThanASecond) {
   makeScan(4);
   std::mt19937 random(5);
-  for (int kill_number = 0; kill_number < 6; ++kill_number) {
-    fs::remove_all(made);
-    const pid_t child = started([] {});
+  constexpr int kTogether = 3;
+  for (int round = 0; round < 2; ++round) {
+    std::vector<std::pair<fs::path, pid_t>> children;
+    for (int i = 0; i < kTogether; ++i) {
+      made = folder / ("made" + std::to_string(kTogether * round + i));
+      const pid_t child = started([] {});
+      children.emplace_back(made, child);
+    }
+    // The last to begin has lasted for a while, too.
     const auto has = [&] { return fs::exists(made / "frames" / "000020.pgm"); };
     for (int i = 0; i < 1000 && !has(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    ASSERT_TRUE(has());
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 1000000));
-    kill(child, SIGKILL);
-    ASSERT_TRUE(WIFSIGNALED(statusOf(child)));
-    // Pictures are on disk as they come: how far it had come.
-    std::size_t pictures = 0;
-    for (const auto& file : fs::directory_iterator(made / "frames"))
-      pictures += file.path().extension() == ".pgm";
-    const auto frames = framesOf(made, 0);
-    EXPECT_GE(frames.size() + static_cast<std::size_t>(kRate), pictures);
-    const auto samples = readProbeStream(made / "probe.csv").values;
-    EXPECT_GT(samples.back().t, frames[0].t + static_cast<double>(pictures) / kRate - 1);
-    EXPECT_GT(readPoses(made / "poses.tum").values.size(), 5u);
-    // All that is listed is whole.
-    Progress progress;
-    const TrackedFrames found =
-        trackFrames(*openFrames(made.string(), 0), rig.camera, rig.markers, {}, progress);
-    EXPECT_EQ(found.poses.size(), frames.size());
-    EXPECT_EQ(found.unreadable, 0u);
+    EXPECT_TRUE(has());
+    for (const auto& [into, child] : children) {
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 330000));
+      kill(child, SIGKILL);
+      ASSERT_TRUE(WIFSIGNALED(statusOf(child)));
+    }
+    for (const auto& [into, child] : children) isWhole(into);
   }
 }
 

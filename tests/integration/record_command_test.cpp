@@ -20,20 +20,24 @@ class RecordedScans : public testing::Test {
     scan = folder / "scan";
     made = folder / "made";
     source = "replay:" + scan;
-    (void)runJson({"simulate-scan", ball, "-o", scan, "--seconds", "3", "--frames"});
+  }
+  void simulate(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"simulate-scan", folder / "ball.ply", "-o", scan});
+    (void)runJson(more);
   }
   ScratchFolder folder;
   std::string scan, made, source;
 };
 
 TEST_F(RecordedScans, AreReadByTrackAndFilter) {
+  simulate({"--seconds", "2", "--frames"});
   std::int64_t frames = 0;
   for (const auto& file : std::filesystem::directory_iterator(scan + "/frames"))
     frames += file.path().extension() == ".png";
   const Json report = runJson({"record", source, "--probe", source, "-o", made});
   EXPECT_EQ(report.at("frames").asInteger(), frames);
-  EXPECT_GT(report.at("samples").asInteger(), 1400);
-  EXPECT_GT(report.at("frames_with_pose").asInteger() + report.at("skipped").asInteger(), 60);
+  EXPECT_GT(report.at("samples").asInteger(), 900);
+  EXPECT_GT(report.at("frames_with_pose").asInteger() + report.at("skipped").asInteger(), 40);
   EXPECT_NEAR(report.at("seconds").asNumber(), static_cast<double>(frames) / 30, 1);
   // What was tracked while it ran, then all frames.
   const std::string path = folder / "path.csv";
@@ -45,6 +49,7 @@ TEST_F(RecordedScans, AreReadByTrackAndFilter) {
 }
 
 TEST_F(RecordedScans, EndWellWithCtrlCAndAfterTheirSeconds) {
+  simulate({"--seconds", "2", "--frames"});
   Running record({"record", source, "--json", "-o", made}, programPath());
   for (int i = 0; i < 400 && !std::filesystem::exists(made + "/frames/000005.pgm"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -53,13 +58,14 @@ TEST_F(RecordedScans, EndWellWithCtrlCAndAfterTheirSeconds) {
   EXPECT_EQ(outcome.exit, 0) << outcome.err;
   const auto frames = parseJson(outcome.out, "report").at("frames").asInteger();
   EXPECT_GE(frames, 6);
-  EXPECT_LT(frames, 90);
+  EXPECT_LT(frames, 60);
   std::filesystem::remove_all(made);
   const Json report = runJson({"record", source, "--seconds", "0.5", "-o", made});
   EXPECT_NEAR(report.at("seconds").asNumber(), 0.5, 0.3);
 }
 
 TEST_F(RecordedScans, RefuseWhatTheyCannotRead) {
+  simulate({"--seconds", "1", "--frames"});
   expectOneLineError(run({"record", "camera:97", "--camera", scan + "/camera.yml", "--rig",
                           scan + "/rig.json", "-o", made}),
                      {"camera:97", "/dev/video97"});
@@ -73,6 +79,7 @@ TEST_F(RecordedScans, RefuseWhatTheyCannotRead) {
 }
 
 TEST_F(RecordedScans, HaveForcesOfKnownWeights) {
+  simulate({"--seconds", "3"});
   const std::string rig = folder / "rig.json",
                     table = folder.write("weights.csv",
                                          "force [N],reading\n0,0.2\n1,0.7\n2,1.2\n3,9\n4,2.2\n");
@@ -82,10 +89,10 @@ TEST_F(RecordedScans, HaveForcesOfKnownWeights) {
   EXPECT_NEAR(report.at("parameters").at("force_gain").at("value").asNumber(), 2, 1e-9);
   const Json written = parseJson(readFile(rig), rig);
   EXPECT_NEAR(written.at("force_zero").asNumber(), 0.2, 1e-9);
-  EXPECT_TRUE(written.find("markers"));
+  EXPECT_LT(written.at("force_gain_deviation").asNumber(), 1e-9);
+  EXPECT_TRUE(written.find("accelerometers")); // what else was in it
   // The filter's forces follow.
-  const std::string poses = folder / "poses.tum", path = folder / "path.csv";
-  (void)runJson({"track", scan, "-o", poses});
+  const std::string poses = scan + "/poses.tum", path = folder / "path.csv";
   const Json all = runJson(
       {"filter", poses, "--probe", scan + "/probe.csv", "--rig", rig, "--lifted", "-o", path});
   EXPECT_GT(all.at("samples").asInteger(), 1000);
@@ -95,6 +102,7 @@ TEST_F(RecordedScans, HaveForcesOfKnownWeights) {
 }
 
 TEST_F(RecordedScans, GetPathAndHeightsByDifferentNamesOnly) {
+  simulate({"--seconds", "1"});
   std::filesystem::create_directory_symlink(folder.path(), folder / "link");
   expectOneLineError(
       run({"filter", scan, "-o", folder / "one.csv", "--heights", folder / "link/one.csv"}),
