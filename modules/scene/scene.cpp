@@ -91,15 +91,6 @@ void validate(const FieldSpec& field) {
               ", because the band lies on both ends");
 }
 
-bool isName(const std::string& name) {
-  if (name.empty() || name.size() > 100 || !isUtf8(name)) return false;
-  for (const char c : name) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80);
-    if (!letter && !(c >= '0' && c <= '9') && c != '-' && c != '_') return false;
-  }
-  return true;
-}
-
 void validate(const std::vector<SceneObject>& objects) {
   std::set<std::string> seen;
   for (const SceneObject& object : objects) {
@@ -133,6 +124,15 @@ void validate(const std::vector<SceneObject>& objects) {
 
 } // namespace
 
+bool isName(const std::string& name) {
+  if (name.empty() || name.size() > 100 || !isUtf8(name)) return false;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80);
+    if (!letter && !(c >= '0' && c <= '9') && c != '-' && c != '_') return false;
+  }
+  return true;
+}
+
 Material baseMaterial(const HapticProperties& haptics) {
   Material base;
   base.stiffness = haptics.stiffness;
@@ -157,6 +157,7 @@ double highestRelief(const Scene& scene) {
 
 void validate(const Scene& scene) {
   validate(scene.objects);
+  validate(scene.scans);
   validate(scene.field);
   validate(scene.haptics);
   if (scene.field.sides == OpenSides::two &&

@@ -15,6 +15,7 @@
 #include "scene/haptic_properties.h"
 #include "scene/paint/object_paint.h"
 #include "scene/paint/relief_settings.h"
+#include "scene/scene_scan.h"
 
 namespace patina {
 
@@ -27,6 +28,7 @@ struct SceneObject {
 
 struct Scene {
   std::vector<SceneObject> objects;
+  std::vector<SceneScan> scans; // nothing of them is felt
   FieldSpec field;
   // Several objects are one field by min (K14): right outside and, where they overlap, too shallow
   // inside (F9). true = distances inside are those to the union's own surface.
@@ -40,6 +42,9 @@ struct Scene {
   std::optional<DeviceModel> device_model; // absent: nothing is known that could be unstable
   std::optional<Stabilisers> stabilisers;  // absent: chosen from device_model (auto)
 };
+
+// Whether an object or a scan may be called so.
+bool isName(const std::string& name);
 
 // What is felt where nothing is painted.
 Material baseMaterial(const HapticProperties& haptics);

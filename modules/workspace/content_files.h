@@ -37,7 +37,7 @@ std::filesystem::path insidePath(const std::filesystem::path& folder, const std:
 // A name that saving gives, or a temporary one of it: what saving may remove. `folder` is the
 // file's own, relative to the workspace.
 bool isStoredName(const std::string& folder, const std::string& name);
-inline constexpr const char* kStoredFolders[] = {"meshes", "paint", "states"};
+inline constexpr const char* kStoredFolders[] = {"meshes", "paint", "scans", "states"};
 
 // What immutable values hash to, for as long as they live: saving again need not encode what did
 // not change, and loading finds what is in memory already. Any thread.

@@ -119,17 +119,17 @@ std::string mismatch(const JournalLines& lines, const std::string& first_state, 
 
 void removeUnused(const fs::path& folder, const Manifest& manifest, const JournalLines& lines) {
   std::set<std::string> used{kManifestName, manifest.journal->file};
-  const auto use = [&](const std::vector<ManifestObject>& objects) {
-    for (const ContentFile& file : filesOf(objects)) used.insert(file.path);
+  const auto use = [&](const Manifest& scene) {
+    for (const ContentFile& file : filesOf(scene)) used.insert(file.path);
   };
   try {
-    use(manifest.objects);
+    use(manifest);
     std::vector<StoredState> states = statesIn(lines);
     for (const ManifestState& state : manifest.states)
       states.push_back({state.event, state.file.path});
     for (const StoredState& state : states) {
       if (!used.insert(state.file).second) continue;
-      use(parseManifest(loadNamed(folder, state.file), state.file).objects);
+      use(parseManifest(loadNamed(folder, state.file), state.file));
     }
   } catch (const Error&) {
     return; // what a state that cannot be read needs is not known

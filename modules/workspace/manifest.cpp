@@ -106,6 +106,27 @@ ManifestObject objectFrom(const Json& json) {
   return object;
 }
 
+ManifestScan scanFrom(const Json& json) {
+  ManifestScan scan;
+  scan.name = json.at("name").asString();
+  for (const auto& [name, file] : json.at("files").asObject()) scan.files[name] = fileFrom(file);
+  if (const Json* frames = json.find("frames")) {
+    scan.folder = frames->at("folder").asString();
+    scan.frames = frames->at("digest").asString();
+  }
+  return scan;
+}
+
+Json toJson(const ManifestScan& scan) {
+  Json files = Json::object();
+  for (const auto& [name, file] : scan.files) files.set(name, toJson(file));
+  Json json = Json::object();
+  json.set("name", scan.name).set("files", std::move(files));
+  if (!scan.folder.empty())
+    json.set("frames", Json::object().set("folder", scan.folder).set("digest", scan.frames));
+  return json;
+}
+
 ManifestState stateFrom(const Json& json) {
   return {countFrom(json.at("event")), fileFrom(json)};
 }
@@ -149,6 +170,8 @@ Manifest manifestFrom(const Json& json) {
   Manifest manifest;
   for (const Json& object : json.at("objects").asArray())
     manifest.objects.push_back(objectFrom(object));
+  if (const Json* scans = json.find("scans"))
+    for (const Json& scan : scans->asArray()) manifest.scans.push_back(scanFrom(scan));
   std::vector<std::pair<std::string, std::string>> list;
   for (const auto& [key, value] : json.at("values").asObject())
     list.emplace_back(key, textOf(value));
@@ -174,8 +197,13 @@ Json toJson(const Manifest& manifest) {
     list.set(key, jsonOf(text));
   }
   Json json = Json::object();
-  json.set("version", kWorkspaceVersion).set("units", "SI");
+  json.set("version", manifest.scans.empty() ? 3 : kWorkspaceVersion).set("units", "SI");
   json.set("objects", std::move(objects)).set("values", std::move(list));
+  if (!manifest.scans.empty()) {
+    Json scans = Json::array();
+    for (const ManifestScan& scan : manifest.scans) scans.push(toJson(scan));
+    json.set("scans", std::move(scans));
+  }
   json.set("event", static_cast<std::int64_t>(manifest.event));
   if (!manifest.journal) return json;
   Json journal = Json::object();
@@ -207,12 +235,14 @@ Manifest readManifest(const std::filesystem::path& folder) {
   return parseManifest(readFile(path), path.string());
 }
 
-std::vector<ContentFile> filesOf(const std::vector<ManifestObject>& objects) {
+std::vector<ContentFile> filesOf(const Manifest& manifest) {
   std::vector<ContentFile> files;
   const auto add = [&](const std::optional<ContentFile>& file) {
     if (file) files.push_back(*file);
   };
-  for (const ManifestObject& object : objects) {
+  for (const ManifestScan& scan : manifest.scans)
+    for (const auto& [name, file] : scan.files) files.push_back(file);
+  for (const ManifestObject& object : manifest.objects) {
     files.push_back(object.mesh);
     if (!object.paint) continue;
     if (object.paint->layout) add(object.paint->layout->file);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,8 +14,9 @@
 
 namespace patina {
 
-// Read too: 1, without paint and history; 2, whose contact was another (older_values.h).
-inline constexpr int kWorkspaceVersion = 3;
+// Read too: 1, without paint and history; 2, whose contact was another (older_values.h); 3, without
+// scans, which a scene without scans is still written as.
+inline constexpr int kWorkspaceVersion = 4;
 inline constexpr const char* kManifestName = "workspace.json";
 
 struct ContentFile {
@@ -40,6 +42,13 @@ struct ManifestObject {
   std::optional<ManifestPaint> paint;
 };
 
+struct ManifestScan {
+  std::string name;
+  std::map<std::string, ContentFile> files;
+  std::string folder; // of its frames, relative to the workspace and mostly outside; may be empty
+  std::string frames;
+};
+
 struct ManifestState {
   std::uint64_t event = 0;
   ContentFile file;
@@ -52,7 +61,8 @@ struct ManifestJournal {
 
 struct Manifest {
   std::vector<ManifestObject> objects;
-  Scene values;                           // everything but the objects
+  std::vector<ManifestScan> scans;
+  Scene values;                           // everything but the objects and scans
   std::uint64_t event = 0;                // how many records of the journal are in it
   std::optional<ManifestJournal> journal; // absent in a state, and in version 1
   std::vector<ManifestState> states;
@@ -64,7 +74,7 @@ Json toJson(const Manifest& manifest);
 Manifest parseManifest(std::string_view text, const std::string& name);
 Manifest readManifest(const std::filesystem::path& folder);
 
-// Every file that the objects need.
-std::vector<ContentFile> filesOf(const std::vector<ManifestObject>& objects);
+// Every file that the objects and scans need.
+std::vector<ContentFile> filesOf(const Manifest& manifest);
 
 } // namespace patina

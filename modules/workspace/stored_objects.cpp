@@ -130,6 +130,34 @@ SceneObject loadObject(const ManifestObject& stored, const fs::path& folder,
   return object;
 }
 
+ManifestScan storeScan(const SceneScan& scan, const fs::path& folder) {
+  ManifestScan stored;
+  stored.name = scan.name;
+  for (const auto& [name, text] : scan.files) {
+    const fs::path file(name);
+    stored.files[name] =
+        storeValue(folder, "scans/" + scan.name + "-" + file.stem().string(),
+                   file.extension().string(), text, [](const std::string& bytes) { return bytes; });
+  }
+  // A folder that is moved with the workspace's stays found.
+  if (!scan.folder.empty())
+    stored.folder =
+        scan.folder.lexically_relative(fs::absolute(folder).lexically_normal()).string();
+  stored.frames = scan.frames;
+  return stored;
+}
+
+SceneScan loadScan(const ManifestScan& stored, const fs::path& folder) {
+  SceneScan scan;
+  scan.name = stored.name;
+  for (const auto& [name, file] : stored.files)
+    scan.files[name] = loadValue<std::string>(
+        folder, file, [](const std::string& bytes, const std::string&) { return bytes; });
+  if (!stored.folder.empty()) scan.folder = fs::absolute(folder / stored.folder).lexically_normal();
+  scan.frames = stored.frames;
+  return scan;
+}
+
 bool isSameMesh(const TriangleMesh& a, const TriangleMesh& b) {
   return &a == &b ||
          (a.positions == b.positions && a.triangles == b.triangles && a.corner_uvs == b.corner_uvs);
@@ -149,6 +177,8 @@ Manifest storeObjects(const Scene& scene, const fs::path& folder) {
   Manifest manifest;
   manifest.values = scene;
   manifest.values.objects.clear();
+  manifest.values.scans.clear();
+  for (const SceneScan& scan : scene.scans) manifest.scans.push_back(storeScan(scan, folder));
   for (const SceneObject& object : scene.objects) {
     ManifestObject stored;
     stored.name = object.name;
@@ -174,6 +204,17 @@ Scene loadScene(const Manifest& manifest, const fs::path& folder, const std::str
       if (!notes) throw;
       scene.objects.resize(whole);
       notes->push_back(object.name + " is left out: " + error.what());
+    }
+  }
+  for (const ManifestScan& scan : manifest.scans) {
+    const std::size_t whole = scene.scans.size();
+    try {
+      scene.scans.push_back(loadScan(scan, folder));
+      if (notes) validate(scene.scans);
+    } catch (const Error& error) {
+      if (!notes) throw;
+      scene.scans.resize(whole);
+      notes->push_back("scan " + scan.name + " is left out: " + error.what());
     }
   }
   try {

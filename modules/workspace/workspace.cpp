@@ -135,7 +135,7 @@ void requireStates(const fs::path& folder, const std::vector<JournalEvent>& even
     const auto* edit = std::get_if<StoredSceneEdit>(&event);
     if (!edit || !read.insert(edit->state).second) continue;
     const Manifest state = parseManifest(loadNamed(folder, edit->state), edit->state);
-    for (const ContentFile& file : filesOf(state.objects))
+    for (const ContentFile& file : filesOf(state))
       if (read.insert(file.path).second) loadContent(folder, file);
   }
 }

@@ -272,6 +272,46 @@ TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
   EXPECT_FALSE(std::filesystem::exists(rig));
 }
 
+TEST_F(Scans, BelongToAWorkspaceStepByStep) {
+  (void)simulate({"--frames", "--seconds", "1"});
+  const std::string workspace = folder / "workspace", poses = scan + "/poses.tum";
+  std::filesystem::remove(poses);
+  ASSERT_EQ(
+      run({"scene", "-o", workspace, "--add", ball, "--unit", "mm", "--scan", scan + "@rim"}).exit,
+      0);
+  EXPECT_FALSE(runJson({"info", workspace, "--no-field"}).at("scans").asArray().empty());
+  ASSERT_EQ(run({"track", scan, "-o", poses}).exit, 0);
+  const auto step = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"scene", "-o", workspace});
+    return runJson(more);
+  };
+  step({"--scan", scan + "@rim"});
+  const auto files = [](const Json& json) {
+    std::string names;
+    for (const Json& file : json.at("scans").asArray().at(0).at("files").asArray())
+      names += file.asString() + " ";
+    return names;
+  };
+  EXPECT_NE(files(step({})).find("poses.tum"), std::string::npos);
+  const Outcome list = run({"undo", workspace, "--list"});
+  EXPECT_NE(list.out.find("track scan rim"), std::string::npos) << list.out;
+  EXPECT_EQ(runJson({"undo", workspace}).at("undone").asInteger(), 1);
+  EXPECT_EQ(files(step({})).find("poses.tum"), std::string::npos);
+  EXPECT_EQ(runJson({"redo", workspace}).at("redone").asInteger(), 1);
+  step({"--remove-scan", "rim"});
+  EXPECT_EQ(step({}).find("scans"), nullptr);
+  EXPECT_EQ(runJson({"undo", workspace}).at("undone").asInteger(), 1);
+  // Wrong in one line, and nothing has happened.
+  expectOneLineError(run({"scene", "-o", workspace, "--remove-scan", "cup"}), {"cup", "rim"});
+  expectOneLineError(run({"scene", "-o", workspace, "--scan", folder / "none"}), {"none"});
+  writeFileAtomically(scan + "/rig.json", "{}");
+  expectOneLineError(run({"scene", "-o", workspace, "--scan", scan + "@rim"}), {"rig.json", "tip"});
+  std::filesystem::remove(scan + "/frames/000003.png");
+  const Outcome told = run({"info", workspace, "--no-field"});
+  EXPECT_EQ(told.exit, 0);
+  EXPECT_NE(told.err.find("other frames"), std::string::npos) << told.err;
+}
+
 } // namespace
 } // namespace patina::test
 #endif

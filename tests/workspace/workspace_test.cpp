@@ -130,9 +130,9 @@ TEST_F(BrokenWorkspace, AMissingMeshIsNamed) {
 }
 
 TEST_F(BrokenWorkspace, AnUnknownVersionIsRefusedAndNotSavedOver) {
-  replaceIn(json, "\"version\": 3", "\"version\": 4");
+  replaceIn(json, "\"version\": 3", "\"version\": 5");
   const std::string before = readFile(json);
-  EXPECT_NE(errorOfLoading().find("version 4 is unknown"), std::string::npos);
+  EXPECT_NE(errorOfLoading().find("version 5 is unknown"), std::string::npos);
   EXPECT_THROW(saveWorkspace(sceneWithObjects(0.08), folder), FileError);
   EXPECT_EQ(readFile(json), before);
 }

@@ -6,10 +6,12 @@
 #include "app/cli/output/paint_report.h"
 #include "app/cli/output/reports.h"
 #include "app/cli/output/stability_report.h"
+#include "core/error.h"
 #include "core/numbers.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/open_parts.h"
 #include "session/build/stage_cost.h"
+#include "session/store/attach_scan.h"
 #include "visualization/export/field_io.h"
 
 namespace patina::cli {
@@ -38,6 +40,7 @@ const Keys kHistoryKeys = {{"undo", "", ""}, {"redo", "", ""}};
 const Keys kInfoKeys = {
     {"file", "", "file"},
     {"kind", "", "kind", "workspace, field or mesh"},
+    {"scans", "", "the scans of a workspace", "", Shown::never, scanKeys()},
     {"values", "", "the values of a workspace", "by their keys", Shown::never},
     {"history", "", "history", "edits of a workspace", Shown::always, kHistoryKeys},
     {"objects", "", "objects", "", Shown::never, kObjectKeys},
@@ -200,6 +203,12 @@ int runInfo(const InfoOptions& options, Console& console) {
   report.set("kind", is_folder ? "workspace" : is_field ? "field" : "mesh");
   if (is_folder) {
     tellValues(scene, report);
+    tellScans(scene, report);
+    for (const SceneScan& scan : scene.scans) try {
+        requireFrames(scan);
+      } catch (const FileError& error) {
+        console.warn(error.what());
+      }
     const StoredHistory& history = *opened.history;
     if (history.undoable + history.redoable > 0) {
       report.set("history",

@@ -27,6 +27,7 @@ const Keys kSceneKeys = {{"workspace", "", "workspace", "", Shown::never},
                           "",
                           Shown::never,
                           {{"name", "", ""}, {"triangles", "", ""}, {"world_from_object", "", ""}}},
+                         {"scans", "", "scans", "", Shown::never, scanKeys()},
                          {"values", "", "values", "by their keys", Shown::never}};
 
 int report(const std::filesystem::path& folder, const Scene& scene, bool saved, Console& console) {
@@ -42,6 +43,7 @@ int report(const std::filesystem::path& folder, const Scene& scene, bool saved, 
                               (object.paint ? ", painted" : ""));
   }
   report.set("workspace", folder.string()).set("saved", saved).set("objects", objects);
+  tellScans(scene, report);
   tellValues(scene, report);
   console.report(report);
   return kDone;
@@ -72,7 +74,7 @@ Scene changed(const std::filesystem::path& folder, const SceneCommandOptions& op
   EditHistory& history = *own.history;
   if (own.events != read.events)
     throw FileError(folder.string(), 0, "another program has just changed it; try again");
-  const Edit edit = editOf(options.edits, after);
+  const Edit edit = editOf(options.edits, read.history->scene(), after);
   history.append(edit, after, [&](const Edit& made, std::int64_t time) {
     own.link->recordEdit(made, history.undoable() + 1, time);
   });
@@ -129,7 +131,8 @@ Command sceneCommand() {
       .description =
           "A workspace is a folder that holds meshes, where they are, what is painted on them, how "
           "they feel, and the history of all that; several meshes are felt as one surface, their "
-          "union. Without --add, --move, --remove, --set and --image an existing one is only "
+          "union. Without --add, --move, --remove, --scan, --set and --image an existing one is "
+          "only "
           "listed. Removals come first, then moves, additions, textures, settings and images; "
           "together they "
           "are one edit, which patina undo takes back, and an error leaves the folder as it was. A "
@@ -154,13 +157,17 @@ Command sceneCommand() {
           "picture is laid as colour unless it says relief (its grey is the relief, 0 to 1), "
           "through the mesh's own texture coordinates (mapped) or along an axis of the object, "
           "onto all of it.\n"
+          "A scan is attached with its calibration, poses, path, heights and place on the mesh as "
+          "they stand in its folder; its frames stay there, and the workspace knows by a digest "
+          "whether they are still those. Attached again, after patina track say, it is renewed, "
+          "and the history says by which step.\n"
           "--recover reads what it can of a damaged workspace, says what is lost, and writes the "
           "rest to the output, which may be the damaged folder itself only if it is named.",
       .examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
                    "patina scene -o cup --add spoon.ply@spoon.txt --move cup@aside.txt",
                    "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3",
                    "patina scene -o cup --image cup=weave.png,relief,z",
-                   "patina scene -o mended --recover cup"},
+                   "patina scene -o cup --scan scans/rim", "patina scene -o mended --recover cup"},
       .keys = kSceneKeys,
       .arguments =
           {outputTo(options->workspace, "WORKSPACE", "The folder."),
@@ -171,6 +178,10 @@ Command sceneCommand() {
            {"--move", "NAME@POSE.txt", "", "", "Put an object elsewhere.", into(edits.moved),
             Times::any},
            {"--remove", "NAME", "", "", "Take an object out.", into(edits.removed), Times::any},
+           {"--scan", "DIR[@NAME]", "", "", "Attach a scan folder, or renew the scan of its name.",
+            into(edits.scans), Times::any},
+           {"--remove-scan", "NAME", "", "", "Take a scan out; its folder stays.",
+            into(edits.unscans), Times::any},
            {"--set", "KEY=VALUE", "", "", "Change a value.",
             [&edits](const std::string& text) { edits.settings.push_back(parseSetting(text)); },
             Times::any},

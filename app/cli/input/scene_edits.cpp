@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
-#include "app/cli/input/pose_file.h"
 #include "authoring/images/lay_image.h"
 #include "core/error.h"
+#include "geometry/io/pose_file.h"
 #include "haptics/devices/device_catalog.h"
 #include "pictures/picture_file.h"
+#include "session/store/attach_scan.h"
 #include "session/store/replay.h"
+#ifdef PATINA_HAS_ACQUISITION
+#include "pipeline/scan_files.h"
+#endif
 
 namespace patina::cli {
 
@@ -145,6 +149,32 @@ std::string nameOnly(const std::string& text) {
   return std::filesystem::path(text.substr(0, text.find('@'))).stem().string();
 }
 
+// "DIR" or "DIR@NAME"; a folder whose own name has an '@' wins.
+SceneScan readScanOf(const std::string& text, Console& console) {
+  std::filesystem::path folder = text;
+  std::string name;
+  if (const std::size_t at = text.rfind('@');
+      at != std::string::npos && !std::filesystem::exists(text)) {
+    folder = text.substr(0, at);
+    name = text.substr(at + 1);
+    if (name.empty()) throw Error("--scan: '" + text + "' is not DIR@NAME: no name after the '@'");
+  }
+  SceneScan scan = scanIn(folder, name.empty() ? scanNameOf(folder) : name);
+#ifdef PATINA_HAS_ACQUISITION
+  readScanFolder(folder, console.progress()); // refuses what could not be opened again
+#else
+  static_cast<void>(console);
+#endif
+  return scan;
+}
+
+// What the scene's scan has and the folder has not stays: where it lies on a mesh, say.
+SceneScan renewed(const Scene& scene, SceneScan scan) {
+  if (const SceneScan* known = findScan(scene, scan.name))
+    scan.files.insert(known->files.begin(), known->files.end());
+  return scan;
+}
+
 } // namespace
 
 Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& given,
@@ -156,6 +186,9 @@ Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& giv
   open.tip_radius_chosen =
       after.haptics.tip_radius.value_or(0.0) > 0 || setsTipRadius(edits.settings);
   for (const std::string& text : edits.added) addObject(after, readObject(text, open, console));
+  for (const std::string& name : edits.unscans) after = withoutScan(std::move(after), name);
+  for (const std::string& text : edits.scans)
+    after = withScan(after, renewed(after, readScanOf(text, console)));
   layTextures(after, edits.textures);
   applySettings(after, edits.settings);
   validate(after);
@@ -164,13 +197,17 @@ Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& giv
   return after;
 }
 
-Edit editOf(const SceneEdits& edits, const Scene& after) {
+Edit editOf(const SceneEdits& edits, const Scene& before, const Scene& after) {
   const ValueEdit values{edits.settings};
   std::string what;
   const auto tell = [&](const std::string& text) { what += (what.empty() ? "" : ", ") + text; };
   for (const std::string& name : edits.removed) tell("remove " + name);
   for (const std::string& text : edits.moved) tell("move " + text.substr(0, text.find('@')));
   for (const std::string& text : edits.added) tell("add " + nameOnly(text));
+  for (const std::string& name : edits.unscans) tell("remove scan " + name);
+  for (const SceneScan& scan : after.scans)
+    if (const std::string words = wordsFor(findScan(before, scan.name), scan); !words.empty())
+      tell(words);
   for (const auto& [number, texture] : edits.textures) tell("texture " + std::to_string(number));
   for (const std::string& text : edits.images) tell("image on " + text.substr(0, text.find('=')));
   if (what.empty()) return values;

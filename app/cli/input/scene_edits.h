@@ -15,12 +15,14 @@ struct SceneEdits {
   std::vector<std::string> moved;   // NAME@POSE.txt
   std::vector<std::string> removed; // NAME
   std::vector<std::string> images;  // OBJECT=FILE[,color|relief][,mapped|x|y|z]
+  std::vector<std::string> scans;   // DIR[@NAME]
+  std::vector<std::string> unscans; // NAME
   TextureTable textures{};
   Settings settings;
 
   bool empty() const {
-    return added.empty() && moved.empty() && removed.empty() && images.empty() &&
-           textures.empty() && settings.empty();
+    return added.empty() && moved.empty() && removed.empty() && images.empty() && scans.empty() &&
+           unscans.empty() && textures.empty() && settings.empty();
   }
 };
 
@@ -28,7 +30,7 @@ struct SceneEdits {
 // read.
 Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& open,
              Console& console);
-// The one record of all of it; `after` is what edited() gave.
-Edit editOf(const SceneEdits& edits, const Scene& after);
+// The one record of all of it; `after` is what edited() gave of `before`.
+Edit editOf(const SceneEdits& edits, const Scene& before, const Scene& after);
 
 } // namespace patina::cli

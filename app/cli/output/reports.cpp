@@ -108,6 +108,30 @@ void tellValues(const Scene& scene, Report& report) {
   report.set("values", json);
 }
 
+const Keys& scanKeys() {
+  static const Keys keys = {{"name", "", ""},
+                            {"files", "", "", "of its folder that the workspace holds"},
+                            {"frames", "", "", "folder of its frames, or empty"}};
+  return keys;
+}
+
+void tellScans(const Scene& scene, Report& report) {
+  if (scene.scans.empty()) return;
+  Json list = Json::array();
+  for (const SceneScan& scan : scene.scans) {
+    Json files = Json::array();
+    std::vector<std::string> names;
+    for (const auto& [file, text] : scan.files) files.push(file), names.push_back(file);
+    list.push(Json::object()
+                  .set("name", scan.name)
+                  .set("files", std::move(files))
+                  .set("frames", scan.folder.string()));
+    report.tell("scan " + scan.name,
+                joined(names) + (scan.folder.empty() ? "" : "; frames in " + scan.folder.string()));
+  }
+  report.set("scans", list);
+}
+
 std::string historyText(std::size_t undoable, std::size_t redoable) {
   return formatCount(undoable) + " to undo, " + formatCount(redoable) + " to redo";
 }

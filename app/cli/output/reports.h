@@ -30,6 +30,10 @@ std::string spreadText(const Percentiles& p, const std::string& unit);
 // A scene's values: numbers as numbers and words as words under the key "values", each a row.
 void tellValues(const Scene& scene, Report& report);
 
+// A scene's scans under the key "scans", each a row with its files; nothing where there is none.
+const Keys& scanKeys();
+void tellScans(const Scene& scene, Report& report);
+
 // "3 to undo, 1 to redo".
 std::string historyText(std::size_t undoable, std::size_t redoable);
 

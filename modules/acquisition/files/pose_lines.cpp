@@ -90,8 +90,7 @@ std::string poseRow(const NoPose& without) {
   return "# " + formatNumber(without.t) + " no pose: " + without.why + "\n";
 }
 
-void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
-                const std::vector<NoPose>& without) {
+std::string posesText(const std::vector<CameraPose>& poses, const std::vector<NoPose>& without) {
   std::string text = posesHeader();
   auto gap = without.begin();
   for (const CameraPose& pose : poses) {
@@ -99,7 +98,12 @@ void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>
     text += poseRow(pose);
   }
   for (; gap != without.end(); ++gap) text += poseRow(*gap);
-  writeFileAtomically(path, text);
+  return text;
+}
+
+void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
+                const std::vector<NoPose>& without) {
+  writeFileAtomically(path, posesText(poses, without));
 }
 
 } // namespace patina

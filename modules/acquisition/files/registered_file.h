@@ -13,6 +13,8 @@ namespace patina {
 // The columns of a path, then face,b0,b1,b2,distance [m]. Samples that do not count are left out.
 void writeRegisteredPath(const std::filesystem::path& path, const std::vector<PathSample>& samples,
                          const Registration& registration);
+std::string registeredText(const std::vector<PathSample>& samples,
+                           const Registration& registration);
 
 // Strokes of such a file, of any path's (t [s],x [m],y [m],z [m], ...) or of points alone (x [m],
 // y [m],z [m], ...): one wherever the time between two samples is more than five times the median.

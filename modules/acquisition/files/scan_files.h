@@ -39,6 +39,7 @@ struct NoPose {
 };
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
                 const std::vector<NoPose>& without);
+std::string posesText(const std::vector<CameraPose>& poses, const std::vector<NoPose>& without);
 // A line of its own of such a file, for what writes them as they come; the first is posesHeader().
 std::string posesHeader();
 std::string poseRow(const CameraPose& pose);
@@ -68,6 +69,8 @@ std::string probeHeader();
 std::string probeRow(const ProbeSample& sample);
 void writeProbeStream(const std::filesystem::path& path, const std::vector<ProbeSample>& samples);
 std::vector<PathSample> readPath(const std::filesystem::path& path);
+std::vector<PathSample> parsePath(const std::string& text, const std::string& name);
+std::string pathText(const std::vector<PathSample>& samples);
 void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples);
 // Both files, or neither where the disk has no room for both.
 void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples,

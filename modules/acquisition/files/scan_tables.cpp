@@ -108,9 +108,11 @@ void writeProbeStream(const std::filesystem::path& path, const std::vector<Probe
   writer.commit();
 }
 
-std::vector<PathSample> readPath(const std::filesystem::path& path) {
+namespace {
+
+std::vector<PathSample> pathIn(CsvReader reader, const std::string& name) {
   std::vector<PathSample> samples;
-  readTimed(CsvReader(path, kPathColumns), path.string(), kPathColumns,
+  readTimed(std::move(reader), name, kPathColumns,
             [&](const std::vector<double>& row, std::size_t) {
               PathSample sample;
               sample.t = row[0];
@@ -121,6 +123,16 @@ std::vector<PathSample> readPath(const std::filesystem::path& path) {
               samples.push_back(sample);
             });
   return samples;
+}
+
+} // namespace
+
+std::vector<PathSample> readPath(const std::filesystem::path& path) {
+  return pathIn(CsvReader(path, kPathColumns), path.string());
+}
+
+std::vector<PathSample> parsePath(const std::string& text, const std::string& name) {
+  return pathIn(CsvReader(sourceOfText(text), name, kPathColumns), name);
 }
 
 namespace {
@@ -148,6 +160,12 @@ void append(AtomicFile& file, const std::vector<std::string>& columns, const Row
 }
 
 } // namespace
+
+std::string pathText(const std::vector<PathSample>& samples) {
+  std::string text = csvHeader(kPathColumns);
+  for (const PathSample& sample : samples) text += csvRow(numbersOf(sample));
+  return text;
+}
 
 void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples) {
   AtomicFile file(path);

@@ -11,6 +11,8 @@ namespace {
 
 // Every part that scenes share, with its size.
 template <typename F> void forEachPart(const Scene& scene, const F& visit) {
+  for (const SceneScan& scan : scene.scans)
+    for (const auto& [name, text] : scan.files) visit(text.get(), text->size());
   for (const SceneObject& object : scene.objects) {
     visit(object.mesh.get(), object.mesh ? object.mesh->positions.size() * sizeof(Vec3) +
                                                object.mesh->triangles.size() * sizeof(Triangle)

@@ -1,4 +1,4 @@
-#include "app/cli/input/pose_file.h"
+#include "geometry/io/pose_file.h"
 
 #include <cmath>
 #include <sstream>
@@ -10,16 +10,28 @@
 #include "core/json.h"
 #include "core/numbers.h"
 
-namespace patina::cli {
+namespace patina {
 
 Pose readPose(const std::filesystem::path& path) {
+  return parsePose(readFile(path), path.string());
+}
+
+std::string poseText(const Pose& pose, const std::string& frames) {
+  std::string text = "# " + frames + "\n";
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      text += formatNumber(pose.matrix()(row, column)) + (column < 3 ? " " : "\n");
+  return text;
+}
+
+Pose parsePose(const std::string& whole, const std::string& name) {
   constexpr std::size_t kNumbers = 16;
-  std::istringstream text(readFile(path));
+  std::istringstream text(whole);
   std::vector<double> values;
   std::vector<std::size_t> line_of;
   std::size_t line_number = 0;
   const auto refuse = [&](std::size_t line, const std::string& cause) {
-    throw FileError(path.string(), line, cause);
+    throw FileError(name, line, cause);
   };
   for (std::string line; std::getline(text, line);) {
     ++line_number;
@@ -71,4 +83,4 @@ Pose readPoseAt(const std::filesystem::path& path, const std::string& key) try {
   throw FileError(path.string(), 0, key + ": " + error.what());
 }
 
-} // namespace patina::cli
+} // namespace patina

@@ -1,0 +1,119 @@
+#include "pipeline/scan_files.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/json.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh/mesh_unit.h"
+#include "session/store/attach_scan.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+Pose poseIn(const Json& rows) {
+  Eigen::Matrix4d matrix;
+  if (rows.asArray().size() != 4) throw Error("'mesh_from_camera' has not four rows");
+  for (int i = 0; i < 4; ++i) {
+    const Json::Array& row = rows.asArray()[static_cast<std::size_t>(i)].asArray();
+    if (row.size() != 4) throw Error("a row of 'mesh_from_camera' has not four numbers");
+    for (int k = 0; k < 4; ++k) matrix(i, k) = row[static_cast<std::size_t>(k)].asNumber();
+  }
+  return Pose(matrix);
+}
+
+// Where the mesh is that was scanned, of a scan that was simulated.
+void readTruth(const std::string& text, const std::string& name, ScanFiles& files) try {
+  const Json truth = parseJson(text, name);
+  if (const Json* rows = truth.find("mesh_from_camera")) files.mesh_from_camera = poseIn(*rows);
+  const std::filesystem::path mesh = files.folder / "mesh.obj";
+  if (!files.mesh_from_camera || files.folder.empty() || !std::filesystem::exists(mesh)) return;
+  const Json* unit = truth.find("mesh_unit");
+  const MeshUnit read_in = unit ? parseMeshUnit(unit->asString()) : MeshUnit::mm;
+  files.mesh = std::make_shared<const TriangleMesh>(inMetres(readMesh(mesh), read_in).mesh);
+} catch (const FileError&) {
+  throw;
+} catch (const Error& error) {
+  throw FileError(name, 0, error.what());
+}
+
+// A recording that has seen no marker yet, or heard no probe, has tables without a row.
+bool hasRows(const std::string& text, int header_lines) {
+  std::istringstream file(text);
+  int lines = 0;
+  for (std::string line; lines <= header_lines && std::getline(file, line);)
+    lines += !line.empty() && line[0] != '#';
+  return lines > header_lines;
+}
+
+// `where` is how errors name what the files are in.
+void parseTexts(const std::string& where, ScanFiles& files, Progress& progress) {
+  const auto withFile = [&](const char* name, double fraction, const auto& parse) {
+    progress.throwIfCancelled();
+    progress.report(fraction, name);
+    if (const std::string* text = files.scan.text(name)) parse(*text, where + name);
+  };
+  withFile("camera.yml", 0.1, [&](const std::string& text, const std::string& name) {
+    files.camera = parseCamera(text, name);
+  });
+  withFile("rig.json", 0.15, [&](const std::string& text, const std::string& name) {
+    files.rig = parseRig(text, name);
+    const Json json = parseJson(text, name);
+    if (json.find("markers") != nullptr && !json.at("markers").asArray().empty())
+      files.markers = parseMarkers(text, name);
+  });
+  withFile("poses.tum", 0.2, [&](const std::string& text, const std::string& name) {
+    if (hasRows(text, 0)) files.poses = parsePoses(text, name).values;
+  });
+  withFile("path.csv", 0.3, [&](const std::string& text, const std::string& name) {
+    files.path = parsePath(text, name);
+  });
+  withFile("probe.csv", 0.4, [&](const std::string& text, const std::string& name) {
+    if (!hasRows(text, 1)) return;
+    files.probe = parseProbeStream(text, name).values;
+    if (files.rig)
+      for (ProbeSample& sample : files.probe) sample.force = forceOf(*files.rig, sample.force);
+  });
+  withFile("truth.json", 0.8,
+           [&](const std::string& text, const std::string& name) { readTruth(text, name, files); });
+}
+
+} // namespace
+
+bool isScanFolder(const std::filesystem::path& path) {
+  std::error_code none; // what cannot be looked at is no scan
+  if (!std::filesystem::is_directory(path, none) || isWorkspace(path)) return false;
+  const auto has = [&](const char* name) { return std::filesystem::exists(path / name, none); };
+  return has("frames.csv") || has("frames") || has("poses.tum") || has("path.csv");
+}
+
+ScanFiles readScanFolder(const std::filesystem::path& folder, Progress& progress) {
+  ScanFiles files;
+  files.scan = scanIn(folder, scanNameOf(folder));
+  files.folder = folder;
+  if (std::filesystem::exists(folder / "frames.csv") || std::filesystem::exists(folder / "frames"))
+    files.frames = framesOf(folder, 0);
+  parseTexts((folder / "").string(), files, progress);
+  return files;
+}
+
+ScanFiles readScan(const SceneScan& scan, Progress& progress) {
+  ScanFiles files;
+  files.of_scene = true;
+  files.scan = scan;
+  try {
+    requireFrames(scan);
+    files.folder = scan.folder;
+    if (!scan.folder.empty()) files.frames = framesOf(scan.folder, 0);
+  } catch (const FileError& error) {
+    files.folder.clear();
+    files.problem = error.what();
+  }
+  parseTexts("scan '" + scan.name + "': ", files, progress);
+  return files;
+}
+
+} // namespace patina

@@ -1,0 +1,60 @@
+#include "session/store/attach_scan.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/sha256.h"
+
+namespace patina {
+
+namespace fs = std::filesystem;
+
+SceneScan scanIn(const fs::path& folder, const std::string& name) {
+  std::error_code code;
+  if (!fs::is_directory(folder, code)) throw FileError(folder.string(), 0, "is no scan folder");
+  SceneScan scan;
+  scan.name = name;
+  for (const ScanFile& file : kScanFiles)
+    if (const fs::path path = folder / file.name; fs::exists(path, code))
+      scan.files[std::string(file.name)] = std::make_shared<const std::string>(readFile(path));
+  scan.frames = framesDigest(folder);
+  if (!scan.frames.empty()) scan.folder = fs::absolute(folder).lexically_normal();
+  if (scan.files.empty())
+    throw FileError(folder.string(), 0,
+                    "holds nothing of a scan: no frames.csv, probe.csv, "
+                    "poses.tum or path.csv");
+  return scan;
+}
+
+std::string framesDigest(const fs::path& folder) {
+  std::vector<std::string> lines;
+  std::error_code code;
+  for (fs::directory_iterator entry(folder / "frames", code), end; !code && entry != end;
+       entry.increment(code)) {
+    std::error_code none; // a frame that cannot be looked at counts as empty
+    const auto size = fs::file_size(entry->path(), none);
+    lines.push_back(entry->path().filename().string() + " " + std::to_string(none ? 0 : size) +
+                    "\n");
+  }
+  if (lines.empty()) return "";
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  const fs::path times = folder / "frames.csv";
+  if (fs::exists(times, code)) text += readFile(times);
+  return sha256(text);
+}
+
+void requireFrames(const SceneScan& scan) {
+  if (scan.folder.empty()) return;
+  std::error_code code;
+  if (!fs::is_directory(scan.folder, code))
+    throw FileError(scan.folder.string(), 0,
+                    "the folder with the frames of scan '" + scan.name + "' is gone");
+  if (framesDigest(scan.folder) != scan.frames)
+    throw FileError(scan.folder.string(), 0,
+                    "holds other frames than when scan '" + scan.name + "' was attached");
+}
+
+} // namespace patina
