@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "acquisition/filtering/filtered_scan.h"
+#include "acquisition/profile/roughness.h"
 #include "acquisition/simulation/simulated_streams.h"
 #include "acquisition/simulation/simulated_surface.h"
 #include "core/error.h"
@@ -125,6 +126,63 @@ TEST(ScanHeights, ArePressedByNothing) {
     std::printf("%.0f N/m: %.2f of the truth above 10 Hz\n", stiffness, error);
     EXPECT_LT(error, 0.3);
   }
+}
+
+// A sine of one wavelength, of which a Gaussian of this cutoff lets a known part pass.
+TEST(Roughness, OfASineIsTheClosedForm) {
+  constexpr double kSize = 10e-6, kCutoff = 2.5e-3;
+  for (const double length : {0.5e-3, 1.25e-3, 2.5e-3}) {
+    std::vector<ScanHeight> heights;
+    for (int stretch = 0; stretch < 2; ++stretch)
+      for (int i = 0; i < 20000; ++i) {
+        const double along = 5e-6 * i;
+        heights.push_back({0,
+                           {along, kSize * std::sin(2 * M_PI * along / length), 0},
+                           static_cast<std::size_t>(stretch)});
+      }
+    const auto found = roughnessOf(heights, kCutoff);
+    ASSERT_TRUE(found);
+    const double left = 1 - std::exp(-std::log(2.) * std::pow(kCutoff / length, 2));
+    // A place is a twenty-fifth of the cutoff: lines between them miss the sine by a few percent.
+    EXPECT_NEAR(found->rq, left * kSize / std::sqrt(2.), 0.03 * kSize) << length;
+    EXPECT_NEAR(found->ra, left * 2 * kSize / M_PI, 0.03 * kSize) << length;
+    EXPECT_LT(found->rq_deviation, 0.02 * kSize);
+    EXPECT_GE(found->lengths, 76u);
+  }
+  EXPECT_FALSE(roughnessOf({}, kCutoff));
+}
+
+// What is found of a scan against the surface that the hand went over, and the means of white noise
+// against their stated deviation.
+TEST(Roughness, OfAScanIsTheSurfacesAndItsDeviationHolds) {
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    const Rough rough = roughScan(seed, 50e-6);
+    std::vector<ScanHeight> truth = rough.found.heights;
+    for (ScanHeight& height : truth) height.point.height = handAt(rough.hand, height.t).surface;
+    const auto found = roughnessOf(rough.found.heights), known = roughnessOf(truth);
+    ASSERT_TRUE(found && known);
+    std::printf("seed %u: Rq %.1f +- %.1f um of %.1f, Ra %.1f +- %.1f of %.1f\n", seed,
+                1e6 * found->rq, 1e6 * found->rq_deviation, 1e6 * known->rq, 1e6 * found->ra,
+                1e6 * found->ra_deviation, 1e6 * known->ra);
+    EXPECT_NEAR(found->rq, known->rq, 0.05 * known->rq);
+    EXPECT_NEAR(found->ra, known->ra, 0.05 * known->ra);
+  }
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 1e-5);
+  double pulls = 0, mean = 0;
+  constexpr int kSeeds = 200;
+  std::vector<RoughnessEstimate> estimates;
+  for (int i = 0; i < kSeeds; ++i) {
+    std::vector<ScanHeight> heights;
+    for (int k = 0; k < 1000; ++k) heights.push_back({0, {1e-4 * k, normal(random), 0}, 0});
+    estimates.push_back(*roughnessOf(heights));
+    mean += estimates.back().rq / kSeeds;
+  }
+  for (const RoughnessEstimate& estimate : estimates)
+    pulls += std::pow((estimate.rq - mean) / estimate.rq_deviation, 2) / kSeeds;
+  std::printf("white: squared error over variance %.2f\n", pulls);
+  EXPECT_GT(pulls, 0.6);
+  EXPECT_LT(pulls, 1.5);
 }
 
 TEST(ScanHeights, KnowThePlaneAndItsOutside) {

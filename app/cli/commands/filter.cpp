@@ -8,12 +8,13 @@
 #include "acquisition/simulation/path_error.h"
 #include "acquisition/texture/mesh_heights.h"
 #include "app/cli/commands/commands.h"
-#include "app/cli/input/pose_file.h"
+#include "app/cli/output/height_report.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
 
@@ -61,6 +62,17 @@ const Keys kFilterKeys = {
     {"normal", "", "normal", "from which side heights are, in the camera's frame", Shown::if_any},
     {"stretches", "", "stretches", "of contact whose heights were found", Shown::if_any},
     {"height_sigma", "m", "sigma of heights", "median", Shown::if_any},
+    {"roughness",
+     "m",
+     "roughness",
+     "of heights, in waves shorter than `cutoff`; absent along less than four cutoffs",
+     Shown::if_any,
+     {{"rq", "m", "", "their rms"},
+      {"ra", "m", "", "their mean size"},
+      {"rq_deviation", "m", ""},
+      {"ra_deviation", "m", ""},
+      {"cutoff", "m", ""},
+      {"lengths", "", "", "of a cutoff"}}},
     {"stiffness",
      "N/m",
      "stiffness",
@@ -172,23 +184,6 @@ void reportSigma(const std::vector<PathSample>& path, Report& report) {
   const double median = percentiles(sigmas).p50, most = percentiles(sigmas).max;
   report.set("sigma", Json::object().set("median", median).set("max", most),
              formatLength(median) + " (median), " + formatLength(most) + " (max)");
-}
-
-void reportHeights(const ScanHeights& scan, Report& report) {
-  report.set("normal", vectorJson(scan.plane.normal));
-  report.set("stretches", scan.heights.back().stretch + 1);
-  std::vector<double> sigmas;
-  for (const ScanHeight& height : scan.heights) sigmas.push_back(height.point.sigma);
-  report.set("height_sigma", percentiles(sigmas).p50);
-  if (const auto& found = scan.compliance)
-    report.set("stiffness",
-               Json::object()
-                   .set("value", found->stiffness)
-                   .set("deviation", found->stiffness_deviation)
-                   .set("presses", found->loadings),
-               rounded(found->stiffness) + " N/m, deviation " +
-                   rounded(found->stiffness_deviation) + " N/m, from " +
-                   formatCount(found->loadings) + " presses");
 }
 
 // Heights over a mesh that the scan was registered to.
