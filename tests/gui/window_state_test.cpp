@@ -9,11 +9,11 @@
 namespace patina {
 namespace {
 
-const std::vector<Panel> kPanels{Panel::recovery, Panel::tool,     Panel::brush,    Panel::relief,
-                                 Panel::touch,    Panel::objects,  Panel::mesh,     Panel::device,
-                                 Panel::display,  Panel::paint,    Panel::forces,   Panel::energy,
-                                 Panel::history,  Panel::messages, Panel::timeline, Panel::findings,
-                                 Panel::scan,     Panel::recorder};
+const std::vector<Panel> kPanels{
+    Panel::recovery, Panel::tool,   Panel::brush,    Panel::relief,     Panel::touch,
+    Panel::objects,  Panel::mesh,   Panel::device,   Panel::display,    Panel::paint,
+    Panel::forces,   Panel::energy, Panel::history,  Panel::messages,   Panel::timeline,
+    Panel::findings, Panel::scan,   Panel::recorder, Panel::calibration};
 const std::vector<Command> kCommands{Command::save, Command::save_as, Command::record,
                                      Command::undo, Command::redo,    Command::paint};
 
@@ -128,7 +128,8 @@ TEST(WindowState, AScanHasItsPagesOnceItIsOpen) {
   if (!isBuilt(Desk::scan)) GTEST_SKIP() << "built without PATINA_ACQUISITION";
   WindowState state;
   state.desk = Desk::scan;
-  EXPECT_EQ(thereIn(state), (std::vector{Panel::messages, Panel::scan, Panel::recorder}));
+  EXPECT_EQ(thereIn(state),
+            (std::vector{Panel::messages, Panel::scan, Panel::recorder, Panel::calibration}));
   state.scan = true;
   EXPECT_EQ(pagesThere(state), (std::vector{Panel::timeline, Panel::findings, Panel::messages}));
   state.desk = Desk::feel;

@@ -1,12 +1,11 @@
 #include <cmath>
 
-#include "acquisition/calibration/board.h"
+#include "acquisition/calibration/calibrate_camera.h"
 #include "acquisition/calibration/force_fit.h"
 #include "acquisition/calibration/pivot.h"
 #include "acquisition/calibration/still_probe.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/files/scan_files.h"
-#include "acquisition/vision_library.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
@@ -40,8 +39,6 @@ const Keys kCalibrateKeys = {
      "[rad], and force_zero [N]; force_zero and force_gain of known weights",
      Shown::never, kParameterParts}};
 
-constexpr const char* kCameraNames[] = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
-
 void tellParameter(Json& parameters, Report& report, const std::string& name, double value,
                    double deviation, double shown_in, const std::string& unit) {
   Json json = Json::object();
@@ -54,105 +51,42 @@ void tellParameter(Json& parameters, Report& report, const std::string& name, do
   report.tell(name, text(value) + " +- " + text(deviation) + unit);
 }
 
-int calibrateCamera(const CalibrateOptions& options, Console& console) {
+int reportCamera(const CalibrateOptions& options, Console& console) {
   const std::vector<Frame> frames = framesOf(options.input, 1);
-  std::vector<BoardView> views;
-  std::vector<std::string> names, rejected;
-  CameraFit fit;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    console.progress().throwIfCancelled();
-    console.progress().report(0.8 * static_cast<double>(i) / static_cast<double>(frames.size()),
-                              "views");
-    const std::string name = frames[i].file.string();
-    const GreyFrame image = readGrey(frames[i].file);
-    if (i == 0) {
-      fit.camera.width = image.width;
-      fit.camera.height = image.height;
-    } else if (image.width != fit.camera.width || image.height != fit.camera.height) {
-      throw FileError(name, 0, "is of another size than the views before it");
-    }
-    const auto view = [&] {
-      try {
-        return findBoard(image, *options.board);
-      } catch (const FileError&) {
-        throw;
-      } catch (const Error& error) {
-        throw FileError(name, 0, error.what());
-      }
-    }();
-    if (view)
-      views.push_back(*view);
-    else
-      rejected.push_back(name);
-  }
-  if (views.size() < 3)
-    throw FileError(options.input.string(), 0,
-                    "the board " + options.board_text + " is seen in " +
-                        std::to_string(views.size()) + " of " + std::to_string(frames.size()) +
-                        " views; three at least are needed");
-  console.progress().report(0.8, "camera");
-  if (const std::string cause = visionLibrary().calibrate(views, fit); !cause.empty())
-    throw FileError(options.input.string(), 0, cause);
+  const CalibratedCamera found = calibrateCamera(frames, *options.board, options.board_text,
+                                                 options.input.string(), console.progress());
   Report report(kCalibrateKeys);
-  report.set("rms_px", fit.rms, rounded(fit.rms) + " px");
-  report.set("views", views.size()).set("rejected", rejected.size());
-  const Camera& c = fit.camera;
-  const double values[] = {c.fx,
-                           c.fy,
-                           c.cx,
-                           c.cy,
-                           c.distortion[0],
-                           c.distortion[1],
-                           c.distortion[2],
-                           c.distortion[3],
-                           c.distortion[4]};
+  report.set("rms_px", found.fit.rms, rounded(found.fit.rms) + " px");
+  report.set("views", frames.size() - found.rejected.size());
+  report.set("rejected", found.rejected.size());
   Json parameters = Json::object();
-  std::string lines = "avg_reprojection_error: " + formatNumber(fit.rms) + "\nboard: \"" +
-                      options.board_text + "\"\ndeviations: !!opencv-matrix\n   rows: 1\n" +
-                      "   cols: 9\n   dt: d\n   data: [ ";
-  for (std::size_t i = 0; i < 9; ++i) {
-    tellParameter(parameters, report, kCameraNames[i], values[i], fit.deviation[i], 1,
-                  i < 4 ? " px" : "");
-    lines += (i ? ", " : "") + formatNumber(fit.deviation[i]);
-  }
+  for (std::size_t i = 0; i < 9; ++i)
+    tellParameter(parameters, report, kCameraParameters[i], parametersOf(found.fit.camera)[i],
+                  found.fit.deviation[i], 1, i < 4 ? " px" : "");
   report.set("parameters", parameters);
-  writeFileAtomically(options.output, cameraText(fit.camera, lines + " ]\n"));
-  if (!rejected.empty())
-    console.warn(
-        rejected[0] + ": the board is not seen" +
-        (rejected.size() > 1 ? ", nor in " + formatCount(rejected.size() - 1) + " others" : ""));
+  writeFileAtomically(options.output, calibratedText(found.fit, options.board_text));
+  if (!found.rejected.empty())
+    console.warn(frames[found.rejected[0]].file.string() + ": the board is not seen" +
+                 (found.rejected.size() > 1
+                      ? ", nor in " + formatCount(found.rejected.size() - 1) + " others"
+                      : ""));
   console.report(report);
   return kDone;
 }
 
-constexpr double kWorstTip = 1e-3; // standard deviation of what is no tip [m]
-
 int calibrateTip(const CalibrateOptions& options, Console& console) {
   const OnFile<CameraPose> poses = readPoses(options.input);
-  Json rig = Json::object();
-  if (!options.rig.empty()) rig = parseJson(readFile(options.rig), options.rig.string());
-  if (!rig.isObject()) throw FileError(options.rig.string(), 0, "is no object");
-  const auto fit = fitPivot(poses.values);
-  if (!fit)
-    throw FileError(
-        options.input.string(), 0,
-        "the poses do not tell the tip: ten at least, turned to all sides about a point "
-        "that stands still");
-  const double deviation = std::sqrt(fit->covariance.diagonal().maxCoeff());
-  if (deviation > kWorstTip)
-    throw FileError(options.input.string(), 0,
-                    "the poses tell the tip to " + formatLength(deviation) +
-                        " only: it must stand still while the probe turns about it to all sides");
+  const std::string rig = options.rig.empty() ? "{}" : readFile(options.rig);
+  const PivotFit fit = tipOf(poses.values, options.input.string());
   Report report(kCalibrateKeys);
-  report.set("rms", fit->rms).set("views", poses.values.size() - fit->rejected);
-  report.set("rejected", fit->rejected);
+  report.set("rms", fit.rms).set("views", poses.values.size() - fit.rejected);
+  report.set("rejected", fit.rejected);
   Json parameters = Json::object();
   for (int i = 0; i < 3; ++i)
-    tellParameter(parameters, report, std::string(1, static_cast<char>('x' + i)), fit->tip[i],
-                  std::sqrt(fit->covariance(i, i)), 1e3, " mm");
+    tellParameter(parameters, report, std::string(1, static_cast<char>('x' + i)), fit.tip[i],
+                  std::sqrt(fit.covariance(i, i)), 1e3, " mm");
   report.set("parameters", parameters);
-  rig.set("tip", Json(Json::Array{fit->tip.x(), fit->tip.y(), fit->tip.z()}));
-  writeFileAtomically(options.output, rig.dump() + "\n");
+  writeFileAtomically(options.output, rigWithTip(rig, options.rig.string(), fit));
   console.report(report);
   return kDone;
 }
@@ -222,6 +156,8 @@ int calibrateForce(const CalibrateOptions& options, Console& console) {
   report.set("parameters", parameters);
   if (!json.find("tip")) json.set("tip", vectorJson(ProbeModel().tip));
   json.set("force_zero", fit->zero).set("force_gain", fit->gain);
+  json.set("force_zero_deviation", fit->zero_deviation);
+  json.set("force_gain_deviation", fit->gain_deviation);
   writeFileAtomically(options.output, json.dump() + "\n");
   if (!fit->rejected.empty())
     console.warn(options.input.string() + ":" + std::to_string(lines[fit->rejected[0]]) +
@@ -239,7 +175,7 @@ int runCalibrate(const CalibrateOptions& options, Console& console) {
   if (options.force && (options.board || options.still))
     throw Error("--force: not with --board or --still");
   if (options.force) return calibrateForce(options, console);
-  if (options.board) return calibrateCamera(options, console);
+  if (options.board) return reportCamera(options, console);
   return options.still ? calibrateStill(options, console) : calibrateTip(options, console);
 }
 

@@ -2,22 +2,15 @@
 
 #include <cmath>
 
-#include <QFileDialog>
 #include <QGridLayout>
 #include <QShortcut>
 #include <QVBoxLayout>
 
-#include "acquisition/files/registered_file.h"
-#include "acquisition/files/scan_files.h"
 #include "acquisition/registration/first_guess.h"
 #include "acquisition/registration/rigid_fit.h"
 #include "app/gui/aligning/fit_words.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/scanning/scan_path.h"
-#include "core/error.h"
-#include "core/file.h"
-#include "core/numbers.h"
-#include "core/percentiles.h"
 
 namespace patina {
 namespace {
@@ -25,16 +18,6 @@ namespace {
 constexpr int kSettle = 350;         // after its last change a value is a step [ms]
 constexpr double kSpread = 0.01;     // of the mesh, that three points are apart at least
 constexpr double kPlaces = 1. / 200; // samples this near are one place, of the path's radius
-
-std::string poseText(const Pose& pose) {
-  std::string text = "# mesh_from_scan\n";
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column)
-      text += (column > 0 ? " " : "") + formatNumber(pose.matrix()(row, column));
-    text += '\n';
-  }
-  return text;
-}
 
 } // namespace
 
@@ -56,6 +39,8 @@ AlignDesk::AlignDesk(QWidget& window)
   connect(&settle_, &QTimer::timeout, this, &AlignDesk::settle);
   connect(panel_, &AlignPanel::openAsked, this, &AlignDesk::openDialog);
   connect(panel_, &AlignPanel::keepAsked, this, &AlignDesk::keepDialog);
+  connect(panel_, &AlignPanel::storeAsked, this, &AlignDesk::store);
+  connect(panel_, &AlignPanel::scanChosen, this, &AlignDesk::openScan);
   connect(panel_, &AlignPanel::edited, this, [this](const PoseValues& values) {
     if (!alignment_.isReady() || work_) return;
     alignment_.setPose(poseOf(values));
@@ -112,15 +97,6 @@ void AlignDesk::makeViews() {
   connect(escape, &QShortcut::activated, this, [this] { setPicking(false); });
 }
 
-void AlignDesk::openPath(const std::filesystem::path& file) {
-  try {
-    setPath(QString::fromStdString(file.filename().string()), readPath(file));
-  } catch (const Error& error) {
-    showProblem(&window_, tr("The path cannot be read"), QString::fromStdString(error.what()),
-                tr("What was open before is as it was."));
-  }
-}
-
 void AlignDesk::setPath(const QString& name, std::vector<PathSample> path) {
   path = inContact(std::move(path));
   if (path.size() < 3) {
@@ -131,12 +107,6 @@ void AlignDesk::setPath(const QString& name, std::vector<PathSample> path) {
   name_ = name;
   alignment_.setPath(std::move(path));
   begin();
-}
-
-void AlignDesk::offerMesh(const std::filesystem::path& file) {
-  offered_ = file;
-  offer_->setText(tr("Open the scan's %1").arg(QString::fromStdString(file.filename().string())));
-  offer_->setVisible(!offered_.empty() && !alignment_.path().empty());
 }
 
 void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
@@ -172,43 +142,6 @@ void AlignDesk::begin() {
     lookAbout();
   }
   emit changed();
-}
-
-void AlignDesk::openDialog() {
-  auto* dialog =
-      new QFileDialog(&window_, tr("Open a scan's path"), {}, tr("Paths (*.csv);;All files (*)"));
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setFileMode(QFileDialog::ExistingFile);
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { openPath(file.toStdString()); });
-  dialog->open();
-}
-
-void AlignDesk::keepDialog() {
-  auto* dialog =
-      new QFileDialog(&window_, tr("Keep the path on the mesh"), {}, tr("Paths (*.csv)"));
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setAcceptMode(QFileDialog::AcceptSave);
-  dialog->setDefaultSuffix(QStringLiteral("csv"));
-  dialog->selectFile(QStringLiteral("registered.csv"));
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { keep(file.toStdString()); });
-  dialog->open();
-}
-
-void AlignDesk::keep(const std::filesystem::path& file) {
-  try {
-    const auto pose = std::filesystem::path(file).replace_extension(".txt");
-    writeRegisteredPath(file, alignment_.path(),
-                        registeredAt(*alignment_.target(), alignment_.path(), alignment_.pose()));
-    writeFileAtomically(pose, poseText(alignment_.pose()));
-    emit said({tr("The path on the mesh is in %1, its pose in %2")
-                   .arg(QString::fromStdString(file.string()),
-                        QString::fromStdString(pose.filename().string()))});
-  } catch (const Error& error) {
-    showProblem(&window_, tr("The path cannot be kept"), QString::fromStdString(error.what()),
-                tr("Make room, or choose another folder."));
-  }
 }
 
 void AlignDesk::move(const Pose& pose) {
@@ -291,18 +224,9 @@ void AlignDesk::registerFromHere() {
   work_ = Work{title, title};
   panel_->setReady(true, true);
   emit changed();
-  RegistrationOptions options;
   std::vector<Vec3> points;
-  std::vector<double> sigmas;
-  for (const PathSample& sample : alignment_.path()) {
-    points.push_back(sample.position);
-    sigmas.push_back(sample.sigma);
-    if (alignment_.hasForces()) options.force.push_back(sample.force);
-  }
-  options.noise = percentiles(sigmas).p50;
-  options.place = kPlaces * scaleOf(points, Pose::Identity()).radius;
-  options.search = false; // the hand has said where
-  options.rivals = true;
+  for (const PathSample& sample : alignment_.path()) points.push_back(sample.position);
+  const RegistrationOptions options = fitOptions(alignment_);
   fit_job_.start([this, options, points, target = alignment_.target(), start = alignment_.pose()](
                      Progress& progress, const Background::Deliver& deliver) {
     const auto rest = [this] {

@@ -16,6 +16,7 @@
 #include "app/gui/panels/message_panel.h"
 #include "app/gui/window/background.h"
 #include "app/gui/window/window_state.h"
+#include "scene/scene.h"
 
 namespace patina {
 
@@ -40,6 +41,8 @@ class AlignDesk : public QObject {
   // That lies beside the path, to be opened where no scene is; empty: none.
   void offerMesh(const std::filesystem::path& file);
   void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: no scene is open
+  void setScans(std::shared_ptr<const Scene> scene);           // whose paths can be chosen
+  void openScan(const QString& name);                          // of the scene
   void cancel();
   void fit();
   void undo();
@@ -50,12 +53,14 @@ class AlignDesk : public QObject {
   void changed();
   void meshAsked(const QString& file);
   void said(const patina::Message& message);
+  void storeAsked(const patina::SceneScan& scan); // with where it lies
 
  private:
   void makeViews();
   void openDialog();
   void keepDialog();
   void keep(const std::filesystem::path& file);
+  void store();
   void begin();                // another path or mesh
   void move(const Pose& pose); // while a hand moves it
   void settle();               // it has
@@ -70,6 +75,7 @@ class AlignDesk : public QObject {
   Background fit_job_, basin_job_;
   Alignment alignment_;
   QString name_;
+  std::shared_ptr<const Scene> scene_;
   QStackedWidget* cells_ = new QStackedWidget;
   QLabel* empty_ = new QLabel;
   QPushButton* offer_ = new QPushButton;

@@ -52,6 +52,14 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
   buttonIn(column, "align_open", tr("Open path…"),
            tr("A path.csv of a scan; a scan that is open on the desk Scan brings its own"));
   connect(path->findChild<QPushButton*>(), &QPushButton::clicked, this, &AlignPanel::openAsked);
+  scans_ = new QComboBox(path);
+  scans_->setObjectName(QStringLiteral("align_scan"));
+  scans_->setToolTip(tr("Scans of the workspace that have a path; one that was laid onto the mesh "
+                        "lies where it was"));
+  column->addWidget(scans_);
+  store_ = buttonIn(column, "align_store", tr("Put into workspace"),
+                    tr("The path and where it lies become part of the scene: saved with it, and "
+                       "undone like any edit"));
   keep_ = buttonIn(column, "align_keep", tr("Keep…"),
                    tr("Writes the path in the mesh's frame, and the pose beside it as a text file "
                       "that `patina register --initial` reads"));
@@ -93,10 +101,16 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
   all->addWidget(error);
   error_ = error;
 
+  connect(store_, &QPushButton::clicked, this, &AlignPanel::storeAsked);
+  connect(scans_, qOverload<int>(&QComboBox::activated), this, [this](int row) {
+    if (row > 0) emit scanChosen(scans_->itemText(row));
+    scans_->setCurrentIndex(0);
+  });
   connect(keep_, &QPushButton::clicked, this, &AlignPanel::keepAsked);
   connect(pick_, &QPushButton::toggled, this, &AlignPanel::pickToggled);
   connect(fit_, &QPushButton::clicked, this, &AlignPanel::fitAsked);
   connect(begin_, &QPushButton::clicked, this, &AlignPanel::beginAsked);
+  setScans({});
   setPath({}, 0);
   setReady(false, false);
   setPicking({});
@@ -106,6 +120,13 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
 PoseValues AlignPanel::values() const {
   return {{rows_[0]->value(), rows_[1]->value(), rows_[2]->value()},
           {rows_[3]->value(), rows_[4]->value(), rows_[5]->value()}};
+}
+
+void AlignPanel::setScans(const QStringList& names) {
+  scans_->clear();
+  scans_->addItem(tr("From the workspace…"));
+  scans_->addItems(names);
+  scans_->setVisible(!names.isEmpty());
 }
 
 void AlignPanel::setPath(const QString& name, std::size_t samples) {
@@ -118,8 +139,10 @@ void AlignPanel::setReady(bool ready, bool works) {
   place_->setVisible(ready);
   error_->setVisible(ready);
   keep_->setVisible(ready);
-  for (QWidget* each : {static_cast<QWidget*>(pick_), static_cast<QWidget*>(fit_),
-                        static_cast<QWidget*>(begin_), static_cast<QWidget*>(keep_)})
+  store_->setVisible(ready);
+  for (QWidget* each :
+       {static_cast<QWidget*>(pick_), static_cast<QWidget*>(fit_), static_cast<QWidget*>(begin_),
+        static_cast<QWidget*>(keep_), static_cast<QWidget*>(store_)})
     each->setEnabled(!works);
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QWidget>
@@ -18,6 +19,7 @@ class AlignPanel : public QWidget {
  public:
   explicit AlignPanel(QWidget* parent = nullptr);
 
+  void setScans(const QStringList& names);                // of the scene, that have a path
   void setPath(const QString& name, std::size_t samples); // 0: there is none
   void setReady(bool ready, bool works);                  // there is something to align; or not now
   void setValues(const PoseValues& values, double reach); // [m] that shifts may be
@@ -32,13 +34,16 @@ class AlignPanel : public QWidget {
   void fitAsked();
   void beginAsked();
   void keepAsked();
+  void storeAsked();
+  void scanChosen(const QString& name);
 
  private:
   PoseValues values() const;
 
   QLabel *path_, *off_, *fit_words_, *hint_;
   std::array<ValueRow*, 6> rows_;
-  QPushButton *pick_, *fit_, *begin_, *keep_;
+  QPushButton *pick_, *fit_, *begin_, *keep_, *store_;
+  QComboBox* scans_;
   QWidget *place_, *error_;
 };
 

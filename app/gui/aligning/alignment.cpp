@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "acquisition/registration/first_guess.h"
+#include "core/percentiles.h"
 #include "geometry/mesh/mesh_report.h"
 
 namespace patina {
@@ -152,6 +153,23 @@ bool Alignment::redo() {
   if (undone() == 0) return false;
   pose_ = steps_[++at_];
   return true;
+}
+
+RegistrationOptions fitOptions(const Alignment& alignment) {
+  constexpr double kPlaces = 1. / 200; // samples this near are one place, of the path's radius
+  RegistrationOptions options;
+  std::vector<Vec3> points;
+  std::vector<double> sigmas;
+  for (const PathSample& sample : alignment.path()) {
+    points.push_back(sample.position);
+    sigmas.push_back(sample.sigma);
+    if (alignment.hasForces()) options.force.push_back(sample.force);
+  }
+  options.noise = percentiles(sigmas).p50;
+  options.place = kPlaces * scaleOf(points, Pose::Identity()).radius;
+  options.search = false; // the hand has said where
+  options.rivals = true;
+  return options;
 }
 
 } // namespace patina

@@ -72,4 +72,7 @@ class Alignment {
   std::size_t at_ = 0;
 };
 
+// Of a fit that begins where a hand has put the path.
+RegistrationOptions fitOptions(const Alignment& alignment);
+
 } // namespace patina

@@ -125,6 +125,17 @@ void FrameCanvas::paintEvent(QPaintEvent*) {
       picture_);
   if (camera_ && marks_.camera_from_probe) drawProbe(painter);
   drawMarkers(painter);
+  drawBoard(painter);
+}
+
+void FrameCanvas::drawBoard(QPainter& painter) const {
+  QPolygonF way; // in the board's order, which shows a corner that was mistaken for another
+  for (const Vec2& corner : marks_.corners) way << placeOf(corner);
+  if (way.size() > 1) drawSeamed(painter, kTip, 0.8, way);
+  for (const QPointF& at : way) {
+    drawSeamed(painter, kFound, 1.4, QPolygonF() << at - QPointF(4, 0) << at + QPointF(4, 0));
+    drawSeamed(painter, kFound, 1.4, QPolygonF() << at - QPointF(0, 4) << at + QPointF(0, 4));
+  }
 }
 
 void FrameCanvas::drawMarkers(QPainter& painter) const {
@@ -189,12 +200,18 @@ FrameView::FrameView(OpenScan& scan, QWidget* parent)
   setMinimumWidth(220);
   connect(&scan_, &OpenScan::opened, this, [this] {
     asked_.reset();
+    boards_.clear();
     load();
   });
   connect(&scan_, &OpenScan::cursorMoved, this, &FrameView::load);
   connect(&scan_, &OpenScan::framesSeen, this, &FrameView::describe);
   connect(&scan_, &OpenScan::pathMade, this, &FrameView::refresh);
   load();
+}
+
+void FrameView::addBoard(std::size_t frame, const BoardView& view) {
+  boards_[frame] = view.pixel;
+  if (asked_ == frame) refresh();
 }
 
 void FrameView::showLive(const RecordedFrame& frame) {
@@ -220,7 +237,9 @@ void FrameView::load() {
   if (files == nullptr || files->frames.empty()) {
     picture_ = {};
     markers_.clear();
-    fault_ = tr("This scan has no frames: its poses come from another program.");
+    fault_ = files != nullptr && !files->problem.empty()
+                 ? QString::fromStdString(files->problem)
+                 : tr("This scan has no frames: its poses come from another program.");
     return refresh();
   }
   const std::size_t frame = scan_.frameAt(scan_.cursor());
@@ -258,6 +277,7 @@ void FrameView::refresh() {
   FrameMarks marks;
   marks.markers = markers_;
   const ScanPath* path = scan_.path();
+  if (asked_ && boards_.contains(*asked_)) marks.corners = boards_.at(*asked_);
   if (path != nullptr && asked_) {
     const auto pose = poseAt(path->poses, files->frames[*asked_].t);
     const auto& verdicts = path->filtered.track.verdicts;

@@ -2,11 +2,14 @@
 // probe's axes and tip through the lens.
 #pragma once
 
+#include <map>
+
 #include <QImage>
 #include <QLabel>
 #include <QWidget>
 
 #include "acquisition/recording/recorder.h"
+#include "acquisition/vision/vision.h"
 #include "app/gui/scanning/open_scan.h"
 #include "app/gui/widgets/elided_label.h"
 
@@ -21,6 +24,7 @@ struct FrameMarks {
     std::array<Vec2, 4> corner; // [px] of the frame
   };
   std::vector<Outline> markers;
+  std::vector<Vec2> corners; // of a board [px]
   std::optional<Pose> camera_from_probe;
   bool left_out = false; // the pose, of the path
 };
@@ -48,6 +52,7 @@ class FrameCanvas : public QWidget {
   double scale() const; // pixels of the widget a pixel of the picture
   void drawMarkers(QPainter& painter) const;
   void drawProbe(QPainter& painter) const;
+  void drawBoard(QPainter& painter) const;
 
   QImage picture_;
   FrameMarks marks_;
@@ -63,6 +68,7 @@ class FrameView : public QWidget {
  public:
   explicit FrameView(OpenScan& scan, QWidget* parent = nullptr);
   void showLive(const RecordedFrame& frame);
+  void addBoard(std::size_t frame, const BoardView& view); // until another scan is opened
 
  private:
   void load(); // the cursor's frame, if it is not the one that is shown
@@ -78,6 +84,7 @@ class FrameView : public QWidget {
   std::optional<std::size_t> asked_; // the frame
   QImage picture_;
   std::vector<FrameMarks::Outline> markers_;
+  std::map<std::size_t, std::vector<Vec2>> boards_; // corners by frame
   QString fault_;
 };
 

@@ -46,9 +46,28 @@ OpenScan::OpenScan(QObject* parent) : QObject(parent), job_(this) {
 }
 
 void OpenScan::open(const std::filesystem::path& folder) {
-  job_.start([this, folder](Progress& progress, const Background::Deliver& deliver) {
+  start([folder](Progress& progress) { return readScanFolder(folder, progress); });
+}
+
+void OpenScan::open(const SceneScan& scan) {
+  start([scan](Progress& progress) { return readScan(scan, progress); });
+}
+
+void OpenScan::openPictures(const std::filesystem::path& folder) {
+  start([folder](Progress&) {
+    ScanFiles files;
+    files.pictures = true;
+    files.folder = folder;
+    files.scan.name = scanNameOf(folder);
+    files.frames = framesOf(folder, 1);
+    return files;
+  });
+}
+
+void OpenScan::start(Read read) {
+  job_.start([this, read](Progress& progress, const Background::Deliver& deliver) {
     try {
-      run(folder, progress, deliver);
+      run(read, progress, deliver);
       deliver(true, [this] { emit finished(); });
     } catch (const Cancelled&) {
       deliver(true, [this] { emit finished(); });
@@ -61,9 +80,8 @@ void OpenScan::open(const std::filesystem::path& folder) {
   });
 }
 
-void OpenScan::run(const std::filesystem::path& folder, Progress& progress,
-                   const Background::Deliver& deliver) {
-  const auto files = std::make_shared<const ScanFiles>(readScanFolder(folder, progress));
+void OpenScan::run(const Read& read, Progress& progress, const Background::Deliver& deliver) {
+  const auto files = std::make_shared<const ScanFiles>(read(progress));
   deliver(false, [this, files] { take(files); });
   const auto filter = [&](const std::vector<CameraPose>& poses, const Seen& seen) {
     Progress part(progress, [&](double, std::string_view) { progress.report(0.99, "filter"); });
@@ -86,7 +104,7 @@ void OpenScan::run(const std::filesystem::path& folder, Progress& progress,
     });
     told = end;
   };
-  const std::unique_ptr<FrameSource> source = openFrames(folder.string(), 0);
+  const std::unique_ptr<FrameSource> source = openFrames(files->folder.string(), 0);
   const TrackedFrames found =
       trackFrames(*source, *files->camera, files->markers, {}, progress,
                   [&](std::size_t i, const SeenRig& rig, const std::string& why) {
@@ -145,19 +163,40 @@ void OpenScan::cancel() {
 }
 
 bool OpenScan::canKeep() const {
-  return path_ && !grows_ && !path_->poses.empty() && !path_->path.empty() && !job_.busy() &&
-         (files_->poses.empty() || files_->path.empty());
+  return path_ && !grows_ && !files_->of_scene && !path_->poses.empty() && !path_->path.empty() &&
+         !job_.busy() && (files_->poses.empty() || files_->path.empty());
 }
 
-void OpenScan::keep() const {
+std::vector<NoPose> OpenScan::without() const {
   std::vector<NoPose> without;
   for (std::size_t i = 0; i < seen_.size(); ++i)
     if (!seen_[i].why.empty()) without.push_back({files_->frames[i].t, seen_[i].why});
-  if (files_->poses.empty()) writePoses(files_->folder / "poses.tum", path_->poses, without);
+  return without;
+}
+
+std::vector<SceneScan> OpenScan::steps() const {
+  std::vector<SceneScan> steps;
+  if (files_->scan.files.empty()) return steps;
+  steps.push_back(files_->scan);
+  const auto add = [&](const char* file, const auto& text) {
+    if (files_->scan.text(file)) return;
+    SceneScan next = steps.back();
+    next.files[file] = std::make_shared<const std::string>(text());
+    steps.push_back(std::move(next));
+  };
+  if (!path_ || grows_ || job_.busy()) return steps;
+  if (!path_->poses.empty()) add("poses.tum", [&] { return posesText(path_->poses, without()); });
+  if (!path_->path.empty()) add("path.csv", [&] { return pathText(path_->path); });
+  return steps;
+}
+
+void OpenScan::keep() const {
+  if (files_->poses.empty()) writePoses(files_->folder / "poses.tum", path_->poses, without());
   if (files_->path.empty()) writePath(files_->folder / "path.csv", path_->path);
 }
 
 QString OpenScan::name() const {
+  if (files_->of_scene) return QString::fromStdString(files_->scan.name);
   const std::filesystem::path folder = files_->folder.lexically_normal();
   return QString::fromStdString(
       (folder.has_filename() ? folder : folder.parent_path()).filename().string());

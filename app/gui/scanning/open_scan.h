@@ -2,6 +2,7 @@
 // looked at. What shows it listens.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include <QObject>
@@ -18,12 +19,17 @@ class OpenScan : public QObject {
 
   // Of a scan that cannot be read the one before stays. Returns at once.
   void open(const std::filesystem::path& folder);
+  void open(const SceneScan& scan);                       // of the scene
+  void openPictures(const std::filesystem::path& folder); // frames without times, one a second
   void close();
   void cancel(); // what is tracked so far stays
   // A scan that is being recorded takes the place of what is open, and grows.
   void begin(ScanFiles files);
   void grow(const std::vector<CameraPose>& poses, const std::vector<ProbeSample>& samples);
   bool grows() const { return grows_; }
+  // What is known of it, as it goes into a scene: as it was read, then what was found since, one
+  // step after another.
+  std::vector<SceneScan> steps() const;
   void keep() const; // poses.tum and path.csv into the folder; throws FileError
 
   const ScanFiles* files() const { return files_.get(); } // nullptr: none is open
@@ -54,9 +60,11 @@ class OpenScan : public QObject {
   void failed(const QString& message);
 
  private:
-  void run(const std::filesystem::path& folder, Progress& progress,
-           const Background::Deliver& deliver);
+  using Read = std::function<ScanFiles(Progress&)>;
+  void start(Read read);
+  void run(const Read& read, Progress& progress, const Background::Deliver& deliver);
   void take(std::shared_ptr<const ScanFiles> files);
+  std::vector<NoPose> without() const;
 
   Background job_;
   std::shared_ptr<const ScanFiles> files_;

@@ -7,12 +7,14 @@
 
 #include "app/gui/loading/load_dialogs.h"
 #include "core/error.h"
+#include "core/file.h"
 
 namespace patina {
 
 ScanDesk::ScanDesk(QWidget& window)
     : QObject(&window), window_(window), scan_(this), frame_(new FrameView(scan_)),
-      panel_(new ScanPanel(scan_)), recording_(this), findings_(new FindingList(scan_)) {
+      panel_(new ScanPanel(scan_)), calibration_(new CalibrationCard(scan_)), recording_(this),
+      findings_(new FindingList(scan_)) {
   makeEmpty();
   makeTimeline();
   across_->addWidget(frame_);
@@ -21,6 +23,8 @@ ScanDesk::ScanDesk(QWidget& window)
   across_->setObjectName(QStringLiteral("scan_cells"));
   cells_->addWidget(across_);
   connectScan();
+  connectScans();
+  connectCalibration();
   connectRecording();
   for (QWidget* keys : {static_cast<QWidget*>(cells_), timeline_})
     for (const auto& [key, frames] : {std::pair(Qt::Key_Left, -1),
@@ -106,6 +110,71 @@ void ScanDesk::connectScan() {
   });
 }
 
+void ScanDesk::connectScans() {
+  panel_->layout()->addWidget(scans_);
+  connect(scans_, &SceneScans::putAsked, this, [this] {
+    if (isOpen()) scans_->put(scan_.steps());
+  });
+  connect(scans_, &SceneScans::openAsked, this, qOverload<const SceneScan&>(&ScanDesk::open));
+  connect(scans_, &SceneScans::failed, this, [this](const QString& problem) {
+    showProblem(&window_, tr("The workspace's scans stay as they are"), problem,
+                tr("Nothing has changed."));
+  });
+}
+
+void ScanDesk::connectCalibration() {
+  connect(calibration_, &CalibrationCard::picturesAsked, this, &ScanDesk::openPictures);
+  connect(calibration_, &CalibrationCard::boardSeen, frame_, &FrameView::addBoard);
+  connect(calibration_, &CalibrationCard::useAsked, this, &ScanDesk::use);
+  connect(calibration_, &CalibrationCard::progressed, this, [this](double fraction) {
+    if (work_) work_->fraction = fraction;
+    emit changed();
+  });
+  connect(calibration_, &CalibrationCard::changed, this, [this] {
+    const QString words = tr("Calibrating");
+    if (calibration_->busy())
+      work_ = Work{words, words};
+    else if (work_ && work_->title == words)
+      work_.reset();
+    emit changed();
+  });
+}
+
+void ScanDesk::openPictures() {
+  auto* dialog = new QFileDialog(&window_, tr("Open pictures of a board"));
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::Directory);
+  dialog->setOption(QFileDialog::ShowDirsOnly);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& folder) { scan_.openPictures(folder.toStdString()); });
+  dialog->open();
+}
+
+void ScanDesk::use(const QString& file, const QString& text) {
+  const ScanFiles& files = *scan_.files();
+  SceneScan scan = files.scan;
+  const SceneScan* known = scans_->scene() ? findScan(*scans_->scene(), scan.name) : nullptr;
+  const bool in_scene = known != nullptr && (files.of_scene || known->folder == scan.folder);
+  if (in_scene) scan = *known;
+  scan.files[file.toStdString()] = std::make_shared<const std::string>(text.toStdString());
+  if (in_scene) {
+    scans_->put({scan});
+    if (!files.of_scene) open(scan);
+    return emit said({tr("%1 of scan %2 is in the workspace").arg(file, scan_.name())});
+  }
+  const std::filesystem::path folder = files.folder;
+  try {
+    if (folder.empty()) throw Error("the scan is not in the workspace any more, and has no folder");
+    writeFileAtomically(folder / file.toStdString(), text.toStdString());
+  } catch (const Error& error) {
+    return showProblem(&window_, tr("The calibration cannot be kept"),
+                       QString::fromStdString(error.what()),
+                       tr("Make room, or the folder writable."));
+  }
+  emit said({tr("%1 is in %2").arg(file, QString::fromStdString(folder.string()))});
+  files.pictures ? scan_.openPictures(folder) : open(folder);
+}
+
 void ScanDesk::connectRecording() {
   connect(recorder_, &RecordPanel::recordAsked, this,
           [this] { recording_.begin(recorder_->choice()); });
@@ -140,6 +209,13 @@ void ScanDesk::open(const std::filesystem::path& folder) {
   emit changed();
 }
 
+void ScanDesk::open(const SceneScan& scan) {
+  const QString words = tr("Opening %1").arg(QString::fromStdString(scan.name));
+  work_ = Work{words, words};
+  scan_.open(scan);
+  emit changed();
+}
+
 void ScanDesk::openDialog() {
   auto* dialog = new QFileDialog(&window_, tr("Open a scan folder"));
   dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -151,6 +227,7 @@ void ScanDesk::openDialog() {
 
 void ScanDesk::cancel() {
   scan_.cancel();
+  calibration_->cancel();
 }
 
 void ScanDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
@@ -159,7 +236,18 @@ void ScanDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
   drawMesh();
 }
 
+// What is shown of the scene's follows it, through undo too; one that is taken out stays shown.
+void ScanDesk::setScene(std::shared_ptr<const Scene> scene) {
+  scans_->setScene(scene);
+  if (!isOpen() || !scan_.files()->of_scene || !scene) return;
+  const SceneScan* now = findScan(*scene, scan_.files()->scan.name);
+  if (now != nullptr && !(*now == scan_.files()->scan)) open(*now);
+}
+
 void ScanDesk::takeScan() {
+  scans_->setOpen(isOpen() && !scan_.files()->scan.files.empty());
+  if (isOpen() && !scan_.files()->problem.empty())
+    emit said({QString::fromStdString(scan_.files()->problem), true});
   if (view_ == nullptr && isOpen()) {
     view_ = new ScanView;
     view_->setToolTip(tr("The tip's path; a click on it goes there"));
@@ -173,7 +261,8 @@ void ScanDesk::takeScan() {
   drawPath();
   drawProbe();
   emit changed();
-  if (isOpen() && scan_.files()->camera && !scan_.files()->markers.empty())
+  if (isOpen() && !scan_.files()->folder.empty() && !scan_.files()->of_scene &&
+      scan_.files()->camera && !scan_.files()->markers.empty())
     recorder_->suggestCalibration(QString::fromStdString(scan_.files()->folder.string()));
   if (isOpen()) emit opened();
 }

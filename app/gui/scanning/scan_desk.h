@@ -7,6 +7,7 @@
 #include <QStackedWidget>
 
 #include "app/gui/panels/message_panel.h"
+#include "app/gui/scanning/calibration_card.h"
 #include "app/gui/scanning/finding_list.h"
 #include "app/gui/scanning/frame_strip.h"
 #include "app/gui/scanning/frame_view.h"
@@ -14,6 +15,7 @@
 #include "app/gui/scanning/scan_recording.h"
 #include "app/gui/scanning/scan_traces.h"
 #include "app/gui/scanning/scan_view.h"
+#include "app/gui/scanning/scene_scans.h"
 #include "app/gui/window/window_state.h"
 
 namespace patina {
@@ -27,6 +29,7 @@ class ScanDesk : public QObject {
   QStackedWidget* cells() const { return cells_; }
   QWidget* panel() const { return panel_; }
   QWidget* recorder() const { return recorder_; }
+  QWidget* calibration() const { return calibration_; }
   QWidget* timeline() const { return timeline_; }
   QWidget* findings() const { return findings_; }
 
@@ -36,9 +39,12 @@ class ScanDesk : public QObject {
   const std::optional<Work>& work() const { return work_; }
 
   void open(const std::filesystem::path& folder);
+  void open(const SceneScan& scan); // of the scene
   void openDialog();
   void cancel();
   void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: no scene is open
+  void setScene(std::shared_ptr<const Scene> scene);           // whose scans there are
+  SceneScans& scans() { return *scans_; }
   void fit();
   void setView(ViewPreset view);
   void refresh(); // of every tick of the window
@@ -55,6 +61,10 @@ class ScanDesk : public QObject {
   void makeTimeline();
   void connectScan();
   void connectRecording();
+  void connectScans();
+  void connectCalibration();
+  void openPictures();
+  void use(const QString& file, const QString& text); // a calibration
   void takeScan();
   void drawPath();
   void drawProbe();
@@ -67,6 +77,8 @@ class ScanDesk : public QObject {
   FrameView* frame_;
   ScanView* view_ = nullptr; // made with the first scan
   ScanPanel* panel_;
+  CalibrationCard* calibration_;
+  SceneScans* scans_ = new SceneScans;
   RecordPanel* recorder_ = new RecordPanel;
   ScanRecording recording_;
   QWidget* timeline_ = new QWidget;

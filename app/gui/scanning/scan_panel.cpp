@@ -103,7 +103,8 @@ void ScanPanel::refresh() {
 
 void ScanPanel::fill() {
   const ScanFiles& files = *scan_.files();
-  row(tr("Folder"), scan_.name());
+  row(files.of_scene ? tr("Workspace") : tr("Folder"), scan_.name(),
+      QString::fromStdString(files.problem));
   if (files.camera)
     row(tr("Camera"), tr("%1 × %2").arg(files.camera->width).arg(files.camera->height));
   if (!files.frames.empty()) row(tr("Frames"), countWords(files.frames.size()));

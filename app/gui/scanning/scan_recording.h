@@ -7,8 +7,8 @@
 
 #include "acquisition/recording/recorder.h"
 #include "app/gui/scanning/record_panel.h"
-#include "app/gui/scanning/scan_files.h"
 #include "app/gui/window/background.h"
+#include "pipeline/scan_files.h"
 
 namespace patina {
 

@@ -19,7 +19,7 @@ std::vector<DeskRow> makeDesks() {
                   tr("Scan"),
                   tr("See what a camera and a probe have recorded, and the path made of it"),
                   Qt::Key_0,
-                  {P::scan, P::recorder, P::timeline, P::findings, P::messages},
+                  {P::scan, P::recorder, P::calibration, P::timeline, P::findings, P::messages},
                   {Handling::navigate, {}},
                   Tab::scan,
                   P::timeline,
@@ -104,6 +104,7 @@ std::optional<Tab> tabOf(Panel panel) {
     return Tab::show;
   case Panel::scan:
   case Panel::recorder:
+  case Panel::calibration:
     return Tab::scan;
   case Panel::steps:
     return Tab::steps;

@@ -34,6 +34,7 @@ enum class Panel {
   basin,
   scan, // cards again
   recorder,
+  calibration,
   steps,
   align,
   library

@@ -161,6 +161,7 @@ void MainWindow::connectScan() {
     return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
   });
   connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
+<<<<<<< HEAD
   connect(parts_.scan, &ScanDesk::pathMade, parts_.align,
           [this](const QString& name, const std::vector<PathSample>& path) {
             parts_.align->setPath(name, path);
@@ -174,6 +175,12 @@ void MainWindow::connectScan() {
     request.path = file.toStdString();
     documents_.openAsked(request);
   });
+=======
+  parts_.scan->scans().setEdits(edits_.thread());
+  connect(parts_.align, &AlignDesk::storeAsked, this,
+          [this](const SceneScan& scan) { parts_.scan->scans().put({scan}); });
+  connect(parts_.scan, &ScanDesk::pathMade, parts_.align, &AlignDesk::setPath);
+>>>>>>> aba525a (window: put scans into the workspace, calibrate camera and tip)
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);
@@ -270,6 +277,9 @@ void MainWindow::showScene(const SceneChange& change) {
   view_.showScene(change);
 #ifdef PATINA_HAS_ACQUISITION
   parts_.scan->setSceneMesh(change.scene->mesh);
+  const std::shared_ptr<const Scene> scene(change.scene, &change.scene->scene);
+  parts_.scan->setScene(scene);
+  parts_.align->setScans(scene);
   parts_.texture->library().setScene(change.scene);
   if (change.surface) parts_.align->setSceneMesh(change.scene->mesh);
 #endif

@@ -41,9 +41,10 @@ FoldingTabs* makeColumn(const WindowParts& parts) {
   auto* stack = new QVBoxLayout(side);
   stack->setContentsMargins(8, 0, 4, 8);
   stack->setSpacing(4);
-  for (const Panel card : {Panel::scan, Panel::recorder, Panel::align, Panel::steps, Panel::library,
-                           Panel::tool, Panel::brush, Panel::relief, Panel::touch, Panel::display,
-                           Panel::device, Panel::objects, Panel::mesh})
+  for (const Panel card :
+       {Panel::scan, Panel::recorder, Panel::calibration, Panel::align, Panel::steps,
+        Panel::library, Panel::tool, Panel::brush, Panel::relief, Panel::touch, Panel::display,
+        Panel::device, Panel::objects, Panel::mesh})
     if (parts.panels.contains(card)) stack->addWidget(parts.panels.at(card));
   stack->addStretch(1);
   parts.display->layout()->addWidget(parts.paint);
@@ -106,6 +107,7 @@ WindowParts layOut(QMainWindow& window) {
   parts.cells->addWidget(parts.scan->cells());
   parts.panels.insert({{Panel::scan, parts.scan->panel()},
                        {Panel::recorder, parts.scan->recorder()},
+                       {Panel::calibration, parts.scan->calibration()},
                        {Panel::timeline, parts.scan->timeline()},
                        {Panel::findings, parts.scan->findings()}});
   parts.texture = new TextureDesk(window);

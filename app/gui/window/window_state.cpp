@@ -24,6 +24,7 @@ bool isThere(Panel panel, const WindowState& state) {
   case Panel::messages:
   case Panel::scan:
   case Panel::recorder:
+  case Panel::calibration:
   case Panel::steps:
   case Panel::align:
     return true;

@@ -1,0 +1,197 @@
+// Scans and calibrations of the workspace, put in, taken out and undone as a person does it.
+#ifdef PATINA_HAS_ACQUISITION
+#include <QComboBox>
+
+#include "acquisition/simulation/frame_renderer.h"
+#include "acquisition/tracking/lens.h"
+#include "app/gui/aligning/align_desk.h"
+#include "gui/scan_fixture.h"
+#include "workspace/workspace.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SceneScansTest : public ScanDeskTest {
+ protected:
+  void openWorkspace(const TriangleMesh& mesh) {
+    Scene scene;
+    scene.field.resolution = 60;
+    scene.objects.push_back({"ball", std::make_shared<const TriangleMesh>(mesh)});
+    saveWorkspace(scene, folder_ / "workspace");
+    ASSERT_TRUE(open(folder_ / "workspace"));
+  }
+  const Scene& scene() { return edits().scene()->scene; }
+  const EditStatus& status() { return edits().status(); }
+  bool waitForEdits(std::size_t done) {
+    const bool there = waitUntil([&] { return status().done == done && !desk().work(); }, 20000);
+    wait(100);
+    return there;
+  }
+};
+
+TEST_F(SceneScansTest, EachStepIsUndoneAndTheScanOpensAgainFromTheWorkspace) {
+  openWorkspace(icosphere(0.04, 12));
+  clickAction("desk_scan");
+  EXPECT_FALSE(find<QWidget>("scene_scans")->isVisible()); // absent: no list, no buttons
+  EXPECT_FALSE(find<QWidget>("put_scan")->isVisible());
+  ASSERT_TRUE(openScan());
+  const std::string name = "a-scan-of-a-sphere";
+  clickOn("put_scan");
+  ASSERT_TRUE(waitForEdits(3));
+  EXPECT_EQ(status().edits, (std::vector<std::string>{"attach scan " + name, "track scan " + name,
+                                                      "filter scan " + name}));
+  auto* list = find<QListWidget>("scene_scans");
+  ASSERT_TRUE(list->isVisible());
+  EXPECT_TRUE(list->item(0)->text().startsWith(QString::fromStdString(name)));
+  keepPicture("scene_scans");
+  type('z', kControl);
+  ASSERT_TRUE(waitForEdits(2));
+  EXPECT_NE(scene().scans.at(0).text("poses.tum"), nullptr);
+  EXPECT_EQ(scene().scans.at(0).text("path.csv"), nullptr);
+  type('y', kControl);
+  ASSERT_TRUE(waitForEdits(3));
+  clickOn("remove_scene_scan");
+  ASSERT_TRUE(waitForEdits(4));
+  EXPECT_FALSE(list->isVisible());
+  type('z', kControl);
+  ASSERT_TRUE(waitForEdits(3));
+  type('s', kControl);
+  ASSERT_TRUE(waitUntil([&] { return !edits().unsaved(); }, 10000));
+  EXPECT_EQ(loadWorkspace(folder_ / "workspace").scans, scene().scans);
+
+  const std::size_t samples = scan().path()->path.size();
+  clickOn("close_scan");
+  fs::rename(scan_, folder_ / "elsewhere"); // with its frames
+  clickOn("open_scene_scan");
+  ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr && !desk().work(); }, 20000));
+  EXPECT_TRUE(scan().files()->of_scene);
+  EXPECT_EQ(scan().path()->path.size(), samples);
+  EXPECT_NE(scan().files()->problem.find("is gone"), std::string::npos) << scan().files()->problem;
+
+  // Onto the mesh, from the workspace and back into it.
+  clickAction("desk_align");
+  find<QComboBox>("align_scan")->setFocus();
+  type(0xff54), wait(100); // down: its only scan
+  auto& align = *window_->findChild<AlignDesk*>();
+  ASSERT_TRUE(waitUntil([&] { return align.alignment().isReady(); }, 10000));
+  EXPECT_EQ(align.name().toStdString(), name);
+  clickOn("align_store");
+  ASSERT_TRUE(waitUntil([&] { return status().done == 4; }, 10000));
+  EXPECT_EQ(status().edits.back(), "register scan " + name);
+  ASSERT_NE(scene().scans.at(0).text("registered.txt"), nullptr);
+  EXPECT_NE(scene().scans.at(0).text("registered.txt")->find("mesh_from_scan"), std::string::npos);
+}
+
+// A chessboard of black squares on white, in eight attitudes.
+TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
+  const Camera known{640, 480, 610, 606, 325, 236, {-0.1, 0.04, 0, 0, 0}};
+  std::vector<PrintedMarker> printed;
+  for (int y = 0; y < 7; ++y)
+    for (int x = y % 2; x < 10; x += 2) {
+      PrintedMarker one{{"4x4_50", 0, 0.025, Pose::Identity()}, 4, 0, 0};
+      one.place.probe_from_marker.translation() = 0.025 * Vec3(x + 0.5, -(y + 0.5), 0);
+      printed.push_back(one);
+    }
+  const FrameRenderer renderer(known, printed);
+  FrameLook look;
+  look.ground = look.white;
+  look.waves = 0;
+  const fs::path pictures = folder_ / "board";
+  fs::create_directories(pictures);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 8; ++i) {
+    Pose pose = Pose::Identity();
+    pose.linear() = (Eigen::AngleAxisd(M_PI, Vec3::UnitX()) *
+                     Eigen::AngleAxisd(0.45 * std::sin(2.1 * i), Vec3::UnitY()) *
+                     Eigen::AngleAxisd(0.45 * std::cos(1.7 * i), Vec3::UnitX()))
+                        .toRotationMatrix();
+    pose.translation() = Vec3(0, 0, 0.4 + 0.02 * (i % 3)) - pose.linear() * Vec3(0.125, -0.0875, 0);
+    poses.push_back(pose);
+    writeGrey(pictures / ("view" + std::to_string(i) + ".png"), renderer.render({pose}, look, 1));
+  }
+  clickAction("desk_scan");
+  answerWithPath(pictures);
+  clickOn("calibrate_pictures");
+  ASSERT_TRUE(waitUntil([&] { return scan().files() != nullptr && !desk().work(); }, 10000));
+  wait(300);
+  clickOn("calibrate_camera");
+  const auto* found = find<QLabel>("calibrate_found");
+  ASSERT_TRUE(waitUntil([&] { return !found->text().isEmpty() && !desk().work(); }, 30000));
+  wait(400); // the column has scrolled to what was found
+  EXPECT_TRUE(found->text().contains(QStringLiteral("in 8 of 8"))) << found->text().toStdString();
+  EXPECT_TRUE(found->text().contains(QStringLiteral("fx 6"))) << found->text().toStdString();
+  EXPECT_TRUE(found->text().contains(QStringLiteral("±")));
+  keepPicture("calibrated");
+  // The corners lie where the board was.
+  auto* canvas = find<FrameCanvas>("frame");
+  const QImage drawn = canvas->grab().toImage();
+  int bright = 0;
+  for (int y = 1; y < 7; ++y)
+    for (int x = 1; x < 10; ++x) {
+      const Vec3 corner = poses[0] * (0.025 * Vec3(x, -y, 0));
+      const QColor at = drawn.pixelColor(canvas->placeOf(pixelOf(known, corner)).toPoint());
+      bright += at.green() > at.red() + 60 || at.red() > at.blue() + 60;
+    }
+  EXPECT_GT(bright, 48) << "of 54";
+  EXPECT_FALSE(fs::exists(pictures / "camera.yml"));
+  clickOn("calibrate_use");
+  ASSERT_TRUE(waitUntil([&] { return fs::exists(pictures / "camera.yml"); }, 10000));
+  const Camera camera = readCamera(pictures / "camera.yml");
+  EXPECT_NEAR(camera.fx, known.fx, 3);
+  EXPECT_NEAR(camera.cy, known.cy, 3);
+  // A board that is not there is said, and nothing is offered.
+  ASSERT_TRUE(waitUntil([&] { return !desk().work(); }, 10000));
+  auto* board = find<QLineEdit>("calibrate_board");
+  click(*board);
+  type('a', kControl);
+  type(QStringLiteral("chessboard:8x5"));
+  clickOn("calibrate_camera");
+  EXPECT_TRUE(found->text().contains(QStringLiteral("chessboard:COLUMNSxROWS")));
+  EXPECT_FALSE(find<QPushButton>("calibrate_use")->isVisible());
+}
+
+TEST_F(SceneScansTest, ATipFromPosesIsAnEditOfTheWorkspacesScan) {
+  const Vec3 tip(0.002, 0.01, -0.12);
+  std::vector<CameraPose> poses;
+  for (int i = 0; i < 60; ++i) {
+    CameraPose pose;
+    pose.t = 0.05 * i;
+    pose.orientation = Eigen::AngleAxisd(0.8 * i, Vec3::UnitZ()) *
+                       Eigen::AngleAxisd(0.1 + 0.012 * i, Vec3::UnitX());
+    pose.position = Vec3(0.1, 0, 0.5) - pose.orientation * tip;
+    poses.push_back(pose);
+  }
+  const fs::path turning = folder_ / "turning";
+  fs::create_directories(turning);
+  writePoses(turning / "poses.tum", poses);
+  std::ofstream(turning / "rig.json") << "{\"tip\": [0, 0, -0.1], \"mine\": 7}\n";
+  openWorkspace(icosphere(0.04, 12));
+  documents().open(requestFor(turning));
+  ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr && !desk().work(); }, 10000));
+  wait(200);
+  clickOn("put_scan");
+  ASSERT_TRUE(waitUntil([&] { return status().done >= 1; }, 10000));
+  wait(300);
+  const std::size_t put = status().done;
+  clickOn("calibrate_tip");
+  const auto* found = find<QLabel>("calibrate_found");
+  EXPECT_TRUE(found->text().contains(QStringLiteral("z -120.000"))) << found->text().toStdString();
+  wait(400);
+  clickOn("calibrate_use");
+  ASSERT_TRUE(waitForEdits(put + 1));
+  EXPECT_EQ(status().edits.back(), "calibrate scan turning");
+  EXPECT_NEAR(parseRig(*scene().scans[0].text("rig.json"), "rig").probe.tip.z(), -0.12, 1e-6);
+  EXPECT_NE(scene().scans[0].text("rig.json")->find("mine"), std::string::npos);
+  ASSERT_TRUE(waitUntil([&] { return scan().files()->of_scene && !desk().work(); }, 10000));
+  EXPECT_NEAR(scan().files()->tip().z(), -0.12, 1e-6); // and used
+  EXPECT_NEAR(readRig(turning / "rig.json").probe.tip.z(), -0.1, 1e-12);
+  type('z', kControl);
+  ASSERT_TRUE(waitForEdits(put));
+  ASSERT_TRUE(waitUntil([&] { return scan().files()->tip().z() > -0.11; }, 10000));
+}
+
+} // namespace
+} // namespace patina
+#endif
