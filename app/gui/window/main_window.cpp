@@ -161,7 +161,6 @@ void MainWindow::connectScan() {
     return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
   });
   connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
-<<<<<<< HEAD
   connect(parts_.scan, &ScanDesk::pathMade, parts_.align,
           [this](const QString& name, const std::vector<PathSample>& path) {
             parts_.align->setPath(name, path);
@@ -175,12 +174,9 @@ void MainWindow::connectScan() {
     request.path = file.toStdString();
     documents_.openAsked(request);
   });
-=======
   parts_.scan->scans().setEdits(edits_.thread());
   connect(parts_.align, &AlignDesk::storeAsked, this,
           [this](const SceneScan& scan) { parts_.scan->scans().put({scan}); });
-  connect(parts_.scan, &ScanDesk::pathMade, parts_.align, &AlignDesk::setPath);
->>>>>>> aba525a (window: put scans into the workspace, calibrate camera and tip)
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);
