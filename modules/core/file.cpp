@@ -104,11 +104,12 @@ void AtomicFile::append(std::string_view bytes) {
 // Of what is left to commit() the program cannot be ended until it is on the disk.
 void AtomicFile::sendToDisk() {
   if (size_ - sent_ < kPart) return;
-  const std::int64_t before = std::max<std::int64_t>(0, sent_ - kPart);
   ::sync_file_range(file_.get(), sent_, size_ - sent_, SYNC_FILE_RANGE_WRITE);
-  ::sync_file_range(file_.get(), before, sent_ - before,
-                    SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE |
-                        SYNC_FILE_RANGE_WAIT_AFTER);
+  const std::int64_t before = std::max<std::int64_t>(0, sent_ - kPart);
+  if (sent_ > before) // 0 bytes would be all to the file's end
+    ::sync_file_range(file_.get(), before, sent_ - before,
+                      SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE |
+                          SYNC_FILE_RANGE_WAIT_AFTER);
   sent_ = size_;
 }
 
