@@ -98,7 +98,7 @@ WorkPrecisionTable lineForms(const StudyOptions& options, Progress& progress) {
   const FourierSeries& series = texture.series;
   const double omega = texture.omega, rms = rmsHeight(texture);
   const RotatedSeries rotated(series);
-  const SeriesCells cells(series, 1e-12 * rms, 1e-12 * rmsSlope(texture) / omega);
+  const SeriesCells cells(series, 1e-12 * rms, 1e-12 * rmsSlope(texture) / omega, 1);
   const TextureEvaluator fine(texture, 1e-12), coarse(texture, 1e-5);
   const auto ask = [](const TextureEvaluator& at) {
     return [&at](double x) {

@@ -113,26 +113,6 @@ void FieldSampler::followCrease(const BandCell& cell, double own,
   sample.gradient += share * (derivative - sample.gradient);
 }
 
-Eigen::Matrix3d FieldSampler::turnAtGrid(const Vec3& q) const noexcept {
-  BandCell cell;
-  if (!findCell(*field_, last_node_, q, cell)) return Eigen::Matrix3d::Zero();
-  const SampleNode *low = cell.node, *high = low + kLayer;
-  const float fx = cell.fx, fy = cell.fy, fz = cell.fz, ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
-  const Float4 n0 = load(low[0]), n1 = load(low[1]), n2 = load(low[kRow]), n3 = load(low[kRow + 1]),
-               n4 = load(high[0]), n5 = load(high[1]), n6 = load(high[kRow]),
-               n7 = load(high[kRow + 1]);
-  const Float4 along_x =
-                   ez * (ey * (n1 - n0) + fy * (n3 - n2)) + fz * (ey * (n5 - n4) + fy * (n7 - n6)),
-               along_y =
-                   ez * (ex * (n2 - n0) + fx * (n3 - n1)) + fz * (ex * (n6 - n4) + fx * (n7 - n5)),
-               along_z =
-                   ey * (ex * (n4 - n0) + fx * (n5 - n1)) + fy * (ex * (n6 - n2) + fx * (n7 - n3));
-  Eigen::Matrix3d turn;
-  turn << along_x[1], along_y[1], along_z[1], along_x[2], along_y[2], along_z[2], along_x[3],
-      along_y[3], along_z[3];
-  return turn;
-}
-
 double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {
   BandCell cell;
   if (!findCell(*field_, last_node_, q, cell)) [[unlikely]]

@@ -68,9 +68,10 @@ class FieldSampler {
   // With 0 a crease is told only where the blend's length is not 1 either, as beside every crease
   // of a distance; between baked flanks of one slope it may be.
   SurfaceSample surfaceAtGrid(const Vec3& q, double own = 0) const noexcept;
-  // How the blend of nodal gradients changes, per voxel; a column an axis. It is that of the cell
-  // about q: one look, and it steps where cells meet, O(h). Zero outside of the band.
-  Eigen::Matrix3d turnAtGrid(const Vec3& q) const noexcept;
+  // The cell about q; false outside of the band.
+  bool cellAt(const Vec3& q, BandCell& cell) const noexcept {
+    return findCell(*field_, last_node_, q, cell);
+  }
   // Only the value, for root finding along a ray.
   double phiAtGrid(const Vec3& q) const noexcept;
   // In metres: phi [m].

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/types.h"
+#include "haptics/contact/surface_jacobian.h"
 #include "scene/paint/material_map.h"
 
 namespace patina {
@@ -56,7 +57,7 @@ struct Contact {
   Vec3 vcp = Vec3::Zero(); // p, after FrictionStage; the tip if not touching
 
   // pulledBack(), for whichever stage asks first: how surface moves with the tip
-  std::optional<Eigen::Matrix3d> jacobian;
+  std::optional<SurfaceJacobian> jacobian;
 
   // OwnerStage
   std::int32_t object = 0; // that surface belongs to, where that matters

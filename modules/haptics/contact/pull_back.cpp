@@ -3,12 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#define PATINA_KERNEL jacobian_plain
+#include "haptics/contact/jacobian_kernel.h"
+#undef PATINA_KERNEL
+
 namespace patina {
+namespace jacobian_avx2 {
+bool jacobianOf(const CellCurvature& cell, JacobianColumns& columns) noexcept; // jacobian_avx2.cpp
+}
 namespace {
+
+CellJacobian jacobianOfThisProcessor() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    return &jacobian_avx2::jacobianOf;
+#endif
+  return &jacobian_plain::jacobianOf;
+}
 
 // Nearer to the surface than this [voxel] its curvature changes nothing that the voxel resolves.
 constexpr double kNear = 1e-3;
-constexpr double kLeast = 0.25; // of 1 + phi times a curvature
+constexpr auto kLeast = static_cast<double>(kLeastStretch);
 
 // Its inverse in the plane across n, of a symmetric matrix whose eigenvalues there are held up.
 Eigen::Matrix3d heldInverse(const Eigen::Matrix3d& stretch, const Vec3& n) noexcept {
@@ -21,11 +36,44 @@ Eigen::Matrix3d heldInverse(const Eigen::Matrix3d& stretch, const Vec3& n) noexc
          1 / std::max(kLeast, mean - half) * least * least.transpose();
 }
 
-Eigen::Matrix3d jacobianOf(const FieldSampler& sampler, const Contact& contact) noexcept {
-  if (contact.walls > 2) return Eigen::Matrix3d::Zero();
+Eigen::Matrix3d matrixOf(const std::array<Float4, 3>& columns) noexcept {
+  Eigen::Matrix3d m;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    for (Eigen::Index j = 0; j < 3; ++j)
+      m(i, j) = static_cast<double>(columns[static_cast<std::size_t>(j)][i + 1]);
+  return m;
+}
+
+} // namespace
+
+SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q, const Vec3& n,
+                                     double phi) noexcept {
+  static const CellJacobian kJacobian = jacobianOfThisProcessor();
+  const auto flat = [&] {
+    return Eigen::Matrix3d(Eigen::Matrix3d::Identity() - n * n.transpose());
+  };
+  BandCell cell;
+  if (std::abs(phi) < kNear || !sampler.cellAt(q, cell)) return SurfaceJacobian::of(flat());
+  JacobianColumns columns;
+  const CellCurvature curvature{
+      reinterpret_cast<const Float4*>(cell.node),
+      kRow,
+      kLayer,
+      {cell.fx, cell.fy, cell.fz},
+      Float4{0, static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())},
+      static_cast<float>(phi)};
+  if (!kJacobian(curvature, columns)) [[unlikely]] {
+    const Eigen::Matrix3d across = flat();
+    return SurfaceJacobian::of(heldInverse(across + across * matrixOf(columns.both) * across, n));
+  }
+  return {columns.inverse[0], columns.inverse[1], columns.inverse[2]};
+}
+
+SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) noexcept {
+  if (contact.walls > 2) return {};
   if (contact.walls == 2) {
     const Vec3 line = contact.wall[0].normal.cross(contact.wall[1].normal);
-    return 1 / line.squaredNorm() * line * line.transpose();
+    return SurfaceJacobian::of(1 / line.squaredNorm() * line * line.transpose());
   }
   // Relief leans the normal; the surface that it lies on does not.
   Vec3 n = contact.normal;
@@ -33,32 +81,6 @@ Eigen::Matrix3d jacobianOf(const FieldSampler& sampler, const Contact& contact) 
   const double per_voxel = 1 / sampler.grid().voxel;
   return closestPointJacobian(sampler, per_voxel * (contact.surface - sampler.grid().origin), n,
                               per_voxel * (contact.tip - contact.surface).dot(n));
-}
-
-} // namespace
-
-Eigen::Matrix3d closestPointJacobian(const FieldSampler& sampler, const Vec3& q, const Vec3& n,
-                                     double phi) noexcept {
-  const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - n * n.transpose();
-  if (std::abs(phi) < kNear) return flat;
-  const Eigen::Matrix3d turn = sampler.turnAtGrid(q);
-  const Eigen::Matrix3d both = 0.5 * phi * (turn + turn.transpose());
-  const Vec3 out = both * n;
-  const double out_out = out.dot(n);
-  const Eigen::Matrix3d bent = both - (out - out_out * n) * n.transpose() - n * out.transpose();
-  // In the plane the inverse of a matrix is its trace less itself, over its determinant.
-  const double trace = both.trace() - out_out, squares = 0.5 * (trace * trace - bent.squaredNorm()),
-               determinant = 1 + trace + squares;
-  const bool plain = trace >= 2 * kLeast - 2 &&
-                     determinant >= kLeast * (2 + trace) - kLeast * kLeast; // both eigenvalues
-  if (!plain) return heldInverse(flat + bent, n);
-  return 1 / determinant * ((1 + trace) * flat - bent);
-}
-
-Vec3 pulledBack(const FieldSampler& sampler, Contact& contact, const Vec3& along) noexcept {
-  if (along.isZero(0)) return Vec3::Zero();
-  if (!contact.jacobian) contact.jacobian = jacobianOf(sampler, contact);
-  return *contact.jacobian * along;
 }
 
 } // namespace patina

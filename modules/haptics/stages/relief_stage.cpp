@@ -78,14 +78,16 @@ Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> object
 
 ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
                      Eigen::Matrix3d* bend) const noexcept {
-  ReliefAt at;
-  if (bend) bend->setZero();
   const auto i = static_cast<std::size_t>(object);
-  if (i >= objects_.size() || !(objects_[i].*part_)) return at;
+  const ReliefSurface* felt = i < objects_.size() ? (objects_[i].*part_).get() : nullptr;
+  if (!felt) {
+    if (bend) bend->setZero();
+    return {};
+  }
   const FeltObject& part = objects_[i];
-  const ReliefSurface& surface = *(part.*part_);
-  if (walk.object == object) at = reliefAt(surface, c, walk.face, bend);
-  if (at.face < 0 || at.distance > lost_) {
+  const ReliefSurface& surface = *felt;
+  ReliefAt at = reliefAt(surface, c, walk.object == object ? walk.face : -1, bend);
+  if (at.face < 0 || at.distance > lost_) [[unlikely]] {
     const std::int32_t near = sampler_.faceNear(c);
     Eigen::Matrix3d bent;
     const ReliefAt afresh =

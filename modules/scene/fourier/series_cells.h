@@ -12,19 +12,22 @@ namespace patina {
 class SeriesCells {
  public:
   // Within `value_error` and `slope_error` (by the phase) of the series but for rounding: what
-  // Taylor's polynomial leaves out is bounded by the next derivative of all terms.
-  SeriesCells(const FourierSeries& series, double value_error, double slope_error);
+  // Taylor's polynomial leaves out is bounded by the next derivative of all terms. omega: of the
+  // phase, by what at() is asked [rad/m].
+  SeriesCells(const FourierSeries& series, double value_error, double slope_error, double omega);
 
-  SeriesValue at(double phase) const noexcept;           // in [-pi, pi]
-  SeriesValue at(const RingPlace& place) const noexcept; // of a ring of as many steps
-  int cells() const { return last_ + 1; }
+  SeriesValue at(double x) const noexcept { // x as of ExactRing
+    SeriesValue sum = look_(ring_, table_.data(), x);
+    sum.slope *= slope_scale_;
+    return sum;
+  }
   std::size_t bytes() const { return sizeof(double) * table_.size(); }
 
  private:
-  int degree_ = 0; // its coefficients' count
-  double cells_per_turn_ = 0, width_ = 0, slope_scale_ = 0;
-  int last_ = 0;
-  std::vector<double> table_; // cell upon cell, lowest coefficient first, by -1 .. 1 over the cell
+  ExactRing ring_;
+  SeriesLook look_;
+  double slope_scale_ = 0;
+  std::vector<double> table_; // cell upon cell, each in rows of four (series_cells_kernel.h)
 };
 
 } // namespace patina

@@ -4,12 +4,9 @@
 #include <vector>
 
 #include "scene/fourier/fourier_texture.h"
+#include "scene/fourier/series_value.h"
 
 namespace patina {
-
-struct SeriesValue {
-  double value = 0, slope = 0; // slope by the phase
-};
 
 // A sine and a cosine for every term.
 SeriesValue sumDirectly(const FourierSeries& series, double phase);

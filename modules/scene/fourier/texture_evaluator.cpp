@@ -34,14 +34,6 @@ struct RotatedLine {
   SeriesValue at(double x) const noexcept { return series.at(exactPhase(x, omega)); }
   std::size_t bytes() const { return series.bytes(); }
 };
-struct TabledLine {
-  SeriesCells series;
-  ExactRing ring;
-
-  TabledLine(SeriesCells of, double omega) : series(std::move(of)), ring(omega, series.cells()) {}
-  SeriesValue at(double x) const noexcept { return series.at(ring.at(x)); }
-  std::size_t bytes() const { return series.bytes(); }
-};
 
 template <class Line> struct LineForm final : TextureEvaluator::Form {
   Line line;
@@ -163,7 +155,7 @@ std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& te
                                                         const Errors& errors) {
   if (texture.kind == TextureKind::products) {
     const double share = 1 / static_cast<double>(2 * texture.products.size());
-    return productsForm<TabledLine>(
+    return productsForm<SeriesCells>(
         texture, [&](const FourierSeries& own, const FourierSeries& other) {
           // What this factor is wrong by is multiplied by the other one and by its slope; where
           // that is nothing, it asks for nothing.
@@ -171,15 +163,14 @@ std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& te
             return factor > 0 ? share * error / factor : std::numeric_limits<double>::infinity();
           };
           const double most = amplitudes(other, false), steepest = amplitudes(other, true);
-          return TabledLine(
-              SeriesCells(own, std::min(over(errors.height, most), over(errors.slope, steepest)),
-                          over(errors.slope, most)),
-              texture.omega);
+          return SeriesCells(own, std::min(over(errors.height, most), over(errors.slope, steepest)),
+                             over(errors.slope, most), texture.omega);
         });
   }
-  const FourierSeries series = seriesOf(texture);
-  return std::make_shared<LineForm<TabledLine>>(
-      TabledLine(SeriesCells(series, errors.height, errors.slope), texture.omega), series.mean);
+  FourierSeries series = seriesOf(texture);
+  series.mean = 0;
+  return std::make_shared<LineForm<SeriesCells>>(
+      SeriesCells(series, errors.height, errors.slope, texture.omega), 0.0);
 }
 
 std::shared_ptr<const TextureEvaluator::Form> planeForm(const FourierTexture& texture,
@@ -208,9 +199,11 @@ TextureEvaluator::TextureEvaluator(const FourierTexture& texture, double toleran
     form_ = planeForm(texture, errors, tolerance);
   else
     form_ = tableForm(texture, errors);
+  if (const auto* tabled = dynamic_cast<const LineForm<SeriesCells>*>(form_.get()))
+    line_ = &tabled->line;
 }
 
-TextureValue TextureEvaluator::at(double x, double y) const noexcept {
+TextureValue TextureEvaluator::ofForm(double x, double y) const noexcept {
   const PlaneValue value = form_->at(x, y);
   return {value.value, omega_ * Vec2(value.slope_x, value.slope_y)};
 }

@@ -1,7 +1,6 @@
 #include "scene/fourier/texture_patches.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/percentiles.h"
@@ -135,22 +134,24 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
       y[k] = face.at[k].y();
       fade[k] = isInner(mesh.triangles[f][k]) || !has_inner[texture];
     }
+    const FeltTexture& of = *textures_[texture];
+    const Vec3 x_slope = slopeOver(corner, x), y_slope = slopeOver(corner, y);
     Patch patch;
-    patch.texture = texture_of[f];
-    patch.fades = fade[0] + fade[1] + fade[2] < 3;
-    patch.x_slope = slopeOver(corner, x);
-    patch.y_slope = slopeOver(corner, y);
-    patch.fade_slope = slopeOver(corner, fade);
-    patch.x = x[0] - patch.x_slope.dot(corner[0]);
-    patch.y = y[0] - patch.y_slope.dot(corner[0]);
-    patch.fade = fade[0] - patch.fade_slope.dot(corner[0]);
+    patch.texture = &of;
+    patch.place = {Vec2(x[0] - x_slope.dot(corner[0]), y[0] - y_slope.dot(corner[0])),
+                   Vec2(x_slope.x(), y_slope.x()), Vec2(x_slope.y(), y_slope.y()),
+                   Vec2(x_slope.z(), y_slope.z())};
+    const Vec3 fade_slope = slopeOver(corner, fade);
+    if (fade[0] + fade[1] + fade[2] < 3) {
+      patch.fade = static_cast<std::int32_t>(fades_.size());
+      fades_.push_back({fade[0] - fade_slope.dot(corner[0]), fade_slope});
+    }
     patch_of_[f] = static_cast<std::int32_t>(patches_.size());
     patches_.push_back(patch);
-    const FeltTexture& of = *textures_[texture];
     highest_ = std::max(highest_, of.highest);
-    const double steep = stretchOf(patch.x_slope, patch.y_slope);
+    const double steep = stretchOf(x_slope, y_slope);
     // Of the fade: 1.5 of it, its bend 6 of its square.
-    const double ends = std::min(patch.fade_slope.norm(), 1 / thin);
+    const double ends = std::min(fade_slope.norm(), 1 / thin);
     bend_ = std::max(bend_, of.bend * steep * steep + 3 * of.steepest * steep * ends +
                                 6 * of.highest * ends * ends);
     stiffest_ = std::max(stiffest_, of.stiffness);
@@ -159,44 +160,51 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
 
 PatchAt TexturePatches::at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend) const noexcept {
   PatchAt found;
+  read(face, p, found, bend);
+  return found;
+}
+
+void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
+                          Eigen::Matrix3d* bend) const noexcept {
   if (bend) bend->setZero();
-  if (face < 0 || static_cast<std::size_t>(face) >= patch_of_.size()) return found;
+  if (face < 0 || static_cast<std::size_t>(face) >= patch_of_.size()) return;
   const std::int32_t index = patch_of_[static_cast<std::size_t>(face)];
-  if (index < 0) return found;
+  if (index < 0) return;
   const Patch& patch = patches_[static_cast<std::size_t>(index)];
-  const FeltTexture& texture = *textures_[static_cast<std::size_t>(patch.texture)];
+  const FeltTexture& texture = *patch.texture;
   const Vec3 q = p - middle_;
-  const double x = patch.x + patch.x_slope.dot(q), y = patch.y + patch.y_slope.dot(q);
-  const TextureValue h = texture.at.at(x, y);
+  const auto& [origin, per_x, per_y, per_z] = patch.place;
+  const Vec2 place = origin + (q.x() * per_x + q.y() * per_y + q.z() * per_z);
+  const TextureValue h = texture.at.at(place.x(), place.y());
   found.height = h.height;
-  found.slope = h.gradient.x() * patch.x_slope + h.gradient.y() * patch.y_slope;
+  found.slope = Vec3(h.gradient.dot(per_x), h.gradient.dot(per_y), h.gradient.dot(per_z));
   found.share = 1;
   if (bend) {
     Eigen::Matrix<double, 3, 2> along;
-    along << patch.x_slope, patch.y_slope;
-    *bend = along * bendAt(texture, x, y) * along.transpose();
+    along << per_x.transpose(), per_y.transpose(), per_z.transpose();
+    *bend = along * bendAt(texture, place.x(), place.y()) * along.transpose();
   }
-  if (patch.fades) {
-    const double w = std::clamp(patch.fade + patch.fade_slope.dot(q), 0.0, 1.0);
+  if (patch.fade >= 0) {
+    const Fade& fade = fades_[static_cast<std::size_t>(patch.fade)];
+    const double w = std::clamp(fade.at + fade.slope.dot(q), 0.0, 1.0);
     const double share = w * w * (3 - 2 * w), growth = 6 * w * (1 - w);
     found.share = share;
-    found.share_slope = growth * patch.fade_slope;
+    found.share_slope = growth * fade.slope;
     if (bend)
-      *bend = share * *bend +
-              growth * (found.slope * patch.fade_slope.transpose() +
-                        patch.fade_slope * found.slope.transpose()) +
-              (6 - 12 * w) * found.height * patch.fade_slope * patch.fade_slope.transpose();
+      *bend =
+          share * *bend +
+          growth * (found.slope * fade.slope.transpose() + fade.slope * found.slope.transpose()) +
+          (6 - 12 * w) * found.height * fade.slope * fade.slope.transpose();
     found.slope = share * found.slope + found.height * found.share_slope;
     found.height *= share;
   }
   found.stiffness = texture.stiffness;
   found.low = texture.value.low;
-  return found;
 }
 
 std::size_t TexturePatches::bytes() const {
   std::size_t sum = sizeof *this + patch_of_.capacity() * sizeof(std::int32_t) +
-                    patches_.capacity() * sizeof(Patch);
+                    patches_.capacity() * sizeof(Patch) + fades_.capacity() * sizeof(Fade);
   for (const auto& texture : textures_) sum += texture->at.bytes();
   return sum;
 }

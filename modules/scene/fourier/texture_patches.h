@@ -1,6 +1,7 @@
 // One object's faces with Fourier textures on them, as the servo reads them (A24).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,12 +26,16 @@ struct PatchAt {
 // them; where no corner of its faces is farther in than that, it ends as it is.
 class TexturePatches {
  public:
-  // mesh: the object's, world frame. Makes room for 4 bytes a face and 160 a textured one.
+  // mesh: the object's, world frame. Makes room for 4 bytes a face, 80 a textured one and 32 where
+  // it fades.
   TexturePatches(const TriangleMesh& mesh, const LaidTextures& laid);
 
   // p [m, world] on or near the face. Servo thread: no allocation. bend, where asked for, becomes
   // the second derivative of the height over the face [1/m].
   PatchAt at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend = nullptr) const noexcept;
+  // The same into `found`, which is PatchAt{}.
+  void read(std::int32_t face, const Vec3& p, PatchAt& found,
+            Eigen::Matrix3d* bend = nullptr) const noexcept;
 
   double highest() const { return highest_; } // of |height| anywhere [m]
   double bend() const {
@@ -41,16 +46,20 @@ class TexturePatches {
 
  private:
   struct Patch {
-    Vec3 x_slope, y_slope, fade_slope; // over the face
-    double x = 0, y = 0, fade = 0;     // at middle_
-    std::int32_t texture = 0;          // place in textures_
-    bool fades = false;
+    std::array<Vec2, 4> place;            // {x, y}: at middle_, and by each axis
+    const FeltTexture* texture = nullptr; // of textures_
+    std::int32_t fade = -1;               // place in fades_; -1: none
+  };
+  struct Fade {
+    double at = 0;             // middle_
+    Vec3 slope = Vec3::Zero(); // over the face
   };
   class InnerCorners;
 
   Vec3 middle_ = Vec3::Zero();
   std::vector<std::int32_t> patch_of_; // by face; -1: none
   std::vector<Patch> patches_;
+  std::vector<Fade> fades_;
   std::vector<std::shared_ptr<const FeltTexture>> textures_;
   double highest_ = 0, bend_ = 0, stiffest_ = 0;
 };

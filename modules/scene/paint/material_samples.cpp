@@ -157,7 +157,7 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
 
 std::size_t MaterialSamples::bytes() const {
   return sizeof *this + top.size() * sizeof(top[0]) +
-         block.size() * (sizeof(block[0]) + sizeof(Extremes) + sizeof(Index) +
+         block.size() * (sizeof(block[0]) + sizeof(nodes[0]) + sizeof(Extremes) + sizeof(Index) +
                          sizeof(MaterialSampleBlock) + kNodes * channels * sizeof(double));
 }
 
@@ -177,7 +177,9 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   samples->first = table.first;
   samples->blocks = table.count;
   samples->painted = painted;
-  samples->channels = countOf(painted);
+  for (const Channel& row : kChannels)
+    if (painted[static_cast<std::size_t>(row.channel)])
+      samples->value[samples->channels++] = row.value;
   samples->base = samples->least = samples->most = base;
   samples->top.assign(table.cells.size(), -1);
   Table<char> old;
@@ -202,6 +204,7 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
           samples->block.push_back(made(map, at, painted, base, samples->extremes.back()));
         }
       }
+  for (const auto& block : samples->block) samples->nodes.push_back(block->values.data());
   for (const MaterialSamples::Extremes& extremes : samples->extremes)
     for (const MaterialChannel channel : kAllMaterialChannels) {
       const auto c = static_cast<std::size_t>(channel);
@@ -213,48 +216,59 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   return samples;
 }
 
+namespace {
+
+using Two = double __attribute__((vector_size(16)));
+
+Two pairOf(const double* first, const double* second) noexcept {
+  return Two{*first, *second};
+}
+Two blend(Two from, Two to, double part) noexcept {
+  // a + f (b - a) is exact for equal ends: where nothing is painted the base stays itself.
+  return from + part * (to - from);
+}
+double blend(Two ends, double part) noexcept {
+  return ends[0] + part * (ends[1] - ends[0]);
+}
+
+} // namespace
+
 MaterialAt materialAt(const MaterialSamples& samples, const Vec3& p) noexcept {
   MaterialAt at;
   at.material = samples.base;
   const Vec3 q = (p - samples.origin) * samples.per_voxel;
-  std::array<int, 3> node{};
-  Vec3 part;
+  std::array<unsigned, 3> node{};
+  std::array<double, 3> part{};
   std::size_t cell = 0;
   for (std::size_t a = 3; a-- > 0;) {
     // In nodes of the table; NaN fails the comparison.
     const double x = q[static_cast<Eigen::Index>(a)] - kMaterialSide * samples.first[a];
     if (!(x >= 0 && x < kMaterialSide * samples.blocks[a])) return at;
-    const int i = static_cast<int>(x);
-    part[static_cast<Eigen::Index>(a)] = x - i;
+    const int whole = static_cast<int>(x);
+    const auto i = static_cast<unsigned>(whole);
+    part[a] = x - whole;
     node[a] = i % kMaterialSide;
-    cell = cell * static_cast<std::size_t>(samples.blocks[a]) +
-           static_cast<std::size_t>(i / kMaterialSide);
+    cell = cell * static_cast<std::size_t>(samples.blocks[a]) + i / kMaterialSide;
   }
   const std::int32_t slot = samples.top[cell];
   if (slot < 0) return at;
-  const std::size_t channels = samples.channels;
-  const double* low =
-      samples.block[static_cast<std::size_t>(slot)]->values.data() +
-      channels * static_cast<std::size_t>((node[2] * kSide + node[1]) * kSide + node[0]);
-  const std::size_t right = channels, up = channels * kSide, above = channels * kSide * kSide;
-  const double fx = part[0], fy = part[1], fz = part[2];
-  for (const MaterialChannel channel : kAllMaterialChannels) {
-    if (!samples.painted[static_cast<std::size_t>(channel)]) continue;
-    // a + f (b - a) is exact for equal ends: where nothing is painted the base stays itself.
-    const double d00 = low[right] - low[0], d10 = low[up + right] - low[up];
-    const double d01 = low[above + right] - low[above];
-    const double d11 = low[above + up + right] - low[above + up];
-    const double x00 = low[0] + fx * d00, x10 = low[up] + fx * d10;
-    const double x01 = low[above] + fx * d01, x11 = low[above + up] + fx * d11;
-    const double y0 = x00 + fy * (x10 - x00), y1 = x01 + fy * (x11 - x01);
-    valueOf(at.material, channel) = y0 + fz * (y1 - y0);
-    const bool stiffness = channel == MaterialChannel::stiffness;
-    if (stiffness || channel == MaterialChannel::roughness) {
-      const double dx = (1 - fz) * ((1 - fy) * d00 + fy * d10) + fz * ((1 - fy) * d01 + fy * d11);
-      const Vec3 gradient(dx, (1 - fz) * (x10 - x00) + fz * (x11 - x01), y1 - y0);
-      (stiffness ? at.stiffness_gradient : at.roughness_gradient) = samples.per_voxel * gradient;
-    }
-    ++low;
+  const std::size_t right = samples.channels, up = right * kSide, above = up * kSide;
+  const double* low = samples.nodes[static_cast<std::size_t>(slot)] + node[2] * above +
+                      node[1] * up + node[0] * right;
+  for (std::size_t c = 0; c < right; ++c, ++low) {
+    // Pairs are those of the lower and of the upper layer.
+    const Two n00 = pairOf(low, low + above), n10 = pairOf(low + up, low + up + above),
+              x00 = pairOf(low + right, low + right + above) - n00,
+              x10 = pairOf(low + up + right, low + up + right + above) - n10;
+    const Two front = n00 + part[0] * x00, back = n10 + part[0] * x10, between = back - front,
+              ends = front + part[1] * between;
+    const auto value = samples.value[c];
+    at.material.*value = blend(ends, part[2]);
+    const bool stiffness = value == &Material::stiffness;
+    if (stiffness || value == &Material::roughness)
+      (stiffness ? at.stiffness_gradient : at.roughness_gradient) =
+          samples.per_voxel * Vec3(blend(blend(x00, x10, part[1]), part[2]),
+                                   blend(between, part[2]), ends[1] - ends[0]);
   }
   return at;
 }

@@ -23,10 +23,12 @@ struct MaterialSamples {
   std::array<int, 3> first{}, blocks{};
   std::vector<std::int32_t> top; // slot, -1 = base everywhere
   std::vector<std::shared_ptr<const MaterialSampleBlock>> block;
+  std::vector<const double*> nodes; // of each block
   std::vector<Extremes> extremes; // by slot
   std::vector<MaterialMap::Index> block_at;
   std::array<bool, kMaterialChannels> painted{};
   std::size_t channels = 0; // that are painted
+  std::array<double Material::*, kMaterialChannels> value{}; // of each of them
   Material base;
   Material least, most; // of each channel anywhere, base included
   std::size_t bytes() const;

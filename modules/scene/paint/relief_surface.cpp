@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "field/sampling/four.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/tree/triangle_tree.h"
 
@@ -26,6 +28,45 @@ struct PackedFace {
   Vec2 uvAt(std::size_t k) const noexcept { return {uv[2 * k], uv[2 * k + 1]}; }
 };
 
+// Over a face: its barycentric coordinates and the height above it, affine from its first corner
+// on. Textures alone are read by it, a cache line a face: no corner is unpacked, nothing divided.
+struct alignas(64) FaceFrame {
+  // {w1, w2, above} by each axis; in the last lanes the faces across the edges from corner 0, 1, 2.
+  std::array<Int4, 3> lanes{};
+  std::array<float, 3> corner{};
+
+  std::int32_t across(std::size_t edge) const noexcept { return lanes[edge][3]; }
+  Float4 at(const Vec3& p) const noexcept { // {w1, w2, above, 0}
+    constexpr Int4 kThree = {-1, -1, -1, 0};
+    const auto x = static_cast<float>(p.x() - static_cast<double>(corner[0])),
+               y = static_cast<float>(p.y() - static_cast<double>(corner[1])),
+               z = static_cast<float>(p.z() - static_cast<double>(corner[2]));
+    return x * (Float4)(lanes[0] & kThree) + y * (Float4)(lanes[1] & kThree) +
+           z * (Float4)(lanes[2] & kThree);
+  }
+};
+
+FaceFrame frameOf(const PackedFace& face) {
+  const Vec3 a = face.at(0), along1 = face.at(1) - a, along2 = face.at(2) - a;
+  const Vec3 normal = along1.cross(along2);
+  const double squared = normal.squaredNorm();
+  FaceFrame frame;
+  std::copy_n(face.corner.begin(), 3, frame.corner.begin());
+  std::array<Vec3, 3> by{Vec3::Zero(), Vec3::Zero(),
+                         Vec3::Zero()}; // of no area: nothing is over it
+  if (squared > 0)
+    by = {along2.cross(normal) / squared, normal.cross(along1) / squared,
+          normal / std::sqrt(squared)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto part = [&](std::size_t i) {
+      return std::bit_cast<std::int32_t>(
+          static_cast<float>(by[i][static_cast<Eigen::Index>(axis)]));
+    };
+    frame.lanes[axis] = Int4{part(0), part(1), part(2), face.neighbour[axis]};
+  }
+  return frame;
+}
+
 constexpr int kMostSteps = 64;
 // Steps across edges that bring the point no nearer: half way round a vertex they may be needed.
 constexpr int kMostStalls = 8;
@@ -37,6 +78,7 @@ class ReliefFaces {
  public:
   Vec3 middle = Vec3::Zero();
   std::vector<PackedFace> faces;
+  std::vector<FaceFrame> frames; // where no image is read
 };
 
 std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& mesh, const CornerUvs& uvs) {
@@ -60,11 +102,16 @@ std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& mesh, const C
       face.neighbour[k] = neighbours.face_neighbours[f][k];
     }
   }
+  if (uvs.empty()) {
+    packed->frames.reserve(packed->faces.size());
+    for (const PackedFace& face : packed->faces) packed->frames.push_back(frameOf(face));
+  }
   return packed;
 }
 
 std::size_t bytes(const ReliefFaces& faces) {
-  return sizeof faces + faces.faces.capacity() * sizeof(PackedFace);
+  return sizeof faces + faces.faces.capacity() * sizeof(PackedFace) +
+         faces.frames.capacity() * sizeof(FaceFrame);
 }
 
 namespace {
@@ -128,6 +175,24 @@ Foot walk(const ReliefFaces& mesh, const Vec3& p, std::int32_t start) noexcept {
     }
   }
   return best;
+}
+
+// The face that p is well over, near_face or one beyond the only edge of it that p is outside of;
+// -1: the walk has to tell. above: it [m].
+std::int32_t faceUnder(const ReliefFaces& mesh, std::int32_t near_face, const Vec3& p,
+                       double& above) noexcept {
+  constexpr auto kLeast = static_cast<float>(kWellWithin);
+  for (int crossed = 0;; ++crossed) {
+    const FaceFrame& frame = mesh.frames[static_cast<std::size_t>(near_face)];
+    const Float4 at = frame.at(p);
+    const float least = std::min(at[0], at[1]), rest = 1 - (at[0] + at[1]);
+    above = static_cast<double>(at[2]);
+    if (std::min(least, rest) > kLeast) return near_face;
+    if (crossed > 0 || std::min(std::max(at[0], at[1]), std::max(least, rest)) <= 0) return -1;
+    // Corner k lies across the edge from k + 1 to k + 2.
+    near_face = frame.across(rest <= 0 ? 1 : at[0] <= 0 ? 2 : 0);
+    if (near_face < 0) return -1;
+  }
 }
 
 struct Cubic {
@@ -224,10 +289,21 @@ void readImage(const ReliefSurface& relief, const PackedFace& face, const Foot& 
 ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
                   Eigen::Matrix3d* bend) noexcept {
   ReliefAt at;
-  if (bend) bend->setZero();
   const ReliefFaces& mesh = *relief.faces;
-  if (near_face < 0 || static_cast<std::size_t>(near_face) >= mesh.faces.size() || !c.allFinite())
-    return at;
+  if (bend) bend->setZero();
+  if (near_face < 0 || static_cast<std::size_t>(near_face) >= mesh.faces.size()) return at;
+  if (!mesh.frames.empty() && relief.textures && !bend) {
+    double above = 0;
+    at.face = faceUnder(mesh, near_face, c - mesh.middle, above);
+    if (at.face >= 0) {
+      at.distance = std::abs(above);
+      relief.textures->read(at.face, c, at.texture);
+      at.height = at.texture.height;
+      at.slope = at.texture.slope;
+      return at;
+    }
+  }
+  if (!c.allFinite()) return at;
   const Foot foot = walk(mesh, c - mesh.middle, near_face);
   at.face = foot.face;
   at.distance = std::sqrt(foot.squared);
