@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "integration/program.h"
+#include "pictures/picture_file.h"
 #include "workspace/texture_file.h"
 
 namespace patina::test {
@@ -44,6 +45,32 @@ TEST_F(FittedTextures, AreOfTheProfilesLengthAndWave) {
     EXPECT_EQ(run({"fit-texture", profile, "-o", out, "--kind", kind}).exit, 0);
     EXPECT_NEAR(rmsHeight(readTexture(out)), rmsHeight(texture), 1e-9);
   }
+}
+
+TEST_F(FittedTextures, ComeFromAPictureOfHeights) {
+  Picture picture{32, 32, 1, {}};
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      picture.texel.push_back(
+          static_cast<float>(0.5 + 0.4 * std::cos(2 * std::numbers::pi * (3 * x + 2 * y) / 32)));
+  const std::string file = folder / "waves.exr";
+  writePicture(file, picture);
+  const auto fit = [&](const std::string& kind) {
+    return runJson({"fit-texture", file, "-o", out, "--kind", kind, "--length", "20mm", "--height",
+                    "0.1mm", "--harmonics", "8"});
+  };
+  for (const char* kind : {"plane", "products"}) {
+    const Json report = fit(kind);
+    EXPECT_NEAR(report.at("length").asNumber(), 0.02, 1e-12);
+    EXPECT_LT(report.at("residual").asNumber(), 1e-10);
+    const FourierTexture texture = readTexture(out);
+    // cos(3 x + 2 y) is two products.
+    EXPECT_EQ(texture.products.size(), texture.kind == TextureKind::products ? 2U : 0U);
+    EXPECT_NEAR(height(texture, 1e-3, 2e-3),
+                0.04e-3 * std::cos(2 * std::numbers::pi * (3 * 1e-3 + 2 * 2e-3) / 0.02), 1e-10);
+  }
+  expectOneLineError(run({"fit-texture", file, "-o", out, "--kind", "plane"}), {"--length"});
+  expectOneLineError(run({"fit-texture", profile, "-o", out, "--rank", "2"}), {"--rank"});
 }
 
 TEST_F(FittedTextures, ComeFromAScansHeights) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "acquisition/texture/fit_plane.h"
 #include "acquisition/texture/fit_texture.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
@@ -9,6 +10,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
+#include "pictures/picture_file.h"
 #include "workspace/texture_file.h"
 
 namespace patina::cli {
@@ -18,7 +20,11 @@ namespace {
 struct FitTextureOptions {
   std::filesystem::path profile, output;
   FitOptions1d fit;
-  TextureKind kind = TextureKind::line;
+  std::optional<double> length, height; // of a picture
+  PlaneFitOptions plane;
+  std::optional<int> harmonics;
+  std::optional<double> blend;
+  enum class Kind { line, spectrum, crossed, plane, products } kind = Kind::line;
   std::uint64_t seed = 1;
   std::optional<double> stiffness;
   std::optional<std::size_t> stretch;
@@ -31,14 +37,17 @@ const Keys kFitKeys = {
     {"length", "m", "length", "of the profile, the texture's period"},
     {"omega", "rad/m", "fundamental"},
     {"samples", "", "samples", "even ones, in a period"},
-    {"rms", "m", "rms", "of the profile's heights from its best line"},
+    {"rank", "", "rank", "products of a line along x and one along y", Shown::if_any},
+    {"lacking", "", "lacking", "of the plane's rms, what the products lack of it", Shown::if_any},
+    {"rms", "m", "rms", "of the profile's heights from its best line, a picture's from their mean"},
     {"residual", "m", "residual", "rms of what the texture lacks of them"},
     {"variance_explained", "", "explained", "of the profile's variance"},
     {"left_out", "m", "left out", "rms of the waves longer than --cutoff", Shown::if_any},
-    {"noise", "1/m", "noise", "of a harmonic over the square of its wavelength: the median of all"},
+    {"noise", "1/m", "noise", "of a harmonic over the square of its wavelength: the median of all",
+     Shown::if_any},
     {"quiet", "", "quiet", "harmonics that --over-noise left out", Shown::if_any},
-    {"blended", "m", "blended", "rms of what was changed so that the ends meet"},
-    {"wavelength", "m", "wavelength", "of the strongest harmonic"},
+    {"blended", "m", "blended", "rms of what was changed so that the ends meet", Shown::if_any},
+    {"wavelength", "m", "wavelength", "of the strongest harmonic", Shown::if_any},
     {"low", "m", "lowest point", "of the texture, from its mean"},
     {"compliance", "m/N", "compliance", "", Shown::if_any}};
 
@@ -80,8 +89,60 @@ std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console&
   return longest->second;
 }
 
-int runFitTexture(const FitTextureOptions& options, Console& console) {
+constexpr const char* kKinds[] = {"line", "spectrum", "crossed", "plane", "products"};
+using Kind = FitTextureOptions::Kind;
+
+// PROFILE is a picture of heights.
+int runFitPlane(const FitTextureOptions& options, Console& console) {
+  if (!options.length || !options.height)
+    throw Error("--kind " + std::string(kKinds[static_cast<std::size_t>(options.kind)]) +
+                ": a picture needs --length, of its side, and --height, of white above black");
+  PlaneFitOptions fit = options.plane;
+  fit.length = *options.length;
+  fit.height = *options.height;
+  fit.blend = options.blend.value_or(0);
+  fit.harmonics = options.harmonics.value_or(fit.harmonics);
+  if (fit.harmonics > kMostPlaneHarmonics)
+    throw Error("--harmonics: a picture's are at most " + std::to_string(kMostPlaneHarmonics));
+  if (options.kind == Kind::plane && fit.rank) throw Error("--rank: is of --kind products");
+  if (options.kind == Kind::products && !fit.rank) fit.rank = 0;
+  FittedPlane fitted;
+  const Picture picture = readPicture(options.profile);
+  try {
+    fitted = fitPlane(picture, fit, console.progress());
+  } catch (const Error& error) {
+    throw FileError(options.profile.string(), 0, error.what());
+  }
+  FourierTexture& texture = fitted.texture;
+  texture.name = options.name;
+  if (options.stiffness) texture.compliance = 1 / *options.stiffness;
+  writeTexture(options.output, texture);
+  Report report(kFitKeys);
+  report.set("kind", kKinds[static_cast<std::size_t>(options.kind)])
+      .set("harmonics", static_cast<std::size_t>(harmonics(texture)))
+      .set("length", period(texture))
+      .set("omega", texture.omega)
+      .set("samples", static_cast<std::size_t>(picture.width));
+  if (fitted.rank > 0)
+    report.set("rank", static_cast<std::size_t>(fitted.rank)).set("lacking", fitted.lacking);
+  report.set("rms", fitted.rms)
+      .set("residual", fitted.residual)
+      .set("variance_explained", 1 - fitted.residual * fitted.residual / fitted.rms / fitted.rms)
+      .set("low", texture.low);
+  if (texture.compliance)
+    report.set("compliance", *texture.compliance, formatNumber(*texture.compliance) + " m/N");
+  console.report(report);
+  return kDone;
+}
+
+int runFitTexture(FitTextureOptions options, Console& console) {
   requireWritable(options.output, {options.profile}, FileKind::json);
+  if (options.kind == Kind::plane || options.kind == Kind::products)
+    return runFitPlane(options, console);
+  if (options.length || options.height || options.plane.rank)
+    throw Error("--length, --height and --rank: are of a picture, --kind plane or products");
+  options.fit.harmonics = options.harmonics.value_or(options.fit.harmonics);
+  options.fit.blend = options.blend.value_or(options.fit.blend);
   FittedTexture fitted;
   try {
     fitted = fitTexture(readProfile(options, console), options.fit);
@@ -95,8 +156,8 @@ int runFitTexture(const FitTextureOptions& options, Console& console) {
   texture.name = options.name;
   if (options.stiffness) texture.compliance = 1 / *options.stiffness;
   const int harmonics = patina::harmonics(texture);
-  if (options.kind == TextureKind::spectrum) texture = spectrumOf(texture, options.seed);
-  if (options.kind == TextureKind::products) texture = crossCorrelation(texture, texture);
+  if (options.kind == Kind::spectrum) texture = spectrumOf(texture, options.seed);
+  if (options.kind == Kind::crossed) texture = crossCorrelation(texture, texture);
   writeTexture(options.output, texture);
   if (harmonics < options.fit.harmonics)
     console.warn(options.profile.string() + ": " + formatCount(fitted.samples) + " samples have " +
@@ -109,10 +170,7 @@ int runFitTexture(const FitTextureOptions& options, Console& console) {
       strongest = j;
   const double rms = std::sqrt(fitted.variance);
   Report report(kFitKeys);
-  report
-      .set("kind", options.kind == TextureKind::line       ? "line"
-                   : options.kind == TextureKind::spectrum ? "spectrum"
-                                                           : "products")
+  report.set("kind", kKinds[static_cast<std::size_t>(options.kind)])
       .set("harmonics", static_cast<std::size_t>(harmonics))
       .set("length", fitted.length)
       .set("omega", texture.omega)
@@ -133,11 +191,13 @@ int runFitTexture(const FitTextureOptions& options, Console& console) {
   return kDone;
 }
 
-TextureKind parseKind(const std::string& word) {
-  if (word == "line") return TextureKind::line;
-  if (word == "spectrum") return TextureKind::spectrum;
-  if (word == "crossed") return TextureKind::products;
-  throw Error("'" + word + "' is none of line, spectrum, crossed");
+Kind parseKind(const std::string& word) {
+  std::string list;
+  for (std::size_t i = 0; i < std::size(kKinds); ++i) {
+    if (word == kKinds[i]) return static_cast<Kind>(i);
+    list += (i > 0 ? ", " : "") + std::string(kKinds[i]);
+  }
+  throw Error("'" + word + "' is none of " + list);
 }
 
 } // namespace
@@ -146,33 +206,53 @@ Command fitTextureCommand() {
   auto options = std::make_shared<FitTextureOptions>();
   return {
       .name = "fit-texture",
-      .summary = "a profile of heights becomes a Fourier texture",
+      .summary = "heights become a Fourier texture",
       .description =
           "PROFILE.csv has the columns along [m],height [m], or those of patina filter --heights, "
           "with sigmas and stretches of contact. The best line is taken off, the end is blended "
           "into the beginning with one slope, and the rest becomes harmonics of a fundamental of "
           "one period a profile.\n"
           "line: a height along x. spectrum: its amplitudes with phases that a seed draws. "
-          "crossed: its cross-correlation with itself, a height over x and y.",
+          "crossed: its cross-correlation with itself, a height over x and y.\n"
+          "plane, products: PROFILE is a square picture of heights, which repeats itself or is "
+          "blended so that it does. plane keeps every harmonic over x and y; products is its best "
+          "sum of products of a line along x and one along y, the fewest that lack a hundredth of "
+          "its rms, or --rank of them.",
       .examples = {"patina fit-texture heights.csv -o grain.json --cutoff 8mm --stiffness 2900",
-                   "patina fit-texture profile.csv -o grain.json --harmonics 64 --kind crossed"},
+                   "patina fit-texture profile.csv -o grain.json --harmonics 64 --kind crossed",
+                   "patina fit-texture cloth.png -o cloth.json --kind products --length 20mm "
+                   "--height 0.3mm"},
       .keys = kFitKeys,
       .arguments =
-          {input("PROFILE", "Heights along a way.", into(options->profile)),
+          {input("PROFILE", "Heights along a way, or a picture of heights.",
+                 into(options->profile)),
            outputTo(options->output, "T.json", "The texture."),
-           {"--harmonics", "N", "", "128", "At most.",
+           {"--harmonics", "N", "", "128, of a picture 32", "At most.",
             inRange(
                 1, kMostHarmonics,
-                [options](double n) { options->fit.harmonics = static_cast<int>(n); },
+                [options](double n) { options->harmonics = static_cast<int>(n); },
                 NumberKind::whole)},
-           {"--kind", "line|spectrum|crossed", "", "line", "What the heights are.",
+           {"--kind", "line|spectrum|crossed|plane|products", "", "line", "What the heights are.",
             parsedInto(options->kind, parseKind)},
            {"--seed", "N", "", "1", "Of a spectrum's phases.",
             inRange(
                 0, 1e9, [options](double n) { options->seed = static_cast<std::uint64_t>(n); },
                 NumberKind::whole)},
-           {"--blend", "PART", "", "0.01", "Of the profile, at its end.",
-            inRange(1e-6, 0.5, [options](double part) { options->fit.blend = part; })},
+           {"--blend", "PART", "", "0.01, of a picture 0", "Of the profile, at its end.",
+            inRange(1e-6, 0.5, [options](double part) { options->blend = part; })},
+           {"--length", "LENGTH", "m", "", "Of a picture's side.",
+            inRange(
+                1e-6, 10, [options](double length) { options->length = length; },
+                NumberKind::length)},
+           {"--height", "LENGTH", "m", "", "Of a picture's white above its black.",
+            inRange(
+                1e-9, 1, [options](double height) { options->height = height; },
+                NumberKind::length)},
+           {"--rank", "R", "", "as few as serve", "Of products.",
+            inRange(
+                1, 2 * kMostPlaneHarmonics + 1,
+                [options](double rank) { options->plane.rank = static_cast<int>(rank); },
+                NumberKind::whole)},
            {"--step", "LENGTH", "m", "the points' median", "Of the even samples.",
             inRange(
                 1e-9, 1, [options](double step) { options->fit.step = step; }, NumberKind::length)},

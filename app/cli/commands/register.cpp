@@ -5,6 +5,7 @@
 #include "acquisition/files/scan_files.h"
 #include "acquisition/registration/closest_point_loop.h"
 #include "acquisition/registration/first_guess.h"
+#include "acquisition/registration/joint_fit.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
@@ -30,7 +31,7 @@ struct RegisterOptions {
   Method method = Method::distance;
   double tip_radius = 0;
   std::optional<double> compliance, noise;
-  bool no_search = false;
+  bool no_search = false, refine = false;
 };
 
 const Keys kRegisterKeys = {
@@ -69,6 +70,19 @@ const Keys kRegisterKeys = {
     {"converged", "", "converged", "residual and pose are at rest, and as small as the noise"},
     {"compliance", "m/N", "gives way", "the surface, to a newton: told, or found by the forces",
      Shown::if_any},
+    {"tip",
+     "m",
+     "tip",
+     "added to its place in the probe",
+     Shown::if_any,
+     {{"added", "m", ""}, {"deviation", "m", ""}}},
+    {"clock",
+     "s",
+     "clock",
+     "what the probe felt was at the path's place so much later",
+     Shown::if_any,
+     {{"added", "s", ""}, {"deviation", "s", ""}}},
+    {"frozen", "", "frozen", "what the distances do not tell, left as it was", Shown::if_any},
     {"error", "m", "error", "against the truth: of the samples, rms", Shown::if_any},
     {"mesh_from_scan", "", "mesh from scan", "4 x 4"},
     {"mean_distance", "m", "mean distance"},
@@ -133,6 +147,22 @@ Registration byLoop(const SurfaceTarget& target, const std::vector<Vec3>& points
   for (const Vec3& p : points) result.misses.push_back(target.miss(fit.mesh_from_path * p));
   result.counts.assign(points.size(), true);
   return result;
+}
+
+void addJoint(const JointFit& joint, Report& report) {
+  const double tip = std::sqrt(joint.covariance.block<3, 3>(6, 6).trace() / 3),
+               clock = std::sqrt(joint.covariance(9, 9));
+  report.set("tip", Json::object().set("added", vectorJson(joint.tip)).set("deviation", tip),
+             "moved by " + formatLength(joint.tip.norm()) + ", each axis to " + formatLength(tip));
+  report.set("clock", Json::object().set("added", joint.clock).set("deviation", clock),
+             rounded(1e3 * joint.clock) + " ms, to " + rounded(1e3 * clock) + " ms");
+  Json list = Json::array();
+  std::string words;
+  for (const std::string& each : joint.frozen) {
+    list.push(each);
+    words += (words.empty() ? "" : "; ") + each;
+  }
+  report.set("frozen", list, words);
 }
 
 Json freeJson(const std::vector<FreeMotion>& motions) {
@@ -217,9 +247,10 @@ int runRegister(RegisterOptions options, Console& console) {
   }
   if (options.align && !options.initial.empty())
     throw Error("--align: --initial is a first guess too; one of them");
-  if (options.method != Method::distance &&
-      (options.tip_radius > 0 || options.compliance || options.noise || options.no_search))
-    throw Error("--method: --tip-radius, --compliance, --noise and --no-search are of 'distance'");
+  if (options.method != Method::distance && (options.tip_radius > 0 || options.compliance ||
+                                             options.noise || options.no_search || options.refine))
+    throw Error("--method: --tip-radius, --compliance, --noise, --no-search and --refine are of "
+                "'distance'");
   ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
   TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
@@ -259,10 +290,16 @@ int runRegister(RegisterOptions options, Console& console) {
                              !fitting.force.empty() || options.compliance.value_or(0) > 0);
 
   const auto begin = std::chrono::steady_clock::now();
-  const Registration found = options.method == Method::distance
-                                 ? registerPath(target, points, start, fitting, console.progress())
-                                 : byLoop(target, points, start, options.method == Method::literal,
-                                          console, options.path.string());
+  Registration found = options.method == Method::distance
+                           ? registerPath(target, points, start, fitting, console.progress())
+                           : byLoop(target, points, start, options.method == Method::literal,
+                                    console, options.path.string());
+  std::optional<JointFit> joint;
+  if (options.refine) {
+    JointOptions joining;
+    joining.compliance = options.compliance.value_or(found.compliance);
+    joint = refine(target, joining, path, found);
+  }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   console.progress().throwIfCancelled();
   std::optional<double> error;
@@ -271,7 +308,8 @@ int runRegister(RegisterOptions options, Console& console) {
     for (const Vec3& p : points) squares += (found.mesh_from_path * p - *truth * p).squaredNorm();
     error = std::sqrt(squares / static_cast<double>(points.size()));
   }
-  const Report report = reportOf(found, options, taken.count(), error);
+  Report report = reportOf(found, options, taken.count(), error);
+  if (joint) addJoint(*joint, report);
   path.resize(static_cast<std::size_t>(own));
   writeRegisteredPath(options.output, path, found);
   if (!options.report.empty()) writeFileAtomically(options.report, report.json().dump() + "\n");
@@ -308,7 +346,9 @@ Command registerCommand() {
           "x 4 matrix by least squares.\n"
           "Motions that the surface does not see are named and left where they were. Other places "
           "all over the mesh that fit as well are looked for, and how far the surface yields to "
-          "the forces is found. Exit code 1 where no pose explains the path, or several do.",
+          "the forces is found. --refine fits pose, tip and clock together, from there on: what a "
+          "wrong calibration explains is not left to the pose. Exit code 1 where no pose explains "
+          "the path, or several do.",
       .examples = {"patina register dinosaur.obj path.csv -o registered.csv --report r.json",
                    "patina register plate.obj path.csv -o r.csv --initial pose.txt --tip-radius "
                    "0.5mm --json"},
@@ -337,6 +377,8 @@ Command registerCommand() {
            {"--noise", "LENGTH", "m", "the path's median sigma", "Deviation of the samples.",
             inRange(
                 1e-9, 1, [options](double n) { options->noise = n; }, NumberKind::length)},
+           {"--refine", "", "", "", "Also the tip's place in the probe and the clocks' offset.",
+            into(options->refine)},
            {"--no-search", "", "", "",
             "Fit from the first guess alone, and look for no other place.",
             into(options->no_search)},

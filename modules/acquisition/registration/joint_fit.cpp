@@ -1,0 +1,290 @@
+#include "acquisition/registration/joint_fit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "acquisition/registration/free_motions.h"
+#include "core/percentiles.h"
+
+namespace patina {
+namespace {
+
+constexpr int kJointWindow = 20;  // samples to either side, of a parabola
+constexpr double kJointPause = 5; // median steps of time: beyond it another stretch begins
+constexpr double kJointFar = 10;  // times the noise: as far as a direction must be told
+constexpr int kJointMostSteps = 30;
+constexpr double kJointSettled = 1e-3; // of the deviation: less is no step
+constexpr double kJointClear = 10; // times what the speed's own error says of the clock: it is told
+constexpr double kJointNamed = 0.15; // of a frozen direction's square: less is not named
+
+// How the path moves about a sample.
+struct Course {
+  Vec3 speed = Vec3::Zero(), bend = Vec3::Zero(); // [m/s], [m/s^2]
+  Vec3 spin = Vec3::Zero();                       // [rad/s], in the path's frame
+  double blur = 0; // of the speed, squared, where the places' deviation is 1 m [1/s^2]
+};
+
+std::vector<Course> coursesOf(const std::vector<PathSample>& path) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < path.size(); ++i) steps.push_back(path[i].t - path[i - 1].t);
+  const double pause = steps.empty() ? 0 : kJointPause * percentiles(steps).p50;
+  std::vector<Course> courses(path.size());
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i <= path.size(); ++i) {
+    const double step = i < path.size() ? path[i].t - path[i - 1].t : -1;
+    if (step > 0 && step <= pause) continue;
+    for (std::size_t k = begin; k < i; ++k) {
+      // Of as many samples towards either end, that the middle's error does not lean.
+      const std::size_t low = k - std::min<std::size_t>(k - begin, kJointWindow),
+                        high = std::min(k + kJointWindow, i - 1);
+      if (high - low < 4) continue;
+      Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+      const double scale = path[high].t - path[low].t;
+      for (std::size_t j = low; j <= high; ++j) {
+        const double u = (path[j].t - path[k].t) / scale;
+        const Vec3 terms(1, u, u * u);
+        normal += terms * terms.transpose();
+        right += terms * (path[j].position - path[k].position).transpose();
+      }
+      const Eigen::Matrix3d parabola = normal.ldlt().solve(right);
+      courses[k].blur = normal.inverse()(1, 1) / (scale * scale);
+      courses[k].speed = parabola.row(1).transpose() / scale;
+      courses[k].bend = 2 * parabola.row(2).transpose() / (scale * scale);
+      const Eigen::AngleAxisd turn(path[high].orientation * path[low].orientation.conjugate());
+      courses[k].spin = turn.angle() / scale * turn.axis();
+    }
+    begin = i;
+  }
+  return courses;
+}
+
+struct Values {
+  Pose pose;
+  Vec3 tip = Vec3::Zero();
+  double clock = 0;
+};
+
+struct Joint {
+  const SurfaceTarget& target;
+  const std::vector<PathSample>& path;
+  const std::vector<bool>& counts;
+  double compliance;
+  std::vector<Course> courses;
+  double speed = 0; // [m/s], that makes a length of the clock
+
+  Eigen::Quaterniond orientation(std::size_t i, double clock) const {
+    const Vec3 turn = clock * courses[i].spin;
+    const double angle = turn.norm();
+    if (!(angle > 0)) return path[i].orientation;
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * path[i].orientation;
+  }
+  Vec3 place(std::size_t i, const Values& at) const {
+    const Course& course = courses[i];
+    return path[i].position + at.clock * (course.speed + 0.5 * at.clock * course.bend) +
+           orientation(i, at.clock) * at.tip;
+  }
+  double missAt(std::size_t i, const Values& at, Miss& miss) const {
+    miss = target.miss(at.pose * place(i, at), miss.foot.face);
+    return miss.distance + compliance * path[i].force;
+  }
+  double squares(const Values& at, std::vector<Miss>& misses) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < path.size(); ++i)
+      if (counts[i]) {
+        const double r = missAt(i, at, misses[i]);
+        sum += r * r;
+      }
+    return sum;
+  }
+  JointVector gradient(std::size_t i, const Values& at, const Miss& miss,
+                       const MotionScale& scale) const {
+    const Course& course = courses[i];
+    const Vec3 along = at.pose.linear().transpose() * miss.direction; // in the path's frame
+    const Eigen::Quaterniond turned = orientation(i, at.clock);
+    const Vec3 moves = course.speed + at.clock * course.bend + course.spin.cross(turned * at.tip);
+    JointVector g;
+    g << scale.gradient(at.pose * place(i, at), miss.direction), turned.conjugate() * along,
+        along.dot(moves) / speed;
+    return g;
+  }
+  Values moved(const Values& at, const JointVector& step, const MotionScale& scale) const {
+    return {scale.motion(step.head<6>()) * at.pose, at.tip + step.segment<3>(6),
+            at.clock + step[9] / speed};
+  }
+};
+
+std::string directionInWords(const JointVector& direction) {
+  std::string words;
+  const auto add = [&](const std::string& what) {
+    words += (words.empty() ? "" : " with ") + what;
+  };
+  const Vec3 tip = direction.segment<3>(6);
+  if (tip.squaredNorm() > kJointNamed) {
+    Vec3 axis = tip.normalized();
+    Eigen::Index largest;
+    axis.cwiseAbs().maxCoeff(&largest);
+    if (axis[largest] < 0) axis = -axis;
+    for (double& each : axis)
+      if (std::abs(each) < 5e-3) each = 0;
+    char text[80];
+    std::snprintf(text, sizeof text, "the tip along (%.2g, %.2g, %.2g) of the probe", axis[0],
+                  axis[1], axis[2]);
+    add(text);
+  }
+  if (direction[9] * direction[9] > kJointNamed) add("the clock");
+  if (direction.head<3>().squaredNorm() > kJointNamed) add("the path's turn");
+  if (direction.segment<3>(3).squaredNorm() > kJointNamed) add("the path's shift");
+  return words;
+}
+
+} // namespace
+
+JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& path,
+                    const std::vector<bool>& counts, const Pose& mesh_from_path,
+                    const JointOptions& options) {
+  const auto n = std::count(counts.begin(), counts.end(), true);
+  if (path.size() != counts.size() || n == 0)
+    throw std::invalid_argument("fitJointly: no sample counts");
+  Joint joint{target, path, counts, options.compliance, coursesOf(path)};
+  std::vector<Vec3> points; // that count
+  std::vector<double> pressed;
+  double speeds = 0, blurs = 0;
+  for (std::size_t i = 0; i < path.size(); ++i)
+    if (counts[i]) {
+      points.push_back(path[i].position);
+      pressed.push_back(options.compliance * path[i].force);
+      speeds += joint.courses[i].speed.squaredNorm();
+      blurs += joint.courses[i].blur;
+    }
+  joint.speed = std::sqrt(speeds / static_cast<double>(n));
+
+  // Directions that are not asked for, or that the surface does not see.
+  std::vector<JointVector> shut;
+  FitOptions plain;
+  if (options.compliance > 0) plain.pressed = pressed;
+  const PathFit alone = fitPath(target, points, mesh_from_path, plain);
+  const FreeMotions free =
+      freeMotions(target, points, alone, alone.rms, options.together, plain.pressed);
+  for (Eigen::Index k = 0; k < free.basis.cols(); ++k) {
+    shut.push_back(JointVector::Zero());
+    shut.back().head<6>() = free.basis.col(k);
+  }
+  for (int k = 6; k < kJointValues; ++k)
+    if (k < 9 ? !options.tip : !options.clock || !(joint.speed > 0))
+      shut.push_back(JointVector::Unit(k));
+  if (!(joint.speed > 0)) joint.speed = 1;
+
+  JointFit fit;
+  for (const FreeMotion& motion : free.named) fit.frozen.push_back(inWords(motion));
+  Values at{mesh_from_path};
+  std::vector<Miss> misses(path.size());
+  double sum = joint.squares(at, misses), damping = 0;
+  while (fit.iterations < kJointMostSteps && !fit.converged) {
+    ++fit.iterations;
+    std::vector<Vec3> places;
+    for (std::size_t i = 0; i < path.size(); ++i)
+      if (counts[i]) places.push_back(joint.place(i, at));
+    const MotionScale scale = scaleOf(places, at.pose);
+    JointMatrix normal = JointMatrix::Zero();
+    JointVector right = JointVector::Zero();
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      if (!counts[i]) continue;
+      JointVector g = joint.gradient(i, at, misses[i], scale);
+      for (const JointVector& each : shut) g -= each * each.dot(g);
+      const double r = misses[i].distance + options.compliance * path[i].force;
+      normal += g * g.transpose();
+      right -= r * g;
+    }
+    const double worth = options.together;
+    const Eigen::SelfAdjointEigenSolver<JointMatrix> eigen(normal);
+    const double largest = std::max(eigen.eigenvalues()[kJointValues - 1], 1e-300);
+    // Its deviation, noise sqrt(worth / value), against kJointFar times the noise.
+    const double least = std::max(worth / (kJointFar * kJointFar), 1e-9 * largest);
+    const double noise = std::sqrt(sum / std::max(static_cast<double>(n) - kJointValues, 1.0));
+    const double blur = kJointClear * blurs * noise * noise / (joint.speed * joint.speed);
+    const auto told = [&](int k) {
+      const double of_clock = eigen.eigenvectors()(9, k);
+      return eigen.eigenvalues()[k] > std::max(least, blur * of_clock * of_clock);
+    };
+    for (;;) {
+      JointVector step = JointVector::Zero();
+      double deviations = 0; // of the step, in those of the fit
+      for (int k = 0; k < kJointValues; ++k) {
+        const double value = eigen.eigenvalues()[k];
+        if (!told(k)) continue;
+        const double along = eigen.eigenvectors().col(k).dot(right) / (value + damping * largest);
+        step += along * eigen.eigenvectors().col(k);
+        deviations =
+            std::max(deviations, std::abs(along) * std::sqrt(value) / std::max(noise, 1e-12));
+      }
+      const Values next = joint.moved(at, step, scale);
+      std::vector<Miss> there = misses;
+      const double after = joint.squares(next, there);
+      const bool still = deviations < kJointSettled;
+      if (after <= sum || still) {
+        fit.converged = still;
+        if (after <= sum) {
+          at = next;
+          misses = std::move(there);
+          sum = after;
+        }
+        damping = damping < 1e-6 ? 0 : damping / 10;
+        break;
+      }
+      damping = std::max(1e-4, damping * 10);
+    }
+    if (!fit.converged && fit.iterations < kJointMostSteps) continue;
+    // What is left unknown, in the values' own units.
+    JointVector units;
+    units << Vec3::Constant(1 / scale.radius), Vec3::Ones(), Vec3::Ones(), 1 / joint.speed;
+    for (int k = 0; k < kJointValues; ++k) {
+      const JointVector direction = eigen.eigenvectors().col(k);
+      if (told(k)) {
+        const JointVector unit = units.cwiseProduct(direction);
+        fit.covariance += noise * noise * worth / eigen.eigenvalues()[k] * unit * unit.transpose();
+        continue;
+      }
+      double of_shut = 0; // of which nothing more is said
+      for (const JointVector& each : shut) of_shut += std::pow(each.dot(direction), 2);
+      if (of_shut < 0.5) fit.frozen.push_back("free to move " + directionInWords(direction));
+    }
+    fit.middle = scale.centre;
+  }
+  fit.mesh_from_path = at.pose;
+  fit.tip = at.tip;
+  fit.clock = at.clock;
+  fit.rms = std::sqrt(sum / static_cast<double>(n));
+  fit.path = path;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    fit.path[i].position = joint.place(i, at);
+    fit.path[i].orientation = joint.orientation(i, at.clock);
+  }
+  return fit;
+}
+
+JointFit refine(const SurfaceTarget& target, JointOptions options, std::vector<PathSample>& path,
+                Registration& found) {
+  options.together = found.together;
+  JointFit joint = fitJointly(target, path, found.counts, found.mesh_from_path, options);
+  path = joint.path;
+  found.mesh_from_path = joint.mesh_from_path;
+  found.covariance = joint.covariance.topLeftCorner<6, 6>();
+  found.middle = joint.middle;
+  found.rms = joint.rms;
+  found.converged = found.converged && joint.converged;
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    found.misses[i] = target.miss(found.mesh_from_path * path[i].position);
+    found.misses[i].distance += options.compliance * path[i].force;
+    if (!found.counts[i]) continue;
+    sum += std::abs(found.misses[i].distance);
+    ++count;
+  }
+  found.mean_distance = sum / count;
+  return joint;
+}
+
+} // namespace patina
