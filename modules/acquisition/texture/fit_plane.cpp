@@ -13,7 +13,7 @@ namespace {
 
 using HeightRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>; // y by x
 
-std::vector<double> numbersOf(const Eigen::VectorXd& line) {
+std::vector<double> vectorOf(const Eigen::VectorXd& line) {
   return {line.begin(), line.end()};
 }
 
@@ -21,7 +21,7 @@ std::vector<double> numbersOf(const Eigen::VectorXd& line) {
 template <class Change> HeightRows byRows(const HeightRows& rows, const Change& change) {
   HeightRows changed;
   for (Eigen::Index r = 0; r < rows.rows(); ++r) {
-    const std::vector<double> row = change(numbersOf(rows.row(r).transpose()));
+    const std::vector<double> row = change(vectorOf(rows.row(r).transpose()));
     if (r == 0) changed.resize(rows.rows(), static_cast<Eigen::Index>(row.size()));
     changed.row(r) =
         Eigen::Map<const Eigen::RowVectorXd>(row.data(), static_cast<Eigen::Index>(row.size()));
