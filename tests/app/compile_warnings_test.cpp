@@ -122,6 +122,18 @@ TEST(CompileWarnings, HalfAMagnetIsTold) {
   EXPECT_TRUE(warningsOf(scene).empty());
 }
 
+TEST(CompileWarnings, ALengthLargerThanTheSceneIsTold) {
+  for (const char* key : {"tip.radius", "offset"}) {
+    Scene scene = plate(5e-3, 1e-3);
+    setValues(scene, {{key, "39mm"}});
+    EXPECT_TRUE(warningsOf(scene).empty());
+    setValues(scene, {{key, "41mm"}});
+    const auto lines = warningsOf(scene);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_EQ(lines[0].find(key), 0u) << lines[0];
+  }
+}
+
 TEST(CompileWarnings, APoseInMillimetresIsTold) {
   Scene scene = plate(5e-3, 1e-3);
   scene.field = FieldSpec{};

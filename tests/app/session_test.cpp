@@ -105,6 +105,9 @@ TEST_F(Session, OpensAFieldAsItsIsoSurfaceInMetres) {
   EXPECT_NEAR(bounds(*opened.scene.objects[0].mesh).max().z(), 0.02, 3e-4);
   const OpenedScene outer = openScene(folder / "field.vti", {.iso = 0.002});
   EXPECT_NEAR(bounds(*outer.scene.objects[0].mesh).max().z(), 0.022, 3e-4);
+  // Felt as finely as it was written.
+  EXPECT_EQ(opened.scene.field.voxel, built.field->grid.voxel);
+  EXPECT_EQ(opened.scene.field.band, built.field->band);
 }
 
 TEST_F(Session, WorldMeshAppliesThePoseAndKeepsAnUntouchedMeshBitForBit) {

@@ -88,6 +88,8 @@ Scene created(const std::filesystem::path& folder, const SceneCommandOptions& op
   Scene scene = edited(Scene{}, options.edits, options.open, console);
   console.progress().throwIfCancelled();
   saveWorkspace(scene, folder);
+  if (scene.objects.empty())
+    console.warn(folder.string() + ": made, with nothing in it; --add puts a mesh into it");
   return scene;
 }
 

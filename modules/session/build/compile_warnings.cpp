@@ -189,6 +189,16 @@ std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
   if (magnet && magnet->range * magnet->strength == 0)
     lines.push_back(magnet->range > 0 ? "magnet.range has no effect without magnet.strength"
                                       : "magnet.strength has no effect without magnet.range");
+  const Vec3 sides = bounds(*compiled.mesh).sizes();
+  const double extent = compiled.mesh->triangles.empty() ? 0 : sides.maxCoeff();
+  const auto tellLarge = [&](const char* key, const std::optional<double>& length) {
+    if (length && *length > extent && extent > 0)
+      lines.push_back(std::string(key) + " " + formatLength(*length) +
+                      " is more than the whole scene, which is " + formatLength(extent) +
+                      " long: lengths without a unit are in metres");
+  };
+  tellLarge("tip.radius", compiled.scene.haptics.tip_radius);
+  tellLarge("offset", compiled.scene.haptics.offset);
   bool posed = false;
   for (const SceneObject& object : compiled.scene.objects)
     posed |= !object.world_from_object.matrix().isIdentity(0.0);

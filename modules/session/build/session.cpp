@@ -42,17 +42,24 @@ std::string objectName(const std::filesystem::path& path) {
   return name.empty() || isStandardStream(path) ? "object" : name;
 }
 
-TriangleMesh meshOfVolume(const std::filesystem::path& path, const OpenOptions& options,
-                          bool& in_metres) {
+// What a volume's surface is; of a field of ours also how fine it was, and it is in metres.
+struct VolumeSurface {
+  TriangleMesh mesh;
+  std::optional<FieldSpec> spec{};
+};
+
+VolumeSurface surfaceOfVolume(const std::filesystem::path& path, const OpenOptions& options) {
   if (isField(path)) {
-    in_metres = true;
     const SurfaceField field = readField(path);
     const double iso = options.iso.value_or(0.0), band = field.band * field.grid.voxel;
     if (!(std::abs(iso) < band))
       throw FileError(path.string(), 0,
                       "--iso " + formatNumber(iso) + ": the field holds distances between " +
                           formatNumber(-band) + " and " + formatNumber(band) + " m");
-    return isoSurface(field, iso);
+    FieldSpec spec;
+    spec.voxel = field.grid.voxel;
+    spec.band = field.band;
+    return {isoSurface(field, iso), spec};
   }
   if (!options.iso) {
     const VolumeRange range = scalarRange(path);
@@ -60,8 +67,7 @@ TriangleMesh meshOfVolume(const std::filesystem::path& path, const OpenOptions& 
                     "a volume is felt as an iso-surface: choose its value with --iso, between " +
                         formatNumber(range.low) + " and " + formatNumber(range.high));
   }
-  in_metres = false;
-  return isoSurfaceOfVolume(path, *options.iso);
+  return {isoSurfaceOfVolume(path, *options.iso)};
 }
 
 } // namespace
@@ -151,15 +157,19 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
       addWarnings(opened, path.string() + ": " + object.name, *object.mesh, both_sides);
     return opened;
   }
-  bool in_metres = false;
   const bool is_volume = isVolumeFile(path);
   TexturedMesh read;
-  if (is_volume)
-    read.mesh = meshOfVolume(path, options, in_metres);
-  else if (lowerExtension(path) == ".obj")
+  std::optional<FieldSpec> spec;
+  if (is_volume) {
+    VolumeSurface volume = surfaceOfVolume(path, options);
+    read.mesh = std::move(volume.mesh);
+    spec = volume.spec;
+  } else if (lowerExtension(path) == ".obj") {
     read = readTexturedObj(path);
-  else
+  } else {
     read.mesh = readMesh(path);
+  }
+  const bool in_metres = spec.has_value();
   TriangleMesh mesh = is_volume ? std::move(read.mesh) : zUp(std::move(read.mesh), options.up);
   if (options.unit_chosen && in_metres) warnOf("--unit", "field");
   if (options.iso && !is_volume) warnOf("--iso", "mesh");
@@ -174,6 +184,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   }
   if (!scaled.warning.empty()) opened.warnings.push_back(path.string() + ": " + scaled.warning);
   opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
+  if (spec) opened.scene.field = *spec;
   if (!read.textured.empty()) {
     for (TexturedFace& face : read.textured)
       for (Vec2& at : face.at) at *= scaled.scale;
