@@ -125,6 +125,45 @@ TEST(TipTarget, APlaceThatIsSetForgetsThePath) {
   EXPECT_NEAR((tip - Vec3(0.01, 0, 0)).norm(), 0, 1e-6);
 }
 
+// From one side of a ball to the other: nothing of what lies between is felt, and what was to be
+// passed before is.
+TEST(TipTarget, ALeapIsFeltNowhereOnItsWay) {
+  const auto target = targetAt(Vec3(0.03, 0, 0));
+  const auto mouse = makeMouse(target);
+  target->pass(Vec3(0.03, 0.001, 0), 1);
+  target->leap(Vec3(-0.03, 0, 0), 1.02);
+  target->pass(Vec3(-0.02, 0, 0), 1.02);
+  int lifted = 0, passed = 0;
+  for (int tick = 0; tick < 1000 && !target->passed(); ++tick) {
+    const DeviceState state = mouse->exchange(Vec3::Zero(), kPeriod);
+    if (state.position == Vec3(0.03, 0.001, 0)) ++passed;
+    if (state.status == DeviceStatus::lifted) {
+      ++lifted;
+      continue;
+    }
+    EXPECT_EQ(state.status, DeviceStatus::ok);
+    EXPECT_GE(std::abs(state.position.x()), 0.02);
+    if (!lifted) EXPECT_GT(state.position.x(), 0);
+  }
+  EXPECT_EQ(lifted, 1);
+  EXPECT_GE(passed, 1);
+  EXPECT_EQ(mouse->exchange(Vec3::Zero(), kPeriod).position, Vec3(-0.02, 0, 0));
+}
+
+TEST(TipTarget, ABodyOfMassGlidesWhereAMouseLeaps) {
+  const auto target = targetAt(Vec3::Zero());
+  const auto hand = makeSimulatedHand(target);
+  target->leap(Vec3(0.05, 0, 0), 1);
+  Vec3 before = Vec3::Zero();
+  for (int tick = 0; tick < 300; ++tick) {
+    const DeviceState state = hand->exchange(Vec3::Zero(), kPeriod);
+    EXPECT_EQ(state.status, DeviceStatus::ok);
+    EXPECT_LT((state.position - before).norm(), 2e-3);
+    before = state.position;
+  }
+  EXPECT_NEAR(before.x(), 0.05, 0.01);
+}
+
 struct Held {
   std::shared_ptr<TipTarget> target = targetAt(Vec3::Zero());
   std::unique_ptr<Device> hand;

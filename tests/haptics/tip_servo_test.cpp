@@ -61,6 +61,25 @@ TEST(TipServo, TheTargetMovesTheTipOfTheLoopThatIsOpen) {
   EXPECT_LT((servo.drain().back().tip - Vec3(0.03, 0, 0.01)).norm(), 1e-6);
 }
 
+TEST(TipServo, ALeapThroughABallIsWithoutForce) {
+  TipServo servo;
+  servo.publish(ofStiffness(500, ball()));
+  openAt(servo, Vec3(0.021, 0, 0));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  (void)servo.drain();
+  servo.leapTarget(Vec3(-0.021, 0, 0), 1);
+  servo.passTarget(Vec3(-0.019, 0, 0), 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const std::vector<ToolSample> samples = servo.drain();
+  ASSERT_FALSE(samples.empty());
+  for (const ToolSample& sample : samples) {
+    EXPECT_GE(std::abs(sample.tip.x()), 0.0189);
+    EXPECT_LE(sample.force.norm(), 0.51);
+    if (sample.tip.x() > 0) EXPECT_EQ(sample.force.norm(), 0);
+  }
+  EXPECT_NEAR(samples.back().force.x(), -0.5, 0.02);
+}
+
 TEST(TipServo, AnotherThreadPublishesWhileLoopsComeAndGo) { // T-K20; for the thread sanitizer
   const auto field = ball();
   TipServo servo;

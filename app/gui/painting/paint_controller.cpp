@@ -123,6 +123,11 @@ void PaintController::moveTip(const Vec3& target) {
   at_.feel.setTarget(target);
 }
 
+void PaintController::leapTip(const Vec3& target) {
+  at_.view.setTarget(target);
+  at_.feel.leapTarget(target, t_);
+}
+
 void PaintController::passTip(const Vec3& target) {
   if (target == at_.view.target()) return;
   at_.view.setTarget(target);
@@ -140,7 +145,11 @@ void PaintController::press(const Vec3& surface, double newtons) {
   const SurfaceField& field = *scene_->built.field;
   depth = std::min(depth, 0.5 * field.band * field.grid.voxel);
   aim_ = surface;
-  if (newtons_ == 0) begin_ = surface;
+  if (newtons_ == 0) {
+    // It comes down here, from above: on a straight way it would go through the object.
+    begin_ = surface;
+    leapTip(lifted());
+  }
   newtons_ = newtons;
   passTip(surface +
           (skinOf(haptics) + (values ? values->height : 0) - depth) * normalAt(*scene_, surface));
@@ -218,7 +227,7 @@ void PaintController::refresh() {
   if ((paints || (scene_ && presses_)) && surface && !down_ && !lingers_ &&
       at_.feel.passed()) { // the tool hovers where it would paint
     aim_ = *surface;
-    lift();
+    leapTip(lifted());
   }
   showCursor(!paints ? std::nullopt : tracker_.painting() ? std::optional(last_.surface) : surface);
   if (refreshes_++ % 3 == 0) emit underPointer(surface ? wordsFor(*surface) : QString());

@@ -55,6 +55,7 @@ class PaintController : public QObject {
   void setForce(double newtons);
   void escape(); // the stroke is taken back
   void moveTip(const Vec3& target);
+  void leapTip(const Vec3& target); // above what it would go through
   void passTip(const Vec3& target); // when it is that event's turn
   std::optional<SurfaceValues> valuesAt(const Vec3& surface, QString* object = nullptr) const;
   bool arrived(const std::vector<ToolSample>& ticks) const;

@@ -8,6 +8,8 @@ const char* text(DeviceStatus status) noexcept {
     return "answers";
   case DeviceStatus::calibrating:
     return "is being calibrated";
+  case DeviceStatus::lifted:
+    return "is lifted off the surface";
   case DeviceStatus::away:
     return "is away: it is felt again when it is back";
   case DeviceStatus::silent:

@@ -12,6 +12,7 @@ enum class DeviceStatus : std::uint8_t {
   ok,
   // The loop holds, without force, until its position means something (again).
   calibrating, // its axes are being homed
+  lifted,      // for this turn: off the surface, on the way to another place
   away,        // unplugged, or it has stopped answering; it is being opened anew
   // What follows is final: the loop ends without force.
   silent,  // no answer for longer than kOldestAge
@@ -22,7 +23,8 @@ enum class DeviceStatus : std::uint8_t {
 const char* text(DeviceStatus status) noexcept;
 // Neither ok nor final.
 constexpr bool holds(DeviceStatus status) noexcept {
-  return status == DeviceStatus::calibrating || status == DeviceStatus::away;
+  return status == DeviceStatus::calibrating || status == DeviceStatus::lifted ||
+         status == DeviceStatus::away;
 }
 
 // What is older is not felt: the force would be that of another place. [s]

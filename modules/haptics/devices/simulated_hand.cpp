@@ -40,8 +40,12 @@ class SimulatedHand final : public Device {
 class Mouse final : public Device {
  public:
   Mouse(std::shared_ptr<const TipTarget> target, double max_speed)
-      : tip_(std::move(target), max_speed) {}
-  DeviceState exchange(const Vec3&, double dt) noexcept override { return {tip_.follow(dt)}; }
+      : tip_(std::move(target), max_speed, true) {}
+  DeviceState exchange(const Vec3&, double dt) noexcept override {
+    DeviceState state{tip_.follow(dt)};
+    if (tip_.leapt()) state.status = DeviceStatus::lifted;
+    return state;
+  }
 
  private:
   GlidingTip tip_;

@@ -21,7 +21,8 @@ struct HandSpec {
 std::unique_ptr<Device> makeSimulatedHand(std::shared_ptr<const TipTarget> target,
                                           const HandSpec& spec = {});
 
-// The mouse's: the tip is the gliding point itself, and feels no force.
+// The mouse's: the tip is the gliding point itself, feels no force, and alone may leap: a body of
+// mass glides there.
 std::unique_ptr<Device> makeMouse(std::shared_ptr<const TipTarget> target, double max_speed = 1.0);
 
 } // namespace patina

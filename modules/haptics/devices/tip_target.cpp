@@ -34,9 +34,16 @@ void TipTarget::set(const Vec3& world) noexcept {
 }
 
 void TipTarget::pass(const Vec3& world, double t) noexcept {
-  if (!world.allFinite() || !std::isfinite(t)) return;
-  if (path_.push({world, t, version_.load(std::memory_order_relaxed)}))
-    asked_.fetch_add(1, std::memory_order_release);
+  push({world, t, version_.load(std::memory_order_relaxed), false});
+}
+
+void TipTarget::leap(const Vec3& world, double t) noexcept {
+  push({world, t, version_.load(std::memory_order_relaxed), true});
+}
+
+void TipTarget::push(const Waypoint& waypoint) noexcept {
+  if (!waypoint.world.allFinite() || !std::isfinite(waypoint.t)) return;
+  if (path_.push(waypoint)) asked_.fetch_add(1, std::memory_order_release);
 }
 
 bool TipTarget::passed() const noexcept {
@@ -65,8 +72,8 @@ void TipTarget::setPassed() const noexcept {
   passed_.fetch_add(1, std::memory_order_release);
 }
 
-GlidingTip::GlidingTip(std::shared_ptr<const TipTarget> target, double max_speed)
-    : target_(std::move(target)), max_speed_(max_speed) {
+GlidingTip::GlidingTip(std::shared_ptr<const TipTarget> target, double max_speed, bool leaps)
+    : target_(std::move(target)), leaps_(leaps), max_speed_(max_speed) {
   if (!target_ || !(max_speed > 0))
     throw std::invalid_argument("gliding tip: it needs a target and a speed above 0");
   version_ = target_->read(goal_);
@@ -82,6 +89,10 @@ bool GlidingTip::take() noexcept {
     if (next.version < version_) target_->setPassed(); // set anew since
   } while (next.version < version_);
   version_ = next.version;
+  if (next.leaps && leaps_) {
+    tip_ = next.world;
+    leapt_ = true;
+  }
   const double before = on_path_ ? to_.t : -std::numeric_limits<double>::infinity();
   from_ = tip_;
   to_ = next;
@@ -94,6 +105,7 @@ bool GlidingTip::take() noexcept {
 }
 
 const Vec3& GlidingTip::follow(double dt) noexcept {
+  leapt_ = false;
   if (const std::uint64_t version = target_->read(goal_); version > version_) {
     version_ = version;
     if (std::exchange(on_leg_, false)) target_->setPassed();

@@ -12,8 +12,8 @@
 namespace patina {
 
 // A place, or places with the times at which a pointer was there. Neither side ever waits. set(),
-// pass() and passed() are one thread's at a time, the rest is the servo's; what is not finite is
-// ignored.
+// pass(), leap() and passed() are one thread's at a time, the rest is the servo's; what is not
+// finite is ignored.
 class TipTarget {
  public:
   explicit TipTarget(const Vec3& start); // throws std::invalid_argument if it is not finite
@@ -21,12 +21,15 @@ class TipTarget {
   // After those before, as much later as t [s] says, whenever it is told: pointer events that a
   // long frame has held up are still followed as the hand moved.
   void pass(const Vec3& world, double t) noexcept;
+  // As pass(), but the tip is lifted off and comes down there: nothing is felt on the way.
+  void leap(const Vec3& world, double t) noexcept;
   bool passed() const noexcept; // the tip has been at all of them
 
   struct Waypoint {
     Vec3 world = Vec3::Zero();
     double t = 0;
     std::uint64_t version = 0; // of the place that was set before
+    bool leaps = false;
   };
   // The version of the place; 0 where it meets a write, and world stays.
   std::uint64_t read(Vec3& world) const noexcept;
@@ -35,6 +38,8 @@ class TipTarget {
   void setPassed() const noexcept;              // one more of them
 
  private:
+  void push(const Waypoint& waypoint) noexcept;
+
   std::atomic<std::uint64_t> version_{0};
   std::array<std::atomic<double>, 3> value_{};
   mutable Ring<Waypoint> path_{4096};
@@ -47,10 +52,12 @@ class TipTarget {
 class GlidingTip {
  public:
   // Begins at the target. Throws std::invalid_argument without one, or if max_speed [m/s] is not
-  // above 0.
-  explicit GlidingTip(std::shared_ptr<const TipTarget> target, double max_speed = 1.0);
+  // above 0. What has a mass does not leap, but glides there too.
+  explicit GlidingTip(std::shared_ptr<const TipTarget> target, double max_speed = 1.0,
+                      bool leaps = false);
   const Vec3& follow(double dt) noexcept; // where it is dt later
   const Vec3& position() const noexcept { return tip_; }
+  bool leapt() const noexcept { return leapt_; } // in the last follow()
 
  private:
   bool take() noexcept; // the next leg of the path
@@ -59,6 +66,7 @@ class GlidingTip {
   Vec3 goal_ = Vec3::Zero();
   std::uint64_t version_ = 0; // of the goal
   Vec3 tip_;
+  bool leaps_, leapt_ = false;
   double max_speed_;
   // On a path: the leg that it is on, or that it has come to the end of.
   bool on_path_ = false, on_leg_ = false;

@@ -47,6 +47,12 @@ struct ServoLoop::Impl {
 
       const DeviceState state = device->exchange(force, dt);
       const DeviceStatus status = judge(state);
+      if (status == DeviceStatus::lifted) {
+        force.setZero();
+        law.lose();
+        measureRate(woke);
+        continue;
+      }
       device_status.store(status, std::memory_order_relaxed);
       if (status != DeviceStatus::ok) {
         force.setZero();

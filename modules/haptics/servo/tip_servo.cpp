@@ -58,6 +58,10 @@ void TipServo::passTarget(const Vec3& target, double t) {
   if (target_) target_->pass(target, t);
 }
 
+void TipServo::leapTarget(const Vec3& target, double t) {
+  if (target_) target_->leap(target, t);
+}
+
 bool TipServo::passed() const {
   return !target_ || target_->passed();
 }

@@ -25,6 +25,7 @@ class TipServo {
   void setTarget(const Vec3& target); // any one thread at a time; never waits
   // The same of a place that a pointer was at, at time t; see TipTarget.
   void passTarget(const Vec3& target, double t);
+  void leapTarget(const Vec3& target, double t);
   bool passed() const; // nothing of that is left
   // Since the last call, oldest first. t counts from the first loop's start and increases over all
   // loops of this host.
