@@ -97,7 +97,12 @@ void Tutorial::stroke() {
   const auto samples = feel().log().samples();
   release();
   std::size_t pressed = 0;
-  for (const ToolSample& sample : samples) pressed += sample.force.norm() > 0.2 ? 1 : 0;
+  double most = 0;
+  for (const ToolSample& sample : samples) {
+    pressed += sample.force.norm() > 0.2 ? 1 : 0;
+    most = std::max(most, sample.force.norm());
+  }
+  EXPECT_LT(most, 1.6) << "0.8 N are set, and a stroke begins on the surface";
   EXPECT_GT(pressed, samples.size() / 2);
   feel().log().clear();
   const auto eye = [this] {

@@ -83,5 +83,32 @@ TEST(Feel, TakesTheSpeedFromTheTimeBetweenTwoRows) {
   }
 }
 
+// Two sides of a ball: the straight way between them is not gone where there is a pause.
+TEST(Feel, APauseLiftsTheTip) {
+  const auto snapshot = compileStages(sceneOf(500), sphereField(0.03, 60));
+  const auto felt = [&](double period, double pause) {
+    std::vector<TimedTip> path;
+    for (int i = 0; i < 20; ++i) {
+      const double t = i * period + (i < 10 ? 0 : pause);
+      path.push_back({t, Vec3(i < 10 ? 0.031 : -0.029, 1e-5 * i, 0)});
+    }
+    std::size_t given = 0;
+    std::vector<ToolSample> samples;
+    const std::size_t pauses = feel(
+        *snapshot,
+        [&] { return given < path.size() ? std::optional(path[given++]) : std::nullopt; },
+        [&](const ToolSample& sample) { samples.push_back(sample); }, Progress());
+    return std::pair(pauses, samples);
+  };
+  const auto [paused, apart] = felt(1e-3, 0.5);
+  EXPECT_EQ(paused, 1u);
+  EXPECT_EQ(apart[9].force.norm(), 0);
+  EXPECT_NEAR(apart[10].force.x(), -0.5, 1e-3) << "as deep as it is on this side";
+  // A slow path has long ticks and no pause: it is held where it went in.
+  const auto [none, through] = felt(1.0 / 30, 0);
+  EXPECT_EQ(none, 0u);
+  EXPECT_GT(through[10].force.x(), 1);
+}
+
 } // namespace
 } // namespace patina

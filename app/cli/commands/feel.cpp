@@ -36,6 +36,8 @@ const Keys kFeelKeys = {
     {"deep_ticks", "", "deep", "ticks that found contact from inside, not by the way in",
      Shown::if_any},
     {"fault_ticks", "", "faults", "ticks faded by a force jump", Shown::if_any},
+    {"pauses", "", "pauses", "in which the tip was lifted: longer than 20 ms and than 4 ticks",
+     Shown::if_any},
     {"bad_tips", "", "bad tips", "NaN or infinite: no force there", Shown::if_any},
     {"max_force", "N", "largest force"},
     {"max_depth", "m", "largest depth"},
@@ -68,7 +70,7 @@ int runFeel(const FeelOptions& options, Console& console) {
     ++step_ns[sample.step_ns];
     rows_out.add(toolSampleRow(sample));
   };
-  feel(*compiled->snapshot, next, take, console.progress());
+  const std::size_t pauses = feel(*compiled->snapshot, next, take, console.progress());
   console.progress().throwIfCancelled();
   rows_out.commit();
 
@@ -85,6 +87,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   report.set("deep_ticks", deep_ticks,
              formatCount(deep_ticks) + " ticks found contact from inside");
   report.set("fault_ticks", faults, formatCount(faults) + " ticks faded by a force jump");
+  report.set("pauses", pauses);
   report.set("bad_tips", bad_tips);
   report.set("field", fieldReport(*compiled->built.field, compiled->built.report));
   if (bad_tips)
@@ -107,7 +110,8 @@ Command feelCommand() {
       .description =
           "One row a tick goes out: force on the hand, contact, depth, virtual contact point, "
           "normal and the time of the step. The path has the columns t [s],x [m],y [m],z [m], its "
-          "times increasing; the time between two rows is the tick.",
+          "times increasing; the time between two rows is the tick. A pause longer than 20 ms and "
+          "than four ticks lifts the tip: it is felt anew where it comes down.",
       .examples = {"patina feel bunny.ply --path tip.csv -o forces.csv --stiffness 800",
                    "patina feel workspace --path tip.csv -o forces.csv --tip-radius 1mm --json"},
       .keys = kFeelKeys,

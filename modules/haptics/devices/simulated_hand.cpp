@@ -43,7 +43,7 @@ class Mouse final : public Device {
       : tip_(std::move(target), max_speed, true) {}
   DeviceState exchange(const Vec3&, double dt) noexcept override {
     DeviceState state{tip_.follow(dt)};
-    if (tip_.leapt()) state.status = DeviceStatus::lifted;
+    if (tip_.lifted()) state.status = DeviceStatus::lifted;
     return state;
   }
 

@@ -91,7 +91,7 @@ bool GlidingTip::take() noexcept {
   version_ = next.version;
   if (next.leaps && leaps_) {
     tip_ = next.world;
-    leapt_ = true;
+    lift_ = kLeapTime;
   }
   const double before = on_path_ ? to_.t : -std::numeric_limits<double>::infinity();
   from_ = tip_;
@@ -105,14 +105,16 @@ bool GlidingTip::take() noexcept {
 }
 
 const Vec3& GlidingTip::follow(double dt) noexcept {
-  leapt_ = false;
   if (const std::uint64_t version = target_->read(goal_); version > version_) {
     version_ = version;
     if (std::exchange(on_leg_, false)) target_->setPassed();
     on_path_ = false;
   }
+  lift_ -= std::min(lift_, dt);
+  if (lifted()) return tip_;
   now_ += dt;
   while (on_leg_ || take()) {
+    if (lifted()) return tip_;
     if (now_ < to_.t) {
       const double part = std::max(0.0, (now_ - leaves_) / (to_.t - leaves_));
       return tip_ = from_ + part * (to_.world - from_);

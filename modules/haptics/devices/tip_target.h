@@ -8,8 +8,12 @@
 
 #include "core/ring.h"
 #include "core/types.h"
+#include "haptics/devices/device.h"
 
 namespace patina {
+
+// As long as makes a pause of a recording, so that what is replayed is lifted, too.
+inline constexpr double kLeapTime = 1.25 * kOldestAge; // [s]
 
 // A place, or places with the times at which a pointer was there. Neither side ever waits. set(),
 // pass(), leap() and passed() are one thread's at a time, the rest is the servo's; what is not
@@ -21,7 +25,8 @@ class TipTarget {
   // After those before, as much later as t [s] says, whenever it is told: pointer events that a
   // long frame has held up are still followed as the hand moved.
   void pass(const Vec3& world, double t) noexcept;
-  // As pass(), but the tip is lifted off and comes down there: nothing is felt on the way.
+  // As pass(), but the tip is lifted off and comes down there kLeapTime later: nothing is felt on
+  // the way.
   void leap(const Vec3& world, double t) noexcept;
   bool passed() const noexcept; // the tip has been at all of them
 
@@ -57,7 +62,7 @@ class GlidingTip {
                       bool leaps = false);
   const Vec3& follow(double dt) noexcept; // where it is dt later
   const Vec3& position() const noexcept { return tip_; }
-  bool leapt() const noexcept { return leapt_; } // in the last follow()
+  bool lifted() const noexcept { return lift_ > 0; } // it leaps
 
  private:
   bool take() noexcept; // the next leg of the path
@@ -66,7 +71,8 @@ class GlidingTip {
   Vec3 goal_ = Vec3::Zero();
   std::uint64_t version_ = 0; // of the goal
   Vec3 tip_;
-  bool leaps_, leapt_ = false;
+  bool leaps_;
+  double lift_ = 0; // [s] that it is lifted still
   double max_speed_;
   // On a path: the leg that it is on, or that it has come to the end of.
   bool on_path_ = false, on_leg_ = false;

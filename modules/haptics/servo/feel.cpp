@@ -23,12 +23,14 @@ double period(const TimedTip& from, const TimedTip& to, std::size_t row) {
 
 } // namespace
 
-void feel(const HapticSnapshot& snapshot, const std::function<std::optional<TimedTip>()>& next,
-          const std::function<void(const ToolSample&)>& take, const Progress& progress) {
+std::size_t feel(const HapticSnapshot& snapshot,
+                 const std::function<std::optional<TimedTip>()>& next,
+                 const std::function<void(const ToolSample&)>& take, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   ContactMemory memory;
   std::optional<TimedTip> tip = next(), following = tip ? next() : std::nullopt;
   double dt = following ? period(*tip, *following, 2) : kFirstPeriod;
+  std::size_t pauses = 0;
   for (std::size_t row = 1; tip; ++row) {
     if (row % kPollEvery == 1) progress.throwIfCancelled();
     const auto before = Clock::now();
@@ -41,9 +43,18 @@ void feel(const HapticSnapshot& snapshot, const std::function<std::optional<Time
     record(contact, snapshot.field.get(), sample);
     sample.step_ns = static_cast<std::uint32_t>(std::min<long long>(ns, UINT32_MAX));
     take(sample);
-    if (following) dt = period(*tip, *following, row + 1);
+    if (following) {
+      const double step = period(*tip, *following, row + 1);
+      if (step > kOldestAge && step > kPause * dt) {
+        memory.reset();
+        ++pauses;
+      } else {
+        dt = step;
+      }
+    }
     tip = std::exchange(following, following ? next() : std::nullopt);
   }
+  return pauses;
 }
 
 std::vector<ToolSample> feel(const HapticSnapshot& snapshot, const std::vector<TimedTip>& path,
