@@ -116,9 +116,9 @@ TEST_F(Loading, AnOddSizeAsksForTheUnitAndTheAnswerCounts) {
   EXPECT_EQ(edits().scene(), nullptr);
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
-  dialog->accept(); // the first choice: 100 mm
+  dialog->accept(); // metres, which would make it 60 mm
   ASSERT_TRUE(waitUntil([&] { return ready; }));
-  EXPECT_NEAR(bounds(*edits().scene()->mesh).sizes().maxCoeff(), 0.1, 1e-9);
+  EXPECT_NEAR(bounds(*edits().scene()->mesh).sizes().maxCoeff(), 0.06, 1e-4);
 }
 
 TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {

@@ -60,7 +60,7 @@ void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
     group->addButton(button, static_cast<int>(unit));
     dialog->layout()->addWidget(button);
   }
-  group->button(static_cast<int>(MeshUnit::fit))->setChecked(true);
+  group->button(static_cast<int>(likelyUnit(longest)))->setChecked(true);
   auto* y_up = new QCheckBox(QDialog::tr("y points upwards, not z"), dialog);
   y_up->setObjectName(QStringLiteral("y_is_up"));
   y_up->setChecked(up == UpAxis::y);

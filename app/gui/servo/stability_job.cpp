@@ -15,7 +15,7 @@ QString summary(const SurfaceStability& stability, bool device_given) {
       100.0 * static_cast<double>(map.buzzing) / static_cast<double>(map.ratio.size());
   QString words =
       map.buzzing == 0
-          ? StabilityJob::tr("Stable everywhere; least K*/K = %1").arg(map.worst_ratio, 0, 'g', 3)
+          ? StabilityJob::tr("Buzzes nowhere; least K*/K = %1").arg(map.worst_ratio, 0, 'g', 3)
           : StabilityJob::tr("%1 % of the surface would buzz; least K*/K = %2")
                 .arg(share, 0, 'f', share < 10 ? 1 : 0)
                 .arg(map.worst_ratio, 0, 'g', 3);

@@ -46,6 +46,12 @@ std::string_view name(MeshUnit unit) {
   return textIn(kUnits, unit);
 }
 
+MeshUnit likelyUnit(double longest) {
+  for (const MeshUnit unit : {MeshUnit::mm, MeshUnit::cm, MeshUnit::m})
+    if (std::abs(std::log10(longest * entry(unit).metres / kFitted)) < 0.5) return unit;
+  return MeshUnit::fit;
+}
+
 UpAxis parseUpAxis(std::string_view text) {
   constexpr std::array<Named<UpAxis>, 2> kAxes = {{{UpAxis::z, "z"}, {UpAxis::y, "y"}}};
   if (const auto axis = valueIn(kAxes, text)) return *axis;

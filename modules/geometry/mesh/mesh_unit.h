@@ -13,6 +13,10 @@ enum class MeshUnit { mm, cm, m, in, fit }; // fit: longest side becomes 100 mm
 MeshUnit parseMeshUnit(std::string_view text); // throws Error naming the choices
 std::string_view name(MeshUnit unit);
 
+// In which a mesh of this longest side, in its own units, would be 32 to 316 mm long: what a hand can
+// feel. Metric; fit where there is none.
+MeshUnit likelyUnit(double longest);
+
 enum class UpAxis { z, y }; // of the program that wrote the file
 
 UpAxis parseUpAxis(std::string_view text); // throws Error naming the choices
