@@ -46,6 +46,14 @@ TEST(MeshUnit, WarnsOfSizesThatWereHardlyMeant) {
     EXPECT_EQ(inMetres(box(Vec3::Constant(side)), MeshUnit::mm).warning, "") << side;
 }
 
+TEST(MeshUnit, TheLikelyOneFitsAHand) {
+  EXPECT_EQ(likelyUnit(110), MeshUnit::mm);
+  EXPECT_EQ(likelyUnit(11), MeshUnit::cm);
+  EXPECT_EQ(likelyUnit(0.11), MeshUnit::m);
+  for (const double longest : {1.0, 1e4, 1e-3, 0.0, std::nan("")})
+    EXPECT_EQ(likelyUnit(longest), MeshUnit::fit) << longest;
+}
+
 TEST(MeshUnit, FitIgnoresNonFiniteVerticesAndSurvivesAPoint) {
   TriangleMesh mesh = box(Vec3(4, 2, 1), 3);
   mesh.positions.push_back(Vec3::Constant(std::nan("")));
