@@ -1,10 +1,12 @@
 #include "app/gui/control/save_controller.h"
 
+#include <QFileDialog>
 #include <QMessageBox>
 
 #include "app/gui/loading/file_question.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "core/error.h"
+#include "session/store/scene_export.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -66,6 +68,41 @@ bool SaveController::saveDialog() {
     return false;
   }
   return trySaving([&] { saveTo(folder); }, folder, tr("Choose a folder that you may write to."));
+}
+
+void SaveController::exportDialog() {
+  if (!edits_.scene()) return;
+  QFileDialog dialog(&window_, tr("Export into a folder, for ParaView"));
+  dialog.setObjectName(QStringLiteral("export_dialog"));
+  dialog.setOption(QFileDialog::DontUseNativeDialog);
+  dialog.setOption(QFileDialog::DontConfirmOverwrite); // a folder of something else is refused
+  dialog.setAcceptMode(QFileDialog::AcceptSave);
+  dialog.setFileMode(QFileDialog::AnyFile);
+  dialog.selectFile(name().section('.', 0, 0) + QStringLiteral("-paraview"));
+  if (dialog.exec() == QDialog::Accepted) exportTo(dialog.selectedFiles().front());
+}
+
+void SaveController::exportTo(const QString& folder) {
+  emit said({tr("Exporting to %1 …").arg(folder)});
+  exports_.start([this, folder, scene = edits_.scene()](Progress& progress,
+                                                        const Background::Deliver& deliver) {
+    try {
+      std::string noted;
+      const auto files =
+          patina::exportScene(*scene, folder.toStdString(),
+                              {.warn = [&](const std::string& line) { noted += "; " + line; }},
+                              progress);
+      const QString words = tr("Exported %1 files to %2; open scene.vtm%3")
+                                .arg(files.size())
+                                .arg(folder, QString::fromStdString(noted));
+      deliver(true, [this, words, warns = !noted.empty()] { emit said({words, warns}); });
+    } catch (const std::exception& error) {
+      deliver(true, [this, words = QString::fromStdString(error.what())] {
+        showProblem(&window_, tr("The scene cannot be exported"), words,
+                    tr("Choose a new folder, in one that you may write to."));
+      });
+    }
+  });
 }
 
 bool SaveController::settleEdits() {

@@ -7,6 +7,7 @@
 
 #include "app/gui/control/edit_controller.h"
 #include "app/gui/panels/message_panel.h"
+#include "app/gui/window/background.h"
 
 namespace patina {
 
@@ -19,6 +20,8 @@ class SaveController : public QObject {
   void setName(const QString& name) { name_ = name; } // until it is in a folder
   bool save();                                        // false: nothing was saved
   bool saveDialog();                                  // the same, into a folder that is asked for
+  void exportDialog(); // for ParaView, into a folder that is asked for
+  void exportTo(const QString& folder);
   void saveTo(const QString& folder); // events go on until it is there; throws Error
   bool settleEdits();                 // saved or dropped; false: the person goes on
 
@@ -33,6 +36,7 @@ class SaveController : public QObject {
   QWidget& window_; // which questions are asked over
   EditController& edits_;
   QString name_;
+  Background exports_;
 };
 
 } // namespace patina

@@ -13,7 +13,9 @@
 #include "app/gui/loading/up_choice.h"
 #include "app/gui/painting/paint_controller.h"
 #include "app/gui/widgets/words.h"
+#include "app/gui/window/action_search.h"
 #include "app/gui/window/theme.h"
+#include "app/gui/window/user_guide.h"
 #include "visualization/view/camera.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
@@ -50,6 +52,7 @@ QString shortcutsText() {
       "<tr><td><b>C, Alt + click</b></td><td>take what is painted there into the brush</td></tr>"
       "<tr><td><b>Esc</b></td><td>take back the stroke that is being painted</td></tr>"
       "<tr><td><b>Ctrl + Z, Ctrl + Shift + Z</b></td><td>undo, redo</td></tr>"
+      "<tr><td><b>Ctrl + Shift + P</b></td><td>search in all that can be done</td></tr>"
       "<tr><td><b>R</b></td><td>record the forces, and save them</td></tr></table>");
 }
 
@@ -103,6 +106,10 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   parts.commands[Command::save_as] =
       file->addAction(tr("Save workspace &as…"), &at.saving, &SaveController::saveDialog,
                       Qt::CTRL | Qt::SHIFT | Qt::Key_S);
+  QAction* exported =
+      file->addAction(tr("Export for &ParaView…"), &at.saving, &SaveController::exportDialog);
+  exported->setToolTip(tr("Mesh, surface, field, paint and images, and scene.vtm that opens them"));
+  parts.commands[Command::export_scene] = exported;
   file->addAction(tr("&Export picture…"), &at.view, &ViewController::exportPicture);
   QAction* record = file->addAction(tr("&Record forces"));
   record->setObjectName(QStringLiteral("record"));
@@ -271,6 +278,11 @@ void addHelpMenu(QMainWindow* window) {
     box->setAttribute(Qt::WA_DeleteOnClose);
     box->open();
   };
+  help->addAction(tr("&User guide"), window, [window] { showGuide(*window); })
+      ->setToolTip(tr("What each desk does, and how"));
+  help->addAction(
+      tr("&Search actions…"), window, [window] { searchActions(*window); },
+      Qt::CTRL | Qt::SHIFT | Qt::Key_P);
   help->addAction(
       tr("&Mouse and keys"), window, [tell] { tell(tr("Mouse and keys"), shortcutsText()); },
       Qt::Key_F1);

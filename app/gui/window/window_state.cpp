@@ -88,6 +88,7 @@ bool isEnabled(Command command, const WindowState& state) {
   switch (command) {
   case Command::save:
   case Command::save_as:
+  case Command::export_scene:
   case Command::record:
     return state.open;
   case Command::undo:

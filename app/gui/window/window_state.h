@@ -49,7 +49,7 @@ Panel pageInFront(const WindowState& state);
 std::vector<Tab> tabsThere(const WindowState& state);
 std::vector<Panel> pagesThere(const WindowState& state);
 
-enum class Command { save, save_as, record, undo, redo, paint };
+enum class Command { save, save_as, export_scene, record, undo, redo, paint };
 bool isEnabled(Command command, const WindowState& state);
 
 QString titleOf(const WindowState& state); // with the place of the mark of what is unsaved
