@@ -88,10 +88,9 @@ void SaveController::exportTo(const QString& folder) {
                                                         const Background::Deliver& deliver) {
     try {
       std::string noted;
-      const auto files =
-          patina::exportScene(*scene, folder.toStdString(),
-                              {.warn = [&](const std::string& line) { noted += "; " + line; }},
-                              progress);
+      const auto files = patina::exportScene(
+          *scene, folder.toStdString(),
+          {.warn = [&](const std::string& line) { noted += "; " + line; }}, progress);
       const QString words = tr("Exported %1 files to %2; open scene.vtm%3")
                                 .arg(files.size())
                                 .arg(folder, QString::fromStdString(noted));

@@ -58,8 +58,10 @@ float StripPlot::size(const Point& point) const {
 void StripPlot::refresh() {
   if (!dirty_) return;
   dirty_ = false;
-  const bool quiet = std::all_of(points_.begin(), points_.end(),
-                                 [this](const Point& p) { return size(p) < kNothing; });
+  // Once a line without news goes from edge to edge.
+  const bool full = !points_.empty() && points_.front().t < latest_ - kSpan + 2 * kEvery;
+  const bool quiet = full && std::all_of(points_.begin(), points_.end(),
+                                         [this](const Point& p) { return size(p) < kNothing; });
   if (quiet && quiet_) return;
   quiet_ = quiet;
   update();

@@ -294,9 +294,9 @@ void FrameView::describe() {
   QString title = QStringLiteral("%1 s").arg(scan_.cursor(), 0, 'f', 3), why;
   if (asked_) {
     const SeenFrame& seen = scan_.seen()[*asked_];
-    title = tr("Frame %1 of %2 · %3 s")
+    title = tr("Frame %1 of 0 to %2 · %3 s")
                 .arg(*asked_)
-                .arg(files->frames.size())
+                .arg(files->frames.size() - 1)
                 .arg(files->frames[*asked_].t, 0, 'f', 3);
     if (seen.looked && seen.why.empty()) {
       title += seen.markers == 1 ? tr(" · 1 marker") : tr(" · %1 markers").arg(seen.markers);

@@ -14,8 +14,8 @@
 namespace patina {
 
 struct ExportExtras {
-  std::vector<ToolSample> samples{};             // of a tip that felt the scene
-  const SurfaceStability* stability = nullptr;   // as arrays on the surface
+  std::vector<ToolSample> samples{};              // of a tip that felt the scene
+  const SurfaceStability* stability = nullptr;    // as arrays on the surface
   std::function<void(const std::string&)> warn{}; // what a file cannot hold; absent: nobody hears
 };
 
