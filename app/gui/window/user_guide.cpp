@@ -2,6 +2,7 @@
 
 #include <QFile>
 #include <QLineEdit>
+#include <QRegularExpression>
 #include <QTextBrowser>
 #include <QVBoxLayout>
 
@@ -29,7 +30,10 @@ class GuideWindow final : public QWidget {
     text->setOpenLinks(false); // they lead to other files of the project
     initGuideResource();
     QFile file(QStringLiteral(":/user_guide.md"));
-    if (file.open(QIODevice::ReadOnly)) text->setMarkdown(QString::fromUtf8(file.readAll()));
+    if (file.open(QIODevice::ReadOnly)) {
+      static const QRegularExpression kPicture(QStringLiteral(R"(!\[[^\]]*\]\([^)]*\))"));
+      text->setMarkdown(QString::fromUtf8(file.readAll()).remove(kPicture)); // they are wide
+    }
     auto* column = new QVBoxLayout(this);
     column->addWidget(find);
     column->addWidget(text);

@@ -1,0 +1,82 @@
+// What a person who does not know the menus by heart finds.
+#include <QLineEdit>
+#include <QListWidget>
+#include <QTextBrowser>
+
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+
+namespace patina {
+namespace {
+
+class Help : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
+    click(view());
+  }
+  QListWidget* search(const QString& words) {
+    hand_->key(kControl, true);
+    hand_->key(kShift, true);
+    type('p');
+    hand_->key(kShift, false);
+    hand_->key(kControl, false);
+    if (!waitUntil([&] { return find<QWidget>("action_search") != nullptr; }, 3000)) return nullptr;
+    waitUntil([&] { return find<QLineEdit>("action_words")->hasFocus(); }, 3000);
+    type(words);
+    return find<QListWidget>("action_list");
+  }
+};
+
+TEST_F(Help, AWordFindsAnActionAndReturnDoesIt) {
+  ASSERT_FALSE(find<QAction>("orthographic")->isChecked());
+  QListWidget* list = search(QStringLiteral("orthographic"));
+  ASSERT_NE(list, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
+  EXPECT_TRUE(list->item(0)->text().endsWith(QStringLiteral("O"))) << "its key";
+  type(kEnter);
+  EXPECT_TRUE(waitUntil([&] { return find<QAction>("orthographic")->isChecked(); }, 3000));
+}
+
+TEST_F(Help, WhatCannotBeDoneIsGreyAndNotDone) {
+  QListWidget* list = search(QStringLiteral("undo"));
+  ASSERT_NE(list, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
+  EXPECT_FALSE(list->item(0)->flags() & Qt::ItemIsEnabled);
+  type(kEnter);
+  wait(100);
+  EXPECT_NE(find<QWidget>("action_search"), nullptr) << "still there, as nothing was done";
+}
+
+TEST_F(Help, TheGuideIsTheOneOfTheDocuments) {
+  QListWidget* list = search(QStringLiteral("user guide"));
+  ASSERT_NE(list, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
+  type(kEnter);
+  ASSERT_TRUE(waitUntil([&] { return find<QTextBrowser>("guide_text") != nullptr; }, 3000));
+  auto* text = find<QTextBrowser>("guide_text");
+  EXPECT_TRUE(text->toPlainText().contains(QStringLiteral("Patina")));
+  EXPECT_GT(text->toPlainText().size(), 10000);
+}
+
+TEST_F(Help, AnExportIsWhatParaViewOpens) {
+  whenThere([this] { return find<QFileDialog>("export_dialog"); },
+            [this](QFileDialog& dialog) {
+              click(*dialog.findChild<QLineEdit*>());
+              type('a', kControl);
+              type(QString::fromStdString((folder_ / "out").string()));
+              type(kEnter);
+            });
+  QListWidget* list = search(QStringLiteral("paraview"));
+  ASSERT_NE(list, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
+  type(kEnter);
+  ASSERT_TRUE(waitUntil([&] { return std::filesystem::exists(folder_ / "out" / "scene.vtm"); }));
+  for (const char* file : {"mesh.vtp", "surface.vtp", "field.vti", "vertices.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
+}
+
+} // namespace
+} // namespace patina
