@@ -62,13 +62,7 @@ TEST_F(Help, TheGuideIsTheOneOfTheDocuments) {
 }
 
 TEST_F(Help, AnExportIsWhatParaViewOpens) {
-  whenThere([this] { return find<QFileDialog>("export_dialog"); },
-            [this](QFileDialog& dialog) {
-              click(*dialog.findChild<QLineEdit*>());
-              type('a', kControl);
-              type(QString::fromStdString((folder_ / "out").string()));
-              type(kEnter);
-            });
+  answerWithPath(folder_ / "out");
   QListWidget* list = search(QStringLiteral("paraview"));
   ASSERT_NE(list, nullptr);
   ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
