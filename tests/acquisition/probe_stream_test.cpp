@@ -277,6 +277,23 @@ TEST_F(SerialLine, CarriesPacketsJoinedInTheMiddle) {
             std::string::npos);
 }
 
+// A probe that sent before anybody listened: that is no sample of now.
+TEST_F(SerialLine, TakesNothingThatLayThereBefore) {
+  const Descriptor other(::open(path.c_str(), O_RDWR | O_NOCTTY)); // or nothing would be kept
+  EmulatedProbe probe({.rate = 1000, .describe_every = 0.02});
+  const auto sendUntil = [&](double t) {
+    probe.until(t, [&](ProbePacket packet, double) { send(packet); });
+  };
+  sendUntil(0.04);
+  const std::size_t before = probe.made();
+  const auto source = openProbe("serial:" + path);
+  std::vector<ProbeSample> samples;
+  for (int step = 5; step <= 30; ++step) sendUntil(0.01 * step);
+  while (source->health()->packets < probe.made() - before) ASSERT_TRUE(source->read(samples));
+  EXPECT_EQ(samples.size(), 4 * (probe.made() - before));
+  EXPECT_EQ(source->health()->lost_packets, 0u);
+}
+
 TEST_F(SerialLine, OfTextSaysWhatToDo) {
   const auto source = openProbe("serial:" + path);
   std::thread talks([this] {

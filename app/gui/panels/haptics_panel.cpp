@@ -67,11 +67,11 @@ void HapticsPanel::rebuild() {
                  tr("No force is larger, whatever is pressed")},
                 haptics_.force_limit);
   using Method = HapticProperties::Contact;
-  form_->addCheck("contact_proxy", tr("Stays on the side it entered"),
+  form_->addCheck("contact_proxy", tr("Follow the surface (proxy)"),
                   tr("The contact point is followed over the surface, round corners and edges, "
                      "and stays on the side where the tip came in. Without, it is found from the "
-                     "tip alone, as in the paper: past the middle of a part the force turns "
-                     "round."),
+                     "tip alone, along a ray, as in the paper: past the middle of a part the "
+                     "force turns round."),
                   haptics_.contact == Method::proxy,
                   [this](bool on) { haptics_.contact = on ? Method::proxy : Method::ray; });
   addMenu();

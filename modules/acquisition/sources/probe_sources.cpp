@@ -111,6 +111,8 @@ class ByteStream : public ProbeSource {
       is_serial_ = true;
       ::cfmakeraw(&serial); // a terminal would echo what comes and change its bytes
       ::tcsetattr(file_.get(), TCSANOW, &serial);
+      // What has lain there since before is no sample of now: it would be taken all at once.
+      ::tcflush(file_.get(), TCIFLUSH);
     }
   }
   virtual void take(std::string_view bytes, std::vector<ProbeSample>& into) = 0;
