@@ -62,7 +62,7 @@ run_address() { # short or full
     most='*'
   fi
   say "Address and undefined-behaviour sanitizers: $folders"
-  configure build-asan -DPATINA_SANITIZE=address -DPATINA_GUI=OFF
+  configure build-asan -DCMAKE_UNITY_BUILD=ON -DPATINA_SANITIZE=address -DPATINA_GUI=OFF
   # shellcheck disable=SC2086
   build build-asan ${folders// /_tests }_tests
   local leaks folder
@@ -75,7 +75,7 @@ run_address() { # short or full
 
 run_thread() {
   say "Thread sanitizer: hand-over and servo"
-  configure build-tsan -DPATINA_SANITIZE=thread -DPATINA_GUI=OFF
+  configure build-tsan -DCMAKE_UNITY_BUILD=ON -DPATINA_SANITIZE=thread -DPATINA_GUI=OFF
   build build-tsan core_tests haptics_tests
   # gcc 12's runtime stops where the kernel spreads addresses too widely; a fixed layout helps.
   local run=()
@@ -113,7 +113,7 @@ run_benchmarks() {
 
 run_fuzz() { # seconds each
   say "Fuzzing each reader for $1 s"
-  configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
+  configure build-fuzz -DCMAKE_UNITY_BUILD=ON -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
   build build-fuzz
   local program reader seeds
   for program in build-fuzz/bin/*_fuzz; do

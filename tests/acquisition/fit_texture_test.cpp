@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <random>
 #include <sstream>
 
@@ -11,12 +10,13 @@
 
 #include "acquisition/simulation/simulated_surface.h"
 #include "core/error.h"
+#include "support/constants.h"
 #include "support/shared_data.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
 
 std::vector<double> noise(std::size_t count, unsigned seed) {
   std::mt19937 random(seed);

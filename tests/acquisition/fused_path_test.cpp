@@ -140,15 +140,15 @@ TEST(ErrorState, StaysSymmetricAndPositiveForFiveMinutesOfOutliers) {
 
 // --- Scans with known truth.
 
-struct Scan {
+struct FusedScan {
   SimulatedHand hand;
   ProbeModel probe;
   std::vector<CameraPose> poses;
   std::vector<ProbeSample> samples;
 };
 
-Scan scanOf(std::uint32_t seed, bool faults) {
-  Scan scan;
+FusedScan scanOf(std::uint32_t seed, bool faults) {
+  FusedScan scan;
   scan.hand = strokes(seed);
   scan.hand.relief = roughSurface(seed, 25e-6);
   SimulatedCamera camera;
@@ -161,7 +161,7 @@ Scan scanOf(std::uint32_t seed, bool faults) {
   return scan;
 }
 
-double rawError(const Scan& scan) {
+double rawError(const FusedScan& scan) {
   double squares = 0;
   for (const CameraPose& pose : scan.poses)
     squares += (pose.position + pose.orientation * scan.probe.tip - handAt(scan.hand, pose.t).tip)
@@ -174,7 +174,7 @@ struct Judged {
   std::vector<double> height_errors, heights; // of the tip
 };
 
-Judged judged(const Scan& scan, const std::vector<PathSample>& path) {
+Judged judged(const FusedScan& scan, const std::vector<PathSample>& path) {
   Judged j;
   const auto n = static_cast<double>(path.size());
   for (const PathSample& sample : path) {
@@ -194,7 +194,7 @@ Judged judged(const Scan& scan, const std::vector<PathSample>& path) {
 TEST(FusedPath, IsBetterThanTheCameraAloneAndKnowsByHowMuch) {
   for (const bool faults : {false, true})
     for (const std::uint32_t seed : {1, 2, 3}) {
-      const Scan scan = scanOf(seed, faults);
+      const FusedScan scan = scanOf(seed, faults);
       const FusedPath fused = fusePath(scan.poses, scan.samples, scan.probe);
       ASSERT_EQ(fused.path.size(), scan.samples.size());
       std::vector<double> times;
@@ -213,7 +213,7 @@ TEST(FusedPath, IsBetterThanTheCameraAloneAndKnowsByHowMuch) {
 }
 
 TEST(FusedPath, KnowsItsErrorForFiveMinutesOfOutliers) {
-  Scan scan;
+  FusedScan scan;
   scan.hand = strokes(10, 300);
   SimulatedCamera camera;
   camera.outliers = 0.03;
@@ -229,14 +229,14 @@ TEST(FusedPath, KnowsItsErrorForFiveMinutesOfOutliers) {
 }
 
 TEST(FusedPath, FindsTheBiasesOfTheAccelerometers) {
-  const Scan scan = scanOf(4, false);
+  const FusedScan scan = scanOf(4, false);
   const FusedPath fused = fusePath(scan.poses, scan.samples, scan.probe);
   const std::array<double, 4> bias = SimulatedProbe().bias;
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(fused.bias[i], bias[i], 0.015) << i;
 }
 
 TEST(FusedPath, LeavesOutSamplesThatAreNoSamples) {
-  Scan scan = scanOf(5, false);
+  FusedScan scan = scanOf(5, false);
   const std::size_t all = scan.samples.size();
   scan.samples[100].force = std::nan("");
   scan.samples[200].acceleration[2] = INFINITY;
@@ -248,7 +248,7 @@ TEST(FusedPath, LeavesOutSamplesThatAreNoSamples) {
 }
 
 TEST(FusedPath, MarksWhereTheCameraSawNothing) {
-  Scan scan = scanOf(6, false);
+  FusedScan scan = scanOf(6, false);
   std::erase_if(scan.poses, [](const CameraPose& pose) { return pose.t > 5 && pose.t < 7; });
   const FusedPath fused = fusePath(scan.poses, scan.samples, scan.probe);
   const std::array<double, 4> bias = SimulatedProbe().bias;
@@ -269,7 +269,7 @@ TEST(FusedPath, MarksWhereTheCameraSawNothing) {
 }
 
 TEST(FusedPath, ComesBackAfterAJumpOfTheCamera) {
-  Scan scan = scanOf(7, false);
+  FusedScan scan = scanOf(7, false);
   const double jump = scan.poses[300].t;
   for (CameraPose& pose : scan.poses)
     if (pose.t >= jump) pose.position.x() += 0.1;
@@ -283,7 +283,7 @@ TEST(FusedPath, ComesBackAfterAJumpOfTheCamera) {
 }
 
 TEST(FusedPath, TakesPosesAndReadingsWithoutNoise) {
-  Scan scan = scanOf(9, false);
+  FusedScan scan = scanOf(9, false);
   scan.probe.acceleration_noise = scan.probe.acceleration_step = 0;
   SimulatedCamera exact;
   exact.sigma_position = exact.sigma_angle = 0;
@@ -303,7 +303,7 @@ TEST(FusedPath, TakesPosesAndReadingsWithoutNoise) {
 }
 
 TEST(FusedPath, WithoutAPoseThereIsNoPath) {
-  const Scan scan = scanOf(8, false);
+  const FusedScan scan = scanOf(8, false);
   EXPECT_TRUE(fusePath({}, scan.samples, scan.probe).path.empty());
   EXPECT_TRUE(fusePath(scan.poses, {}, scan.probe).path.empty());
 }

@@ -4,18 +4,19 @@
 
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <random>
 #include <sstream>
 
 #include "acquisition/profile/rough_process.h"
 #include "acquisition/simulation/simulated_surface.h"
+#include "support/constants.h"
 #include "support/shared_data.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
+
 constexpr double kStep = 0.015 * 9.80665, kNoise = 0.02; // [m/s^2]
 constexpr double kVariance = kNoise * kNoise + kStep * kStep / 12;
 

@@ -13,7 +13,7 @@ namespace {
 using test::Draw;
 using test::missOf;
 
-constexpr double kNoise = 1e-4; // [m]
+constexpr double kTrustNoise = 1e-4; // [m]
 
 // Half a turn about z brings it onto itself.
 TriangleMesh twofold() {
@@ -26,9 +26,9 @@ TriangleMesh twofold() {
 }
 
 Registration compared(const SurfaceTarget& target, std::vector<Vec3> path, Draw& draw) {
-  for (Vec3& p : path) p += draw.normal(kNoise);
+  for (Vec3& p : path) p += draw.normal(kTrustNoise);
   RegistrationOptions options;
-  options.noise = kNoise;
+  options.noise = kTrustNoise;
   options.rivals = true;
   Progress progress;
   return registerPath(target, path, draw.off(path, 5, 2e-3), options, progress);
@@ -114,12 +114,12 @@ TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
     const int rounds = 40;
     for (int round = 0; round < rounds; ++round) {
       std::vector<Vec3> drawn(truth.size() + static_cast<std::size_t>(width));
-      for (Vec3& v : drawn) v = draw.normal(kNoise * std::sqrt(width));
+      for (Vec3& v : drawn) v = draw.normal(kTrustNoise * std::sqrt(width));
       auto path = truth;
       for (std::size_t i = 0; i < path.size(); ++i)
         for (int k = 0; k < width; ++k) path[i] += drawn[i + static_cast<std::size_t>(k)] / width;
       RegistrationOptions options;
-      options.noise = kNoise;
+      options.noise = kTrustNoise;
       Progress progress;
       const Registration fit =
           registerPath(target, path, draw.off(truth, 3, 1e-3), options, progress);
@@ -146,23 +146,23 @@ TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
   const auto truth = draw.pathOn(target, 400);
   const double compliance = 4e-4; // [m/N]
   RegistrationOptions options;
-  options.noise = kNoise;
+  options.noise = kTrustNoise;
   std::vector<Vec3> path;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     options.force.push_back(1 + 0.5 * std::sin(0.07 * static_cast<double>(i)));
     const std::int32_t face = target.tree().closestPoint(truth[i]).surface.face;
     path.push_back(truth[i] -
                    compliance * options.force.back() * faceNormal(target.mesh(), index(face)) +
-                   draw.normal(kNoise));
+                   draw.normal(kTrustNoise));
   }
   Progress progress;
   const Registration found =
       registerPath(target, path, draw.off(truth, 5, 2e-3), options, progress);
   EXPECT_NEAR(found.compliance, compliance, 0.1 * compliance);
-  EXPECT_NEAR(found.rms, kNoise, 0.2 * kNoise);
+  EXPECT_NEAR(found.rms, kTrustNoise, 0.2 * kTrustNoise);
   EXPECT_LT(missOf(found.mesh_from_path, truth), 0.1e-3);
   // Against a hard surface there is nothing to find.
-  for (std::size_t i = 0; i < truth.size(); ++i) path[i] = truth[i] + draw.normal(kNoise);
+  for (std::size_t i = 0; i < truth.size(); ++i) path[i] = truth[i] + draw.normal(kTrustNoise);
   const Registration hard = registerPath(target, path, draw.off(truth, 5, 2e-3), options, progress);
   EXPECT_LT(hard.compliance, 0.1 * compliance);
   options.force.pop_back();

@@ -19,7 +19,7 @@ using test::RenderedRig;
 using test::somePose;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-Vec6 errorOf(const Pose& found, const Pose& known) {
+Vec6 poseError(const Pose& found, const Pose& known) {
   Vec6 error;
   const Eigen::AngleAxisd turn(found.linear() * known.linear().transpose());
   error << found.translation() - known.translation(), turn.angle() * turn.axis();
@@ -46,7 +46,7 @@ TEST(RigPose, FindsTheTipAndSaysHowWell) {
       ASSERT_EQ(seen.verdict, RigVerdict::seen) << nameOf(seen.verdict);
       ++poses;
       squares += (seen.camera_from_probe * kTip - known * kTip).squaredNorm();
-      const Vec6 error = errorOf(seen.camera_from_probe, known);
+      const Vec6 error = poseError(seen.camera_from_probe, known);
       nees += error.dot(seen.covariance.ldlt().solve(error)) / 6;
     }
     std::printf("%s: tip %.3f mm, NEES %.2f of %d poses\n", s.family,
@@ -86,7 +86,7 @@ TEST(RigPose, KnowsWhatBlurTakesFromIt) {
         const Pose known = somePose(random, s.distance);
         const SeenRig seen = rig.track(rig.renderer.render({known}, look, i));
         if (seen.verdict != RigVerdict::seen) continue;
-        const Vec6 error = errorOf(seen.camera_from_probe, known);
+        const Vec6 error = poseError(seen.camera_from_probe, known);
         nees += error.dot(seen.covariance.ldlt().solve(error)) / 6;
         poses += 1;
       }
@@ -126,7 +126,7 @@ TEST(RigPose, FarAwayIsToldByHowTheFacesLook) {
       const SeenRig seen = poseOf(markers, rig.markers, rig.camera, nullptr, &image);
       without += seen.verdict != RigVerdict::seen;
       wrong += seen.verdict == RigVerdict::seen &&
-               errorOf(seen.camera_from_probe, known).tail<3>().norm() > 0.3;
+               poseError(seen.camera_from_probe, known).tail<3>().norm() > 0.3;
     }
     std::printf("%s at %.1f m: %d of 40 without a pose, %d by corners alone, %d wrong\n", s.family,
                 s.distance, without, of_corners, wrong);
@@ -164,7 +164,7 @@ TEST(RigPose, IsExactWithoutNoise) {
     const Pose known = somePose(random, 0.4, 1);
     const SeenRig seen = poseOf(seenExactly(rig, known, {0, 1, 3}), rig.markers, rig.camera);
     ASSERT_EQ(seen.verdict, RigVerdict::seen);
-    EXPECT_LT(errorOf(seen.camera_from_probe, known).norm(), 1e-8);
+    EXPECT_LT(poseError(seen.camera_from_probe, known).norm(), 1e-8);
     EXPECT_LT(seen.rms, 1e-6);
   }
 }
@@ -181,7 +181,7 @@ TEST(RigPose, OfOneMarkerFarAwayMayBeEitherAndTheLastPoseDecides) {
   lately.linear() = known.linear() * Eigen::AngleAxisd(0.05, Vec3::UnitX()).toRotationMatrix();
   const SeenRig seen = poseOf(corners, rig.markers, rig.camera, &lately);
   ASSERT_EQ(seen.verdict, RigVerdict::seen);
-  EXPECT_LT(errorOf(seen.camera_from_probe, known).tail<3>().norm(), 0.15);
+  EXPECT_LT(poseError(seen.camera_from_probe, known).tail<3>().norm(), 0.15);
   // A second face leaves no doubt.
   EXPECT_EQ(poseOf(seenExactly(rig, known, {0, 3}, 0.05), rig.markers, rig.camera).verdict,
             RigVerdict::seen);

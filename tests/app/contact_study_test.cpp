@@ -14,14 +14,7 @@ namespace patina {
 namespace {
 
 using test::more;
-
-const std::vector<WorkPrecisionTable>& quickTables() {
-  static const std::vector<WorkPrecisionTable> tables = [] {
-    Progress progress;
-    return contactStudy(StudyOptions{.quick = true}, progress);
-  }();
-  return tables;
-}
+using test::quickTables;
 
 TEST(ContactStudy, IsRegistered) {
   const auto& all = studies();
@@ -31,13 +24,13 @@ TEST(ContactStudy, IsRegistered) {
 
 // T-K06b as the study reports it.
 TEST(ContactStudy, ContactPointOfTheRayIsOfOrderTwo) {
-  const WorkPrecisionTable& order = quickTables().at(4);
+  const WorkPrecisionTable& order = quickTables<contactStudy>().at(4);
   ASSERT_TRUE(order.order_fitted && order.order_expected);
   EXPECT_NEAR(*order.order_fitted, *order.order_expected, 0.2);
 }
 
 TEST(ContactStudy, ComparesProxyAndRayInEveryTable) {
-  for (const WorkPrecisionTable& table : std::span(quickTables()).first(5)) {
+  for (const WorkPrecisionTable& table : std::span(quickTables<contactStudy>()).first(5)) {
     const auto rowsOf = [&](const std::string& method) {
       return std::count_if(table.rows.begin(), table.rows.end(), [&](const auto& row) {
         return std::any_of(row.knobs.begin(), row.knobs.end(), [&](const auto& knob) {
@@ -51,8 +44,8 @@ TEST(ContactStudy, ComparesProxyAndRayInEveryTable) {
 }
 
 TEST(ContactStudy, EveryRowIsMeasuredAndLosesNoTick) {
-  EXPECT_EQ(quickTables().size(), 6u);
-  for (const WorkPrecisionTable& table : quickTables()) {
+  EXPECT_EQ(quickTables<contactStudy>().size(), 6u);
+  for (const WorkPrecisionTable& table : quickTables<contactStudy>()) {
     EXPECT_GE(table.rows.size(), 4u) << table.title;
     for (const WorkPrecisionRow& row : table.rows) {
       EXPECT_GT(row.ns, 0) << table.title;
@@ -65,14 +58,14 @@ TEST(ContactStudy, EveryRowIsMeasuredAndLosesNoTick) {
 }
 
 TEST(ContactStudy, SlidesAtTheDynamicCoefficient) {
-  for (const WorkPrecisionRow& row : quickTables()[1].rows)
+  for (const WorkPrecisionRow& row : quickTables<contactStudy>()[1].rows)
     EXPECT_NEAR(more(row, "Coulomb ratio"), 0.3, 0.002)
         << row.knobs[0].second.asString() << " on " << row.knobs[1].second.asString();
 }
 
 // The last table has both in one row.
 TEST(ContactStudy, HoldsProxyAndRayAgainstTheExactProxyOnEveryShape) {
-  const WorkPrecisionTable& table = quickTables().back();
+  const WorkPrecisionTable& table = quickTables<contactStudy>().back();
   std::set<std::string> shapes;
   int better = 0;
   double proxy_loop = 0, ray_loop = 0;

@@ -10,21 +10,14 @@ namespace patina {
 namespace {
 
 using test::more;
-
-const std::vector<WorkPrecisionTable>& quickTables() {
-  static const std::vector<WorkPrecisionTable> tables = [] {
-    Progress progress;
-    return deviceStudy(StudyOptions{.quick = true}, progress);
-  }();
-  return tables;
-}
+using test::quickTables;
 
 TEST(DeviceStudy, IsRegistered) {
   EXPECT_TRUE(std::ranges::any_of(studies(), [](const Study& s) { return s.name == "device"; }));
 }
 
 TEST(DeviceStudy, ACountIsSomeFortyMicrometresEverywhere) {
-  for (const WorkPrecisionRow& row : quickTables().at(0).rows) {
+  for (const WorkPrecisionRow& row : quickTables<deviceStudy>().at(0).rows) {
     EXPECT_GT(row.error, 2e-5);
     EXPECT_LT(row.error_max, 1.5e-4);
     EXPECT_LT(more(row, "one motor value, most [N]"), 0.02);
@@ -32,14 +25,14 @@ TEST(DeviceStudy, ACountIsSomeFortyMicrometresEverywhere) {
 }
 
 TEST(DeviceStudy, AWallBuzzesWithinATenthOfThePredictionWithFrictionAndPlayToo) {
-  const WorkPrecisionTable& table = quickTables().at(1);
+  const WorkPrecisionTable& table = quickTables<deviceStudy>().at(1);
   EXPECT_GE(table.rows.size(), 5U);
   for (const WorkPrecisionRow& row : table.rows)
     EXPECT_LT(row.error, 10) << more(row, "measured [N/m]") << " " << more(row, "predicted [N/m]");
 }
 
 TEST(DeviceStudy, EveryStiffnessUpToAHundredThousandSettlesAsStiffAsItsSprings) {
-  const WorkPrecisionTable& table = quickTables().at(2);
+  const WorkPrecisionTable& table = quickTables<deviceStudy>().at(2);
   EXPECT_EQ(test::knob(table.rows.back(), "K [N/m]"), 1e5);
   for (const WorkPrecisionRow& row : table.rows) {
     EXPECT_LT(row.error, 10) << more(row, "displayed [N/m]");
@@ -48,7 +41,7 @@ TEST(DeviceStudy, EveryStiffnessUpToAHundredThousandSettlesAsStiffAsItsSprings) 
 }
 
 TEST(DeviceStudy, EveryFaultOnTheWireIsNoticedAndNoOldPlaceFelt) {
-  for (const WorkPrecisionRow& row : quickTables().at(3).rows) {
+  for (const WorkPrecisionRow& row : quickTables<deviceStudy>().at(3).rows) {
     EXPECT_GE(more(row, "noticed"), more(row, "injected"));
     EXPECT_EQ(more(row, "old places felt"), 0);
     EXPECT_GT(more(row, "ticks"), 0);

@@ -16,17 +16,10 @@ namespace patina {
 namespace {
 
 using test::more;
-
-const std::vector<WorkPrecisionTable>& quickTables() {
-  static const std::vector<WorkPrecisionTable> tables = [] {
-    Progress progress;
-    return fieldStudy(StudyOptions{.quick = true}, progress);
-  }();
-  return tables;
-}
+using test::quickTables;
 
 const WorkPrecisionTable& tableNamed(const std::string& start) {
-  for (const WorkPrecisionTable& table : quickTables())
+  for (const WorkPrecisionTable& table : quickTables<fieldStudy>())
     if (table.title.rfind(start, 0) == 0) return table;
   throw std::runtime_error("no table '" + start + "'");
 }
@@ -75,8 +68,8 @@ TEST(FieldStudy, SeparatesCreasesFromSmoothRegions) {
 }
 
 TEST(FieldStudy, EveryRowIsMeasuredInAllItsColumns) {
-  EXPECT_EQ(quickTables().size(), 8U);
-  for (const WorkPrecisionTable& table : quickTables())
+  EXPECT_EQ(quickTables<fieldStudy>().size(), 8U);
+  for (const WorkPrecisionTable& table : quickTables<fieldStudy>())
     for (const WorkPrecisionRow& row : table.rows) {
       EXPECT_GT(row.ns, 0) << table.title;
       EXPECT_GT(more(row, "random order [ns]"), 0) << table.title;

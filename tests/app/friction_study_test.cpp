@@ -13,14 +13,7 @@ namespace {
 
 using test::knob;
 using test::more;
-
-const std::vector<WorkPrecisionTable>& quickTables() {
-  static const std::vector<WorkPrecisionTable> tables = [] {
-    Progress progress;
-    return frictionStudy(StudyOptions{.quick = true}, progress);
-  }();
-  return tables;
-}
+using test::quickTables;
 
 TEST(FrictionStudy, IsRegistered) {
   const auto& all = studies();
@@ -29,8 +22,8 @@ TEST(FrictionStudy, IsRegistered) {
 }
 
 TEST(FrictionStudy, EveryRowHasErrorAndTime) {
-  ASSERT_EQ(quickTables().size(), 4u);
-  for (const WorkPrecisionTable& table : quickTables()) {
+  ASSERT_EQ(quickTables<frictionStudy>().size(), 4u);
+  for (const WorkPrecisionTable& table : quickTables<frictionStudy>()) {
     EXPECT_GE(table.rows.size(), 6u) << table.title;
     for (const WorkPrecisionRow& row : table.rows) {
       EXPECT_TRUE(std::isfinite(row.error) && row.error <= row.error_max * (1 + 1e-12))
@@ -43,7 +36,7 @@ TEST(FrictionStudy, EveryRowHasErrorAndTime) {
 TEST(FrictionStudy, ConvergesAtTheOrdersOfTheory) {
   const double within[] = {0.1, 0.2, 0.02};
   for (std::size_t i = 0; i < 3; ++i) {
-    const WorkPrecisionTable& table = quickTables()[i];
+    const WorkPrecisionTable& table = quickTables<frictionStudy>()[i];
     ASSERT_TRUE(table.order_fitted && table.order_expected) << table.title;
     EXPECT_NEAR(*table.order_fitted, *table.order_expected, within[i]) << table.title;
   }
@@ -51,14 +44,14 @@ TEST(FrictionStudy, ConvergesAtTheOrdersOfTheory) {
 
 // T-K09b: within 1 % at 1 kHz.
 TEST(FrictionStudy, ACycleTakesTheClosedFormEnergy) {
-  for (const WorkPrecisionRow& row : quickTables()[0].rows) {
+  for (const WorkPrecisionRow& row : quickTables<frictionStudy>()[0].rows) {
     EXPECT_LT(row.error_max, 0.2);
     EXPECT_NEAR(more(row, "mean energy [J]") / more(row, "4 mu K d (A - mu d) [J]"), 1, 2e-3);
   }
 }
 
 TEST(FrictionStudy, SticksAndSlipsAtTheClosedFormPeriod) {
-  for (const WorkPrecisionRow& row : quickTables()[1].rows) {
+  for (const WorkPrecisionRow& row : quickTables<frictionStudy>()[1].rows) {
     EXPECT_EQ(more(row, "periods"), 32);
     EXPECT_LT(row.error, 500 / knob(row, "rate [Hz]")); // [%]
     // The surface's own spring is a hundred times as stiff as what drags.
@@ -70,7 +63,7 @@ TEST(FrictionStudy, SticksAndSlipsAtTheClosedFormPeriod) {
 // with rho = mu d, a the turn of a tick and s the circle's radius.
 TEST(FrictionStudy, ThePapersSlipLagsAsAPointOnAString) {
   const double r = 4e-3, rho = 0.4e-3;
-  for (const WorkPrecisionRow& row : quickTables()[2].rows) {
+  for (const WorkPrecisionRow& row : quickTables<frictionStudy>()[2].rows) {
     const double half = 0.5 * knob(row, "speed [m/s]") / knob(row, "rate [Hz]") / r;
     // |tip|^2 = (s cos)^2 + (rho + s sin)^2, for s.
     const double s =
@@ -83,7 +76,7 @@ TEST(FrictionStudy, ThePapersSlipLagsAsAPointOnAString) {
 // It looks back along the tip's way by some .05 voxel, however long a tick is.
 TEST(FrictionStudy, DisplacementLagsByTheTrailAlone) {
   const double trail = 0.05 * 0.2e-3, r = 4e-3;
-  for (const WorkPrecisionRow& row : quickTables()[3].rows)
+  for (const WorkPrecisionRow& row : quickTables<frictionStudy>()[3].rows)
     EXPECT_LT(row.error_max, 1.51 * trail / r * 180 / std::numbers::pi);
 }
 

@@ -13,20 +13,13 @@ namespace {
 
 using test::knob;
 using test::more;
+using test::quickTables;
 using test::word;
-
-const std::vector<WorkPrecisionTable>& quickTables() {
-  static const std::vector<WorkPrecisionTable> tables = [] {
-    Progress progress;
-    return registrationStudy(StudyOptions{.quick = true}, progress);
-  }();
-  return tables;
-}
 
 // The rows of one setting, by method: ours, the loop, its literal form, plain Gauss-Newton.
 std::vector<std::vector<WorkPrecisionRow>> settings() {
   std::vector<std::vector<WorkPrecisionRow>> all;
-  for (const WorkPrecisionRow& row : quickTables()[0].rows) {
+  for (const WorkPrecisionRow& row : quickTables<registrationStudy>()[0].rows) {
     if (word(row, "method") == "ours") all.emplace_back();
     all.back().push_back(row);
   }
@@ -34,9 +27,9 @@ std::vector<std::vector<WorkPrecisionRow>> settings() {
 }
 
 TEST(RegistrationStudy, EveryRowHasErrorAndTime) {
-  ASSERT_EQ(quickTables().size(), 5u);
+  ASSERT_EQ(quickTables<registrationStudy>().size(), 5u);
   EXPECT_EQ(settings().size(), 18u);
-  for (const WorkPrecisionTable& table : quickTables())
+  for (const WorkPrecisionTable& table : quickTables<registrationStudy>())
     for (const WorkPrecisionRow& row : table.rows) {
       EXPECT_TRUE(row.error >= 0 && row.error <= row.error_max * (1 + 1e-12)) << table.title;
       EXPECT_GT(row.ns, 0) << table.title;
@@ -88,18 +81,19 @@ TEST(RegistrationStudy, TheLiteralMatrixErrsMoreWhereThereIsNoise) {
 
 // T-A10b, F11
 TEST(RegistrationStudy, GaussNewtonConvergesQuadraticallyAndTheLoopCreeps) {
-  EXPECT_NEAR(*quickTables()[1].order_fitted, 2, 0.2);
-  EXPECT_LT(quickTables()[1].rows[2].error, 1e-6 * quickTables()[1].rows[0].error);
-  EXPECT_NEAR(*quickTables()[2].order_fitted, 1, 0.1);
-  for (std::size_t i = 1; i < quickTables()[2].rows.size(); ++i) {
-    const double left = more(quickTables()[2].rows[i], "one more leaves");
+  EXPECT_NEAR(*quickTables<registrationStudy>()[1].order_fitted, 2, 0.2);
+  EXPECT_LT(quickTables<registrationStudy>()[1].rows[2].error,
+            1e-6 * quickTables<registrationStudy>()[1].rows[0].error);
+  EXPECT_NEAR(*quickTables<registrationStudy>()[2].order_fitted, 1, 0.1);
+  for (std::size_t i = 1; i < quickTables<registrationStudy>()[2].rows.size(); ++i) {
+    const double left = more(quickTables<registrationStudy>()[2].rows[i], "one more leaves");
     EXPECT_TRUE(left > 0.95 && left < 1) << left;
   }
 }
 
 // T-A11d
 TEST(RegistrationStudy, ErrorFallsWithTheRootOfTheNumberOfPoints) {
-  EXPECT_NEAR(*quickTables()[3].order_fitted, -0.5, 0.1);
+  EXPECT_NEAR(*quickTables<registrationStudy>()[3].order_fitted, -0.5, 0.1);
 }
 
 } // namespace

@@ -12,14 +12,7 @@ namespace patina {
 namespace {
 
 using test::more;
-
-const std::vector<WorkPrecisionTable>& quickTables() {
-  static const std::vector<WorkPrecisionTable> tables = [] {
-    Progress progress;
-    return stabilityStudy(StudyOptions{.quick = true}, progress);
-  }();
-  return tables;
-}
+using test::quickTables;
 
 TEST(StabilityStudy, IsRegistered) {
   const auto& all = studies();
@@ -28,7 +21,7 @@ TEST(StabilityStudy, IsRegistered) {
 }
 
 TEST(StabilityStudy, MeasuresTheBoundaryWhereTheEigenvaluesPutIt) {
-  const WorkPrecisionTable& table = quickTables().at(0);
+  const WorkPrecisionTable& table = quickTables<stabilityStudy>().at(0);
   EXPECT_GE(table.rows.size(), 15u);
   for (const WorkPrecisionRow& row : table.rows) {
     EXPECT_LT(row.error, 0.5);
@@ -38,7 +31,7 @@ TEST(StabilityStudy, MeasuresTheBoundaryWhereTheEigenvaluesPutIt) {
 }
 
 TEST(StabilityStudy, RestitutionIsOfTheFirstOrderInThePeriod) {
-  const WorkPrecisionTable& table = quickTables().at(1);
+  const WorkPrecisionTable& table = quickTables<stabilityStudy>().at(1);
   ASSERT_TRUE(table.order_fitted && table.order_expected);
   EXPECT_NEAR(*table.order_fitted, *table.order_expected, 0.2);
   for (const WorkPrecisionRow& row : table.rows)
@@ -46,11 +39,12 @@ TEST(StabilityStudy, RestitutionIsOfTheFirstOrderInThePeriod) {
 }
 
 TEST(StabilityStudy, ChatterBeginsAtTwiceTheFrictionOverTheStep) {
-  for (const WorkPrecisionRow& row : quickTables().at(2).rows) EXPECT_LT(row.error, 0.1);
+  for (const WorkPrecisionRow& row : quickTables<stabilityStudy>().at(2).rows)
+    EXPECT_LT(row.error, 0.1);
 }
 
 TEST(StabilityStudy, OnlyTheCouplingRestsAtEveryStiffness) {
-  for (const WorkPrecisionRow& row : quickTables().at(3).rows) {
+  for (const WorkPrecisionRow& row : quickTables<stabilityStudy>().at(3).rows) {
     const std::string& name = row.knobs.at(0).second.asString();
     if (name.starts_with("coupling")) {
       EXPECT_LT(row.error, 1e-9) << name;
@@ -62,7 +56,7 @@ TEST(StabilityStudy, OnlyTheCouplingRestsAtEveryStiffness) {
 }
 
 TEST(StabilityStudy, AThrownTipIsNotCountedAsSettled) {
-  for (const WorkPrecisionRow& row : quickTables().at(3).rows) {
+  for (const WorkPrecisionRow& row : quickTables<stabilityStudy>().at(3).rows) {
     const std::string& name = row.knobs.at(0).second.asString();
     const bool calms = name.starts_with("coupling");
     if (calms || name == "plain" || name == "naive limiter") {
@@ -72,7 +66,7 @@ TEST(StabilityStudy, AThrownTipIsNotCountedAsSettled) {
 }
 
 TEST(StabilityStudy, MeasuresTheLimitOnAnySurfaceWhereTheEigenvaluesPutIt) {
-  const WorkPrecisionTable& table = quickTables().at(4);
+  const WorkPrecisionTable& table = quickTables<stabilityStudy>().at(4);
   EXPECT_EQ(table.rows.size(), 5u);
   for (const WorkPrecisionRow& row : table.rows) {
     const std::string& surface = row.knobs.at(0).second.asString();
@@ -84,7 +78,7 @@ TEST(StabilityStudy, MeasuresTheLimitOnAnySurfaceWhereTheEigenvaluesPutIt) {
 
 TEST(StabilityStudy, RestsInCornersAndOnRidgesWhereItShould) {
   int leaving = 0;
-  for (const WorkPrecisionRow& row : quickTables().at(5).rows) {
+  for (const WorkPrecisionRow& row : quickTables<stabilityStudy>().at(5).rows) {
     const std::string& surface = row.knobs.at(0).second.asString();
     EXPECT_EQ(more(row, "fault ticks"), 0) << surface;
     EXPECT_EQ(more(row, "rests"), more(row, "should rest")) << surface;
@@ -100,7 +94,7 @@ TEST(StabilityStudy, RestsInCornersAndOnRidgesWhereItShould) {
 
 TEST(StabilityStudy, HasRowsOfReliefAndRoughnessInClosedLoop) {
   std::map<std::string, int> rows;
-  for (const WorkPrecisionRow& row : quickTables().at(5).rows) {
+  for (const WorkPrecisionRow& row : quickTables<stabilityStudy>().at(5).rows) {
     const std::string& surface = row.knobs.at(0).second.asString();
     ++rows[surface.substr(0, surface.find(' '))];
     EXPECT_TRUE(std::isfinite(row.error) && row.error < 10) << surface;

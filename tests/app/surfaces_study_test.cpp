@@ -11,18 +11,11 @@ namespace patina {
 namespace {
 
 using test::more;
-
-const std::vector<WorkPrecisionTable>& quickTables() {
-  static const std::vector<WorkPrecisionTable> tables = [] {
-    Progress progress;
-    return surfacesStudy(StudyOptions{.quick = true}, progress);
-  }();
-  return tables;
-}
+using test::quickTables;
 
 TEST(SurfacesStudy, EveryRowIsMeasured) {
-  ASSERT_EQ(quickTables().size(), 6u);
-  for (const WorkPrecisionTable& table : quickTables()) {
+  ASSERT_EQ(quickTables<surfacesStudy>().size(), 6u);
+  for (const WorkPrecisionTable& table : quickTables<surfacesStudy>()) {
     EXPECT_GE(table.rows.size(), 2u) << table.title;
     for (const WorkPrecisionRow& row : table.rows) {
       EXPECT_GT(row.ns, 0) << table.title;
@@ -34,7 +27,7 @@ TEST(SurfacesStudy, EveryRowIsMeasured) {
 
 TEST(SurfacesStudy, ForceAndLoopEnergyAreOfOrderTwo) {
   int judged = 0;
-  for (const WorkPrecisionTable& table : quickTables()) {
+  for (const WorkPrecisionTable& table : quickTables<surfacesStudy>()) {
     if (!table.order_expected) continue;
     ++judged;
     // Work falls faster than its asymptote while the voxel is not small against the loop.
@@ -47,7 +40,7 @@ TEST(SurfacesStudy, ForceAndLoopEnergyAreOfOrderTwo) {
 
 // Of 3.1 mJ that are stored. The rows are the coarse field's, kim and high, and the fine one's.
 TEST(SurfacesStudy, TheProxyGivesNothingRoundALoop) {
-  const WorkPrecisionTable& energy = quickTables()[3];
+  const WorkPrecisionTable& energy = quickTables<surfacesStudy>()[3];
   ASSERT_EQ(energy.rows.size(), 8u);
   const WorkPrecisionRow &coarse = energy.rows[1], &fine = energy.rows[5];
   for (const std::size_t row : {0, 1, 4, 5}) {
@@ -61,7 +54,7 @@ TEST(SurfacesStudy, TheProxyGivesNothingRoundALoop) {
 }
 
 TEST(SurfacesStudy, RedistancingMakesTheDepthOfAnOverlapRight) {
-  const WorkPrecisionTable& overlap = quickTables()[4];
+  const WorkPrecisionTable& overlap = quickTables<surfacesStudy>()[4];
   ASSERT_EQ(overlap.rows.size(), 2u);
   const double voxel = 0.06 / (80 - 16);
   EXPECT_GT(overlap.rows[0].error_max, 5e-3); // by min alone

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kRadius = 0.05;
+constexpr double kEmbossed = 0.05;
 
 // v runs from pole to pole: an image that depends on v alone has no seam.
 std::shared_ptr<const CornerUvs> zones(const TriangleMesh& mesh) {
@@ -28,7 +28,8 @@ struct Errors {
 Errors errorsOf(const TriangleMesh& mesh, const std::function<double(double)>& height) {
   Errors errors;
   for (const Vec3& p : mesh.positions) {
-    const double error = std::abs(p.norm() - kRadius - height(std::acos(p.z() / p.norm()) / M_PI));
+    const double error =
+        std::abs(p.norm() - kEmbossed - height(std::acos(p.z() / p.norm()) / M_PI));
     errors.most = std::max(errors.most, error);
     errors.mean += error / static_cast<double>(mesh.positions.size());
   }
@@ -36,7 +37,7 @@ Errors errorsOf(const TriangleMesh& mesh, const std::function<double(double)>& h
 }
 
 TEST(Emboss, RaisedAndEngravedSpheresAreClosedAndSecondOrder) {
-  const TriangleMesh mesh = icosphere(kRadius, 160);
+  const TriangleMesh mesh = icosphere(kEmbossed, 160);
   const auto uvs = zones(mesh);
   std::array<std::shared_ptr<const SurfaceField>, 2> base;
   for (std::size_t level = 0; level < 2; ++level) {
@@ -68,7 +69,7 @@ TEST(Emboss, RaisedAndEngravedSpheresAreClosedAndSecondOrder) {
 }
 
 TEST(Emboss, WithoutReliefIsTheModelItself) {
-  const TriangleMesh mesh = icosphere(kRadius, 30);
+  const TriangleMesh mesh = icosphere(kEmbossed, 30);
   FieldSpec spec;
   spec.resolution = 60;
   Progress progress;

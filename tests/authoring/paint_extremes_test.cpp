@@ -14,15 +14,14 @@ namespace {
 
 using test::brushOf;
 using test::forTexels;
+using test::kR;
+using test::kTop;
 using test::objectOf;
 using test::sceneOf;
 using test::strokeAlong;
 using test::strokeAt;
 using test::surfaceOf;
 using test::valuesAt;
-
-constexpr double kR = 0.05;
-const Vec3 kTop(0, 0, kR);
 
 TEST(PaintExtremes, RadiusOfNothingPaintsNothing) {
   const Scene scene = sceneOf(icosphere(kR, 12));

@@ -12,6 +12,10 @@
 
 namespace patina::test {
 
+// The ball that is painted: its radius [m] and where it is met from above.
+constexpr double kR = 0.05;
+inline const Vec3 kTop(0, 0, kR);
+
 inline SceneObject objectOf(const std::string& name, TriangleMesh mesh,
                             const Pose& pose = Pose::Identity()) {
   return {name, std::make_shared<const TriangleMesh>(std::move(mesh)), pose, nullptr};

@@ -8,13 +8,12 @@ namespace {
 
 using test::brushOf;
 using test::forTexels;
+using test::kR;
+using test::kTop;
 using test::sceneOf;
 using test::strokeAlong;
 using test::strokeAt;
 using test::surfaceOf;
-
-constexpr double kR = 0.05; // of the sphere
-const Vec3 kTop(0, 0, kR);
 
 // The paper's brush: what each layer would leave by itself, by one stroke.
 TEST(Painter, LayersOfOneStrokeAreThoseOfAStrokeEach) {

@@ -18,10 +18,10 @@ using test::strokeAt;
 using test::surfaceOf;
 using test::valuesAt;
 
-constexpr double kTop = 0.01;
+constexpr double kPlateTop = 0.01;
 
 Scene plate() {
-  return sceneOf(box(Vec3(0.1, 0.1, 2 * kTop), 6), 75);
+  return sceneOf(box(Vec3(0.1, 0.1, 2 * kPlateTop), 6), 75);
 }
 
 // T-K22b: at any place in its cell.
@@ -34,7 +34,7 @@ TEST(PaintMaterial, HardBrushOfTwoVoxelsGivesExactlyTheStiffnessItWasTold) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(-0.04, 0.04);
   for (int k = 0; k < 50; ++k) {
-    const Vec3 p(place(random), place(random), kTop);
+    const Vec3 p(place(random), place(random), kPlateTop);
     const Scene after = painted(surface, scene, strokeAt(brush, p));
     EXPECT_NEAR(valuesAt(*surface, after, p).material.stiffness, 1000, 1e-9);
   }
@@ -68,7 +68,7 @@ TEST(PaintMaterial, NodesLieWhereTheFieldsDo) {
     const Scene after =
         painted(surface, scene,
                 strokeAt(brushOf(Tool::material(MaterialChannel::roughness), 0.01, 1e-5),
-                         shift + Vec3(0, 0, kTop)));
+                         shift + Vec3(0, 0, kPlateTop)));
     const MaterialMap& map = *after.objects[0].paint->material;
     EXPECT_EQ(map.voxel(), surface->field->grid.voxel);
     EXPECT_EQ(map.origin() + shift, surface->field->grid.origin);
@@ -77,24 +77,26 @@ TEST(PaintMaterial, NodesLieWhereTheFieldsDo) {
 
 TEST(PaintMaterial, StaysWithAnObjectThatMoves) {
   Scene scene = plate();
-  const Scene after = painted(
-      surfaceOf(scene, false), scene,
-      strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.01, 900), Vec3(0, 0, kTop)));
+  const Scene after =
+      painted(surfaceOf(scene, false), scene,
+              strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.01, 900),
+                       Vec3(0, 0, kPlateTop)));
   Scene moved = after;
   moved.objects[0].world_from_object =
       Pose(Eigen::Translation3d(0.1, 0, 0) * Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()));
   const auto surface = surfaceOf(moved, false);
   const Pose& pose = moved.objects[0].world_from_object;
-  const double there = valuesAt(*surface, moved, pose * Vec3(0.002, 0, kTop)).material.stiffness;
+  const double there =
+      valuesAt(*surface, moved, pose * Vec3(0.002, 0, kPlateTop)).material.stiffness;
   EXPECT_GT(there, 700);
   // More paint on top of it, on the grid of the first stroke.
   const Scene more =
       painted(surface, moved,
               strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 900),
-                       pose * Vec3(0.03, 0, kTop)));
+                       pose * Vec3(0.03, 0, kPlateTop)));
   EXPECT_EQ(more.objects[0].paint->material->origin(), after.objects[0].paint->material->origin());
-  EXPECT_GT(valuesAt(*surface, more, pose * Vec3(0.03, 0.001, kTop)).material.stiffness, 780);
-  EXPECT_GE(valuesAt(*surface, more, pose * Vec3(0.002, 0, kTop)).material.stiffness, there);
+  EXPECT_GT(valuesAt(*surface, more, pose * Vec3(0.03, 0.001, kPlateTop)).material.stiffness, 780);
+  EXPECT_GE(valuesAt(*surface, more, pose * Vec3(0.002, 0, kPlateTop)).material.stiffness, there);
 }
 
 // K22: a lattice's covering radius is .866 h; what is smaller can fall between the nodes.
@@ -102,7 +104,7 @@ TEST(PaintMaterial, BrushBetweenTheNodesIsTold) {
   const Scene scene = plate();
   const auto surface = surfaceOf(scene, false);
   const FieldGrid& grid = surface->field->grid;
-  Vec3 q = grid.toGrid(Vec3(0, 0, kTop));
+  Vec3 q = grid.toGrid(Vec3(0, 0, kPlateTop));
   q[0] = std::floor(q[0]) + 0.5;
   q[1] = std::floor(q[1]) + 0.5;
   PaintReport report;
@@ -124,7 +126,7 @@ TEST(PaintMaterial, AddedStiffnessStaysWithinItsRange) {
   brush.mode = StrokeMode::add;
   brush.falloff = 1000;
   Scene now = scene;
-  const Vec3 p(0.001, 0.002, kTop);
+  const Vec3 p(0.001, 0.002, kPlateTop);
   for (int k = 1; k <= 3; ++k) {
     now = painted(surface, now, strokeAlong(brush, p, p + Vec3(0.01, 0, 0), 20));
     EXPECT_NEAR(valuesAt(*surface, now, p).material.static_friction, 0.3 * k, 1e-6);
@@ -141,7 +143,7 @@ TEST(PaintMaterial, AddsToWhatIsFeltWithoutPaint) {
   Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.02, -300);
   brush.mode = StrokeMode::add;
   brush.falloff = 1000;
-  const Vec3 p(0.001, 0.002, kTop);
+  const Vec3 p(0.001, 0.002, kPlateTop);
   Scene now = painted(surface, scene, strokeAt(brush, p));
   EXPECT_NEAR(valuesAt(*surface, now, p).material.stiffness, 200, 1e-4);
   now = painted(surface, now, strokeAt(brush, p));
@@ -154,22 +156,22 @@ TEST(PaintMaterial, SmoothingLowersTheSteepestSlope) {
   const auto surface = surfaceOf(scene, false);
   Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 2000);
   brush.falloff = 1000;
-  const Scene cliff = painted(surface, scene, strokeAt(brush, Vec3(0, 0, kTop)));
+  const Scene cliff = painted(surface, scene, strokeAt(brush, Vec3(0, 0, kPlateTop)));
   brush.mode = StrokeMode::smooth;
   brush.radius = 0.03;
   Stroke stroke{brush, {}};
-  for (int k = 0; k < 10; ++k) stroke.samples.push_back({k / 60.0, Vec3(0, 0, kTop), 0});
+  for (int k = 0; k < 10; ++k) stroke.samples.push_back({k / 60.0, Vec3(0, 0, kPlateTop), 0});
   const Scene smoother = painted(surface, cliff, stroke);
   const auto steepest = [&](const Scene& s) {
     double worst = 0;
     for (double x = 0; x < 0.028; x += 5e-4)
-      worst = std::max(worst,
-                       std::abs(valuesAt(*surface, s, Vec3(x, 0, kTop)).material.stiffness -
-                                valuesAt(*surface, s, Vec3(x + 1e-3, 0, kTop)).material.stiffness));
+      worst = std::max(
+          worst, std::abs(valuesAt(*surface, s, Vec3(x, 0, kPlateTop)).material.stiffness -
+                          valuesAt(*surface, s, Vec3(x + 1e-3, 0, kPlateTop)).material.stiffness));
     return worst;
   };
   EXPECT_LT(steepest(smoother), 0.5 * steepest(cliff));
-  EXPECT_NEAR(valuesAt(*surface, smoother, Vec3(0, 0, kTop)).material.stiffness, 2000, 1);
+  EXPECT_NEAR(valuesAt(*surface, smoother, Vec3(0, 0, kPlateTop)).material.stiffness, 2000, 1);
 }
 
 // The far side of a wall of several voxels keeps what it was.

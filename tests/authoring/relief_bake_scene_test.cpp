@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kRadius = 0.02;
+constexpr double kBaked = 0.02;
 
 Vec2 onSphere(const Vec3& p) { // continuous but at the poles of z and one meridian
   return {std::atan2(p.y(), p.x()) / (2 * M_PI) + 0.5, std::acos(p.z() / p.norm()) / M_PI};
@@ -24,7 +24,7 @@ std::shared_ptr<const TiledImage> white() {
 
 // Depth grows on the way in, without a jump, from outside to where coarse nodes blunt the middle.
 TEST(BakedRelief, DepthIsContinuousThroughTheEndOfTheBand) {
-  const TriangleMesh mesh = icosphere(kRadius, 12);
+  const TriangleMesh mesh = icosphere(kBaked, 12);
   FieldSpec spec;
   spec.resolution = 100;
   const auto base = fieldOf(mesh, spec);
@@ -38,8 +38,8 @@ TEST(BakedRelief, DepthIsContinuousThroughTheEndOfTheBand) {
       const Vec3 n = Vec3(0.3, -0.5, 0.7).normalized();
       const double step = 0.02;
       double last = 0.6;
-      for (double r = kRadius / h + 7; r > 10; r -= step) {
-        const double phi = sampler.at(r * h * n).phi / h, exact = r - kRadius / h - voxels;
+      for (double r = kBaked / h + 7; r > 10; r -= step) {
+        const double phi = sampler.at(r * h * n).phi / h, exact = r - kBaked / h - voxels;
         if (exact < 0.5) {
           EXPECT_LE(phi, last + 1e-3) << r;
           EXPECT_GE(phi, last - 10 * step) << r;
@@ -57,7 +57,7 @@ TEST(BakedRelief, DepthIsContinuousThroughTheEndOfTheBand) {
 
 // Beyond the band, too, no point is promised to be farther from the relief than it is.
 TEST(BakedRelief, OutsideTheBandTheFieldIsALowerBound) {
-  const TriangleMesh mesh = icosphere(kRadius, 12);
+  const TriangleMesh mesh = icosphere(kBaked, 12);
   FieldSpec spec;
   spec.resolution = 100;
   const auto base = fieldOf(mesh, spec);
@@ -71,7 +71,7 @@ TEST(BakedRelief, OutsideTheBandTheFieldIsALowerBound) {
   int beyond = 0;
   for (int i = 0; i < 20000; ++i) {
     const Vec3 q(unit(random), unit(random), unit(random));
-    const double exact = (field->grid.toWorld(q).norm() - kRadius) / h - raised;
+    const double exact = (field->grid.toWorld(q).norm() - kBaked) / h - raised;
     const GridSample sample = sampler.atGrid(q);
     if (sample.region != FieldRegion::outside) continue;
     ASSERT_LE(sample.phi, exact + 0.1);
@@ -81,8 +81,8 @@ TEST(BakedRelief, OutsideTheBandTheFieldIsALowerBound) {
 }
 
 TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
-  const std::vector<TriangleMesh> meshes{movedBy(icosphere(kRadius, 12), Vec3(-0.016, 0, 0)),
-                                         movedBy(icosphere(kRadius, 12), Vec3(0.016, 0, 0))};
+  const std::vector<TriangleMesh> meshes{movedBy(icosphere(kBaked, 12), Vec3(-0.016, 0, 0)),
+                                         movedBy(icosphere(kBaked, 12), Vec3(0.016, 0, 0))};
   for (const bool redistance : {false, true}) {
     const MergedShapes m = mergedShapes(meshes, 0x1p-10, redistance);
     const auto first = static_cast<std::int32_t>(meshes[0].triangles.size());
@@ -124,8 +124,8 @@ TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
 
 // An object without a layout costs nothing and stays as it is.
 TEST(BakedRelief, NeedsNoLayoutWhereThereIsNoRelief) {
-  const std::vector<TriangleMesh> meshes{movedBy(icosphere(kRadius, 6), Vec3(-0.03, 0, 0)),
-                                         movedBy(icosphere(kRadius, 6), Vec3(0.03, 0, 0))};
+  const std::vector<TriangleMesh> meshes{movedBy(icosphere(kBaked, 6), Vec3(-0.03, 0, 0)),
+                                         movedBy(icosphere(kBaked, 6), Vec3(0.03, 0, 0))};
   const MergedShapes m = mergedShapes(meshes, 0x1p-9);
   const auto faces = static_cast<std::int32_t>(meshes[0].triangles.size());
   std::vector<ReliefSource> sources{{0, faces, nullptr, nullptr, 1e-3},

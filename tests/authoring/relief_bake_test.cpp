@@ -74,13 +74,14 @@ struct Sphere {
   }
 };
 
-// A block whose top, z = kTop, shows the image as seen from above.
-constexpr double kTop = 0.02, kWidth = 0.08;
+// A block whose top, z = kTableTop, shows the image as seen from above.
+constexpr double kTableTop = 0.02, kTableWidth = 0.08;
 
 struct Slab {
-  TriangleMesh mesh = box(Vec3(kWidth, kWidth, 2 * kTop), 4);
-  std::shared_ptr<const CornerUvs> uvs =
-      uvsBy(mesh, [](const Vec3& p) { return Vec2(p.x() / kWidth + 0.5, p.y() / kWidth + 0.5); });
+  TriangleMesh mesh = box(Vec3(kTableWidth, kTableWidth, 2 * kTableTop), 4);
+  std::shared_ptr<const CornerUvs> uvs = uvsBy(mesh, [](const Vec3& p) {
+    return Vec2(p.x() / kTableWidth + 0.5, p.y() / kTableWidth + 0.5);
+  });
   std::shared_ptr<const SurfaceField> field;
 
   explicit Slab(double voxel, double band = 8) {
@@ -95,8 +96,8 @@ struct Slab {
     return bakeOf(field, mesh, sources).baked(sources);
   }
   double heightAt(const SurfaceField& of, double x, double y) const {
-    const double from = kTop + 6 * of.grid.voxel;
-    return from - surfaceAt(of, Vec3(x, y, from), -Vec3::UnitZ()) - kTop;
+    const double from = kTableTop + 6 * of.grid.voxel;
+    return from - surfaceAt(of, Vec3(x, y, from), -Vec3::UnitZ()) - kTableTop;
   }
 };
 
@@ -161,12 +162,12 @@ TEST(ReliefBake, OfACosineLosesWhatTheGridLoses) {
     const double wavelength = voxels * voxel;
     const auto field = slab.baked(reliefImage(1024,
                                               [&](double u, double) {
-                                                const double x = (u - 0.5) * kWidth - crest;
+                                                const double x = (u - 0.5) * kTableWidth - crest;
                                                 return std::cos(2 * M_PI * x / wavelength);
                                               }),
                                   amplitude);
     const double expected = 1 - std::cos(M_PI * voxel / wavelength);
-    const double texel = kWidth / 1024, bilinear = 1 - std::cos(M_PI * texel / wavelength);
+    const double texel = kTableWidth / 1024, bilinear = 1 - std::cos(M_PI * texel / wavelength);
     EXPECT_NEAR(1 - slab.heightAt(*field, crest, 0) / amplitude, expected, 2 * bilinear + 1e-3);
     EXPECT_NEAR(1 - slab.heightAt(*field, crest + 0.5 * voxel, 0) / amplitude,
                 1 - std::cos(M_PI / voxels), 2 * bilinear + 1e-3);
@@ -182,7 +183,7 @@ TEST(ReliefBake, ShowsTheImageTheRightWayRound) {
                                return u < 0.5 ? (v < 0.5 ? 0.2 : 0.4) : (v < 0.5 ? 0.6 : 1.0);
                              }),
                  3e-3);
-  const double at = 0.3 * kWidth;
+  const double at = 0.3 * kTableWidth;
   EXPECT_NEAR(slab.heightAt(*field, -at, -at), 0.2 * 3e-3, 1e-8);
   EXPECT_NEAR(slab.heightAt(*field, -at, at), 0.4 * 3e-3, 1e-8);
   EXPECT_NEAR(slab.heightAt(*field, at, -at), 0.6 * 3e-3, 1e-8);
@@ -195,17 +196,17 @@ TEST(ReliefBake, DirectionTiltsByTheSlopeOfARamp) {
   for (const double angle : {10.0, 30.0}) {
     const double a = std::tan(angle * M_PI / 180);
     const Slab slab(voxel, 12);
-    const auto field =
-        slab.baked(reliefImage(512,
-                               [&](double u, double) {
-                                 return std::clamp(((u - 0.5) * kWidth / half + 1) / 2, 0.0, 1.0);
-                               }),
-                   2 * half * a);
+    const auto field = slab.baked(
+        reliefImage(512,
+                    [&](double u, double) {
+                      return std::clamp(((u - 0.5) * kTableWidth / half + 1) / 2, 0.0, 1.0);
+                    }),
+        2 * half * a);
     const FieldSampler sampler(*field, Sampler::kim);
     for (const double x : {-2e-3, 0.0, 1.3e-3}) {
       const double z = slab.heightAt(*field, x, 2e-3);
       EXPECT_NEAR(z, a * (x + half), 1e-8);
-      const Vec3 g = sampler.at(Vec3(x, 2e-3, kTop + z - 1e-4)).gradient.normalized();
+      const Vec3 g = sampler.at(Vec3(x, 2e-3, kTableTop + z - 1e-4)).gradient.normalized();
       EXPECT_NEAR(std::atan2(-g.x(), g.z()), std::atan(a), 1e-5);
       EXPECT_NEAR(g.y(), 0, 1e-5);
     }

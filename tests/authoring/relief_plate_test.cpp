@@ -12,13 +12,13 @@ namespace {
 
 using namespace test;
 
-struct Sheet {
+struct SlabSheet {
   TriangleMesh mesh = sheet(0.04, 0.04, 8);
   std::shared_ptr<const CornerUvs> uvs =
       uvsBy(mesh, [](const Vec3& p) { return Vec2(p.x() / 0.04 + 0.5, p.y() / 0.04 + 0.5); });
   std::shared_ptr<const SurfaceField> field;
 
-  explicit Sheet(double band) {
+  explicit SlabSheet(double band) {
     FieldSpec spec;
     spec.voxel = 1e-3;
     spec.band = band;
@@ -35,7 +35,7 @@ struct Sheet {
 TEST(PlateRelief, MovesTheFrontOfAPlateAndNotItsBack) {
   for (const double band : {8.0, 14.0})
     for (const double height : {2e-3, -1e-3, -2e-3, band > 8 ? -5e-3 : 1e-3}) {
-      const auto field = Sheet(band).baked(height);
+      const auto field = SlabSheet(band).baked(height);
       for (const double x : {0.0, 3.3e-3}) {
         EXPECT_NEAR(0.012 - surfaceAt(*field, Vec3(x, 0, 0.012), -Vec3::UnitZ()), height, 1e-5);
         const double from = -(band + 4) * 1e-3;
@@ -43,7 +43,7 @@ TEST(PlateRelief, MovesTheFrontOfAPlateAndNotItsBack) {
             << height;
       }
       // Behind the plate a coarse node is as far from it as it was.
-      const auto base = Sheet(band).field;
+      const auto base = SlabSheet(band).field;
       std::size_t i = 0;
       for (int z = 0; z <= base->blocks[2]; ++z)
         for (int k = 0; k < (base->blocks[0] + 1) * (base->blocks[1] + 1); ++k, ++i)
@@ -57,13 +57,13 @@ TEST(PlateRelief, MovesTheFrontOfAPlateAndNotItsBack) {
 
 TEST(PlateRelief, RefusesToEngraveAPlateThroughAndNamesTheBand) {
   for (const double height : {-2.1e-3, -4.5e-3, -5e-3}) try {
-      (void)Sheet(8).baked(height);
+      (void)SlabSheet(8).baked(height);
       FAIL() << height;
     } catch (const Error& error) {
       const std::string band = std::to_string(static_cast<int>(std::ceil(-2e3 * height + 4)));
       EXPECT_NE(std::string(error.what()).find("set band to " + band), std::string::npos)
           << error.what();
-      EXPECT_NO_THROW((void)Sheet(std::stod(band)).baked(height));
+      EXPECT_NO_THROW((void)SlabSheet(std::stod(band)).baked(height));
     }
 }
 

@@ -14,7 +14,7 @@
 namespace patina {
 namespace {
 
-constexpr double kRadius = 0.03, kHeight = 4e-4; // [m]
+constexpr double kBaked = 0.03, kHeight = 4e-4; // [m]
 constexpr int kTips = 2000;
 
 struct Felt {
@@ -46,18 +46,18 @@ std::vector<Vec3> tipsOver(double radius) {
 
 TEST(BakedTexture, ATickCostsWhatItCostsWithoutIt) {
   Progress progress;
-  Scene scene = sceneOf(icosphere(kRadius, 40), "ball");
+  Scene scene = sceneOf(icosphere(kBaked, 40), "ball");
   setValues(scene, {{"relief.mode", "baked"}, {"relief.force", "literal"}, {"band", "12"}});
   Editor editor(scene, progress);
-  Felt without{editor.compiled(), tipsOver(kRadius)};
+  Felt without{editor.compiled(), tipsOver(kBaked)};
   Stroke all;
   all.brush.tool = Tool::relief;
   all.brush.value = kHeight;
-  all.brush.radius = 3 * kRadius;
+  all.brush.radius = 3 * kBaked;
   all.brush.falloff = 1e4;
-  all.samples = {{0, Vec3(0, 0, kRadius), 0}};
+  all.samples = {{0, Vec3(0, 0, kBaked), 0}};
   (void)editor.apply(all, progress);
-  Felt with{editor.compiled(), tipsOver(kRadius + kHeight)};
+  Felt with{editor.compiled(), tipsOver(kBaked + kHeight)};
   ASSERT_NE(with.scene->paint.field, with.scene->built.field); // it is in the field
   ASSERT_EQ(with.scene->built.field->grid.voxel, without.scene->built.field->grid.voxel);
   EXPECT_EQ(with.scene->snapshot->stages.size(), without.scene->snapshot->stages.size());

@@ -10,7 +10,7 @@
 namespace patina {
 namespace {
 
-constexpr double kRadius = 0.05;
+constexpr double kBall = 0.05;
 constexpr double kTip = 0.02;
 // Fields are made once: the finest takes seconds.
 const std::shared_ptr<const SurfaceField>& sphereOf(int frequency, double crack = 0) {
@@ -18,7 +18,7 @@ const std::shared_ptr<const SurfaceField>& sphereOf(int frequency, double crack 
   auto& field = made[{frequency, crack}];
   if (!field) {
     Progress progress;
-    field = frequency ? meshSphere(kRadius, frequency, crack, progress) : analyticSphere(kRadius);
+    field = frequency ? meshSphere(kBall, frequency, crack, progress) : analyticSphere(kBall);
   }
   return field;
 }

@@ -14,27 +14,27 @@
 namespace patina {
 namespace {
 
-constexpr double kRadius = 0.03;              // of the sphere [m]
-constexpr double kBrush = 0.05 * 2 * kRadius; // 5 % of the object
-constexpr int kDabs = 300, kRounds = 4;
+constexpr double kEdited = 0.03;                  // of the sphere [m]
+constexpr double kEditBrush = 0.05 * 2 * kEdited; // 5 % of the object
+constexpr int kEdits = 300, kEditRounds = 4;
 
 // p99 over a stroke's dabs [s], each the least of some rounds of the same stroke.
 double slowDab(Editor& editor, Tool tool, double value) {
   Brush brush;
   brush.tool = tool;
   brush.value = value;
-  brush.radius = kBrush;
-  std::vector<double> least(kDabs, std::numeric_limits<double>::infinity());
+  brush.radius = kEditBrush;
+  std::vector<double> least(kEdits, std::numeric_limits<double>::infinity());
   Progress progress;
-  for (int round = 0; round < test::longer(kRounds); ++round) {
+  for (int round = 0; round < test::longer(kEditRounds); ++round) {
     editor.beginStroke(brush, progress);
-    for (std::size_t i = 0; i < kDabs; ++i) {
+    for (std::size_t i = 0; i < kEdits; ++i) {
       const auto k = static_cast<double>(i);
-      const double angle = 0.2 * kBrush / kRadius * k, tilt = 0.5 + 0.004 * k;
+      const double angle = 0.2 * kEditBrush / kEdited * k, tilt = 0.5 + 0.004 * k;
       const Vec3 n(std::cos(angle) * std::sin(tilt), std::sin(angle) * std::sin(tilt),
                    std::cos(tilt));
       const double begin = test::threadSeconds();
-      (void)editor.dab({k / 60.0, kRadius * n, 1});
+      (void)editor.dab({k / 60.0, kEdited * n, 1});
       least[i] = std::min(least[i], test::threadSeconds() - begin);
     }
     (void)editor.endStroke();
@@ -48,7 +48,7 @@ PATINA_TIMED_TEST(EditorDab, ImageFieldAndMaterialTakeLittleOnAnyMesh) {
   const test::OneThread alone;
   for (const int frequency : {7, 224}) { // 980 and 1,003,520 triangles
     Progress progress;
-    Scene scene = sceneOf(icosphere(kRadius, frequency), "ball");
+    Scene scene = sceneOf(icosphere(kEdited, frequency), "ball");
     scene.relief.mode = ReliefMode::baked;
     Editor editor(scene, progress);
     test::Reference kernel;

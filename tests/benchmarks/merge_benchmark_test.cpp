@@ -13,14 +13,14 @@
 namespace patina {
 namespace {
 
-constexpr double kRadius = 0.05; // of the sphere that the fixed test touches, at the origin
-constexpr int kFrequency = 7;    // 980 triangles
+constexpr double kTouched = 0.05; // of the sphere that the fixed test touches, at the origin
+constexpr int kFrequency = 7;     // 980 triangles
 
 // The touched sphere among `count` of its kind, on one voxel whatever the count.
 Scene spheres(int count) {
   Scene scene = contactTestScene({});
   scene.field.voxel = 4e-3;
-  const auto mesh = std::make_shared<const TriangleMesh>(icosphere(kRadius, kFrequency));
+  const auto mesh = std::make_shared<const TriangleMesh>(icosphere(kTouched, kFrequency));
   for (int i = 0; i < count; ++i) {
     SceneObject object{"s" + std::to_string(i), mesh, Pose::Identity()};
     object.world_from_object.translation() =

@@ -18,15 +18,15 @@
 namespace patina {
 namespace {
 
-constexpr double kRadius = 0.03;                                    // of the sphere [m]
-constexpr double kBrush = 0.05 * 2 * kRadius;                       // 5 % of the object
+constexpr double kSmoothed = 0.03;                                  // of the sphere [m]
+constexpr double kSmoothBrush = 0.05 * 2 * kSmoothed;               // 5 % of the object
 constexpr double kDeviations[] = {0, 0.1e-3, 0.2e-3, 0.5e-3, 1e-3}; // [m]
-constexpr double kMost = 3;                                         // times a dab without smoothing
-constexpr int kDabs = 40, kRounds = 15;
+constexpr double kMostSlower = 3;                                   // times a dab without smoothing
+constexpr int kSmoothDabs = 40, kSmoothRounds = 15;
 
 std::unique_ptr<Editor> paintedBall(ReliefMode mode, int size, double deviation) {
   Progress progress;
-  Scene scene = sceneOf(icosphere(kRadius, 7), "ball");
+  Scene scene = sceneOf(icosphere(kSmoothed, 7), "ball");
   scene.relief.mode = mode;
   scene.relief.smoothing = deviation;
   scene.paint_size = size;
@@ -34,8 +34,8 @@ std::unique_ptr<Editor> paintedBall(ReliefMode mode, int size, double deviation)
   Stroke all;
   all.brush.tool = Tool::relief;
   all.brush.value = 2e-4;
-  all.brush.radius = 3 * kRadius;
-  all.samples = {{0, Vec3(0, 0, kRadius), 0}};
+  all.brush.radius = 3 * kSmoothed;
+  all.samples = {{0, Vec3(0, 0, kSmoothed), 0}};
   (void)editor->apply(all, progress);
   return editor;
 }
@@ -46,15 +46,15 @@ void time(Editor& editor, int round, std::vector<double>& least) {
   Brush brush;
   brush.tool = Tool::relief;
   brush.value = 3e-4;
-  brush.radius = kBrush;
+  brush.radius = kSmoothBrush;
   Progress progress;
   editor.beginStroke(brush, progress);
-  for (int i = 0; i < kDabs; ++i) {
-    const double angle = 0.2 * kBrush / kRadius * i, tilt = 0.7;
+  for (int i = 0; i < kSmoothDabs; ++i) {
+    const double angle = 0.2 * kSmoothBrush / kSmoothed * i, tilt = 0.7;
     const Vec3 n(std::cos(angle) * std::sin(tilt), std::sin(angle) * std::sin(tilt),
                  std::cos(tilt));
     const double start = test::threadSeconds();
-    (void)editor.dab({i / 60.0, kRadius * n, 1});
+    (void)editor.dab({i / 60.0, kSmoothed * n, 1});
     const double seconds = test::threadSeconds() - start;
     auto& best = least[static_cast<std::size_t>(i)];
     best = round == 0 ? seconds : std::min(best, seconds);
@@ -74,10 +74,10 @@ PATINA_TIMED_TEST(SmoothedDab, CostsThreeTimesOneWithoutSmoothingOnAnyImage) {
       std::vector<std::unique_ptr<Editor>> editors;
       for (const double deviation : kDeviations)
         editors.push_back(paintedBall(mode, size, deviation));
-      std::vector<std::vector<double>> least(editors.size(), std::vector<double>(kDabs));
+      std::vector<std::vector<double>> least(editors.size(), std::vector<double>(kSmoothDabs));
       // In turn, so that all meet the same machine, until nothing gets shorter by a hundredth.
       double sum = std::numeric_limits<double>::infinity();
-      for (int round = 0, quiet = 0; round < test::longer(kRounds) && quiet < 3; ++round) {
+      for (int round = 0, quiet = 0; round < test::longer(kSmoothRounds) && quiet < 3; ++round) {
         for (std::size_t e = 0; e < editors.size(); ++e) time(*editors[e], round, least[e]);
         const double before = std::exchange(sum, 0);
         for (const auto& each : least) sum += median(each);
@@ -89,7 +89,7 @@ PATINA_TIMED_TEST(SmoothedDab, CostsThreeTimesOneWithoutSmoothingOnAnyImage) {
         std::printf("%d^2 %s %.1f mm: %.2f ms without smoothing, %.2f ms with, ratio %.2f\n", size,
                     mode == ReliefMode::pulled ? "pulled" : "baked", 1e3 * kDeviations[e],
                     1e3 * without, 1e3 * with, with / without);
-        EXPECT_LE(with / without, kMost);
+        EXPECT_LE(with / without, kMostSlower);
       }
     }
 }

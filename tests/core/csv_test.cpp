@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<std::string> kTip{"t [s]", "x [m]", "y [m]", "z [m]"};
 
-std::string errorOf(const std::string& text) {
+std::string csvError(const std::string& text) {
   try {
     parseCsv(text, "tip.csv", kTip);
   } catch (const FileError& error) {
@@ -32,23 +32,23 @@ TEST(Csv, AcceptsAByteOrderMarkAndNoLastNewline) {
 
 TEST(Csv, NamesTheLineOfAFault) {
   const std::string header = "t [s],x [m],y [m],z [m]\n0,0,0,0\n";
-  EXPECT_EQ(errorOf(header + "1,2,3\n"), "tip.csv:3: 3 values where the header names 4");
-  EXPECT_EQ(errorOf(header + "1,2,x,4\n"), "tip.csv:3: 'x' is not a number");
-  EXPECT_EQ(errorOf(header + "1,2,,4\n"), "tip.csv:3: '' is not a number");
-  EXPECT_TRUE(errorOf("time,x,y,z\n1,2,3,4\n").starts_with("tip.csv:1: header is 'time,x,y,z'"));
-  EXPECT_TRUE(errorOf("").starts_with("tip.csv: is empty"));
+  EXPECT_EQ(csvError(header + "1,2,3\n"), "tip.csv:3: 3 values where the header names 4");
+  EXPECT_EQ(csvError(header + "1,2,x,4\n"), "tip.csv:3: 'x' is not a number");
+  EXPECT_EQ(csvError(header + "1,2,,4\n"), "tip.csv:3: '' is not a number");
+  EXPECT_TRUE(csvError("time,x,y,z\n1,2,3,4\n").starts_with("tip.csv:1: header is 'time,x,y,z'"));
+  EXPECT_TRUE(csvError("").starts_with("tip.csv: is empty"));
 }
 
 TEST(Csv, NamesADecimalCommaAsSuch) {
   const std::string header = "t [s],x [m],y [m],z [m]\n";
-  EXPECT_NE(errorOf(header + "0,1,1,5,2,5,3,5\n").find("decimal comma"), std::string::npos);
-  EXPECT_NE(errorOf(header + "0,1;1,5;2,5;3,5\n").find("decimal comma"), std::string::npos);
+  EXPECT_NE(csvError(header + "0,1,1,5,2,5,3,5\n").find("decimal comma"), std::string::npos);
+  EXPECT_NE(csvError(header + "0,1;1,5;2,5;3,5\n").find("decimal comma"), std::string::npos);
 }
 
 TEST(Csv, KeepsTheMessageOnOneLineWhateverTheFileHolds) {
   std::string hostile = "\x01\x02\r\x03";
   hostile.append(5000, 'z');
-  const std::string error = errorOf(hostile);
+  const std::string error = csvError(hostile);
   EXPECT_LT(error.size(), 200u);
   for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
 }

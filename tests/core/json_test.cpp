@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-std::string errorOf(const std::string& text) {
+std::string jsonError(const std::string& text) {
   try {
     parseJson(text, "scene.json");
   } catch (const FileError& error) {
@@ -92,27 +92,27 @@ TEST(Json, WrongKindIsNamed) {
 }
 
 TEST(Json, ErrorsNameFileAndLine) {
-  EXPECT_TRUE(errorOf("{\n  \"a\": 1,\n  oops\n}").starts_with("scene.json:3: "));
-  EXPECT_TRUE(errorOf("{\"a\": [1, 2").find("ends too early") != std::string::npos);
+  EXPECT_TRUE(jsonError("{\n  \"a\": 1,\n  oops\n}").starts_with("scene.json:3: "));
+  EXPECT_TRUE(jsonError("{\"a\": [1, 2").find("ends too early") != std::string::npos);
 }
 
 TEST(Json, EveryTruncationOfAFileIsAnError) {
   const std::string text = R"({"version": 1, "list": [1.5, "a", true, null], "m": {"k": -2e3}})";
   for (std::size_t size = 0; size < text.size(); ++size)
-    EXPECT_NE(errorOf(text.substr(0, size)), "") << size;
-  EXPECT_EQ(errorOf(text), "");
+    EXPECT_NE(jsonError(text.substr(0, size)), "") << size;
+  EXPECT_EQ(jsonError(text), "");
 }
 
 TEST(Json, HostileDepthIsAnErrorAndNotACrash) {
-  EXPECT_NE(errorOf(std::string(1000000, '[')), "");
-  EXPECT_NE(errorOf(std::string(201, '[') + std::string(201, ']')), "");
-  EXPECT_EQ(errorOf(std::string(200, '[') + std::string(200, ']')), "");
+  EXPECT_NE(jsonError(std::string(1000000, '[')), "");
+  EXPECT_NE(jsonError(std::string(201, '[') + std::string(201, ']')), "");
+  EXPECT_EQ(jsonError(std::string(200, '[') + std::string(200, ']')), "");
 }
 
 TEST(Json, RefusesWhatIsNotJson) {
   for (const char* text : {"", "nul", "{'a': 1}", "[1,]", "01", "1 2", "[1e999]", "{\"a\" 1}",
                            "\x01\x02", "[1.5,2,5", "// note\n1"})
-    EXPECT_NE(errorOf(text), "") << text;
+    EXPECT_NE(jsonError(text), "") << text;
 }
 
 } // namespace

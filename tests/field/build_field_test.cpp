@@ -12,10 +12,14 @@
 #include "core/error.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
+#include "support/changed_mesh.h"
 #include "support/node_values.h"
 
 namespace patina {
 namespace {
+
+using test::inverted;
+using test::moved;
 
 BuiltField build(const TriangleMesh& mesh, int resolution, double band = 3) {
   FieldSpec spec;
@@ -41,16 +45,6 @@ double bruteForce(const TriangleMesh& mesh, const Vec3& p) {
 
 TriangleMesh oneTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {{a, b, c}, {{0, 1, 2}}, {}};
-}
-
-TriangleMesh inverted(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  for (Vec3& p : mesh.positions) p += by;
-  return mesh;
 }
 
 // Every node of the grid (every `stride`-th): exact distance and nearest face in the band, nothing

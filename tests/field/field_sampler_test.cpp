@@ -13,25 +13,25 @@ namespace {
 
 using namespace test;
 
-constexpr double kRadius = 0.05;
+constexpr double kSphereRadius = 0.05;
 constexpr double kDegree = M_PI / 180;
 
-double slope(double error_coarse, double error_fine) {
+double orderOf(double error_coarse, double error_fine) {
   return std::log2(error_coarse / error_fine);
 }
 
 // T-K01a: at a cell's centre the trilinear error on a sphere is h^2/(4 r), outwards always.
 TEST(FieldSampler, TrilinearValueOnASphereIsOffByTheKnownAmount) {
-  const FieldGrid grid = cubeGrid(kRadius, 150);
-  const auto field = sampledField(sphereDistance(kRadius), grid);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 150);
+  const auto field = sampledField(sphereDistance(kSphereRadius), grid);
   const FieldSampler sampler(*field, Sampler::kim);
   std::mt19937 random(1);
   double worst = 0;
   for (int n = 0; n < 2000; ++n) {
-    const Vec3 q = grid.toGrid(randomDirection(random) * kRadius);
+    const Vec3 q = grid.toGrid(randomDirection(random) * kSphereRadius);
     const Vec3 centre = q.array().floor() + 0.5;
     const double r = grid.toWorld(centre).norm() / grid.voxel;
-    const double ratio = (sampler.phiAtGrid(centre) - (r - kRadius / grid.voxel)) * 4 * r;
+    const double ratio = (sampler.phiAtGrid(centre) - (r - kSphereRadius / grid.voxel)) * 4 * r;
     worst = std::max(worst, std::abs(ratio - 1));
   }
   EXPECT_LT(worst, 1e-3); // the stored values are floats: 5e-7 of 4e-3 voxels
@@ -39,9 +39,9 @@ TEST(FieldSampler, TrilinearValueOnASphereIsOffByTheKnownAmount) {
 
 // T-K01b: a plane of any orientation is exact, up to the rounding of the stored floats.
 TEST(FieldSampler, PlanesAreExact) {
-  const FieldGrid grid = cubeGrid(kRadius, 64);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 64);
   std::mt19937 random(2);
-  std::uniform_real_distribution<double> along(-0.6 * kRadius, 0.6 * kRadius);
+  std::uniform_real_distribution<double> along(-0.6 * kSphereRadius, 0.6 * kSphereRadius);
   const double float_eps = std::numeric_limits<float>::epsilon();
   for (int n = 0; n < 5; ++n) {
     const Vec3 normal = randomDirection(random);
@@ -108,15 +108,15 @@ TEST(FieldSampler, OrdersOnASphereAreThoseOfTheTheory) {
   Errors kim[3], high[3];
   for (int level = 0; level < 3; ++level) {
     const int resolution = (48 << level) + 16; // the voxel halves each time
-    const Distance sphere = sphereDistance(kRadius);
-    kim[level] = errorsOn(sphere, kRadius, resolution, Sampler::kim, 0.02 * kRadius);
-    high[level] = errorsOn(sphere, kRadius, resolution, Sampler::high, 0.02 * kRadius);
+    const Distance sphere = sphereDistance(kSphereRadius);
+    kim[level] = errorsOn(sphere, kSphereRadius, resolution, Sampler::kim, 0.02 * kSphereRadius);
+    high[level] = errorsOn(sphere, kSphereRadius, resolution, Sampler::high, 0.02 * kSphereRadius);
   }
   for (int level = 0; level < 2; ++level) {
-    EXPECT_GE(slope(kim[level].angle, kim[level + 1].angle), 1.9);
-    EXPECT_NEAR(slope(kim[level].value, kim[level + 1].value), 2, 0.1);
+    EXPECT_GE(orderOf(kim[level].angle, kim[level + 1].angle), 1.9);
+    EXPECT_NEAR(orderOf(kim[level].value, kim[level + 1].value), 2, 0.1);
     // At 48 cells a diameter some nodes deep inside count as creased, which halves no error.
-    EXPECT_GE(slope(high[level].value, high[level + 1].value), 2.8);
+    EXPECT_GE(orderOf(high[level].value, high[level + 1].value), 2.8);
     EXPECT_EQ(high[level].angle, kim[level].angle);
   }
   // The voxel of a 150^3 grid lies between the last two levels.
@@ -125,8 +125,8 @@ TEST(FieldSampler, OrdersOnASphereAreThoseOfTheTheory) {
 
 // The accuracy that the contact test needs of a perfect field at 150^3.
 TEST(FieldSampler, MeetsTheForceAccuracyOnASphere) {
-  const FieldGrid grid = cubeGrid(kRadius, 150);
-  const auto field = sampledField(sphereDistance(kRadius), grid);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 150);
+  const auto field = sampledField(sphereDistance(kSphereRadius), grid);
   const FieldSampler sampler(*field, Sampler::high);
   double angle = 0, angle_max = 0, depth = 0, depth_max = 0;
   const int count = 20000;
@@ -134,9 +134,9 @@ TEST(FieldSampler, MeetsTheForceAccuracyOnASphere) {
     const double t = 0.001 * i;
     const double theta = M_PI / 2 + 0.17 + 1.1 * std::sin(2 * M_PI * 0.11 * t);
     const double phi = 0.7 + 2 * M_PI * 0.37 * t;
-    const double d = kRadius * (0.03 + 0.02 * std::sin(2 * M_PI * 1.3 * t));
+    const double d = kSphereRadius * (0.03 + 0.02 * std::sin(2 * M_PI * 1.3 * t));
     const Vec3 n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-    const GridSample sample = sampler.at((kRadius - d) * n);
+    const GridSample sample = sampler.at((kSphereRadius - d) * n);
     ASSERT_EQ(sample.region, FieldRegion::band);
     const double a = angleBetween(sample.gradient, n) / kDegree;
     const double e = std::abs(-sample.phi - d) / d * 100;
@@ -158,23 +158,23 @@ TEST(FieldSampler, BoxEdgesLimitTheOrder) {
   const Vec3 half(0.04, 0.033, 0.027);
   Errors coarse = errorsOn(boxDistance(half), 0.04, 48 + 16, Sampler::kim, 0.001);
   Errors fine = errorsOn(boxDistance(half), 0.04, 192 + 16, Sampler::kim, 0.001);
-  EXPECT_NEAR(slope(coarse.value_max, fine.value_max) / 2, 1, 0.25);
-  EXPECT_NEAR(slope(coarse.value, fine.value) / 2, 1.5, 0.3);
-  EXPECT_NEAR(slope(coarse.angle, fine.angle) / 2, 0.5, 0.15);
+  EXPECT_NEAR(orderOf(coarse.value_max, fine.value_max) / 2, 1, 0.25);
+  EXPECT_NEAR(orderOf(coarse.value, fine.value) / 2, 1.5, 0.3);
+  EXPECT_NEAR(orderOf(coarse.angle, fine.angle) / 2, 0.5, 0.15);
   EXPECT_GT(fine.angle_max / kDegree, 40);
   EXPECT_LT(fine.angle_max / kDegree, 90);
 }
 
 // T-K05b: direction and value do not jump across a cell's face.
 TEST(FieldSampler, IsContinuousAcrossCellAndBlockFaces) {
-  const FieldGrid grid = cubeGrid(kRadius, 100);
-  const auto field = sampledField(sphereDistance(kRadius), grid);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 100);
+  const auto field = sampledField(sphereDistance(kSphereRadius), grid);
   std::mt19937 random(5);
   const double step = 1e-9 / grid.voxel;
   for (const auto& [kind, label, caption] : kSamplers) {
     const FieldSampler sampler(*field, kind);
     for (int n = 0; n < 3000; ++n) {
-      Vec3 q = grid.toGrid(randomDirection(random) * kRadius * 0.98);
+      Vec3 q = grid.toGrid(randomDirection(random) * kSphereRadius * 0.98);
       const int axis = n % 3;
       q[axis] = n % 2 ? std::round(q[axis]) : 8 * std::round(q[axis] / 8);
       const Vec3 other = step * Vec3::Unit(axis);
@@ -187,7 +187,7 @@ TEST(FieldSampler, IsContinuousAcrossCellAndBlockFaces) {
 }
 
 TEST(FieldSampler, PhiAloneEqualsPhiWithGradient) {
-  const FieldGrid grid = cubeGrid(kRadius, 64);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 64);
   const auto field = sampledField(torusDistance(0.033, 0.016), grid);
   std::mt19937 random(6);
   std::uniform_real_distribution<double> anywhere(-5, 70);
@@ -201,8 +201,8 @@ TEST(FieldSampler, PhiAloneEqualsPhiWithGradient) {
 }
 
 TEST(FieldSampler, DepthGrowsMonotonicallyAndContinuouslyBeyondTheBand) {
-  const FieldGrid grid = cubeGrid(kRadius, 150);
-  const auto field = sampledField(sphereDistance(kRadius), grid);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 150);
+  const auto field = sampledField(sphereDistance(kSphereRadius), grid);
   std::mt19937 random(7);
   for (const auto& [kind, label, caption] : kSamplers) {
     const FieldSampler sampler(*field, kind);
@@ -210,7 +210,8 @@ TEST(FieldSampler, DepthGrowsMonotonicallyAndContinuouslyBeyondTheBand) {
       const Vec3 n = randomDirection(random);
       double last = 0;
       for (double depth = 0.01; depth < 45; depth += 0.01) {
-        const GridSample sample = sampler.atGrid(grid.toGrid(n * (kRadius - depth * grid.voxel)));
+        const GridSample sample =
+            sampler.atGrid(grid.toGrid(n * (kSphereRadius - depth * grid.voxel)));
         ASSERT_LT(sample.phi, last + 1e-3) << depth;
         ASSERT_LT(last - sample.phi, 0.1) << depth;
         ASSERT_NEAR(-sample.phi, depth, 1.8) << depth;
@@ -226,15 +227,15 @@ TEST(FieldSampler, DepthGrowsMonotonicallyAndContinuouslyBeyondTheBand) {
 TEST(FieldSampler, NarrowBandsAreExactAtTheSurface) {
   std::mt19937 random(12);
   for (const double band : {2.0, 2.5, 2.75, 3.0}) {
-    const FieldGrid grid = cubeGrid(kRadius, 100, band);
-    const auto field = sampledField(sphereDistance(kRadius), grid, band);
+    const FieldGrid grid = cubeGrid(kSphereRadius, 100, band);
+    const auto field = sampledField(sphereDistance(kSphereRadius), grid, band);
     for (const auto& [kind, label, caption] : kSamplers) {
       const FieldSampler sampler(*field, kind);
       for (int n = 0; n < 2000; ++n) {
         const Vec3 normal = randomDirection(random);
         const double depth = -0.2 + 2e-4 * n;
         const GridSample sample =
-            sampler.atGrid(grid.toGrid(normal * (kRadius - depth * grid.voxel)));
+            sampler.atGrid(grid.toGrid(normal * (kSphereRadius - depth * grid.voxel)));
         ASSERT_EQ(sample.region, FieldRegion::band) << band << " " << depth;
         ASSERT_NEAR(sample.phi, -depth, 0.01) << band;
         ASSERT_LT(angleBetween(sample.gradient, normal), 0.01) << band;
@@ -244,8 +245,8 @@ TEST(FieldSampler, NarrowBandsAreExactAtTheSurface) {
 }
 
 TEST(FieldSampler, DeepPointsWithoutACoarseLayerReportTheBand) {
-  const FieldGrid grid = cubeGrid(kRadius, 64);
-  SurfaceField bare = sampleFunction(sphereDistance(kRadius), grid, 8);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 64);
+  SurfaceField bare = sampleFunction(sphereDistance(kSphereRadius), grid, 8);
   bare.coarse.clear();
   const auto field = withSamples(std::make_shared<const SurfaceField>(std::move(bare)));
   const GridSample sample = FieldSampler(*field, Sampler::high).at(Vec3(0.001, 0, 0));
@@ -255,12 +256,12 @@ TEST(FieldSampler, DeepPointsWithoutACoarseLayerReportTheBand) {
 }
 
 TEST(FieldSampler, OutsideTheBandThePhiIsALowerBoundOfTheDistance) {
-  const FieldGrid grid = cubeGrid(kRadius, 64);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 64);
   const Distance torus = torusDistance(0.033, 0.016);
   const auto field = sampledField(torus, grid);
   const FieldSampler sampler(*field, Sampler::kim);
   std::mt19937 random(8);
-  std::uniform_real_distribution<double> anywhere(-3 * kRadius, 3 * kRadius);
+  std::uniform_real_distribution<double> anywhere(-3 * kSphereRadius, 3 * kSphereRadius);
   int outside = 0;
   for (int n = 0; n < 20000; ++n) {
     const Vec3 p(anywhere(random), anywhere(random), anywhere(random));
@@ -275,8 +276,8 @@ TEST(FieldSampler, OutsideTheBandThePhiIsALowerBoundOfTheDistance) {
 }
 
 TEST(FieldSampler, AnyPointIsAnsweredWithFiniteNumbersOrNowhere) {
-  const FieldGrid grid = cubeGrid(kRadius, 40);
-  const auto field = sampledField(sphereDistance(kRadius), grid);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 40);
+  const auto field = sampledField(sphereDistance(kSphereRadius), grid);
   const double inf = std::numeric_limits<double>::infinity();
   const double odd[] = {0.0,     -0.0,         20,           40,           39.999999999, 41,
                         -1e-300, 5e-324,       1e18,         -1e300,       1e300,        inf,
@@ -311,8 +312,8 @@ TEST(FieldSampler, NothingDependsOnTheScale) {
 }
 
 TEST(FieldSampler, FaceNearIsTheFaceOfTheNearestStoredNode) {
-  const FieldGrid grid = cubeGrid(kRadius, 40, 3);
-  SurfaceField field = sampleFunction(sphereDistance(kRadius), grid, 3);
+  const FieldGrid grid = cubeGrid(kSphereRadius, 40, 3);
+  SurfaceField field = sampleFunction(sphereDistance(kSphereRadius), grid, 3);
   // Each node names itself.
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     FaceNodes faces{};
@@ -330,7 +331,7 @@ TEST(FieldSampler, FaceNearIsTheFaceOfTheNearestStoredNode) {
   std::mt19937 random(10);
   std::uniform_real_distribution<double> depth(-2, 2);
   for (int n = 0; n < 2000; ++n) {
-    const Vec3 p = randomDirection(random) * (kRadius + depth(random) * grid.voxel * 0.1);
+    const Vec3 p = randomDirection(random) * (kSphereRadius + depth(random) * grid.voxel * 0.1);
     const Vec3 node = grid.toGrid(p).array().round();
     const auto expected = static_cast<std::int32_t>((node.z() * 64 + node.y()) * 64 + node.x());
     EXPECT_EQ(sampler.faceNear(p), expected);
@@ -340,7 +341,8 @@ TEST(FieldSampler, FaceNearIsTheFaceOfTheNearestStoredNode) {
 }
 
 TEST(FieldSampler, NeedsTheSampleLayerAndAKnownName) {
-  const SurfaceField bare = sampleFunction(sphereDistance(kRadius), cubeGrid(kRadius, 40), 8);
+  const SurfaceField bare =
+      sampleFunction(sphereDistance(kSphereRadius), cubeGrid(kSphereRadius, 40), 8);
   EXPECT_THROW(FieldSampler(bare, Sampler::kim), std::invalid_argument);
   EXPECT_EQ(parseSampler("kim"), Sampler::kim);
   EXPECT_EQ(parseSampler(name(Sampler::high)), Sampler::high);

@@ -22,7 +22,7 @@ using test::mergedShapes;
 using test::MergedShapes;
 using test::movedBy;
 
-template <class Visit> void forNodes(const SurfaceField& field, const Visit& visit) {
+template <class Visit> void forPlaces(const SurfaceField& field, const Visit& visit) {
   for (const auto& at : field.block_at)
     for (int n = 0; n < kBlockNodes; ++n)
       visit(kBlockSide * at[0] + n % kBlockSide, kBlockSide * at[1] + n / kBlockSide % kBlockSide,
@@ -40,7 +40,7 @@ TEST(MergeFields, IsExactOutsideAndNeverTooDeepInside) {
   const TriangleTree a(movedBy(icosphere(0.02, 16), Vec3(-0.01, 0, 0)));
   const TriangleTree b(movedBy(icosphere(0.02, 16), Vec3(0.01, 0, 0)));
   std::size_t outside = 0, inside = 0;
-  forNodes(*m.field, [&](int i, int j, int k) {
+  forPlaces(*m.field, [&](int i, int j, int k) {
     const Vec3 p = m.field->grid.toWorld(Vec3(i, j, k));
     const auto phi = static_cast<double>(test::phiAt(*m.field, i, j, k));
     if (std::abs(phi) >= static_cast<double>(kBeyondBand)) return;
@@ -71,7 +71,7 @@ TEST(MergeFields, IsExactOutsideAndNeverTooDeepInside) {
 TEST(MergeFields, NodesHoldTheLeastOfThePartsAndItsOwner) {
   const MergedShapes m = twoSpheres(0.03);
   std::size_t of[2] = {0, 0};
-  forNodes(*m.field, [&](int i, int j, int k) {
+  forPlaces(*m.field, [&](int i, int j, int k) {
     float least = std::numeric_limits<float>::infinity();
     std::int32_t face = -1, owner = -1;
     BlockBox all = m.parts[0].blocks();
@@ -104,7 +104,7 @@ TEST(MergeFields, IdenticalObjectsAreOneBitForBit) {
   ASSERT_EQ(two.field->top, one.field->top);
   for (std::size_t s = 0; s < one.field->blockCount(); ++s)
     ASSERT_EQ(two.field->distance[s]->phi(), one.field->distance[s]->phi());
-  forNodes(*two.field, [&](int i, int j, int k) { // the first owns every tie
+  forPlaces(*two.field, [&](int i, int j, int k) { // the first owns every tie
     ASSERT_EQ(two.field->faceAt(i, j, k), one.field->faceAt(i, j, k));
   });
   for (std::size_t c = 0; c < one.field->coarse.size(); ++c) {

@@ -11,12 +11,12 @@
 namespace patina {
 namespace {
 
-SurfaceField ball() {
+SurfaceField sampledBall() {
   return sampleFunction(test::sphereDistance(0.03), test::cubeGrid(0.05, 60), 4);
 }
 
 TEST(NodeReader, ReadsTheNodesOfAFieldAndWhatLiesBeyond) {
-  const SurfaceField field = ball();
+  const SurfaceField field = sampledBall();
   const NodeReader nodes(field);
   std::size_t stored = 0;
   for (int k = -1; k <= field.grid.nodes[2]; k += 3)
@@ -33,7 +33,7 @@ TEST(NodeReader, ReadsTheNodesOfAFieldAndWhatLiesBeyond) {
 
 // Every block by many at once, all of them at its first read.
 TEST(NodeReader, GivesTheSameToAllWhoReadABlockAtOnce) {
-  const SurfaceField field = ball();
+  const SurfaceField field = sampledBall();
   for (int round = 0; round < 20; ++round) {
     const NodeReader nodes(field);
     std::atomic<std::size_t> wrong{0};

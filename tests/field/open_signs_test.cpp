@@ -50,10 +50,10 @@ struct Signs {
 };
 
 // Whether a node is negative; nothing where it stands right under the rim.
-using Truth = std::function<std::optional<bool>(const Vec3&, double)>;
+using MaybeInside = std::function<std::optional<bool>(const Vec3&, double)>;
 
 // `truth(p, d)`: d = distance to the mesh at p, in voxels.
-Signs count(const SurfaceField& field, const TriangleMesh& mesh, const Truth& truth) {
+Signs count(const SurfaceField& field, const TriangleMesh& mesh, const MaybeInside& truth) {
   Signs signs;
   const TriangleTree tree(mesh);
   const FieldGrid& grid = field.grid;

@@ -20,7 +20,7 @@ using test::moved;
 
 constexpr double kSide = 0.1; // [m]
 
-BuiltField built(const TriangleMesh& mesh) {
+BuiltField builtSheet(const TriangleMesh& mesh) {
   FieldSpec spec;
   spec.resolution = 100;
   Progress progress;
@@ -47,7 +47,7 @@ template <typename Height> TriangleMesh hills(const Height& height, int cells = 
   return mesh;
 }
 
-TriangleMesh bowl() {
+TriangleMesh halfBall() {
   TriangleMesh mesh = icosphere(0.05, 20);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     return mesh.positions[static_cast<std::size_t>(t[0])].z() > -0.01;
@@ -55,21 +55,21 @@ TriangleMesh bowl() {
   return mesh;
 }
 
-TriangleMesh terrain() {
+TriangleMesh waves() {
   return hills([](double x, double y) { return 4e-3 * std::sin(90 * x) * std::cos(80 * y); });
 }
 
 std::vector<TriangleMesh> openMeshes() {
   const TriangleMesh flat = sheet(kSide, kSide, 10);
   return {flat,
-          terrain(),
+          waves(),
           hills([](double x, double) { return 4e-3 * std::sin(400 * x); }, 100),
           hills([](double x, double) { return 0.02 - 3 * std::abs(x); }),
           hills([](double x, double) { return 3 * std::abs(x); }),
           hills([](double x, double y) { return 8 * (x * x - y * y); }),
           withHoles(sheet(kSide, kSide, 60), 6, 2e-3, 4),
-          bowl(),
-          inverted(bowl()),
+          halfBall(),
+          inverted(halfBall()),
           joined(flat, moved(flat, Vec3(1e-4, 0, 1e-3))),
           joined(flat, moved(flat, Vec3(0.02, 0.01, 4e-3))),
           joined(flat, moved(flat, Vec3(0.02, 0.01, 8e-3))),
@@ -80,7 +80,7 @@ std::vector<TriangleMesh> openMeshes() {
 // Rounded at the edges of its back and of its sides: by half a cell's diagonal at most.
 TEST(Plate, OfASheetIsABoxAsThickAsTheBand) {
   const TriangleMesh flat = sheet(kSide, kSide, 10);
-  const SurfaceField field = *built(flat).field;
+  const SurfaceField field = *builtSheet(flat).field;
   const double thickness = field.band * field.grid.voxel;
   const TriangleMesh solid =
       moved(box(Vec3(kSide, kSide, thickness)), Vec3(0, 0, -0.5 * thickness));
@@ -97,8 +97,8 @@ TEST(Plate, OfASheetIsABoxAsThickAsTheBand) {
 }
 
 TEST(Plate, LeavesTheFrontAsItIs) {
-  const TriangleMesh mesh = terrain();
-  const SurfaceField field = *built(mesh).field;
+  const TriangleMesh mesh = waves();
+  const SurfaceField field = *builtSheet(mesh).field;
   const TriangleTree tree(mesh);
   const double band = field.band, voxel = field.grid.voxel;
   std::size_t before = 0, behind = 0;
@@ -118,7 +118,7 @@ TEST(Plate, LeavesTheFrontAsItIs) {
 TEST(Plate, HasNoJumps) {
   int shape = 0;
   for (const TriangleMesh& mesh : openMeshes()) {
-    const SurfaceField field = *built(mesh).field;
+    const SurfaceField field = *builtSheet(mesh).field;
     double worst = 0;
     std::size_t judged = 0;
     NodeReader nodes(field);
@@ -142,8 +142,8 @@ TEST(Plate, HasNoJumps) {
 }
 
 TEST(Plate, HasTheFacesOfItsFront) {
-  const TriangleMesh mesh = joined(sheet(kSide, kSide, 10), bowl());
-  const SurfaceField field = *built(mesh).field;
+  const TriangleMesh mesh = joined(sheet(kSide, kSide, 10), halfBall());
+  const SurfaceField field = *builtSheet(mesh).field;
   const auto most = static_cast<std::int32_t>(mesh.triangles.size());
   std::size_t faces = 0;
   forNodes(field, [&](const Vec3& p, double phi, std::int32_t face) {

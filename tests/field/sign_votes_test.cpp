@@ -17,7 +17,7 @@ namespace {
 
 using test::moved;
 
-double boxDistance(const Vec3& p, const Vec3& half) {
+double distanceToBox(const Vec3& p, const Vec3& half) {
   const Vec3 q = p.cwiseAbs() - half;
   return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
 }
@@ -25,7 +25,7 @@ double boxDistance(const Vec3& p, const Vec3& half) {
 // Most of the body lies near its surface, and has no vote.
 TEST(SignVotes, TheDeepPartOfABodySpeaksForTheThinOne) {
   const auto disc = [](const Vec3& p) {
-    return std::min(boxDistance(p, Vec3(20, 20, 1.6)), p.norm() - 6);
+    return std::min(distanceToBox(p, Vec3(20, 20, 1.6)), p.norm() - 6);
   };
   const FieldGrid grid{Vec3(-28, -28, -14), 1, {57, 57, 29}};
   Progress progress;

@@ -10,23 +10,17 @@
 #include "field/build/distance_blocks.h"
 #include "field/sampling/field_sampler.h"
 #include "geometry/mesh/shapes.h"
+#include "support/changed_mesh.h"
 #include "support/node_values.h"
 #include "support/soup.h"
 
 namespace patina {
 namespace {
 
+using test::inverted;
+using test::moved;
+
 using Truth = std::function<double(const Vec3&)>; // signed distance [m]
-
-TriangleMesh inverted(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  for (Vec3& p : mesh.positions) p += by;
-  return mesh;
-}
 
 TriangleMesh withMovedCorners(const TriangleMesh& mesh, double by, unsigned seed) {
   std::mt19937 random(seed);
@@ -36,12 +30,12 @@ TriangleMesh withMovedCorners(const TriangleMesh& mesh, double by, unsigned seed
   return result;
 }
 
-constexpr double kRadius = 0.05;
+constexpr double kBallRadius = 0.05;
 double ballTruth(const Vec3& p) {
-  return p.norm() - kRadius;
+  return p.norm() - kBallRadius;
 }
-TriangleMesh ball() {
-  return icosphere(kRadius, 30);
+TriangleMesh ballMesh() {
+  return icosphere(kBallRadius, 30);
 }
 double torusTruth(const Vec3& p) {
   return std::hypot(std::hypot(p.x(), p.y()) - 0.04, p.z()) - 0.015;
@@ -59,7 +53,7 @@ struct Wrong {
   std::size_t ambiguous = 0;
 };
 
-constexpr double kSag = 0.05; // voxels; more than the facets of any mesh below
+constexpr double kFacetSag = 0.05; // voxels; more than the facets of any mesh below
 
 Wrong wrongSigns(const TriangleMesh& mesh, const Truth& truth, int resolution = 80,
                  unsigned seed = 1) {
@@ -77,7 +71,7 @@ Wrong wrongSigns(const TriangleMesh& mesh, const Truth& truth, int resolution = 
     for (int j = 0; j < grid.nodes[1]; ++j)
       for (int i = 0; i < grid.nodes[0]; ++i) {
         const double d = truth(grid.toWorld(Vec3(i, j, k))) / grid.voxel;
-        if (std::abs(d) < kSag) continue;
+        if (std::abs(d) < kFacetSag) continue;
         ++count;
         bad += (test::phiAt(*field, i, j, k) < 0) != (d < 0);
       }
@@ -108,7 +102,7 @@ void expectNone(const TriangleMesh& mesh, const Truth& truth) {
 // T-K01d
 TEST(Signs, NoneWrongNorAmbiguousOnClosedMeshes) {
   const std::vector<std::pair<TriangleMesh, Truth>> shapes{
-      {ball(), ballTruth},
+      {ballMesh(), ballTruth},
       {torus(0.04, 0.015, 120, 60), torusTruth},
       {box(Vec3(0.1, 0.07, 0.03), 1), boxTruth(Vec3(0.1, 0.07, 0.03))},
       {box(Vec3(0.1, 0.07, 0.03), 20), boxTruth(Vec3(0.1, 0.07, 0.03))}};
@@ -119,16 +113,16 @@ TEST(Signs, NoneWrongNorAmbiguousOnClosedMeshes) {
 }
 
 TEST(Signs, NoneWrongHoweverTheClosedMeshIsGiven) {
-  expectNone(inverted(ball()), ballTruth);
-  expectNone(soup(ball()), ballTruth);
+  expectNone(inverted(ballMesh()), ballTruth);
+  expectNone(soup(ballMesh()), ballTruth);
   expectNone(soup(inverted(torus(0.04, 0.015, 120, 60))), torusTruth);
-  expectNone(joined(ball(), ball()), ballTruth);
-  expectNone(joined(ball(), inverted(ball())), ballTruth);
+  expectNone(joined(ballMesh(), ballMesh()), ballTruth);
+  expectNone(joined(ballMesh(), inverted(ballMesh())), ballTruth);
 }
 
 TEST(Signs, NoneWrongInTheUnionOfOverlappingBodies) {
   const Vec3 by(0.03, 0.01, 0.005);
-  expectNone(joined(ball(), moved(ball(), by)), [by](const Vec3& p) {
+  expectNone(joined(ballMesh(), moved(ballMesh(), by)), [by](const Vec3& p) {
     // Inside both, the distance to the union's own surface does not matter: only its sign does.
     return std::min(ballTruth(p), ballTruth(p - by));
   });
@@ -137,7 +131,7 @@ TEST(Signs, NoneWrongInTheUnionOfOverlappingBodies) {
 TEST(Signs, CavityIsOutside) {
   const double inner = 0.03;
   const auto truth = [inner](const Vec3& p) { return std::max(ballTruth(p), inner - p.norm()); };
-  const TriangleMesh hollow = joined(ball(), inverted(icosphere(inner, 20)));
+  const TriangleMesh hollow = joined(ballMesh(), inverted(icosphere(inner, 20)));
   expectNone(hollow, truth);
   expectNone(inverted(hollow), truth);
   expectNone(withFlippedFaces(hollow, 0.2, 3), truth);
@@ -146,7 +140,7 @@ TEST(Signs, CavityIsOutside) {
 TEST(Signs, FewWrongWithHoles) {
   for (unsigned seed : {1U, 2U, 3U}) {
     const Wrong wrong =
-        wrongSigns(withHoles(ball(), 12, 0.1 * kRadius, seed), ballTruth, 150, seed);
+        wrongSigns(withHoles(ballMesh(), 12, 0.1 * kBallRadius, seed), ballTruth, 150, seed);
     EXPECT_LE(wrong.points, 0.001);
     EXPECT_LE(wrong.nodes, 0.003);
     EXPECT_GT(wrong.ambiguous, 0U);
@@ -154,7 +148,7 @@ TEST(Signs, FewWrongWithHoles) {
 }
 
 TEST(Signs, FewWrongWithHolesInADoubledMesh) {
-  const TriangleMesh mesh = withHoles(ball(), 12, 0.1 * kRadius, 1);
+  const TriangleMesh mesh = withHoles(ballMesh(), 12, 0.1 * kBallRadius, 1);
   for (const TriangleMesh& doubled : {joined(mesh, mesh), joined(mesh, inverted(mesh))}) {
     const Wrong wrong = wrongSigns(doubled, ballTruth, 150);
     EXPECT_LE(wrong.points, 0.001);
@@ -168,7 +162,7 @@ TEST(Signs, NoneWrongWithFlippedFaces) {
   const Vec3 size(0.1, 0.07, 0.03);
   for (double fraction : {0.05, 0.4, 0.5}) {
     for (const auto& [mesh, truth] :
-         std::vector<std::pair<TriangleMesh, Truth>>{{ball(), ballTruth},
+         std::vector<std::pair<TriangleMesh, Truth>>{{ballMesh(), ballTruth},
                                                      {torus(0.04, 0.015, 120, 60), torusTruth},
                                                      {box(size, 20), boxTruth(size)},
                                                      {soup(box(size, 20)), boxTruth(size)}}) {
@@ -182,7 +176,7 @@ TEST(Signs, NoneWrongWithFlippedFaces) {
 
 // No edge says which of these faces is wrong: the inside is lost, but not in silence.
 TEST(Signs, LooseFacesThatFaceAnywhereAreCounted) {
-  const TriangleMesh loose = withShrunkenTriangles(ball(), 0.002);
+  const TriangleMesh loose = withShrunkenTriangles(ballMesh(), 0.002);
   EXPECT_EQ(wrongSigns(loose, ballTruth).points, 0);
   EXPECT_GT(wrongSigns(withFlippedFaces(loose, 0.5, 1), ballTruth).ambiguous, 500U);
 }
@@ -190,14 +184,14 @@ TEST(Signs, LooseFacesThatFaceAnywhereAreCounted) {
 TEST(Signs, NoneWrongInTheUnionOfBodiesThatFaceOppositeWays) {
   const Vec3 by(0.03, 0.01, 0.005);
   const Truth both = [by](const Vec3& p) { return std::min(ballTruth(p), ballTruth(p - by)); };
-  expectNone(joined(ball(), inverted(moved(ball(), by))), both);
-  expectNone(joined(inverted(ball()), moved(ball(), by)), both);
-  expectNone(joined(inverted(ball()), inverted(moved(ball(), by))), both);
+  expectNone(joined(ballMesh(), inverted(moved(ballMesh(), by))), both);
+  expectNone(joined(inverted(ballMesh()), moved(ballMesh(), by)), both);
+  expectNone(joined(inverted(ballMesh()), inverted(moved(ballMesh(), by))), both);
 }
 
 TEST(Signs, FewWrongWithHolesAndFlippedFaces) {
-  const Wrong wrong =
-      wrongSigns(withFlippedFaces(withHoles(ball(), 12, 0.1 * kRadius, 4), 0.05, 5), ballTruth);
+  const Wrong wrong = wrongSigns(
+      withFlippedFaces(withHoles(ballMesh(), 12, 0.1 * kBallRadius, 4), 0.05, 5), ballTruth);
   EXPECT_LE(wrong.points, 0.003);
   EXPECT_LE(wrong.nodes, 0.003);
   EXPECT_GT(wrong.ambiguous, 0U);
@@ -206,7 +200,7 @@ TEST(Signs, FewWrongWithHolesAndFlippedFaces) {
 TEST(Signs, FewWrongWithCracks) {
   for (double fraction : {1e-6, 0.002, 0.01, 0.1}) {
     for (const auto& [mesh, truth] : std::vector<std::pair<TriangleMesh, Truth>>{
-             {ball(), ballTruth}, {torus(0.04, 0.015, 120, 60), torusTruth}}) {
+             {ballMesh(), ballTruth}, {torus(0.04, 0.015, 120, 60), torusTruth}}) {
       const Wrong wrong = wrongSigns(withShrunkenTriangles(mesh, fraction), truth);
       EXPECT_EQ(wrong.points, 0) << fraction;
       EXPECT_LE(wrong.nodes, 0.001) << fraction;
@@ -215,7 +209,7 @@ TEST(Signs, FewWrongWithCracks) {
   }
   for (unsigned seed : {1U, 2U}) { // corners off by 0.2 % of the radius: gaps and overlaps
     const Wrong wrong =
-        wrongSigns(withMovedCorners(ball(), 0.002 * kRadius, seed), ballTruth, 150, seed);
+        wrongSigns(withMovedCorners(ballMesh(), 0.002 * kBallRadius, seed), ballTruth, 150, seed);
     EXPECT_EQ(wrong.points, 0);
     EXPECT_LE(wrong.nodes, 0.002);
     EXPECT_TRUE(wrong.nodes == 0 || wrong.ambiguous > 0);
@@ -227,7 +221,7 @@ TEST(Signs, LargeFlippedFacesAreOutvoted) {
   FieldSpec spec;
   spec.resolution = 150;
   Progress progress;
-  const TriangleMesh mesh = icosphere(kRadius, 4);
+  const TriangleMesh mesh = icosphere(kBallRadius, 4);
   const auto sound = buildField(mesh, spec, progress).field;
   const auto flipped = buildField(withFlippedFaces(mesh, 0.05, 6), spec, progress).field;
   ASSERT_EQ(sound->blockCount(), flipped->blockCount());
@@ -294,7 +288,7 @@ TEST(Signs, UnstoredBlocksAndCoarseNodesAreSigned) {
   spec.resolution = 150;
   spec.band = 3;
   Progress progress;
-  const auto field = buildField(inverted(ball()), spec, progress).field;
+  const auto field = buildField(inverted(ballMesh()), spec, progress).field;
   std::size_t inside = 0;
   for (int z = 0; z < field->blocks[2]; ++z)
     for (int y = 0; y < field->blocks[1]; ++y)
@@ -320,7 +314,7 @@ TEST(Signs, UnstoredBlocksAndCoarseNodesAreSigned) {
 }
 
 TEST(Signs, AreTheSameEveryTime) {
-  const TriangleMesh mesh = withFlippedFaces(withHoles(ball(), 12, 0.006, 7), 0.05, 8);
+  const TriangleMesh mesh = withFlippedFaces(withHoles(ballMesh(), 12, 0.006, 7), 0.05, 8);
   FieldSpec spec;
   spec.resolution = 80;
   Progress progress;
@@ -333,7 +327,7 @@ TEST(Signs, AreTheSameEveryTime) {
 }
 
 TEST(Signs, CanBeCancelled) {
-  const TriangleMesh mesh = ball();
+  const TriangleMesh mesh = ballMesh();
   const TriangleTree tree(mesh);
   const WindingNumber winding(mesh);
   FieldSpec spec;

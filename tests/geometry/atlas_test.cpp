@@ -90,7 +90,7 @@ TriangleMesh noisy(TriangleMesh mesh, double amplitude) {
   return mesh;
 }
 
-TriangleMesh oneTriangle() {
+TriangleMesh rightTriangle() {
   return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.3, 0.7, 0.2)}, {{0, 1, 2}}, {}};
 }
 
@@ -108,7 +108,7 @@ TriangleMesh junctions() {
 
 TEST(MadeAtlas, KeepsItsPromisesOnEveryKindOfMesh) {
   const std::vector<std::pair<const char*, TriangleMesh>> meshes = {
-      {"triangle", oneTriangle()},
+      {"triangle", rightTriangle()},
       {"sphere", icosphere(1, 8)},
       {"torus", torus(1, 0.4, 36, 18)},
       {"vase", vase(0.12, 0.004, 24, 12)},
@@ -216,10 +216,10 @@ TEST(MadeAtlas, MeshesWithoutAnyAreaAndEmptyOnesAreFinite) {
 }
 
 TEST(MadeAtlas, TakesSizesFrom16To16384) {
-  EXPECT_THROW(madeAtlas(oneTriangle(), 15), std::invalid_argument);
-  EXPECT_THROW(madeAtlas(oneTriangle(), 16385), std::invalid_argument);
-  expectAtlas(oneTriangle(), madeAtlas(oneTriangle(), 16), 16);
-  expectAtlas(oneTriangle(), madeAtlas(oneTriangle(), 16384), 16384);
+  EXPECT_THROW(madeAtlas(rightTriangle(), 15), std::invalid_argument);
+  EXPECT_THROW(madeAtlas(rightTriangle(), 16385), std::invalid_argument);
+  expectAtlas(rightTriangle(), madeAtlas(rightTriangle(), 16), 16);
+  expectAtlas(rightTriangle(), madeAtlas(rightTriangle(), 16384), 16384);
   expectAtlas(box(Vec3(1, 1, 1)), madeAtlas(box(Vec3(1, 1, 1)), 32), 32);
 }
 

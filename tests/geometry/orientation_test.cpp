@@ -5,25 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "geometry/mesh/shapes.h"
+#include "support/changed_mesh.h"
 
 namespace patina {
 namespace {
+
+using test::inverted;
+using test::moved;
 
 TriangleMesh turned(TriangleMesh mesh, const std::vector<std::int32_t>& faces) {
   for (const std::int32_t f : faces) {
     Triangle& t = mesh.triangles[static_cast<std::size_t>(f)];
     std::swap(t[1], t[2]);
   }
-  return mesh;
-}
-
-TriangleMesh inverted(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  for (Vec3& p : mesh.positions) p += by;
   return mesh;
 }
 

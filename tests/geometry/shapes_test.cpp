@@ -1,16 +1,16 @@
 // Shapes and mesh measures against closed forms.
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/shapes.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
 
 TEST(Shapes, IcosphereHasTwentyFSquaredFacesOnTheSphere) {
   for (const int f : {1, 2, 7, 22}) {

@@ -19,16 +19,16 @@ Vec2 centre(int i, int j, int width, int height) {
   return {(i + 0.5) / width, (j + 0.5) / height};
 }
 
-double cross(const Vec2& a, const Vec2& b) {
+double cross2(const Vec2& a, const Vec2& b) {
   return a[0] * b[1] - a[1] * b[0];
 }
 
 // Strictly inside, with room to both sides for rounding.
 bool insideBy(const Corners& uv, const Vec2& p, double margin) {
-  double sign = cross(uv[1] - uv[0], uv[2] - uv[0]) < 0 ? -1 : 1;
+  double sign = cross2(uv[1] - uv[0], uv[2] - uv[0]) < 0 ? -1 : 1;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 along = uv[(k + 1) % 3] - uv[k];
-    if (sign * cross(along, p - uv[k]) < margin * along.norm()) return false;
+    if (sign * cross2(along, p - uv[k]) < margin * along.norm()) return false;
   }
   return true;
 }

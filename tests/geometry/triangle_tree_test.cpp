@@ -73,7 +73,7 @@ BruteForce bruteForce(const TriangleMesh& mesh, const Vec3& p) {
   return best;
 }
 
-void expectAgreement(const TriangleMesh& mesh, const std::vector<Vec3>& points, double tolerance) {
+void expectClosest(const TriangleMesh& mesh, const std::vector<Vec3>& points, double tolerance) {
   const TriangleTree tree(mesh);
   for (const Vec3& p : points) {
     const BruteForce truth = bruteForce(mesh, p);
@@ -97,30 +97,30 @@ std::vector<Vec3> randomPoints(int count, double half, const Vec3& centre = Vec3
 }
 
 TEST(TriangleTree, AgreesWithBruteForceOnRandomPoints) {
-  expectAgreement(soup(500, 0.2, 1), randomPoints(500, 1.5), 1e-14);
-  expectAgreement(soup(300, 2, 2), randomPoints(300, 4), 1e-14); // large, crossing triangles
-  expectAgreement(torus(1, 0.3, 40, 20), randomPoints(300, 1.5), 1e-14);
+  expectClosest(soup(500, 0.2, 1), randomPoints(500, 1.5), 1e-14);
+  expectClosest(soup(300, 2, 2), randomPoints(300, 4), 1e-14); // large, crossing triangles
+  expectClosest(torus(1, 0.3, 40, 20), randomPoints(300, 1.5), 1e-14);
 }
 
 TEST(TriangleTree, AgreesWithBruteForceOnVerticesAndFarAway) {
   const TriangleMesh mesh = icosphere(1, 6);
-  expectAgreement(mesh, mesh.positions, 1e-14);
-  expectAgreement(mesh, randomPoints(100, 1000), 1e-11);
-  expectAgreement(mesh, randomPoints(20, 1e9), 2e-2);
+  expectClosest(mesh, mesh.positions, 1e-14);
+  expectClosest(mesh, randomPoints(100, 1000), 1e-11);
+  expectClosest(mesh, randomPoints(20, 1e9), 2e-2);
 }
 
 TEST(TriangleTree, AgreesWithBruteForceOnDegenerateTriangles) {
-  expectAgreement(degenerate(), randomPoints(500, 2.5), 1e-13);
+  expectClosest(degenerate(), randomPoints(500, 2.5), 1e-13);
   const Vec3 p(1, 2, 3);
-  expectAgreement(oneTriangle(p, p, p), randomPoints(20, 4), 1e-14);
-  expectAgreement(oneTriangle({0, 0, 0}, {1000, 0, 0}, {0, 1e-3, 0}),
-                  randomPoints(100, 3, {500, 0, 0}), 1e-10);
+  expectClosest(oneTriangle(p, p, p), randomPoints(20, 4), 1e-14);
+  expectClosest(oneTriangle({0, 0, 0}, {1000, 0, 0}, {0, 1e-3, 0}),
+                randomPoints(100, 3, {500, 0, 0}), 1e-10);
 }
 
 // Nodes that are not full, nodes that hold both nodes and triangles, a root without nodes.
 TEST(TriangleTree, AgreesWithBruteForceForAnyNumberOfTriangles) {
   for (const int count : {1, 2, 7, 8, 9, 15, 16, 17, 63, 64, 65, 511, 513, 777, 1500})
-    expectAgreement(soup(count, 0.1, static_cast<unsigned>(count)), randomPoints(50, 1.5), 1e-14);
+    expectClosest(soup(count, 0.1, static_cast<unsigned>(count)), randomPoints(50, 1.5), 1e-14);
   TriangleMesh shrinking; // splits peel off a few at a time
   for (int i = 0; i < 3000; ++i) {
     const double s = std::exp2(-0.01 * i);
@@ -128,19 +128,19 @@ TEST(TriangleTree, AgreesWithBruteForceForAnyNumberOfTriangles) {
       shrinking.positions.push_back(s * p);
     shrinking.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  expectAgreement(shrinking, randomPoints(50, 1), 1e-11); // up to there the small ones tie
+  expectClosest(shrinking, randomPoints(50, 1), 1e-11); // up to there the small ones tie
 }
 
 TEST(TriangleTree, AgreesWithBruteForceAtAnySizeAndPlace) {
   for (const double scale : {1e-9, 1.0, 1e9}) {
     TriangleMesh mesh = soup(300, 0.2, 41);
     for (Vec3& p : mesh.positions) p *= scale;
-    expectAgreement(mesh, randomPoints(100, 1.5 * scale), 1e-14 * scale);
+    expectClosest(mesh, randomPoints(100, 1.5 * scale), 1e-14 * scale);
   }
   TriangleMesh moved = soup(300, 0.2, 42);
   const Vec3 offset(1e6, -1e6, 1e6);
   for (Vec3& p : moved.positions) p += offset;
-  expectAgreement(moved, randomPoints(100, 1.5, offset), 2e-9); // the oracle's own rounding
+  expectClosest(moved, randomPoints(100, 1.5, offset), 2e-9); // the oracle's own rounding
 }
 
 TEST(TriangleTree, AgreesWithBruteForceOnNeedles) {
@@ -151,7 +151,7 @@ TEST(TriangleTree, AgreesWithBruteForceOnNeedles) {
     const double width = std::pow(10.0, -i % 13);
     mesh = joined(mesh, oneTriangle(a, b, 0.5 * (a + b) + width * (b - a).unitOrthogonal()));
   }
-  expectAgreement(mesh, randomPoints(500, 1.5), 1e-12);
+  expectClosest(mesh, randomPoints(500, 1.5), 1e-12);
 }
 
 // Pairs of the same triangle, the other way round and from another corner.

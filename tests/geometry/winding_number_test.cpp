@@ -7,21 +7,19 @@
 #include <gtest/gtest.h>
 
 #include "geometry/mesh/shapes.h"
+#include "support/changed_mesh.h"
 
 namespace patina {
 namespace {
 
-TriangleMesh inverted(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
+using test::inverted;
 
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by, double scale = 1) {
+TriangleMesh scaledAndMoved(TriangleMesh mesh, const Vec3& by, double scale = 1) {
   for (Vec3& p : mesh.positions) p = scale * p + by;
   return mesh;
 }
 
-std::vector<Vec3> randomPoints(const Box3& box, int count, unsigned seed) {
+std::vector<Vec3> randomPointsAbout(const Box3& box, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-0.1, 1.1);
   std::vector<Vec3> points;
@@ -69,17 +67,18 @@ TEST(WindingNumber, BruteForceIsOneInsideAndZeroOutside) {
 TEST(WindingNumber, AgreesWithTheExactSumOnClosedMeshes) {
   for (const TriangleMesh& mesh :
        {icosphere(0.05, 12), torus(0.04, 0.015, 60, 30), box(Vec3(0.1, 0.02, 0.001), 8)}) {
-    EXPECT_LT(worstError(mesh, randomPoints(bounds(mesh), 400, 1)), 1e-2);
+    EXPECT_LT(worstError(mesh, randomPointsAbout(bounds(mesh), 400, 1)), 1e-2);
     EXPECT_LT(worstError(mesh, pointsNear(mesh, 400, 2)), 1e-2);
   }
 }
 
 TEST(WindingNumber, AgreesWithTheExactSumOnDefectiveMeshes) {
   const TriangleMesh ball = icosphere(0.05, 12);
-  for (const TriangleMesh& mesh : {withHoles(ball, 12, 0.01, 3), withFlippedFaces(ball, 0.3, 4),
-                                   withShrunkenTriangles(ball, 0.2), sheet(0.1, 0.1, 20),
-                                   joined(ball, moved(ball, Vec3(0.03, 0.01, 0))), galleon(0.1)}) {
-    EXPECT_LT(worstError(mesh, randomPoints(bounds(mesh), 300, 5)), 1e-2);
+  for (const TriangleMesh& mesh :
+       {withHoles(ball, 12, 0.01, 3), withFlippedFaces(ball, 0.3, 4),
+        withShrunkenTriangles(ball, 0.2), sheet(0.1, 0.1, 20),
+        joined(ball, scaledAndMoved(ball, Vec3(0.03, 0.01, 0))), galleon(0.1)}) {
+    EXPECT_LT(worstError(mesh, randomPointsAbout(bounds(mesh), 300, 5)), 1e-2);
     EXPECT_LT(worstError(mesh, pointsNear(mesh, 300, 6)), 1e-2);
   }
 }
@@ -87,7 +86,7 @@ TEST(WindingNumber, AgreesWithTheExactSumOnDefectiveMeshes) {
 // Second order: the error of an expansion falls with the third power of the distance ratio.
 TEST(WindingNumber, AccuracyBuysSmallerErrors) {
   const TriangleMesh mesh = withHoles(icosphere(0.05, 20), 12, 0.01, 7);
-  const std::vector<Vec3> points = randomPoints(bounds(mesh), 400, 8);
+  const std::vector<Vec3> points = randomPointsAbout(bounds(mesh), 400, 8);
   const double coarse = worstError(mesh, points, 1.5);
   const double fine = worstError(mesh, points, 4);
   EXPECT_LT(fine, coarse / 8);
@@ -108,8 +107,8 @@ TEST(WindingNumber, NothingDependsOnPlaceOrSize) {
   const WindingNumber here(mesh);
   for (const auto& [by, scale] : {std::pair(Vec3(1e6, -1e6, 1e6), 1.0),
                                   std::pair(Vec3(0, 0, 0), 1e-9), std::pair(Vec3(1, 2, 3), 1e9)}) {
-    const WindingNumber there(moved(mesh, by, scale));
-    for (const Vec3& p : randomPoints(bounds(mesh), 200, 9)) {
+    const WindingNumber there(scaledAndMoved(mesh, by, scale));
+    for (const Vec3& p : randomPointsAbout(bounds(mesh), 200, 9)) {
       if (std::abs(p.norm() - 1) < 0.02) continue; // between facets and sphere
       EXPECT_NEAR(there.at(scale * p + by), here.at(p), 1e-2);
     }
@@ -125,7 +124,7 @@ TEST(WindingNumber, InvertedMeshHasTheOppositeSign) {
 
 TEST(WindingNumber, OverlappingBodiesAdd) {
   const TriangleMesh mesh = icosphere(0.05, 8);
-  const WindingNumber winding(joined(mesh, moved(mesh, Vec3(0.04, 0, 0))));
+  const WindingNumber winding(joined(mesh, scaledAndMoved(mesh, Vec3(0.04, 0, 0))));
   EXPECT_NEAR(winding.at(Vec3(0.02, 0, 0)), 2, 1e-2);
   EXPECT_NEAR(winding.at(Vec3(-0.03, 0, 0)), 1, 1e-2);
 }
@@ -153,7 +152,7 @@ TEST(WindingNumber, BodyJoinedWithItsInverseStillHasAnInside) {
 // The wall between two touching boxes is there twice, facing both ways: it must cancel.
 TEST(WindingNumber, WallBetweenTouchingBodiesCancels) {
   const TriangleMesh half = box(Vec3(1, 1, 1), 2);
-  const TriangleMesh mesh = joined(half, moved(half, Vec3(1, 0, 0)));
+  const TriangleMesh mesh = joined(half, scaledAndMoved(half, Vec3(1, 0, 0)));
   const WindingNumber winding(mesh);
   for (const Vec3& p : {Vec3(0.4, 0.1, 0.2), Vec3(0.6, 0.1, 0.2), Vec3(-0.3, 0, 0)})
     EXPECT_NEAR(winding.at(p), 1, 1e-2);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPeriod = 1000; // [us]
 constexpr double kSeconds = 9;
-constexpr double kRadius = 0.03;
+constexpr double kDrawnRadius = 0.03;
 
 // Rests in the surface and notes, tick by tick, what its servo thread waited for a processor.
 class WatchedDevice final : public Device {
@@ -47,7 +47,7 @@ class WatchedDevice final : public Device {
   }
 
  private:
-  std::unique_ptr<Device> rest_ = std::make_unique<StillDevice>(Vec3(0.99 * kRadius, 0, 0));
+  std::unique_ptr<Device> rest_ = std::make_unique<StillDevice>(Vec3(0.99 * kDrawnRadius, 0, 0));
   std::optional<RunQueueWait> wait_;
   std::int64_t before_ = 0;
   bool known_ = true;
@@ -149,7 +149,7 @@ class ServoUnderDrawing : public WindowTest {
 // other programs are late for both. Without real-time priority every program is in the way, by
 // chance: then it is only looked at that no tick is lost.
 TEST_F(ServoUnderDrawing, WakesInTimeWhileTheWindowDraws500000Triangles) {
-  ASSERT_TRUE(open(saved(icosphere(kRadius, 158), "sphere.ply"))); // 499,280 triangles
+  ASSERT_TRUE(open(saved(icosphere(kDrawnRadius, 158), "sphere.ply"))); // 499,280 triangles
   double least = 1e9;
   for (int round = 0; round < 3 && least > 1; ++round) {
     const Pass pass = draw();

@@ -58,8 +58,8 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   auto* plot = window_->findChild<ProfilePlot*>();
   const QImage before = plot->grab().toImage();
   choice->setFocus();
-  constexpr std::uint32_t kDown = 0xff54;
-  type(kDown);
+  constexpr std::uint32_t kAway = 0xff54;
+  type(kAway);
   wait(100);
   EXPECT_EQ(choice->currentIndex(), 1);
   EXPECT_NE(plot->grab().toImage(), before);

@@ -12,14 +12,14 @@
 namespace patina {
 namespace {
 
-constexpr double kRadius = 0.03;
+constexpr double kBall = 0.03;
 
 class TouchPanels : public WindowTest {
  protected:
   void SetUp() override {
     WindowTest::SetUp();
     if (IsSkipped()) return;
-    ASSERT_TRUE(open(saved(icosphere(kRadius, 30), "sphere.obj")));
+    ASSERT_TRUE(open(saved(icosphere(kBall, 30), "sphere.obj")));
   }
   void click(const char* name) {
     find<QToolButton>(name)->click();
@@ -68,10 +68,10 @@ TEST_F(TouchPanels, AnOffsetIsFeltOutsideAndContactIsSeenOnTheSurface) { // K12
   pressMiddle(2);
   const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
-  const double depth = kRadius + 1e-3 - sample.tip.norm();
+  const double depth = kBall + 1e-3 - sample.tip.norm();
   EXPECT_GT(depth, 3e-4);
-  EXPECT_NEAR(sample.vcp.norm(), kRadius + 1e-3, 1e-4);
-  EXPECT_NEAR(sample.surface.norm(), kRadius, 1e-4);
+  EXPECT_NEAR(sample.vcp.norm(), kBall + 1e-3, 1e-4);
+  EXPECT_NEAR(sample.surface.norm(), kBall, 1e-4);
   EXPECT_NEAR(sample.force.norm(), 500 * depth, 0.05);
 }
 
@@ -162,7 +162,7 @@ TEST_F(TouchPanels, EnergyGoesInAsTheTipDoes) {
   wait(500);
   const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
-  const double depth = kRadius - sample.tip.norm();
+  const double depth = kBall - sample.tip.norm();
   const double spring = 0.5 * 500 * depth * depth;
   EnergyMeter meter;
   for (const ToolSample& tick : feel().log().samples()) meter.add(tick);

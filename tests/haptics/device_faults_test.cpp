@@ -9,13 +9,11 @@
 #include "haptics/contact/plane.h"
 #include "haptics/falcon_support.h"
 #include "haptics/servo/cross_fade.h"
+#include "support/constants.h"
 #include "support/longer.h"
 
 namespace patina::test {
 namespace {
-
-constexpr double kTick = 1e-3;
-const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 enum class Situation { free, contact, stroke };
 const char* name(Situation situation) {
@@ -60,7 +58,7 @@ class FeltFalcon {
       force_.setZero();
       return law_.lose();
     }
-    const Contact contact = law_.tick(state.position, kTick);
+    const Contact contact = law_.tick(state.position, kPeriod);
     force_ = contact.force;
     ++felt;
     // What is felt was measured just now, or says how long ago.

@@ -7,7 +7,7 @@
 namespace patina {
 namespace {
 
-constexpr double kPeriod = 0x1p-10;
+constexpr double kDyadicPeriod = 0x1p-10;
 
 // Says what the test tells it to, and keeps what it was sent.
 struct Script {
@@ -31,7 +31,7 @@ struct Mounted {
       : device(mountDevice(std::make_unique<ScriptedDevice>(script), spec, controls)) {}
   Vec3 tip(const Vec3& hand, const Vec3& force = Vec3::Zero()) {
     script.state.position = hand;
-    return device->exchange(force, kPeriod).position;
+    return device->exchange(force, kDyadicPeriod).position;
   }
   Script script;
   std::shared_ptr<MountControls> controls = std::make_shared<MountControls>();
@@ -55,7 +55,7 @@ TEST(DeviceMount, ANeutralOneChangesNoBit) {
   const Vec3 hand(0.1, -0.7, 1e-7), force(0.3, -1e-9, 17);
   EXPECT_EQ(mounted.tip(hand, force), hand);
   EXPECT_EQ(mounted.script.force, force);
-  const DeviceState state = mounted.device->exchange(force, kPeriod);
+  const DeviceState state = mounted.device->exchange(force, kDyadicPeriod);
   EXPECT_EQ(*state.velocity, Vec3(0.1, 0.2, 0.3));
   EXPECT_EQ(state.orientation.coeffs(), mounted.script.state.orientation.coeffs());
   EXPECT_EQ(state.buttons, 5u);
@@ -65,7 +65,7 @@ TEST(DeviceMount, TurnsScalesAndPlacesTheTip) {
   Mounted mounted(turned(4));
   mounted.script.state.velocity = Vec3(1, 0, 2);
   EXPECT_EQ(mounted.tip(Vec3(1, 2, 3)), Vec3(0.5 - 8, 0.25 + 4, -0.125 + 12));
-  const DeviceState state = mounted.device->exchange(Vec3::Zero(), kPeriod);
+  const DeviceState state = mounted.device->exchange(Vec3::Zero(), kDyadicPeriod);
   EXPECT_EQ(*state.velocity, Vec3(0, 4, 8));
   EXPECT_LT((state.orientation * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
 }
@@ -101,7 +101,7 @@ TEST(DeviceMount, UnderAClutchTheTipStaysAndGoesOnFromThereWithoutAJump) {
   mounted.script.state.velocity = Vec3(1, 1, 1);
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(mounted.tip(Vec3(0.01 + 0.001 * i, 0.3, -0.002 * i)), held);
-    EXPECT_EQ(*mounted.device->exchange(Vec3::Zero(), kPeriod).velocity, Vec3::Zero());
+    EXPECT_EQ(*mounted.device->exchange(Vec3::Zero(), kDyadicPeriod).velocity, Vec3::Zero());
   }
   mounted.controls->clutched = false;
   const Vec3 hand(0.25, 0.5, 0.75);
@@ -142,7 +142,8 @@ TEST(DeviceMount, WithoutEnableOrUnderAClutchNoForceIsSentAndItComesBackEvenly) 
     if (rests) mounted.tip(Vec3::Zero(), force); // is still held by the last reading
     for (int i = 1; i < 200; ++i) {
       mounted.tip(Vec3::Zero(), force);
-      EXPECT_NEAR(mounted.script.force.z(), 2 * std::min(1.0, i * kPeriod / kMountFadeTime), 1e-12);
+      EXPECT_NEAR(mounted.script.force.z(), 2 * std::min(1.0, i * kDyadicPeriod / kMountFadeTime),
+                  1e-12);
     }
   }
 }
@@ -161,7 +162,8 @@ TEST(DeviceMount, PassesAFailureOnAndIsNotSpoiledByIt) {
   mounted.tip(Vec3::Constant(std::nan("")));
   mounted.script.state.status = DeviceStatus::calibrating;
   mounted.script.state.position = Vec3(9, 9, 9);
-  EXPECT_EQ(mounted.device->exchange(Vec3::Zero(), kPeriod).status, DeviceStatus::calibrating);
+  EXPECT_EQ(mounted.device->exchange(Vec3::Zero(), kDyadicPeriod).status,
+            DeviceStatus::calibrating);
   mounted.script.state.status = DeviceStatus::ok;
   mounted.controls->clutched = false;
   EXPECT_EQ(mounted.tip(Vec3(0.02, 0, 0)), held);

@@ -13,12 +13,13 @@
 #include "core/error.h"
 #include "haptics/devices/replayed_hand.h"
 #include "haptics/devices/simulated_hand.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPeriod = 1e-3;
-const double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kNan;
+using test::kPeriod;
 
 std::shared_ptr<TipTarget> targetAt(const Vec3& place) {
   return std::make_shared<TipTarget>(place);

@@ -115,7 +115,7 @@ struct Firmware {
   fs::path file;
 };
 
-std::string causeOf(const std::function<void()>& call) {
+std::string fileErrorOf(const std::function<void()>& call) {
   try {
     call();
   } catch (const FileError& error) {
@@ -132,19 +132,19 @@ TEST(FalconFirmware, IsTheUsersFileOfTheRightSizeThatSomebodyVouchesFor) {
   const std::string digest = sha256(text);
   EXPECT_EQ(readFalconFirmware(good.file, digest), madeUpFirmware());
   EXPECT_EQ(readFalconFirmware(good.file, "any"), madeUpFirmware());
-  EXPECT_EQ(causeOf([&] { (void)readFalconFirmware(small.file, "any"); }),
+  EXPECT_EQ(fileErrorOf([&] { (void)readFalconFirmware(small.file, "any"); }),
             small.file.string() + ": is no firmware of a Falcon: it has 7000 bytes, a firmware "
                                   "has 7324 to 8492");
-  EXPECT_EQ(causeOf([&] { (void)readFalconFirmware(good.file, ""); }),
+  EXPECT_EQ(fileErrorOf([&] { (void)readFalconFirmware(good.file, ""); }),
             name +
                 ": nobody has vouched for this firmware: if its SHA-256 is that of the maker's "
                 "file, set PATINA_FALCON_SHA256=" +
                 digest);
   const std::string other(64, '0');
-  EXPECT_EQ(causeOf([&] { (void)readFalconFirmware(good.file, other); }),
+  EXPECT_EQ(fileErrorOf([&] { (void)readFalconFirmware(good.file, other); }),
             name + ": is another firmware than the one vouched for: its SHA-256 is " + digest +
                 ", PATINA_FALCON_SHA256 is " + other);
-  EXPECT_NE(causeOf([&] { (void)readFalconFirmware("/nowhere/at/all", "any"); }), "");
+  EXPECT_NE(fileErrorOf([&] { (void)readFalconFirmware("/nowhere/at/all", "any"); }), "");
 }
 
 TEST(FalconBringUp, AFirmwareThatRunsIsNotLoadedAgain) {

@@ -1,5 +1,6 @@
 // What the guard lets through, and when: held against closed forms.
 #include "haptics/devices/link/force_guard.h"
+#include "support/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@
 namespace patina {
 namespace {
 
-constexpr double kTick = 1e-3;
+using test::kPeriod;
 
 DeviceState at(const Vec3& place, std::uint32_t buttons = 0) {
   DeviceState state{place};
@@ -20,7 +21,7 @@ DeviceState at(const Vec3& place, std::uint32_t buttons = 0) {
 // A guard whose ramp is over.
 ForceGuard opened(const GuardSpec& spec, const DeviceState& state = at(Vec3::Zero())) {
   ForceGuard guard(spec);
-  for (int i = 0; i < 300; ++i) guard.pass({}, state, kTick);
+  for (int i = 0; i < 300; ++i) guard.pass({}, state, kPeriod);
   EXPECT_EQ(guard.gain(), 1);
   return guard;
 }
@@ -52,11 +53,11 @@ TEST(ForceGuard, EachFaultTakesTheForceAtOnceAndItComesBackEvenlyOverTheRamp) {
         Case{Hold::command, {Vec3(0, 0, HUGE_VAL)}, good},
         Case{Hold::let_go, {force, 0, 0, true}, at(Vec3::Zero())}}) {
     ForceGuard guard = opened(spec, good);
-    EXPECT_EQ(guard.pass({force, 0, 0, true}, good, kTick), force);
-    EXPECT_EQ(guard.pass(fault.asked, fault.state, kTick), Vec3::Zero()) << text(fault.hold);
+    EXPECT_EQ(guard.pass({force, 0, 0, true}, good, kPeriod), force);
+    EXPECT_EQ(guard.pass(fault.asked, fault.state, kPeriod), Vec3::Zero()) << text(fault.hold);
     EXPECT_EQ(guard.hold(), fault.hold);
     for (int i = 1; i <= 250; ++i) {
-      const Vec3 sent = guard.pass({force}, good, kTick);
+      const Vec3 sent = guard.pass({force}, good, kPeriod);
       ASSERT_LT((sent - i / 250.0 * force).norm(), 1e-12) << i;
     }
     EXPECT_EQ(guard.hold(), Hold::none);
@@ -74,7 +75,7 @@ TEST(ForceGuard, NoForcePushesOutOfTheWorkspaceButEveryForcePullsBack) {
   ForceGuard guard = opened(spec);
   for (const double side : {-1.0, 1.0}) {
     const auto sent = [&](double over, double push) {
-      return guard.pass({Vec3(side * push, 2, 0)}, at(Vec3(side * (0.05 + over), 0, 0)), kTick);
+      return guard.pass({Vec3(side * push, 2, 0)}, at(Vec3(side * (0.05 + over), 0, 0)), kPeriod);
     };
     EXPECT_EQ(sent(-1e-3, 1), Vec3(side, 2, 0));
     EXPECT_LT((sent(1e-3, 1) - Vec3(0.5 * side, 2, 0)).norm(), 1e-9); // half of the edge's 2 mm
@@ -85,11 +86,11 @@ TEST(ForceGuard, NoForcePushesOutOfTheWorkspaceButEveryForcePullsBack) {
 
 TEST(ForceGuard, TheHandlesWeightIsBorneAndCountsForTheLimit) {
   ForceGuard guard = opened({.max_force = 2, .weight = Vec3(0, 1, 0)});
-  EXPECT_EQ(guard.pass({Vec3(0.5, 0, 0)}, at(Vec3::Zero()), kTick), Vec3(0.5, 1, 0));
-  EXPECT_NEAR(guard.pass({Vec3(0, 9, 0)}, at(Vec3::Zero()), kTick).norm(), 2, 1e-12);
+  EXPECT_EQ(guard.pass({Vec3(0.5, 0, 0)}, at(Vec3::Zero()), kPeriod), Vec3(0.5, 1, 0));
+  EXPECT_NEAR(guard.pass({Vec3(0, 9, 0)}, at(Vec3::Zero()), kPeriod).norm(), 2, 1e-12);
   DeviceState away;
   away.status = DeviceStatus::away;
-  EXPECT_EQ(guard.pass({}, away, kTick), Vec3::Zero());
+  EXPECT_EQ(guard.pass({}, away, kPeriod), Vec3::Zero());
 }
 
 // dh/dt = ((F/c)^2 - h) / T under a constant force has h = (F/c)^2 (1 - exp(-t/T)).
@@ -98,8 +99,8 @@ TEST(ForceGuard, MotorsWarmAsTheirModelSays) {
   ForceGuard guard = opened(spec);
   const double load = 2.0 / 3;
   for (int i = 1; i <= 4000; ++i) {
-    guard.pass({Vec3(0, 2, 0)}, at(Vec3::Zero()), kTick);
-    ASSERT_NEAR(guard.heat(), load * load * (1 - std::exp(-i * kTick / 5)), 1e-9);
+    guard.pass({Vec3(0, 2, 0)}, at(Vec3::Zero()), kPeriod);
+    ASSERT_NEAR(guard.heat(), load * load * (1 - std::exp(-i * kPeriod / 5)), 1e-9);
   }
 }
 
@@ -108,16 +109,16 @@ TEST(ForceGuard, HotMotorsGetLessSmoothlyAndNeverPassTheirHeat) {
   ForceGuard guard = opened(spec);
   double before = 6;
   for (int i = 0; i < 60000; ++i) { // an hour's worth of time constants
-    const double sent = guard.pass({Vec3(0, 0, -50)}, at(Vec3::Zero()), kTick).norm();
+    const double sent = guard.pass({Vec3(0, 0, -50)}, at(Vec3::Zero()), kPeriod).norm();
     ASSERT_LE(guard.heat(), 1);
     ASSERT_LE(sent, before + 1e-9);      // ever less
     ASSERT_GE(sent, before - 0.05) << i; // and no step that is felt
     before = sent;
   }
   EXPECT_NEAR(before, 3, 0.05);
-  for (int i = 0; i < 10000; ++i) guard.pass({}, at(Vec3::Zero()), kTick);
+  for (int i = 0; i < 10000; ++i) guard.pass({}, at(Vec3::Zero()), kPeriod);
   EXPECT_LT(guard.heat(), 0.01); // rested, it has all of it again
-  EXPECT_NEAR(guard.pass({Vec3(0, 0, -50)}, at(Vec3::Zero()), kTick).norm(), 6, 1e-9);
+  EXPECT_NEAR(guard.pass({Vec3(0, 0, -50)}, at(Vec3::Zero()), kPeriod).norm(), 6, 1e-9);
 }
 
 TEST(ForceGuard, RefusesWhatIsNoGuard) {

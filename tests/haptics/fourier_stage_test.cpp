@@ -1,6 +1,5 @@
 // Fourier textures as they are felt (A22 to A25), against closed forms on a plane.
 #include <array>
-#include <numbers>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -8,11 +7,12 @@
 #include "geometry/tree/triangle_tree.h"
 #include "haptics/painted_fixture.h"
 #include "haptics/stability/painted_range.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
 
 FourierTexture waves(double length, const std::vector<double>& cosines,
                      std::optional<double> compliance = {}) {

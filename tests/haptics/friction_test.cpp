@@ -2,25 +2,25 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <vector>
 
 #include "haptics/neutral_stages.h"
 #include "haptics/stages/friction_stage.h"
+#include "support/constants.h"
 #include "support/simulated_device.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kPeriod = 1e-3;
+using test::kPeriod;
+using test::kPi;
 
 double tangential(const Contact& contact) {
   return Vec3(contact.force - contact.force.dot(contact.normal) * contact.normal).norm();
 }
 
 // In contact at (0, 0, -depth), at rest.
-ContactMemory pressed(const HapticSnapshot& snapshot, double depth) {
+ContactMemory pressedMemory(const HapticSnapshot& snapshot, double depth) {
   ContactMemory memory;
   tick(snapshot, memory, Vec3(0, 0, 1e-4), kPeriod);
   tick(snapshot, memory, Vec3(0, 0, -depth), kPeriod);
@@ -31,7 +31,7 @@ ContactMemory pressed(const HapticSnapshot& snapshot, double depth) {
 TEST(Friction, IsElasticThenPlasticOnAPlane) {
   const double K = 500, mu = 0.4, d = 2e-3;
   const auto snapshot = compileStages(withFriction(sceneOf(K), mu, mu), planeField());
-  ContactMemory memory = pressed(*snapshot, d);
+  ContactMemory memory = pressedMemory(*snapshot, d);
   for (double s = 0; s < 3e-3; s += 0.01e-3) {
     const Contact contact = tick(*snapshot, memory, Vec3(s, 0, -d), kPeriod);
     EXPECT_NEAR(contact.force.x(), -std::min(K * s, mu * K * d), 1e-6) << s;
@@ -46,7 +46,7 @@ TEST(Friction, SlipPersistsAtTheDynamicCoefficient) {
     Scene scene = withFriction(sceneOf(K), 0.5, 0.3);
     scene.haptics.friction->slip = slip;
     const auto snapshot = compileStages(scene, planeField());
-    ContactMemory memory = pressed(*snapshot, d);
+    ContactMemory memory = pressedMemory(*snapshot, d);
     double s = 0, peak = 0;
     for (; s < 4e-3; s += 0.01e-3) {
       const Contact contact = tick(*snapshot, memory, Vec3(s, 0, -d), kPeriod);
@@ -68,7 +68,7 @@ TEST(Friction, DissipatesTheClosedFormEnergyPerCycle) {
   const double K = 500, mu = 0.4, d = 2e-3, frequency = 2;
   const auto snapshot = compileStages(withFriction(sceneOf(K), mu, mu), planeField());
   for (const double amplitude : {1e-3, 2e-3, 5e-3}) {
-    ContactMemory memory = pressed(*snapshot, d);
+    ContactMemory memory = pressedMemory(*snapshot, d);
     double energy = 0, last_force = 0, last_x = 0;
     const int cycle = 500;
     for (int i = 0; i <= 3 * cycle; ++i) {
@@ -122,7 +122,7 @@ TEST(Friction, DepthGainFollowsItsClosedForm) {
   for (const double gamma : {0.0, 0.3, 2.0}) {
     const auto snapshot = compileStages(withFriction(sceneOf(500), 0.3, 0.3, gamma), planeField());
     const auto sliding = [&](double depth) {
-      ContactMemory memory = pressed(*snapshot, depth);
+      ContactMemory memory = pressedMemory(*snapshot, depth);
       return tangential(glide(*snapshot, memory, Vec3(12e-3, 0, -depth)));
     };
     const double g = gamma * d / 1e-3;
@@ -188,7 +188,7 @@ TEST(Friction, ZeroIsBitwiseTheFrictionlessPath) {
 
 TEST(Friction, LosingContactForgetsTheStuckPoint) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.8, 0.8), planeField());
-  ContactMemory memory = pressed(*snapshot, 2e-3);
+  ContactMemory memory = pressedMemory(*snapshot, 2e-3);
   EXPECT_GT(tangential(glide(*snapshot, memory, Vec3(1e-3, 0, -2e-3))), 0.1);
   glide(*snapshot, memory, Vec3(1e-3, 0, 1e-4));
   EXPECT_FALSE(memory.friction.grip);
@@ -198,9 +198,9 @@ TEST(Friction, LosingContactForgetsTheStuckPoint) {
 // T-K10, first reading: Coulomb alone already grows with depth.
 TEST(Friction, GrowsWithDepth) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.3, 0.3), planeField());
-  ContactMemory memory = pressed(*snapshot, 1e-3);
+  ContactMemory memory = pressedMemory(*snapshot, 1e-3);
   const double shallow = tangential(glide(*snapshot, memory, Vec3(5e-3, 0, -1e-3)));
-  memory = pressed(*snapshot, 3e-3);
+  memory = pressedMemory(*snapshot, 3e-3);
   const double deep = tangential(glide(*snapshot, memory, Vec3(5e-3, 0, -3e-3)));
   EXPECT_NEAR(shallow, 0.3 * 500 * 1e-3, 1e-6);
   EXPECT_NEAR(deep, 3 * shallow, 1e-6);

@@ -19,7 +19,7 @@ double worstOf(const Walls& walls, const Vec3& y) {
 }
 
 // The point of the planes of these walls that is nearest to x, where every wall pushes.
-std::optional<Vec3> heldBy(const Walls& walls, unsigned which, const Vec3& x) {
+std::optional<Vec3> heldPoint(const Walls& walls, unsigned which, const Vec3& x) {
   std::vector<int> active;
   for (int i = 0; i < walls.count; ++i)
     if (which >> i & 1U) active.push_back(i);
@@ -43,7 +43,7 @@ Vec3 bruteForce(const Walls& walls, const Vec3& x) {
   double least = std::numeric_limits<double>::infinity(), nearest = least;
   for (unsigned which = 0; which < 1U << walls.count; ++which) {
     if (std::popcount(which) > 3) continue;
-    const std::optional<Vec3> z = heldBy(walls, which, x);
+    const std::optional<Vec3> z = heldPoint(walls, which, x);
     if (!z) continue;
     const double worst = std::max(worstOf(walls, *z), 1e-9), far = (*z - x).norm();
     if (worst > least * (1 + 1e-6) || (worst > least * (1 - 1e-6) && far >= nearest)) continue;

@@ -24,9 +24,9 @@ Contact heldBy(const std::vector<Contact::WallLoad>& walls) {
   return contact;
 }
 
-TEST(Hold, WallsThatAreOneBearTheirSum) {
+TEST(WallHold, WallsThatAreOneBearTheirSum) {
   const Contact contact = heldBy({{leaning(5), 3e-5}, {leaning(-4), 2e-5}});
-  const Hold hold(contact);
+  const WallHold hold(contact);
   ASSERT_EQ(hold.count(), 1);
   const Vec3 sum = 3e-5 * leaning(5) + 2e-5 * leaning(-4);
   EXPECT_LT((hold[0].load * hold[0].normal - sum).norm(), 1e-18);
@@ -34,7 +34,7 @@ TEST(Hold, WallsThatAreOneBearTheirSum) {
 }
 
 // Beside a wall of its own too: all that holds the tip is in the walls that count.
-TEST(Hold, LosesNoLoad) {
+TEST(WallHold, LosesNoLoad) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
   int merged = 0;
@@ -47,7 +47,7 @@ TEST(Hold, LosesNoLoad) {
       walls.push_back({(middle + spread * randomDirection(random)).normalized(), 1 - 0.3 * k});
       sum += walls.back().load * walls.back().normal;
     }
-    const Hold hold(heldBy(walls));
+    const WallHold hold(heldBy(walls));
     Vec3 borne = Vec3::Zero();
     for (int k = 0; k < hold.count(); ++k) {
       borne += hold[k].load * hold[k].normal;
@@ -60,21 +60,21 @@ TEST(Hold, LosesNoLoad) {
 }
 
 // Of two that bear the same, either may come first.
-TEST(Hold, DoesNotTurnWithTheOrderOfItsWalls) {
-  const Hold a(heldBy({{leaning(5), 1.001e-5}, {leaning(-5), 1e-5}}));
-  const Hold b(heldBy({{leaning(-5), 1.001e-5}, {leaning(5), 1e-5}}));
+TEST(WallHold, DoesNotTurnWithTheOrderOfItsWalls) {
+  const WallHold a(heldBy({{leaning(5), 1.001e-5}, {leaning(-5), 1e-5}}));
+  const WallHold b(heldBy({{leaning(-5), 1.001e-5}, {leaning(5), 1e-5}}));
   EXPECT_LT((a.across(Vec3::UnitX()) - b.across(Vec3::UnitX())).norm(), 1e-4);
 }
 
 // The sides of a cleft of 10 degrees leave only its line.
-TEST(Hold, WallsThatFaceEachOtherAreTwo) {
-  const Hold hold(heldBy({{leaning(85), 1e-3}, {leaning(-85), 1e-3}}));
+TEST(WallHold, WallsThatFaceEachOtherAreTwo) {
+  const WallHold hold(heldBy({{leaning(85), 1e-3}, {leaning(-85), 1e-3}}));
   ASSERT_EQ(hold.count(), 2);
   EXPECT_LT((hold.across(Vec3(1, 2, 3)) - Vec3(1, 0, 3)).norm(), 1e-12);
 }
 
 // K08: the damper takes off all that the spring gives, and no more.
-TEST(Hold, TheDamperIsBoundedByWhatTheWallsBearTogether) {
+TEST(WallHold, TheDamperIsBoundedByWhatTheWallsBearTogether) {
   const double load = 0.05e-3, stiffness = 1000;
   Contact contact = heldBy({{leaning(5), load}, {leaning(-5), load}});
   contact.normal = Vec3::UnitZ();

@@ -1,12 +1,13 @@
 #include "haptics/contact_fixture.h"
 #include "haptics/stages/limit_stage.h"
+#include "support/constants.h"
 
 #include <gtest/gtest.h>
 
 namespace patina {
 namespace {
 
-constexpr double kPeriod = 1e-3;
+using test::kPeriod;
 
 std::shared_ptr<const HapticSnapshot> plane(double stiffness = 500, double limit = 3.3) {
   Scene scene = sceneOf(stiffness);

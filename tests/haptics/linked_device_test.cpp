@@ -16,7 +16,7 @@
 namespace patina::test {
 namespace {
 
-void pause(int milliseconds) {
+void waitFor(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
@@ -74,7 +74,7 @@ struct Wire {
     for (int i = 0; i < 5000; ++i) {
       device->exchange(force, 1e-3);
       if (spec.notes->gain >= 1 && pushes) return true;
-      pause(1);
+      waitFor(1);
     }
     return false;
   }
@@ -90,7 +90,7 @@ TEST(LinkedDevice, AServoThatStopsLeavesNoForceAtTheWire) {
   for (int round = 0; round < 3; ++round) {
     ASSERT_TRUE(wire.feel(Vec3(0, 0, 1)));
     const int before = wire.frames;
-    pause(400); // no exchange
+    waitFor(400); // no exchange
     EXPECT_FALSE(wire.pushes);
     EXPECT_GT(wire.frames, before + 10) << "frames without force are still sent";
     EXPECT_EQ(wire.spec.notes->hold, Hold::servo);
@@ -116,7 +116,7 @@ TEST(LinkedDevice, IsAwayUntilItIsThereAndSaysWhy) {
       makeFalconLink([&] { return wire.bench.plug(); }, {}, wire.spec.clock), wire.spec);
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(wire.device->exchange(Vec3(1, 0, 0), 1e-3).status, DeviceStatus::away);
-    pause(1);
+    waitFor(1);
   }
   EXPECT_EQ(heldBack(*wire.spec.notes), "no force: the emulated Falcon is not attached");
 }
@@ -126,7 +126,7 @@ class SlowLink final : public DeviceLink {
  public:
   Opening open() noexcept override { return {true, {}}; }
   DeviceState turn(const Vec3&) noexcept override {
-    pause(wait);
+    waitFor(wait);
     return {};
   }
   static inline std::atomic<int> wait{0};
@@ -136,7 +136,7 @@ TEST(LinkedDevice, NeverKeepsTheServoWaitingLongerThanItMay) {
   const LinkedSpec spec{.answer_wait = 0.5e-3};
   const auto device = makeLinkedDevice(std::make_unique<SlowLink>(), spec);
   SlowLink::wait = 0;
-  while (device->exchange(Vec3::Zero(), 1e-3).status != DeviceStatus::ok) pause(1);
+  while (device->exchange(Vec3::Zero(), 1e-3).status != DeviceStatus::ok) waitFor(1);
   SlowLink::wait = 200;
   double least = 1;
   bool away = false;
@@ -144,14 +144,14 @@ TEST(LinkedDevice, NeverKeepsTheServoWaitingLongerThanItMay) {
     const double begin = spec.clock->now();
     away = device->exchange(Vec3::Zero(), 1e-3).status == DeviceStatus::away || away;
     least = std::min(least, std::max(spec.clock->now() - begin, 0.0));
-    pause(1);
+    waitFor(1);
   }
   EXPECT_LT(least, 0.01);
   EXPECT_TRUE(away) << "what is older than kOldestAge is not felt";
   SlowLink::wait = 0;
   DeviceStatus status = DeviceStatus::away;
   for (int i = 0; i < 2000 && status != DeviceStatus::ok; ++i) {
-    pause(1);
+    waitFor(1);
     status = device->exchange(Vec3::Zero(), 1e-3).status;
   }
   EXPECT_EQ(status, DeviceStatus::ok);

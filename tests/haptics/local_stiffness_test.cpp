@@ -8,13 +8,13 @@
 namespace patina {
 namespace {
 
-constexpr double kStiffness = 500;              // [N/m]
-constexpr double kRounding = 3e-5 * kStiffness; // see the step in local_stiffness.h
+constexpr double kPlain = 500;              // [N/m]
+constexpr double kRounding = 3e-5 * kPlain; // see the step in local_stiffness.h
 
-const Vec3 kSlanted = Vec3(0.3, 0.5, 0.8).normalized();
+const Vec3 kOblique = Vec3(0.3, 0.5, 0.8).normalized();
 
-LocalStiffness pressed(const Scene& scene, const Field& field, const Vec3& point,
-                       std::optional<double> depth = {}) {
+LocalStiffness stiffnessUnder(const Scene& scene, const Field& field, const Vec3& point,
+                              std::optional<double> depth = {}) {
   const auto result = StiffnessProbe(scene, field).at(point, depth);
   EXPECT_TRUE(result.has_value());
   return result.value_or(LocalStiffness{});
@@ -26,20 +26,20 @@ Field bowlField(double radius, double voxel, int cells) {
 }
 
 TEST(LocalStiffness, OfAPlaneIsKAlongItsNormalAndNothingAcross) {
-  const LocalStiffness at = pressed(sceneOf(kStiffness), planeField(), Vec3(1e-3, 2e-3, 1e-4));
-  EXPECT_NEAR(at.depth, 1 / kStiffness, 1e-12); // 1 N
+  const LocalStiffness at = stiffnessUnder(sceneOf(kPlain), planeField(), Vec3(1e-3, 2e-3, 1e-4));
+  EXPECT_NEAR(at.depth, 1 / kPlain, 1e-12); // 1 N
   EXPECT_NEAR(at.force, 1, 1e-6);
-  EXPECT_NEAR(at.lambda_max, kStiffness, kRounding);
+  EXPECT_NEAR(at.lambda_max, kPlain, kRounding);
   EXPECT_NEAR(at.lambda_min, 0, kRounding);
   EXPECT_LT(at.uncertainty, kRounding);
   Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
-  expected(2, 2) = kStiffness;
+  expected(2, 2) = kPlain;
   EXPECT_LT((at.matrix - expected).cwiseAbs().maxCoeff(), kRounding);
 }
 
 TEST(LocalStiffness, NearTheSurfaceTheStepDoesNotLeaveContact) {
   const double stiff = 1e6;
-  const LocalStiffness at = pressed(sceneOf(stiff), planeField(), Vec3(1e-3, 2e-3, 0));
+  const LocalStiffness at = stiffnessUnder(sceneOf(stiff), planeField(), Vec3(1e-3, 2e-3, 0));
   EXPECT_NEAR(at.lambda_max, stiff, 1e-3 * stiff); // 1 um deep: the field's float is all there is
 }
 
@@ -47,33 +47,33 @@ TEST(LocalStiffness, ConvexBodiesPushTheTipAside) {
   const double radius = 0.03;
   for (const double depth : {0.5e-3, 2e-3, 4e-3}) {
     const LocalStiffness at =
-        pressed(sceneOf(kStiffness), sphereField(radius), radius * kSlanted, depth);
-    EXPECT_NEAR(at.lambda_max, kStiffness, 1e-4 * kStiffness);
-    const double expected = -kStiffness * depth / (radius - depth);
+        stiffnessUnder(sceneOf(kPlain), sphereField(radius), radius * kOblique, depth);
+    EXPECT_NEAR(at.lambda_max, kPlain, 1e-4 * kPlain);
+    const double expected = -kPlain * depth / (radius - depth);
     // Nodal gradients are of order h^2: 0.25 % of it.
     EXPECT_NEAR(at.lambda_min, expected, 0.01 * std::abs(expected));
-    EXPECT_NEAR(at.matrix.trace(), kStiffness + 2 * expected, 0.02 * std::abs(expected));
+    EXPECT_NEAR(at.matrix.trace(), kPlain + 2 * expected, 0.02 * std::abs(expected));
   }
 }
 
 TEST(LocalStiffness, ConcaveBodiesHoldTheTip) {
   const double radius = 0.02, depth = 2e-3;
   const LocalStiffness at =
-      pressed(sceneOf(kStiffness), bowlField(radius, 0.5e-3, 100), radius * kSlanted, depth);
-  const double expected = kStiffness * depth / (radius + depth);
-  EXPECT_NEAR(at.lambda_max, kStiffness, 1e-4 * kStiffness);
+      stiffnessUnder(sceneOf(kPlain), bowlField(radius, 0.5e-3, 100), radius * kOblique, depth);
+  const double expected = kPlain * depth / (radius + depth);
+  EXPECT_NEAR(at.lambda_max, kPlain, 1e-4 * kPlain);
   EXPECT_NEAR(at.lambda_min, expected, 0.02 * expected);
 }
 
 TEST(LocalStiffness, OfAnOffsetSurfaceTakesTheDepthUnderIt) {
   const double radius = 0.03, offset = 2e-3, depth = 1e-3;
-  Scene scene = sceneOf(kStiffness);
+  Scene scene = sceneOf(kPlain);
   scene.haptics.offset = offset;
-  const LocalStiffness at = pressed(scene, sphereField(radius), radius * kSlanted, depth);
-  EXPECT_NEAR((at.tip - (radius + offset - depth) * kSlanted).norm(), 0, 1e-6);
-  EXPECT_NEAR(at.force, kStiffness * depth, 1e-3);
-  EXPECT_NEAR(at.lambda_max, kStiffness, 1e-4 * kStiffness);
-  const double expected = -kStiffness * depth / (radius + offset - depth);
+  const LocalStiffness at = stiffnessUnder(scene, sphereField(radius), radius * kOblique, depth);
+  EXPECT_NEAR((at.tip - (radius + offset - depth) * kOblique).norm(), 0, 1e-6);
+  EXPECT_NEAR(at.force, kPlain * depth, 1e-3);
+  EXPECT_NEAR(at.lambda_max, kPlain, 1e-4 * kPlain);
+  const double expected = -kPlain * depth / (radius + offset - depth);
   EXPECT_NEAR(at.lambda_min, expected, 0.02 * std::abs(expected));
 }
 
@@ -83,12 +83,12 @@ TEST(LocalStiffness, OnARidgeTheTipSlipsOffToAFace) {
   const double h = 0.5e-3;
   const Vec3 half = Vec3::Constant(0.0103);
   const Field field = cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64);
-  const StiffnessProbe probe(sceneOf(kStiffness), field);
+  const StiffnessProbe probe(sceneOf(kPlain), field);
   for (const double depth : {2.0, 4.0}) {
     const auto at = probe.at(Vec3(half.x(), half.y() - 0.1 * h, 1e-3), depth * h);
     ASSERT_TRUE(at);
     EXPECT_TRUE(at->slips);
-    EXPECT_NEAR(at->lambda_max, kStiffness, 0.01 * kStiffness);
+    EXPECT_NEAR(at->lambda_max, kPlain, 0.01 * kPlain);
     EXPECT_GT(at->normal.head<2>().maxCoeff(), 0.99);
   }
   const auto beside = probe.at(Vec3(half.x(), 1e-3, 1e-3), 2 * h);
@@ -97,9 +97,9 @@ TEST(LocalStiffness, OnARidgeTheTipSlipsOffToAFace) {
 }
 
 TEST(LocalStiffness, PastTheMiddleOfAThinPlateTheTipIsHeldAsInTheServo) {
-  Scene scene = sceneOf(kStiffness);
-  const LocalStiffness held = pressed(scene, plateField(), Vec3(1e-4, 2e-4, 0.25e-3));
-  EXPECT_NEAR(held.lambda_max, kStiffness, 1e-3 * kStiffness);
+  Scene scene = sceneOf(kPlain);
+  const LocalStiffness held = stiffnessUnder(scene, plateField(), Vec3(1e-4, 2e-4, 0.25e-3));
+  EXPECT_NEAR(held.lambda_max, kPlain, 1e-3 * kPlain);
   EXPECT_NEAR(held.force, 1, 1e-3); // 2 mm deep in 0.5 mm: from the side of entry
   EXPECT_GT(held.normal.z(), 0.999);
   scene.haptics.contact = HapticProperties::Contact::ray;
@@ -107,27 +107,27 @@ TEST(LocalStiffness, PastTheMiddleOfAThinPlateTheTipIsHeldAsInTheServo) {
 }
 
 TEST(LocalStiffness, NothingIsSaidWhereThereIsNoDirection) {
-  const StiffnessProbe probe(sceneOf(kStiffness), sphereField());
+  const StiffnessProbe probe(sceneOf(kPlain), sphereField());
   EXPECT_FALSE(probe.at(Vec3(0.1, 0.1, 0.1)));
   EXPECT_FALSE(probe.at(Vec3(0.03, NAN, 0)));
 }
 
 TEST(LocalStiffness, TimeAndPathLeaveNoTrace) {
-  Scene scene = withFriction(sceneOf(kStiffness), 0.5, 0.4);
+  Scene scene = withFriction(sceneOf(kPlain), 0.5, 0.4);
   scene.haptics.damping = 2;
   scene.haptics.force_limit = 0.5;
-  const Vec3 point = 0.03 * kSlanted;
-  const LocalStiffness at = pressed(scene, sphereField(), point, 2e-3);
-  EXPECT_EQ(at.matrix, pressed(sceneOf(kStiffness), sphereField(), point, 2e-3).matrix);
+  const Vec3 point = 0.03 * kOblique;
+  const LocalStiffness at = stiffnessUnder(scene, sphereField(), point, 2e-3);
+  EXPECT_EQ(at.matrix, stiffnessUnder(sceneOf(kPlain), sphereField(), point, 2e-3).matrix);
   EXPECT_NEAR(at.force, 1, 1e-4);
-  EXPECT_NEAR(pressed(scene, sphereField(), point).force, 0.5, 1e-4);
+  EXPECT_NEAR(stiffnessUnder(scene, sphereField(), point).force, 0.5, 1e-4);
 }
 
 // Whatever is painted, it is pressed by 1 N and felt beneath the relief.
 TEST(LocalStiffness, PaintedStiffnessIsPressedByTheSameForce) {
   const double voxel = 0x1p-11;
   for (const double painted : {250.0, 2000.0}) {
-    const Scene scene = sceneOf(kStiffness);
+    const Scene scene = sceneOf(kPlain);
     const FeltObject object =
         feltMaterial(*coveredMap(voxel, cube(4e-3), MaterialChannel::stiffness,
                                  [=](const Vec3&) { return painted; }),
@@ -146,14 +146,14 @@ TEST(LocalStiffness, OnARampOfReliefTheDepthIsBeneathTheRamp) {
   const FeltObject ramp =
       feltRelief(fineSlab().faces, reliefImage(64, [](double u, double) { return u - 0.5; }),
                  slope * Slab::kSide, 0.1);
-  Scene scene = sceneOf(kStiffness);
+  Scene scene = sceneOf(kPlain);
   scene.relief.form = ForceForm::conservative;
   const auto at =
       StiffnessProbe(scene, fineSlab().field, std::span(&ramp, 1)).at(Vec3(x, 7e-4, 0), depth);
   ASSERT_TRUE(at);
   EXPECT_LT((at->tip - Vec3(x, 7e-4, slope * x - depth)).norm(), 1e-6);
   // 1/2 K d^2, d the depth along z.
-  EXPECT_NEAR(at->force, kStiffness * depth * std::sqrt(1 + slope * slope), 1e-3);
+  EXPECT_NEAR(at->force, kPlain * depth * std::sqrt(1 + slope * slope), 1e-3);
 }
 
 } // namespace

@@ -16,6 +16,7 @@
 #include "haptics/devices/plugin/plugin_library.h"
 #include "haptics/faulty_plugin.h"
 #include "haptics/servo/realtime.h"
+#include "support/constants.h"
 #include "support/places.h"
 
 namespace patina {
@@ -24,11 +25,10 @@ namespace {
 using test::Fault;
 using test::faulty;
 using test::kFaulty;
+using test::kNan;
+using test::kPeriod;
 using test::makeFaulty;
 using test::Noted;
-
-constexpr double kPeriod = 1e-3;
-const double kNan = std::nan("");
 
 template <class Work> std::string causeOf(const Work& work) {
   try {

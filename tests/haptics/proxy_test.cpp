@@ -6,11 +6,12 @@
 
 #include "haptics/contact/contact_memory.h"
 #include "haptics/contact_fixture.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kTick = 1e-3;
+using test::kPeriod;
 
 std::shared_ptr<const HapticSnapshot> felt(const Distance& phi, int cells = 48) {
   return compileStages(sceneOf(1), cubeField(phi, 1, cells));
@@ -18,7 +19,7 @@ std::shared_ptr<const HapticSnapshot> felt(const Distance& phi, int cells = 48) 
 
 // The tip comes down to `place` and rests there.
 Contact resting(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& place) {
-  tick(snapshot, memory, Vec3(0, 0, 4), kTick);
+  tick(snapshot, memory, Vec3(0, 0, 4), kPeriod);
   glide(snapshot, memory, place, 0.05);
   return glide(snapshot, memory, place, 1);
 }
@@ -53,14 +54,14 @@ TEST(ProxyWay, MeetsASphereWhereTheQuadraticSays) {
 TEST(Proxy, AContactPointThatRunsGoesAsFarAsItMayForOneReadATick) {
   const double radius = 10;
   const auto ball = felt([=](const Vec3& p) { return p.norm() - radius; }, 40);
-  const double most = kSnapSides * 40 * kTick;
+  const double most = kSnapSides * 40 * kPeriod;
   ContactMemory memory;
   const Vec3 past(0.5, 0.2, -4);
-  tick(*ball, memory, Vec3(0.5, 0.2, 11), kTick);
+  tick(*ball, memory, Vec3(0.5, 0.2, 11), kPeriod);
   Contact last = glide(*ball, memory, past, 2);
   int ran = 0, samples = 0;
   for (; ran < 1000 && last.candidate.z() > -5; ++ran) {
-    const Contact now = tick(*ball, memory, past, kTick);
+    const Contact now = tick(*ball, memory, past, kPeriod);
     ASSERT_TRUE(now.snap);
     EXPECT_NEAR((now.candidate - last.candidate).norm(), most, 0.01 * most);
     EXPECT_NEAR(now.candidate.norm(), radius, 0.01);
@@ -81,7 +82,7 @@ TEST(Proxy, AfterAnEditAQuickTipMeetsTheFirstOfTwoParts) {
   memory.tip.last = Vec3(0.3, 0.2, 0.35);
   Contact contact;
   contact.tip = Vec3(0.3, 0.2, -3.3);
-  contact.dt = kTick;
+  contact.dt = kPeriod;
   stage.apply(contact, memory);
   ASSERT_TRUE(contact.touching);
   EXPECT_NEAR(contact.candidate.z(), 0.25, 1e-3);
@@ -92,10 +93,10 @@ TEST(Proxy, ThreeWallsBearTheDepthTogetherTheHeaviestFirst) {
   const auto corner = felt([](const Vec3& p) { return p.minCoeff(); });
   const Vec3 tip(-1.5, -2.5, -0.9);
   ContactMemory memory;
-  tick(*corner, memory, Vec3(3, 3, 3), kTick);
+  tick(*corner, memory, Vec3(3, 3, 3), kPeriod);
   glide(*corner, memory, tip, 0.05);
   for (int i = 0; i < 20; ++i) {
-    const Contact contact = tick(*corner, memory, tip, kTick);
+    const Contact contact = tick(*corner, memory, tip, kPeriod);
     EXPECT_LT(contact.candidate.norm(), 0.1);
     ASSERT_EQ(contact.walls, 3);
     Vec3 sum = Vec3::Zero();
@@ -115,7 +116,7 @@ TEST(Proxy, AFlatGrooveHoldsWithBothItsWallsForAsLongAsTheTipRests) {
   ContactMemory memory;
   resting(*groove, memory, Vec3(0.05, 0.3, -1));
   for (int i = 0; i < 20; ++i) {
-    const Contact contact = tick(*groove, memory, Vec3(0.05, 0.3, -1), kTick);
+    const Contact contact = tick(*groove, memory, Vec3(0.05, 0.3, -1), kPeriod);
     EXPECT_LT((contact.candidate - Vec3(0, 0.3, 0)).norm(), 2e-3);
     ASSERT_EQ(contact.walls, 2);
     EXPECT_NEAR(contact.wall[0].load + contact.wall[1].load, 1 / std::cos(lean), 2e-2);
@@ -132,14 +133,14 @@ TEST(Proxy, ATickOnASmoothSurfaceReadsTheFieldOnce) {
     const auto round = felt([=](const Vec3& p) { return side * (p.norm() - radius); }, 56);
     const double at = radius - side * depth;
     ContactMemory memory;
-    tick(*round, memory, (radius + side) * u, kTick);
+    tick(*round, memory, (radius + side) * u, kPeriod);
     glide(*round, memory, at * u, 0.2);
     int samples = 0;
     double worst = 0;
     for (int i = 1; i <= 200; ++i) {
       const double turn = step / at * i;
       const Vec3 outward = std::cos(turn) * u + std::sin(turn) * v;
-      const Contact contact = tick(*round, memory, at * outward, kTick);
+      const Contact contact = tick(*round, memory, at * outward, kPeriod);
       ASSERT_GE(contact.samples, 1);
       samples += contact.samples;
       worst = std::max(worst, (contact.candidate - radius * outward).norm());

@@ -1,21 +1,22 @@
 // Pulled relief as it is felt: T-K21a, T-K21f, F6, F8.
 #include <cstdio>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "haptics/neutral_stages.h"
 #include "haptics/painted_fixture.h"
 #include "haptics/servo/cross_fade.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kSide = Slab::kSide;
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
 
-std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const FeltObject& object,
-                                                   const Field& field) {
+constexpr double kSide = Slab::kSide;
+
+std::shared_ptr<const HapticSnapshot> compiledRelief(const Scene& scene, const FeltObject& object,
+                                                     const Field& field) {
   return compileStages(scene, field, std::span(&object, 1));
 }
 
@@ -34,7 +35,7 @@ TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
     for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
       Scene scene = sceneOf(K);
       scene.relief.form = form;
-      const auto snapshot = compiledWith(scene, feltRelief(faces, white, s), sphere);
+      const auto snapshot = compiledRelief(scene, feltRelief(faces, white, s), sphere);
       std::mt19937 random(1);
       for (int i = 0; i < 300; ++i) {
         const Vec3 n = randomDirection(random);
@@ -59,7 +60,7 @@ TEST(PulledRelief, OfNoHeightChangesNoBit) {
   const FeltObject black =
       feltRelief(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3, 0);
   const auto without = compileStages(scene, plane.field);
-  const auto with = compiledWith(scene, black, plane.field);
+  const auto with = compiledRelief(scene, black, plane.field);
   EXPECT_EQ(with->stages.size(), without->stages.size());
   const auto all = withNeutralStages(scene, plane.field, std::span(&black, 1));
   ContactMemory a, b;
@@ -81,7 +82,7 @@ TEST(PulledRelief, WhereTheImageIsZeroTheForceIsThatOfTheBareSurface) {
   const FeltObject part = feltRelief(
       plane.faces, reliefImage(128, [](double u, double) { return u > 0.7 ? 1 : 0; }), 1e-3);
   const auto without = compileStages(scene, plane.field);
-  const auto with = compiledWith(scene, part, plane.field);
+  const auto with = compiledRelief(scene, part, plane.field);
   for (double x = -8e-3; x < 6e-3; x += 0.37e-3)
     for (double z = 0.4e-3; z > -2e-3; z -= 0.11e-3) {
       const Vec3 tip(x, 1e-3, z);
@@ -101,7 +102,7 @@ TEST(PulledRelief, TheForceIsThatOfTheTexturedSurface) {
     for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
       Scene scene = sceneOf(500);
       scene.relief.form = form;
-      const auto snapshot = compiledWith(scene, ramp, plane.field);
+      const auto snapshot = compiledRelief(scene, ramp, plane.field);
       const double x = 1.3e-3, d = 0.5e-3;
       const Contact contact = touchOnce(*snapshot, Vec3(x, 0.7e-3, a * x - d));
       const double lean = std::atan2(-contact.force.x(), contact.force.z());
@@ -129,7 +130,7 @@ TEST(PulledRelief, HasItsWholeHeightAtAWavelengthOfTwoAndAHalfVoxels) {
   const FeltObject object = feltRelief(
       plane.faces,
       reliefImage(size, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
-  const auto snapshot = compiledWith(sceneOf(K), object, plane.field);
+  const auto snapshot = compiledRelief(sceneOf(K), object, plane.field);
   // Amplitude by projection onto the wave, and the extremes.
   const int count = 2000;
   double amplitude = 0, highest = -1, lowest = 1, slope = 0;
@@ -162,9 +163,9 @@ TEST(PulledRelief, OnlyTheLiteralFormDoesWorkRoundALoop) {
   const double theory = K * 2 * A * dz;
   Scene scene = sceneOf(K);
   scene.relief.form = ForceForm::literal;
-  const double literal = loopWork(*compiledWith(scene, object, plane.field), path, 3000);
+  const double literal = loopWork(*compiledRelief(scene, object, plane.field), path, 3000);
   scene.relief.form = ForceForm::conservative;
-  const double conservative = loopWork(*compiledWith(scene, object, plane.field), path, 3000);
+  const double conservative = loopWork(*compiledRelief(scene, object, plane.field), path, 3000);
   std::printf("literal %.5g J of %.5g J a loop, conservative %.2g of it\n", literal, theory,
               conservative / theory);
   EXPECT_NEAR(literal, theory, 0.002 * theory);
@@ -200,9 +201,9 @@ TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
   };
   const double theory = std::abs(K * (height(0.3) - height(-0.3)) * (high - low));
   scene.relief.form = ForceForm::literal;
-  const double literal = loopWork(*compiledWith(scene, object, sphere), path, 150);
+  const double literal = loopWork(*compiledRelief(scene, object, sphere), path, 150);
   scene.relief.form = ForceForm::conservative;
-  const double conservative = loopWork(*compiledWith(scene, object, sphere), path, 150);
+  const double conservative = loopWork(*compiledRelief(scene, object, sphere), path, 150);
   std::printf("sphere: literal %.4g J of %.4g J, conservative %.2g of it\n", literal, theory,
               conservative / theory);
   EXPECT_NEAR(std::abs(literal), theory, 0.02 * theory);
@@ -216,7 +217,7 @@ TEST(PulledRelief, TheForceDoesNotStepFromTexelToTexel) {
   const FeltObject object = feltRelief(
       plane.faces,
       reliefImage(128, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
-  const auto snapshot = compiledWith(sceneOf(500), object, plane.field);
+  const auto snapshot = compiledRelief(sceneOf(500), object, plane.field);
   ContactMemory memory;
   const double d = 1e-3, step = 1e-6;
   Vec3 last = tick(*snapshot, memory, Vec3(-2e-3, 0, -d), 1e-3).force;
@@ -236,7 +237,7 @@ TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
   const double mu = 0.4;
   const FeltObject flat =
       feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 1e-3);
-  const auto snapshot = compiledWith(withFriction(sceneOf(500), mu, mu), flat, plane.field);
+  const auto snapshot = compiledRelief(withFriction(sceneOf(500), mu, mu), flat, plane.field);
   ContactMemory memory;
   const double d = 0.8e-3;
   glide(*snapshot, memory, Vec3(0, 0, 1.5e-3));
@@ -257,7 +258,7 @@ TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
   scene.haptics.magnet = Magnet{1e-3, 300, false};
   const FeltObject flat =
       feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 2e-3);
-  const auto snapshot = compiledWith(scene, flat, plane.field);
+  const auto snapshot = compiledRelief(scene, flat, plane.field);
   for (const double above : {0.2e-3, 0.7e-3}) {
     const Contact contact = touchOnce(*snapshot, Vec3(1e-3, 0, 1e-3 + above));
     EXPECT_TRUE(contact.attracted);
@@ -271,7 +272,7 @@ TEST(PulledRelief, HigherThanTheBandIsRefusedWithTheRemedy) {
   const FeltObject object =
       feltRelief(plane.faces, reliefImage(64, [](double, double) { return 1; }), 8e-3);
   try {
-    compiledWith(sceneOf(500), object, plane.field);
+    compiledRelief(sceneOf(500), object, plane.field);
     FAIL() << "accepted";
   } catch (const std::exception& error) {
     const std::string text = error.what();
@@ -288,7 +289,7 @@ TEST(PulledRelief, EditsUnderAPressedTipRamp) {
   std::vector<std::shared_ptr<const HapticSnapshot>> versions{compileStages(scene, plane.field)};
   for (const double s : {0.2e-3, 1e-3, 3e-3, -1e-3, 0.5e-3})
     for (const double k : {30.0, 200.0})
-      versions.push_back(compiledWith(
+      versions.push_back(compiledRelief(
           scene,
           feltRelief(plane.faces,
                      reliefImage(256, [=](double u,

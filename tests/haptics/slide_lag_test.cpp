@@ -9,14 +9,15 @@
 namespace patina {
 namespace {
 
-Field ball(double radius) { // negative: a hollow
+Field ballField(double radius) { // negative: a hollow
   const double r = std::abs(radius);
   return cubeField([=](const Vec3& p) { return std::copysign(1.0, radius) * (p.norm() - r); }, 1,
                    static_cast<int>(2 * r + 24) / 8 * 8 + 8);
 }
 
 // How far the contact point of a tip that moves is from where it comes to rest once the tip stops
-// there, the worst in voxels. The tip runs round a ball(radius), `depth` deep, by `step` a tick.
+// there, the worst in voxels. The tip runs round a ballField(radius), `depth` deep, by `step` a
+// tick.
 double worstLag(const HapticSnapshot& snapshot, double radius, double depth, double step) {
   const double r = std::abs(radius);
   const double at = r - std::copysign(depth, radius), turn = step / at;
@@ -40,7 +41,7 @@ double worstLag(const HapticSnapshot& snapshot, double radius, double depth, dou
 
 TEST(SlideLag, AMovingContactPointIsWhereAStandingOneWouldBe) {
   for (const double radius : {10.0, 20.0, 50.0, -20.0, -50.0}) {
-    const auto snapshot = compileStages(sceneOf(500), ball(radius));
+    const auto snapshot = compileStages(sceneOf(500), ballField(radius));
     for (const double share : {0.25, 0.5, 0.75})
       for (const double step : {0.001, 0.01, 0.05, 0.1}) {
         // A faster one is held by its ball (P04).

@@ -6,17 +6,18 @@
 #include "haptics/contact/plane.h"
 #include "haptics/contact_fixture.h"
 #include "haptics/stages/coupling_stage.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPeriod = 1e-3;
+using test::kPeriod;
 
-Contact press(const HapticSnapshot& snapshot, ContactMemory& memory, double z) {
+Contact pressTo(const HapticSnapshot& snapshot, ContactMemory& memory, double z) {
   return tick(snapshot, memory, Vec3(0, 0, z), kPeriod);
 }
 
-bool has(const HapticSnapshot& snapshot, const std::string& stage) {
+bool hasStage(const HapticSnapshot& snapshot, const std::string& stage) {
   for (const StageInfo& info : snapshot.why)
     if (info.name == stage) return true;
   return false;
@@ -42,28 +43,28 @@ TEST(Coupling, IsASpringToTheContactPointAndADamperOfTheTip) {
   const auto snapshot = coupled(1e4, 1000, 2);
   const double k = inSeries(1e4, 1000);
   ContactMemory memory;
-  press(*snapshot, memory, 1e-3);
-  EXPECT_NEAR(press(*snapshot, memory, -1e-3).force.z(), k * 1e-3 + 2 * 2, 1e-12);
-  EXPECT_NEAR(press(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3 + 2 * .2, 1e-12);
-  EXPECT_NEAR(press(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3, 1e-12);
+  pressTo(*snapshot, memory, 1e-3);
+  EXPECT_NEAR(pressTo(*snapshot, memory, -1e-3).force.z(), k * 1e-3 + 2 * 2, 1e-12);
+  EXPECT_NEAR(pressTo(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3 + 2 * .2, 1e-12);
+  EXPECT_NEAR(pressTo(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3, 1e-12);
   // On a fast retreat it lets go, and does not pull.
-  EXPECT_NEAR(press(*snapshot, memory, -0.2e-3).force.z(), 0, 1e-12);
+  EXPECT_NEAR(pressTo(*snapshot, memory, -0.2e-3).force.z(), 0, 1e-12);
 }
 
 TEST(Coupling, TakesThePlaceOfSpringFilterAndDamping) {
   Scene scene = sceneOf(1e5);
   scene.haptics.damping = 3;
   scene.haptics.damping_cutoff = 200;
-  EXPECT_FALSE(has(*compileStages(scene, planeField()), "coupling"));
+  EXPECT_FALSE(hasStage(*compileStages(scene, planeField()), "coupling"));
   scene.device_model = DeviceModel{};
   const auto snapshot = compileStages(scene, planeField());
   for (const char* absent : {"spring", "velocity filter", "damping", "passivity"})
-    EXPECT_FALSE(has(*snapshot, absent)) << absent;
-  EXPECT_TRUE(has(*snapshot, "coupling"));
+    EXPECT_FALSE(hasStage(*snapshot, absent)) << absent;
+  EXPECT_TRUE(hasStage(*snapshot, "coupling"));
   EXPECT_DOUBLE_EQ(snapshot->stabilisers.coupling.value().damping, 3) << "the scene's own is more";
   ContactMemory memory;
-  press(*snapshot, memory, -1e-3);
-  EXPECT_NEAR(press(*snapshot, memory, -1e-3).force.z(),
+  pressTo(*snapshot, memory, -1e-3);
+  EXPECT_NEAR(pressTo(*snapshot, memory, -1e-3).force.z(),
               1e-3 * inSeries(1e5, snapshot->stabilisers.coupling->stiffness), 1e-5);
 }
 
@@ -76,10 +77,10 @@ TEST(Coupling, SoftensAndDampsAMagnet) {
   const auto [coupling, damping, most] = *snapshot->stabilisers.coupling;
   EXPECT_GE(most, damping);
   ContactMemory memory;
-  press(*snapshot, memory, 1e-3);
-  const double still = press(*snapshot, memory, 1e-3).force.z();
+  pressTo(*snapshot, memory, 1e-3);
+  const double still = pressTo(*snapshot, memory, 1e-3).force.z();
   EXPECT_NEAR(still, -1e-3 * inSeries(1e5, coupling), 1e-3);
-  const double moved = press(*snapshot, memory, 0.9e-3).force.z();
+  const double moved = pressTo(*snapshot, memory, 0.9e-3).force.z();
   EXPECT_NEAR(moved, -0.9e-3 * inSeries(1e5, coupling) + damping * .1, 1e-3);
 }
 
@@ -206,7 +207,7 @@ TEST(Passivity, DoesNotTripOnRoundingAtRest) {
   ContactMemory a, b;
   for (int i = 0; i < 100000; ++i) {
     const double z = -1e-3 - (i % 2) * 1e-18;
-    ASSERT_EQ(press(*with, a, z).force, press(*without, b, z).force);
+    ASSERT_EQ(pressTo(*with, a, z).force, pressTo(*without, b, z).force);
   }
 }
 
@@ -224,7 +225,7 @@ TEST(Plane, IsTheSampledPlaneToTheSearchsTolerance) {
     EXPECT_NEAR((c.force - d.force).norm(), 0, 1e-6);
     EXPECT_NEAR((c.vcp - d.vcp).norm(), 0, 1e-9); // 2e-6 voxels
   }
-  EXPECT_NEAR(press(*exact, b, -50).depth, 50, 0);
+  EXPECT_NEAR(pressTo(*exact, b, -50).depth, 50, 0);
   scene.haptics.friction = Friction{.5, .3};
   EXPECT_THROW(planeSnapshot(scene.haptics, {}), std::invalid_argument);
 }

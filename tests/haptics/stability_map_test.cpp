@@ -95,7 +95,7 @@ TEST(StabilityRatio, WithoutAnyDampingNothingIsStable) {
 
 // How a mass's rms velocity grows from the second second to the eighth, held at `rest` by a force
 // that balances the surface's there, after a nudge: below 1 it settles, above it buzzes.
-double growth(const Scene& scene, const Field& field, const Vec3& rest, const Vec3& nudge) {
+double growthFrom(const Scene& scene, const Field& field, const Vec3& rest, const Vec3& nudge) {
   const auto snapshot = compileStages(scene, field);
   const DeviceModel device = scene.device_model.value_or(DeviceModel{});
   const double period = 1 / device.rate;
@@ -127,7 +127,8 @@ TEST(StabilityRatio, APlaneSettlesBelowItAndBuzzesAboveIt) {
   const double limit = 500 * ratioAt(bare(500), planeField(), point);
   for (const double factor : {0.9, 1.1}) {
     const Vec3 rest = point - Vec3(0, 0, 1 / (factor * limit));
-    expectEnvelope(factor, 0.5, growth(bare(factor * limit), planeField(), rest, Vec3(0, 0, 1e-3)));
+    expectEnvelope(factor, 0.5,
+                   growthFrom(bare(factor * limit), planeField(), rest, Vec3(0, 0, 1e-3)));
   }
 }
 
@@ -137,7 +138,8 @@ TEST(StabilityRatio, ABowlSettlesBelowItAndBuzzesAboveIt) {
   const double limit = 500 * ratioAt(bare(500), bowl(radius), point);
   for (const double factor : {0.9, 1.1}) {
     const Vec3 rest = point + kSlanted / (factor * limit);
-    expectEnvelope(factor, 0.5, growth(bare(factor * limit), bowl(radius), rest, 1e-3 * kSlanted));
+    expectEnvelope(factor, 0.5,
+                   growthFrom(bare(factor * limit), bowl(radius), rest, 1e-3 * kSlanted));
   }
 }
 
@@ -146,9 +148,9 @@ TEST(StabilityRatio, InStickTheTangentialLoopObeysItToo) {
   const double limit = 500 * ratioAt(withFriction(bare(500), 0.8, 0.8), planeField(), point);
   for (const double factor : {0.9, 1.1}) {
     const Vec3 rest = point - Vec3(0, 0, 1 / (factor * limit));
-    expectEnvelope(
-        factor, 0.5,
-        growth(withFriction(bare(factor * limit), 0.8, 0.8), planeField(), rest, Vec3(1e-3, 0, 0)));
+    expectEnvelope(factor, 0.5,
+                   growthFrom(withFriction(bare(factor * limit), 0.8, 0.8), planeField(), rest,
+                              Vec3(1e-3, 0, 0)));
   }
 }
 
@@ -169,7 +171,7 @@ TEST(StabilityRatio, AGrooveUnderAnOffsetIsAsStiffAsItsSides) {
     scene.device_model->damping = damping;
     const double ratio = ratioAt(scene, groove(), Vec3::Zero());
     EXPECT_NEAR(ratio, 1 / factor, 0.01);
-    const double grown = growth(scene, groove(), at->tip, Vec3(1e-3, 0, 0));
+    const double grown = growthFrom(scene, groove(), at->tip, Vec3(1e-3, 0, 0));
     if (factor < 1)
       EXPECT_LT(grown, 0.6);
     else

@@ -9,33 +9,34 @@
 namespace patina {
 namespace {
 
-std::vector<std::string> names(const HapticSnapshot& snapshot) {
+std::vector<std::string> stageNames(const HapticSnapshot& snapshot) {
   std::vector<std::string> result;
   for (const auto& stage : snapshot.stages) result.emplace_back(stage->name());
   return result;
 }
 
-using Names = std::vector<std::string>;
+using StageNames = std::vector<std::string>;
 
 TEST(CompileStages, LeavesOutWhatTheSceneDoesNotHave) {
   const Field sphere = sphereField(0.03, 60);
   Scene scene = sceneOf(500);
-  EXPECT_EQ(names(*compileStages(scene, sphere)), (Names{"contact", "spring", "limit"}));
+  EXPECT_EQ(stageNames(*compileStages(scene, sphere)), (StageNames{"contact", "spring", "limit"}));
   scene.haptics.damping = 1;
-  EXPECT_EQ(names(*compileStages(scene, sphere)), (Names{"contact", "spring", "damping", "limit"}));
+  EXPECT_EQ(stageNames(*compileStages(scene, sphere)),
+            (StageNames{"contact", "spring", "damping", "limit"}));
   scene = withFriction(scene, 0.5, 0.3);
-  EXPECT_EQ(names(*compileStages(scene, sphere)),
-            (Names{"contact", "friction", "spring", "damping", "limit"}));
+  EXPECT_EQ(stageNames(*compileStages(scene, sphere)),
+            (StageNames{"contact", "friction", "spring", "damping", "limit"}));
   scene.haptics.damping.reset();
-  EXPECT_EQ(names(*compileStages(scene, sphere)),
-            (Names{"contact", "friction", "spring", "limit"}));
+  EXPECT_EQ(stageNames(*compileStages(scene, sphere)),
+            (StageNames{"contact", "friction", "spring", "limit"}));
 }
 
 TEST(CompileStages, TakesANeutralValueForAnAbsentOne) {
   Scene scene = withFriction(sceneOf(500), 0, 0);
   scene.haptics.damping = 0;
-  EXPECT_EQ(names(*compileStages(scene, sphereField(0.03, 60))),
-            (Names{"contact", "spring", "limit"}));
+  EXPECT_EQ(stageNames(*compileStages(scene, sphereField(0.03, 60))),
+            (StageNames{"contact", "spring", "limit"}));
 }
 
 TEST(CompileStages, SaysWhyEachStageIsThereAndWhatItHolds) {

@@ -1,17 +1,15 @@
 // A Fourier texture on a mesh, felt, kept in a workspace and swapped, by commands.
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "core/csv.h"
 #include "core/file.h"
 #include "integration/program.h"
+#include "support/constants.h"
 
 namespace patina::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 class TexturedFeel : public testing::Test {
  protected:

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Pixels drawn(SceneView& view, const std::string& name, const std::set<Layer>& layers) {
+Pixels drawnLayers(SceneView& view, const std::string& name, const std::set<Layer>& layers) {
   view.showOnly(layers);
   view.setView(ViewPreset::minus_y); // +x to the right
   const char* keep = std::getenv("PATINA_KEEP_PICTURES");
@@ -37,10 +37,10 @@ TEST(StabilityPicture, ColoursTheSurfaceByItsVerticesAndShowsTheScale) {
   const auto unknown = [](const Vec3& c) {
     return c.maxCoeff() < 130 && c.maxCoeff() - c.minCoeff() < 30;
   };
-  EXPECT_EQ(drawn(view, "stability-none", {Layer::mesh, Layer::stability}).share(isWarm), 0);
+  EXPECT_EQ(drawnLayers(view, "stability-none", {Layer::mesh, Layer::stability}).share(isWarm), 0);
 
   view.setStability(mesh.get(), ratio);
-  const Pixels pixels = drawn(view, "stability", {Layer::mesh, Layer::stability});
+  const Pixels pixels = drawnLayers(view, "stability", {Layer::mesh, Layer::stability});
   EXPECT_GT(pixels.share(isWarm, 0.14, 0.42), 0.2);
   EXPECT_EQ(pixels.share(isWarm, 0.46, 0.85), 0);
   EXPECT_GT(pixels.share(isCool, 0.46, 0.85), 0.2);
@@ -52,7 +52,8 @@ TEST(StabilityPicture, ColoursTheSurfaceByItsVerticesAndShowsTheScale) {
   EXPECT_LT(pixels.share(isCool, 0.855, 0.88), 0.001);
 
   view.setStability(nullptr, {});
-  EXPECT_GT(drawn(view, "stability-gone", {Layer::mesh, Layer::stability}).share(isSurface), 0.1);
+  EXPECT_GT(drawnLayers(view, "stability-gone", {Layer::mesh, Layer::stability}).share(isSurface),
+            0.1);
 }
 
 // A shell over the colours would shift them away from the scale.
@@ -68,16 +69,16 @@ TEST(StabilityPicture, IsTheSameUnderABandWhoseSliceAloneIsTinted) {
   view.setField(std::make_shared<SurfaceField>(
       sampleFunction([](const Vec3& p) { return p.norm() - 0.03; }, grid, spec.band)));
   view.setStability(mesh.get(), std::vector<float>(mesh->positions.size(), 3.5F));
-  const Pixels plain = drawn(view, "stability-plain", {Layer::stability});
+  const Pixels plain = drawnLayers(view, "stability-plain", {Layer::stability});
   view.setBand(TouchBand{TouchBand::Kind::offset, 2e-3});
-  const Pixels banded = drawn(view, "stability-band", {Layer::stability, Layer::band});
+  const Pixels banded = drawnLayers(view, "stability-band", {Layer::stability, Layer::band});
   for (int y = 0; y < plain.height(); ++y)
     for (int x = 0; x < plain.width(); ++x) ASSERT_EQ(banded.at(x, y), plain.at(x, y));
 
   const std::set<Layer> cut{Layer::stability, Layer::band, Layer::slice};
-  EXPECT_GT(drawn(view, "stability-slice", cut).share(isGold, 0.2, 0.8, 0.1, 0.9), 0.002);
+  EXPECT_GT(drawnLayers(view, "stability-slice", cut).share(isGold, 0.2, 0.8, 0.1, 0.9), 0.002);
   view.setStability(nullptr, {});
-  EXPECT_GT(drawn(view, "stability-off", {Layer::mesh, Layer::band}).share(isGold), 0.1);
+  EXPECT_GT(drawnLayers(view, "stability-off", {Layer::mesh, Layer::band}).share(isGold), 0.1);
 }
 
 } // namespace

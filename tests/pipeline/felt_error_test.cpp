@@ -11,7 +11,7 @@
 namespace patina {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kTurn = 2 * std::numbers::pi;
 
 std::vector<FeltPoint> along(double length, const std::function<double(double)>& felt,
                              const std::function<double(double)>& truth) {
@@ -22,7 +22,7 @@ std::vector<FeltPoint> along(double length, const std::function<double(double)>&
 }
 
 double wave(double x) {
-  return 1.5 + 0.3 * std::cos(kTwoPi * x / 4e-3);
+  return 1.5 + 0.3 * std::cos(kTurn * x / 4e-3);
 }
 
 TEST(FeltError, OfTheTruthIsNone) {
@@ -56,7 +56,7 @@ TEST(FeltError, OfTheWholeKnowsAnOffsetThatTheVariationDoesNot) {
 }
 
 TEST(FeltError, OfAnotherMaterialIsLarge) {
-  const auto other = [](double x) { return 1.5 + 0.3 * std::cos(kTwoPi * x / 3e-3); };
+  const auto other = [](double x) { return 1.5 + 0.3 * std::cos(kTurn * x / 3e-3); };
   EXPECT_GT(feltError(along(0.032, other, wave)).variation, 0.9);
 }
 

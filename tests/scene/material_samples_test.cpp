@@ -9,14 +9,14 @@
 namespace patina {
 namespace {
 
-constexpr double kVoxel = 0x1p-10;
+constexpr double kSampleVoxel = 0x1p-10;
 
 // T-K22a: an affine field, exact in floats at the nodes, is one between them.
 TEST(MaterialSamples, ReproduceAnAffineFieldToRounding) {
   const auto affine = [](const Vec3& p) {
     return 1024 + 0x1p12 * p.x() - 0x1p13 * p.y() + 0x1p11 * p.z();
   };
-  const auto map = coveredMap(kVoxel, cube(12e-3), MaterialChannel::stiffness, affine);
+  const auto map = coveredMap(kSampleVoxel, cube(12e-3), MaterialChannel::stiffness, affine);
   const auto samples = materialSamples(*map, Material{}, nullptr, nullptr);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> in(-11e-3, 11e-3);
@@ -33,7 +33,7 @@ TEST(MaterialSamples, ReproduceAnAffineFieldToRounding) {
 TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> value(0, 900), weight(0, 1);
-  auto map = std::make_shared<MaterialMap>(Vec3(1e-3, -2e-3, 0.3e-3), kVoxel);
+  auto map = std::make_shared<MaterialMap>(Vec3(1e-3, -2e-3, 0.3e-3), kSampleVoxel);
   for (const MaterialMap::Index& b :
        {MaterialMap::Index{0, 0, 0}, {1, 0, 0}, {-1, 0, 2}, {4, -3, 1}})
     for (const auto channel : {MaterialChannel::stiffness, MaterialChannel::dynamic_friction}) {
@@ -67,10 +67,10 @@ TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
 }
 
 TEST(MaterialSamples, HoldTheExtremesOfEveryChannelAndTheBase) {
-  auto map = coveredMap(kVoxel, cube(3e-3), MaterialChannel::stiffness,
+  auto map = coveredMap(kSampleVoxel, cube(3e-3), MaterialChannel::stiffness,
                         [](const Vec3& p) { return p.x() > 0 ? 2000 : 100; });
   coveredMap(
-      kVoxel, cube(1e-3), MaterialChannel::damping, [](const Vec3&) { return 3; }, map);
+      kSampleVoxel, cube(1e-3), MaterialChannel::damping, [](const Vec3&) { return 3; }, map);
   const auto samples = materialSamples(*map, Material{}, nullptr, nullptr);
   EXPECT_EQ(samples->most.stiffness, 2000);
   EXPECT_EQ(samples->least.stiffness, 100);
@@ -83,7 +83,7 @@ TEST(MaterialSamples, HoldTheExtremesOfEveryChannelAndTheBase) {
 // What was added to a base that has become smaller since is held within the channel's range: a
 // negative stiffness or damping would drive the hand.
 TEST(MaterialSamples, NothingAddedLeadsOutOfTheRange) {
-  auto map = std::make_shared<MaterialMap>(Vec3::Zero(), kVoxel);
+  auto map = std::make_shared<MaterialMap>(Vec3::Zero(), kSampleVoxel);
   const std::pair<MaterialChannel, float> kAdded[] = {{MaterialChannel::stiffness, -900.0F},
                                                       {MaterialChannel::static_friction, 9.9F},
                                                       {MaterialChannel::damping, -2.0F}};
@@ -99,7 +99,7 @@ TEST(MaterialSamples, NothingAddedLeadsOutOfTheRange) {
   EXPECT_EQ(samples->most.static_friction, rangeOf(MaterialChannel::static_friction).most);
   EXPECT_EQ(samples->least.damping, 0);
   std::mt19937 random(4);
-  std::uniform_real_distribution<double> in(-1 * kVoxel, 8 * kVoxel);
+  std::uniform_real_distribution<double> in(-1 * kSampleVoxel, 8 * kSampleVoxel);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(in(random), in(random), in(random));
     const Material felt = materialAt(*samples, p).material, told = map->at(p, base);
@@ -112,7 +112,7 @@ TEST(MaterialSamples, NothingAddedLeadsOutOfTheRange) {
 }
 
 TEST(MaterialSamples, OfAnEmptyMapAreNothing) {
-  EXPECT_EQ(materialSamples(MaterialMap(Vec3::Zero(), kVoxel), Material{}, nullptr, nullptr),
+  EXPECT_EQ(materialSamples(MaterialMap(Vec3::Zero(), kSampleVoxel), Material{}, nullptr, nullptr),
             nullptr);
 }
 
@@ -120,7 +120,7 @@ TEST(MaterialSamples, OfAnEmptyMapAreNothing) {
 // fresh build, also where paint is taken away.
 TEST(MaterialSamples, ShareWhatAnEditDidNotTouch) {
   const Material base;
-  auto before = coveredMap(kVoxel, cube(30e-3), MaterialChannel::stiffness,
+  auto before = coveredMap(kSampleVoxel, cube(30e-3), MaterialChannel::stiffness,
                            [](const Vec3& p) { return 800 + 1e4 * p.x(); });
   const auto old = materialSamples(*before, base, nullptr, nullptr);
   const auto check = [&](const MaterialMap& map, std::size_t most_made) {

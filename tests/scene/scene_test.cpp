@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-std::string errorOf(const Scene& scene) {
+std::string sceneError(const Scene& scene) {
   try {
     validate(scene);
   } catch (const Error& error) {
@@ -23,14 +23,14 @@ SceneObject object(const std::string& name) {
 }
 
 TEST(Scene, DefaultsAreValid) {
-  EXPECT_EQ(errorOf(Scene{}), "");
+  EXPECT_EQ(sceneError(Scene{}), "");
 }
 
 TEST(Scene, RefusesValuesThatMakeNoSenseAndNamesTheirKey) {
   const auto broken = [](const std::function<void(Scene&)>& change) {
     Scene scene;
     change(scene);
-    return errorOf(scene);
+    return sceneError(scene);
   };
   for (const double value : {-1.0, 1.1e7, std::nan(""), HUGE_VAL}) {
     EXPECT_TRUE(broken([=](Scene& s) { s.haptics.stiffness = value; }).starts_with("stiffness = "));
@@ -59,25 +59,25 @@ TEST(Scene, ExtremesInRangeAreValid) {
   scene.haptics.friction = Friction{0.5, 0.5, 3};
   scene.haptics.tip_radius = 0;
   scene.field.resolution = 19;
-  EXPECT_EQ(errorOf(scene), "");
+  EXPECT_EQ(sceneError(scene), "");
   scene.field.resolution = 4095;
-  EXPECT_EQ(errorOf(scene), "");
+  EXPECT_EQ(sceneError(scene), "");
 }
 
 TEST(Scene, RefusesBadObjects) {
   Scene scene;
   scene.objects = {object("cup"), object("cup")};
-  EXPECT_EQ(errorOf(scene), "object name 'cup' is used twice");
+  EXPECT_EQ(sceneError(scene), "object name 'cup' is used twice");
   for (const char* name : {"", "a b", "../cup", "cup.ply", "t\xE4sse", "a\n"}) {
     scene.objects = {object(name)};
-    EXPECT_TRUE(errorOf(scene).starts_with("object name")) << name;
+    EXPECT_TRUE(sceneError(scene).starts_with("object name")) << name;
   }
   scene.objects = {object("t\xC3\xA4sse")}; // letters of any language, in UTF-8
-  EXPECT_EQ(errorOf(scene), "");
+  EXPECT_EQ(sceneError(scene), "");
   scene.objects = {{"cup", nullptr, Pose::Identity()}};
-  EXPECT_EQ(errorOf(scene), "object 'cup' has no triangles");
+  EXPECT_EQ(sceneError(scene), "object 'cup' has no triangles");
   scene.objects[0].mesh = std::make_shared<const TriangleMesh>();
-  EXPECT_EQ(errorOf(scene), "object 'cup' has no triangles");
+  EXPECT_EQ(sceneError(scene), "object 'cup' has no triangles");
 }
 
 TEST(Scene, RefusesPosesThatAreNotRigid) {
@@ -85,16 +85,16 @@ TEST(Scene, RefusesPosesThatAreNotRigid) {
   scene.objects = {object("cup")};
   Pose& pose = scene.objects[0].world_from_object;
   pose.rotate(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())).pretranslate(Vec3(1, 2, 3));
-  EXPECT_EQ(errorOf(scene), "");
+  EXPECT_EQ(sceneError(scene), "");
   const Pose rigid = pose;
   pose.linear() *= 2;
-  EXPECT_NE(errorOf(scene), "");
+  EXPECT_NE(sceneError(scene), "");
   pose = rigid;
   pose.linear().col(0) *= -1; // a mirror
-  EXPECT_NE(errorOf(scene), "");
+  EXPECT_NE(sceneError(scene), "");
   pose = rigid;
   pose.translation().x() = std::nan("");
-  EXPECT_NE(errorOf(scene), "");
+  EXPECT_NE(sceneError(scene), "");
 }
 
 } // namespace

@@ -11,8 +11,8 @@
 namespace patina {
 namespace {
 
-constexpr double kStiffness = 1000, kDepth = 2.5e-3, kLoop = 1.5e-3;
-constexpr double kStored = 0.5 * kStiffness * kDepth * kDepth;
+constexpr double kLoopStiffness = 1000, kDepth = 2.5e-3, kLoop = 1.5e-3;
+constexpr double kStored = 0.5 * kLoopStiffness * kDepth * kDepth;
 
 const std::vector<Vec3> kAxes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
 
@@ -58,7 +58,7 @@ constexpr std::array<Mode, 4> kModes = {{
     {"offset", [](HapticProperties& h) { h.offset = 2e-3; }, kDepth - 2e-3},
     {"magnet",
      [](HapticProperties& h) {
-       h.magnet = Magnet{4.2e-3, kStiffness, false};
+       h.magnet = Magnet{4.2e-3, kLoopStiffness, false};
      },
      -2.2e-3},
 }};
@@ -74,7 +74,7 @@ LoopEnergy onASphere(const Mode& mode, Sampler sampler, int cells) {
   const double band = std::max(8.0, std::ceil(6e-3 / voxel) + 3);
   const int side = 2 * static_cast<int>(std::ceil(R / voxel + band + 1));
   const Field sphere = cubeField([=](const Vec3& p) { return p.norm() - R; }, voxel, side, band);
-  Scene scene = sceneOf(kStiffness, sampler);
+  Scene scene = sceneOf(kLoopStiffness, sampler);
   mode.set(scene.haptics);
   // Trilinear values have a bump in every cell: the paper's own contact point does not follow them.
   if (sampler == Sampler::kim) scene.haptics.contact = HapticProperties::Contact::ray;
@@ -122,7 +122,7 @@ TEST(ClosedLoopEnergy, AboutACreaseNothingIsGiven) {
     const Field box =
         cubeField([=](const Vec3& p) { return boxDistance(p, half); }, voxel, side, band);
     for (const Mode& mode : kModes) {
-      Scene scene = sceneOf(kStiffness);
+      Scene scene = sceneOf(kLoopStiffness);
       mode.set(scene.haptics);
       if (scene.haptics.magnet) continue; // out of contact its pull is the field's own direction
       const auto snapshot = compileStages(scene, box);

@@ -5,17 +5,18 @@
 #include <cstring>
 #include <deque>
 #include <limits>
-#include <numbers>
 
 #include "haptics/contact_fixture.h"
 #include "haptics/stages/limit_stage.h"
+#include "support/constants.h"
 #include "support/simulated_device.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kPeriod = 1e-3;
+using test::kPeriod;
+using test::kPi;
+
 constexpr double kLimit = 3.3;
 
 Field wall() {

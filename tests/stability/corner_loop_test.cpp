@@ -9,11 +9,14 @@
 
 #include "haptics/contact_fixture.h"
 #include "haptics/devices/simulation.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPress = 2, kPeriod = 1e-3; // [N], [s]
+using test::kPeriod;
+
+constexpr double kPress = 2; // [N]
 
 // Free where every plane is behind: an inner corner of these outward normals at the origin.
 Field innerCorner(const std::vector<Vec3>& normals, double voxel = 0.4e-3) {

@@ -4,13 +4,14 @@
 #include <numbers>
 
 #include "haptics/contact_fixture.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPeriod = 1e-3;
+using test::kPeriod;
 
-ContactMemory pressed(const HapticSnapshot& snapshot, double depth) {
+ContactMemory pressedMemory(const HapticSnapshot& snapshot, double depth) {
   ContactMemory memory;
   tick(snapshot, memory, Vec3(0, 0, 1e-4), kPeriod);
   glide(snapshot, memory, Vec3(0, 0, -depth));
@@ -20,7 +21,7 @@ ContactMemory pressed(const HapticSnapshot& snapshot, double depth) {
 // mu = 10: sticks within 10 d, so that the force is a spring to the point of contact.
 TEST(FrictionExtremes, VeryRoughSurfaceIsASpring) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 10, 10), planeField());
-  ContactMemory memory = pressed(*snapshot, 1e-3);
+  ContactMemory memory = pressedMemory(*snapshot, 1e-3);
   for (double x = 0; x < 14e-3; x += 0.05e-3) {
     const Contact contact = tick(*snapshot, memory, Vec3(x, 0, -1e-3), kPeriod);
     EXPECT_NEAR(contact.force.x(), -500 * std::min(x, 10e-3), 1e-5);
@@ -35,7 +36,7 @@ TEST(FrictionExtremes, StepOfTheCoefficientWhileStuck) {
   const auto rougher = compileStages(withFriction(sceneOf(500), 0.9, 0.9), plane);
   const auto smooth = compileStages(withFriction(sceneOf(500), 0.2, 0.1), plane);
   const double d = 2e-3;
-  ContactMemory memory = pressed(*rough, d);
+  ContactMemory memory = pressedMemory(*rough, d);
   const Vec3 tip(0.8e-3, 0, -d);
   const Vec3 held = glide(*rough, memory, tip).force;
   EXPECT_NEAR(held.x(), -0.4, 1e-6);
@@ -49,7 +50,7 @@ TEST(FrictionExtremes, StepOfTheCoefficientWhileStuck) {
 TEST(FrictionExtremes, ReversalAt100HzDissipatesTheClosedForm) {
   const double K = 500, mu = 0.4, d = 1e-3, amplitude = 2e-3;
   const auto snapshot = compileStages(withFriction(sceneOf(K), mu, mu), planeField());
-  ContactMemory memory = pressed(*snapshot, d);
+  ContactMemory memory = pressedMemory(*snapshot, d);
   double energy = 0, last_force = 0, last_x = 0;
   const int cycle = 100; // at 10 kHz
   for (int i = 0; i <= 20 * cycle; ++i) {
@@ -65,7 +66,7 @@ TEST(FrictionExtremes, ReversalAt100HzDissipatesTheClosedForm) {
 
 TEST(FrictionExtremes, DepthOfANanometre) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), planeField());
-  ContactMemory memory = pressed(*snapshot, 1e-9);
+  ContactMemory memory = pressedMemory(*snapshot, 1e-9);
   for (double x = 0; x < 1e-3; x += 1e-5) {
     const Contact contact = tick(*snapshot, memory, Vec3(x, 0, -1e-9), kPeriod);
     EXPECT_TRUE(contact.force.allFinite());

@@ -10,7 +10,7 @@ namespace {
 
 const Wall kStiff{.stiffness = 1e5, .stabilisers = std::nullopt};
 
-SimulationSpec pressed(double speed) {
+SimulationSpec pressedAt(double speed) {
   SimulationSpec spec;
   spec.press = 1;
   spec.speed = speed;
@@ -20,7 +20,7 @@ SimulationSpec pressed(double speed) {
 TEST(LoopExtremes, SettlesUnderAJitteringServo) {
   for (const unsigned seed : {1u, 2u, 3u, 4u})
     for (const double stiffness : {400., 900., 1e5, 1e7}) {
-      SimulationSpec spec = pressed(.2);
+      SimulationSpec spec = pressedAt(.2);
       spec.jitter = PeriodRange{0.5e-3, 2e-3};
       spec.seed = seed;
       const SimulationReport run =
@@ -33,7 +33,7 @@ TEST(LoopExtremes, SettlesUnderAJitteringServo) {
 }
 
 TEST(LoopExtremes, JitterIsTheSameAgainWithTheSameSeed) {
-  SimulationSpec spec = pressed(.2);
+  SimulationSpec spec = pressedAt(.2);
   spec.jitter = PeriodRange{0.5e-3, 2e-3};
   const SimulationReport a = runOn(kStiff, spec), b = runOn(kStiff, spec);
   EXPECT_EQ(a.max_depth, b.max_depth);
@@ -43,7 +43,7 @@ TEST(LoopExtremes, JitterIsTheSameAgainWithTheSameSeed) {
 
 TEST(LoopExtremes, AMissedTickOf20MsIsAbsorbedAtRestAndOnTheWayIn) {
   for (const double at : {0.002, 0.004, 0.5, 3.}) {
-    SimulationSpec spec = pressed(.2);
+    SimulationSpec spec = pressedAt(.2);
     spec.missed = MissedTick{at, 0.02};
     const SimulationReport run = runOn(kStiff, spec);
     EXPECT_LT(run.rms_velocity, 1e-9) << at;
@@ -53,7 +53,7 @@ TEST(LoopExtremes, AMissedTickOf20MsIsAbsorbedAtRestAndOnTheWayIn) {
 
 TEST(LoopExtremes, ATeleportOf50MmEndsAtRest) {
   for (const double by : {-0.05, 0.05}) {
-    SimulationSpec spec = pressed(.2);
+    SimulationSpec spec = pressedAt(.2);
     spec.seconds = 12;
     spec.teleport = Teleport{2, Vec3(0, 0, by)};
     HapticProperties haptics = propertiesOf(kStiff);
@@ -77,7 +77,7 @@ TEST(LoopExtremes, LightHeavyAndUndampedDevicesRest) {
   for (const double mass : {.01, .1, 1.})
     for (const double damping : {0., .5})
       for (const double stiffness : {.5, .99, 1.01, 2., 10., 1000.}) {
-        SimulationSpec spec = pressed(1); // [m/s]
+        SimulationSpec spec = pressedAt(1); // [m/s]
         spec.device.mass = mass;
         spec.device.damping = damping;
         spec.seconds = 16;
@@ -90,7 +90,7 @@ TEST(LoopExtremes, LightHeavyAndUndampedDevicesRest) {
 }
 
 TEST(LoopExtremes, TenMillionStepsDoNotDrift) {
-  SimulationSpec spec = pressed(0);
+  SimulationSpec spec = pressedAt(0);
   spec.seconds = 1e4; // 1e7 ticks
   Vec3 end, brief_end;
   const SimulationReport run =

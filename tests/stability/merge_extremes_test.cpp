@@ -96,7 +96,7 @@ double vcpDistance(const Contact& contact) {
 
 constexpr double kR = 0.02, kOff = 0.01;
 const double kExit = std::sqrt(kR * kR - kOff * kOff); // 17.32 mm
-const double kVoxel = 2 * (kR + kOff) / 134;           // at 150 cells, band 8
+const double kMergedVoxel = 2 * (kR + kOff) / 134;     // at 150 cells, band 8
 
 std::vector<Placed> deepPair() {
   return {{icosphere(kR, 30), Vec3(-kOff, 0, 0)}, {icosphere(kR, 30), Vec3(kOff, 0, 0)}};
@@ -118,7 +118,8 @@ TEST(MergeExtremes, DeepInTwoSpheresTheWayOutIsTheShortestOne) {
       for (int i = 0; i < 200; ++i) { // at once, and while it stays
         const Contact contact = tick(*snapshot, memory, tip, kDt);
         ASSERT_TRUE(contact.touching);
-        ASSERT_NEAR(vcpDistance(contact), kExit, kVoxel) << tip.transpose() << " shift " << shift;
+        ASSERT_NEAR(vcpDistance(contact), kExit, kMergedVoxel)
+            << tip.transpose() << " shift " << shift;
       }
     }
   }
@@ -133,7 +134,7 @@ TEST(MergeExtremes, AlongAPathFromOutsideTooAndWithoutAJump) {
         const Walk in = walk(*snapshot, memory, {0.03 * way.normalized(), tip});
         EXPECT_TRUE(in.finite);
         EXPECT_EQ(in.faults, 0);
-        EXPECT_NEAR(vcpDistance(in.last), kExit, kVoxel) << tip.transpose();
+        EXPECT_NEAR(vcpDistance(in.last), kExit, kMergedVoxel) << tip.transpose();
         EXPECT_LT(in.largest_step, 0.5) << way.transpose();
       }
     }
@@ -235,7 +236,7 @@ TEST(MergeExtremes, SlidingOverTheSeamHasNoSpike) {
   EXPECT_LT(most, 1.2 * side);
   // 60 degrees of crease, spread over the cells about it.
   const double jump = M_PI / 3;
-  EXPECT_LT(turn, 3 * jump * speed * kDt / kVoxel);
+  EXPECT_LT(turn, 3 * jump * speed * kDt / kMergedVoxel);
 }
 
 TEST(MergeExtremes, HundredObjectsAreFeltEachAsItself) {

@@ -10,11 +10,10 @@
 #include "haptics/stability/stability_limit.h"
 #include "haptics/stability/stability_map.h"
 #include "haptics/stages/coupling_stage.h"
+#include "stability/texture_support.h"
 
 namespace patina {
 namespace {
-
-constexpr double kVoxel = 0x1p-11;
 
 std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const FeltObject& object,
                                                    const Field& field) {

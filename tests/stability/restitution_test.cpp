@@ -3,15 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "haptics/contact_fixture.h"
 #include "stability/loop_support.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
+
 constexpr int kPhases = 200;
 
 struct Bounce {

@@ -10,7 +10,7 @@
 namespace patina {
 namespace {
 
-constexpr double kStiffnesses[] = {900, 3000, 1e4, 1e5, 1e6, 1e7};
+constexpr double kWallStiffnesses[] = {900, 3000, 1e4, 1e5, 1e6, 1e7};
 const Stabilisers kPassivity{false, true};
 
 SimulationSpec pressed(double speed, int delay = 0) {
@@ -23,7 +23,7 @@ SimulationSpec pressed(double speed, int delay = 0) {
 
 // T-SAFE and T-VC1, with the coupling as stiff as was promised.
 TEST(StabilisedLoop, RestsAtAnyStiffnessAndDisplaysTheSeriesFormula) {
-  for (const double stiffness : kStiffnesses)
+  for (const double stiffness : kWallStiffnesses)
     for (const int delay : {0, 1, 2})
       for (const double speed : {0., .2}) {
         const SimulationSpec spec = pressed(speed, delay);

@@ -9,12 +9,14 @@
 #include "field/build/build_field.h"
 #include "geometry/mesh/shapes.h"
 #include "haptics/contact_fixture.h"
+#include "support/constants.h"
 
 namespace patina {
 namespace {
 
+using test::kPeriod;
+
 constexpr double kMajor = 0.03, kMinor = 0.01; // [m]
-constexpr double kPeriod = 1e-3;               // [s], of the servo
 constexpr double kMass = 0.1;                  // [kg], device and hand
 constexpr double kHandStiffness = 100, kHandDamping = 4;
 constexpr double kNoise = 2;     // [N], rms of the force across the path

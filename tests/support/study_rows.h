@@ -3,12 +3,24 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "app/studies/study.h"
+#include "core/progress.h"
 #include "core/work_precision.h"
 
 namespace patina::test {
+
+// The tables of a study's short form, made once a program.
+template <auto Study> const std::vector<WorkPrecisionTable>& quickTables() {
+  static const std::vector<WorkPrecisionTable> tables = [] {
+    Progress progress;
+    return Study(StudyOptions{.quick = true}, progress);
+  }();
+  return tables;
+}
 
 // NaN, which no bound holds for, where there is no such column.
 inline double more(const WorkPrecisionRow& row, const std::string& column) {

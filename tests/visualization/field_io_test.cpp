@@ -42,7 +42,7 @@ class FieldIo : public ::testing::Test {
   fs::path folder_;
 };
 
-double sphere(const Vec3& p) {
+double sphereValue(const Vec3& p) {
   return p.norm() - 0.03;
 }
 
@@ -51,7 +51,7 @@ SurfaceField sphereField(int resolution = 43) { // no multiple of the block side
   spec.resolution = resolution;
   spec.band = 3;
   const FieldGrid grid = gridAround(Box3(Vec3::Constant(-0.03), Vec3::Constant(0.03)), spec);
-  return sampleFunction(sphere, grid, spec.band);
+  return sampleFunction(sphereValue, grid, spec.band);
 }
 
 // A face layer of numbers that tell the nodes apart.

@@ -10,11 +10,11 @@ constexpr double kApart = 0.2; // sine of the angle from which on a wall is anot
 
 } // namespace
 
-Hold::Hold(const Contact& contact) noexcept {
+WallHold::WallHold(const Contact& contact) noexcept {
   for (int i = 0; i < contact.walls; ++i) add(contact.wall[static_cast<std::size_t>(i)]);
 }
 
-void Hold::add(const Contact::WallLoad& wall) noexcept {
+void WallHold::add(const Contact::WallLoad& wall) noexcept {
   const auto along = [&](const Contact::WallLoad& other) { return other.normal.dot(wall.normal); };
   const auto end = wall_.begin() + count_;
   const auto nearest = std::max_element(
@@ -37,14 +37,14 @@ void Hold::add(const Contact::WallLoad& wall) noexcept {
   }
 }
 
-Vec3 Hold::across(const Vec3& v) const noexcept {
+Vec3 WallHold::across(const Vec3& v) const noexcept {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i)
     sum += v.dot(axis_[i]) * axis_[i];
   return sum;
 }
 
-Eigen::Matrix<double, 3, 2> Hold::free() const noexcept {
+Eigen::Matrix<double, 3, 2> WallHold::free() const noexcept {
   Eigen::Matrix<double, 3, 2> free = Eigen::Matrix<double, 3, 2>::Zero();
   if (count_ == 2) {
     free.col(0) = axis_[0].cross(axis_[1]);

@@ -9,9 +9,9 @@ namespace patina {
 // it adds a direction of its own, the ones that bear most first; one that adds none belongs to the
 // nearest that counts, and what counts is the sum of load times normal. So two that differ by less
 // than about 12 degrees are one, and the facets of a smooth surface hold as it does.
-class Hold {
+class WallHold {
  public:
-  explicit Hold(const Contact& contact) noexcept;
+  explicit WallHold(const Contact& contact) noexcept;
 
   int count() const noexcept { return count_; } // of walls that count, 0 without contact
   // The i-th of them; they span what is held.

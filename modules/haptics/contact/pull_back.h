@@ -18,7 +18,7 @@ SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q,
 SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) noexcept;
 
 // J along, at contact.surface for a contact held by one wall. Two leave J only the line they have
-// in common, three nothing; also where Hold takes two for one, because the contact point stays on
+// in common, three nothing; also where WallHold takes two for one, because the contact point stays on
 // their line all the same. J is worked out once a tick and kept in the contact.
 inline Vec3 pulledBack(const FieldSampler& sampler, Contact& contact, const Vec3& along) noexcept {
   if (!contact.jacobian) contact.jacobian = jacobianOf(sampler, contact);

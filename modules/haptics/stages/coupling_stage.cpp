@@ -19,7 +19,7 @@ namespace {
 // Of the tip's motion along the walls what the contact point does not take part in: it is what the
 // surface's curvature holds (K d / (R + d) of a bowl), and as stiff.
 Vec3 heldBack(const Contact& contact) noexcept {
-  const Vec3 along = contact.dt * (contact.velocity - Hold(contact).across(contact.velocity));
+  const Vec3 along = contact.dt * (contact.velocity - WallHold(contact).across(contact.velocity));
   const double squared = along.squaredNorm();
   if (!(squared > 0)) return Vec3::Zero();
   const double share = std::clamp(1 - contact.drawn.dot(along) / squared, 0.0, 1.0);

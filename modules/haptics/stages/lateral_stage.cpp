@@ -69,7 +69,7 @@ void LateralStage::apply(Contact& contact, ContactMemory& memory) const noexcept
   const double viscous = contact.dt > 0 ? plan_.damping / contact.dt : 0;
   const double bowl = plan_.stiffness + viscous; // of spring and damper
   const double depth = contact.depth - shell_;
-  const Mat32 free = Hold(contact).free();
+  const Mat32 free = WallHold(contact).free();
   const Vec2 before = free.transpose() * memory.lateral.aside;
 
   const auto heightOf = [&](const Vec2& u) { return heightAt(contact, free * u, memory.walk); };

@@ -41,7 +41,7 @@ namespace {
 
 // What of a damper's force is left where the walls that hold the tip only push: the nearest to the
 // sum with the spring's that they can bear, less the spring's.
-Vec3 besideSpring(const Contact& contact, const Hold& hold, const Vec3& damper) noexcept {
+Vec3 besideSpring(const Contact& contact, const WallHold& hold, const Vec3& damper) noexcept {
   if (hold.count() == 1) {
     const auto& [normal, load] = hold[0];
     return std::max(damper.dot(normal), -contact.stiffness * load) * normal;
@@ -63,7 +63,7 @@ void dampWalls(Contact& contact, double damping, bool magnetic) noexcept {
   if (contact.attracted)
     contact.force += contact.attraction * damper.dot(contact.normal) * contact.normal;
   if (!contact.touching || damper.isZero(0)) return;
-  const Hold hold(contact);
+  const WallHold hold(contact);
   const Vec3 across = hold.across(damper);
   contact.force += magnetic ? across : besideSpring(contact, hold, across);
   dampSticking(contact, damper - across);

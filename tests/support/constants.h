@@ -1,0 +1,13 @@
+// Numbers that many tests name.
+#pragma once
+
+#include <limits>
+#include <numbers>
+
+namespace patina::test {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPeriod = 1e-3; // of the servo [s]
+
+} // namespace patina::test
