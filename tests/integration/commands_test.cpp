@@ -17,7 +17,8 @@ const char* const kForceHeader =
     "t [s],x [m],y [m],z [m],fx [N],fy [N],fz [N],contact,depth [m],vcp_x [m],vcp_y [m],vcp_z "
     "[m],nx,ny,nz,step [ns],fault,held,snap";
 const char* const kSampleHeader = "x [m],y [m],z [m],phi [m],nx,ny,nz,face,cx [m],cy [m],cz "
-                                  "[m],in_band,stiffness [N/m],friction";
+                                  "[m],in_band,stiffness [N/m],friction.static,friction.dynamic,damping "
+                                  "[N s/m],roughness [m],relief [m],red,green,blue,cover";
 
 void expectKeys(const Json& json, const std::vector<std::string>& keys) {
   for (const std::string& key : keys) EXPECT_NE(json.find(key), nullptr) << key;
@@ -189,6 +190,7 @@ TEST_F(Commands, SampleOfAFieldFileAgreesWithThatOfItsMesh) {
   ASSERT_EQ(run({"sample", field, "--points", points, "-o", folder / "b.csv"}).exit, 0);
   const CsvTable a = readCsv(folder / "a.csv", {}), b = readCsv(folder / "b.csv", {});
   ASSERT_EQ(a.rows.size(), b.rows.size());
+  EXPECT_EQ(b.columns.size(), 12u) << "a field has no material";
   for (std::size_t i = 0; i < a.rows.size(); ++i) {
     for (std::size_t j = 3; j < 7; ++j) EXPECT_NEAR(a.rows[i][j], b.rows[i][j], 1e-7);
     for (std::size_t j = 8; j < 11; ++j) EXPECT_NEAR(a.rows[i][j], b.rows[i][j], 3e-5);

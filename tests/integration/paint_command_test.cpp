@@ -69,7 +69,9 @@ TEST_F(Paint, FrictionIsFeltAsPainted) {
   EXPECT_NEAR(-felt[kForceX] / felt[kForceZ], 0.4, 0.004);
   const std::string points = folder.write("p.csv", "x [m],y [m],z [m]\n0,0,0.02\n");
   ASSERT_EQ(run({"sample", workspace, "--points", points, "-o", folder / "s.csv"}).exit, 0);
-  EXPECT_NEAR(readCsv(folder / "s.csv", {"x [m]"}).rows[0][13], 0.6, 1e-6);
+  const CsvTable table = readCsv(folder / "s.csv", {"x [m]"});
+  EXPECT_NEAR(table.rows[0][13], 0.6, 1e-6);
+  EXPECT_NEAR(table.rows[0][14], 0.4, 1e-6);
 }
 
 // K21: the surface lies as much higher as was painted, in both forms.

@@ -8,12 +8,14 @@
 #include "app/cli/input/point_file.h"
 #include "app/cli/input/scene_options.h"
 #include "app/cli/output/reports.h"
+#include "authoring/brush/surface_values.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/sampling/field_sampler.h"
 #include "geometry/mesh/joint_mesh.h"
 #include "geometry/tree/triangle_tree.h"
+#include "scene/surface_pick.h"
 #include "visualization/export/field_io.h"
 
 namespace patina::cli {
@@ -25,9 +27,10 @@ struct SampleOptions {
   SceneOptions scene;
 };
 
-const std::vector<std::string> kSampleColumns = {
-    "x [m]",  "y [m]",  "z [m]",   "phi [m]",         "nx",      "ny", "nz", "face", "cx [m]",
-    "cy [m]", "cz [m]", "in_band", "stiffness [N/m]", "friction"};
+const std::vector<std::string> kSampleColumns = {"x [m]",  "y [m]",  "z [m]",  "phi [m]",
+                                                 "nx",     "ny",     "nz",     "face",
+                                                 "cx [m]", "cy [m]", "cz [m]", "in_band"};
+constexpr std::size_t kPhi = 3, kInBand = 11;
 
 const Keys kSampleKeys = {{"points", "", "points"},
                           {"in_band", "", "in the band", "points", Shown::never},
@@ -59,15 +62,31 @@ struct SampledSurface {
   std::shared_ptr<const CompiledScene> compiled; // null: only the field is known
 };
 
-Material materialAt(const SampledSurface& surface, std::int32_t face, const Vec3& closest) {
-  if (!surface.compiled) return baseMaterial({});
-  const Scene& scene = surface.compiled->scene;
-  const Material base = baseMaterial(scene.haptics);
-  const std::int32_t index = partOfFace(surface.compiled->parts, face, &FieldPart::first_face);
-  if (index < 0) return base;
-  const SceneObject& object = scene.objects[static_cast<std::size_t>(index)];
-  if (!object.paint || !object.paint->material) return base;
-  return object.paint->material->at(object.world_from_object.inverse() * closest, base);
+// What a scene adds to a field's columns: each channel of material, relief, colour.
+void addValueColumns(std::vector<std::string>& columns) {
+  for (const Channel& row : kChannels)
+    columns.push_back(std::string(row.key) +
+                      (row.unit.empty() ? "" : " [" + std::string(row.unit) + "]"));
+  columns.insert(columns.end(), {"relief [m]", "red", "green", "blue", "cover"});
+}
+
+// As painted at the closest point; where nothing is, the scene's own, and no colour.
+void addValues(const Scene& scene, const TriangleMesh& mesh, std::int32_t face, const Vec3& closest,
+               std::vector<double>& row) {
+  SurfaceValues values;
+  values.material = baseMaterial(scene.haptics);
+  if (face >= 0) {
+    const auto t = static_cast<std::size_t>(face);
+    const Vec3 at =
+        closestBarycentric(closest, mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2));
+    if (const auto own = objectPointOf(scene, {face, at}))
+      values = surfaceValues(scene, own->object, own->point);
+  }
+  for (const Channel& channel : kChannels) row.push_back(values.material.*channel.value);
+  row.push_back(values.height);
+  const double cover = values.color[3];
+  for (std::size_t c = 0; c < 3; ++c) row.push_back(cover > 0 ? values.color[c] / cover : 0);
+  row.push_back(cover);
 }
 
 SampledSurface open(const SampleOptions& options, Console& console) {
@@ -117,21 +136,12 @@ std::vector<double> sampleRow(const SampledSurface& surface, const FieldSampler&
   } else {
     face = sampler.faceNear(p);
   }
-  const Material material = materialAt(surface, face, closest);
-  return {p.x(),
-          p.y(),
-          p.z(),
-          phi,
-          normal.x(),
-          normal.y(),
-          normal.z(),
-          static_cast<double>(face),
-          closest.x(),
-          closest.y(),
-          closest.z(),
-          in_band ? 1.0 : 0.0,
-          material.stiffness,
-          std::max(material.static_friction, material.dynamic_friction)};
+  std::vector<double> row{p.x(),       p.y(),       p.z(),       phi,
+                          normal.x(),  normal.y(),  normal.z(),  static_cast<double>(face),
+                          closest.x(), closest.y(), closest.z(), in_band ? 1.0 : 0.0};
+  if (surface.compiled)
+    addValues(surface.compiled->scene, *surface.compiled->mesh, face, closest, row);
+  return row;
 }
 
 int runSample(const SampleOptions& options, Console& console) {
@@ -140,14 +150,16 @@ int runSample(const SampleOptions& options, Console& console) {
   std::optional<Vec3> p = points.next(); // one that is wrong from the start is refused now
   const SampledSurface surface = open(options, console);
   const FieldSampler sampler(*surface.field, surface.sampler);
-  CsvWriter samples(options.output, kSampleColumns);
+  std::vector<std::string> columns = kSampleColumns;
+  if (surface.compiled) addValueColumns(columns);
+  CsvWriter samples(options.output, columns);
   std::size_t count = 0, in_band = 0, bad_points = 0;
   for (; p; p = points.next()) {
     if (count++ % 1024 == 0) console.progress().throwIfCancelled();
     const std::vector<double> sample = sampleRow(surface, sampler, *p);
     samples.add(sample);
-    in_band += sample[11] != 0;
-    bad_points += std::isnan(sample[3]);
+    in_band += sample[kInBand] != 0;
+    bad_points += std::isnan(sample[kPhi]);
   }
   console.progress().throwIfCancelled();
   samples.commit();
@@ -175,9 +187,10 @@ Command sampleCommand() {
           "Points come with the columns x [m],y [m],z [m], or as a path with t [s] before them, "
           "which is not read; further columns are ignored. Out go phi [m] (negative inside), the "
           "unit direction nx,ny,nz, the nearest face, the closest point cx,cy,cz [m], in_band (1 "
-          "or 0), stiffness [N/m] and friction that holds: as painted at the closest point, the "
-          "scene's own elsewhere.\n"
-          "With a mesh or workspace the face and closest point are exact, and so are phi and the "
+          "or 0).\n"
+          "With a mesh or workspace also every channel of material, relief [m], red, green, blue "
+          "and cover: as painted at the closest point, the scene's own elsewhere; the face and "
+          "closest point are exact, and so are phi and the "
           "direction beyond the band; of several objects the closest point is one of their "
           "union's, which none of them hides. Where relief is baked, phi and the direction are "
           "those of the relief. With a field alone they are what the field knows: closest point = "
