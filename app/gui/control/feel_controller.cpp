@@ -61,7 +61,11 @@ void FeelController::look() {
   if (!controls_->enabled) held_back = tr("no force: it is switched off");
   if (held_back == held_back_) return;
   held_back_ = held_back;
-  if (!held_back.isEmpty()) emit said({held_back, true});
+  // The last word is what holds: a warning that is over does not stand there.
+  if (held_back.isEmpty())
+    emit said({tr("The device gives force again")});
+  else
+    emit said({held_back, true});
 }
 
 void FeelController::collect() {
