@@ -18,11 +18,11 @@
 namespace patina {
 namespace {
 
-constexpr double kSmoothed = 0.03;                                  // of the sphere [m]
-constexpr double kSmoothBrush = 0.05 * 2 * kSmoothed;               // 5 % of the object
-constexpr double kDeviations[] = {0, 0.1e-3, 0.2e-3, 0.5e-3, 1e-3}; // [m]
-constexpr double kMostSlower = 3;                                   // times a dab without smoothing
-constexpr int kSmoothDabs = 40, kSmoothRounds = 15;
+constexpr double kSmoothed = 0.03;                    // of the sphere [m]
+constexpr double kSmoothBrush = 0.05 * 2 * kSmoothed; // 5 % of the object
+constexpr double kDeviations[] = {0, 0.1e-3, 1e-3};   // [m]
+constexpr double kMostSlower = 3;                     // times a dab without smoothing
+constexpr int kSmoothDabs = 24, kSmoothRounds = 15;
 
 std::unique_ptr<Editor> paintedBall(ReliefMode mode, int size, double deviation) {
   Progress progress;
