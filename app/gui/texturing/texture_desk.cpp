@@ -49,8 +49,10 @@ TextureDesk::TextureDesk(QWidget& window)
           &TextureDesk::showProfile);
   connect(steps_, &StepList::nextAsked, this, [this] { run(false); });
   connect(steps_, &StepList::allAsked, this, [this] { run(true); });
-  connect(steps_, &StepList::feelAsked, this,
-          [this] { emit openAsked(QString::fromStdString((folder_ / "workspace").string())); });
+  connect(steps_, &StepList::feelAsked, this, [this] {
+    std::erase(scratch_.folders, folder_);
+    emit openAsked(QString::fromStdString((folder_ / "workspace").string()));
+  });
   connect(&library_, &TextureLibrary::changed, this, &TextureDesk::changed);
   connect(&library_, &TextureLibrary::said, this, &TextureDesk::said);
   connect(&library_, &TextureLibrary::chosen, this, [this](const auto& texture) {
@@ -68,6 +70,11 @@ TextureDesk::TextureDesk(QWidget& window)
 
 TextureDesk::~TextureDesk() = default;
 
+TextureDesk::Scratch::~Scratch() {
+  std::error_code unheard; // it is in the temporary folder
+  for (const auto& folder : folders) std::filesystem::remove_all(folder, unheard);
+}
+
 void TextureDesk::runAll() {
   run(true);
 }
@@ -78,6 +85,7 @@ void TextureDesk::run(bool all) {
     // Never the last one's: a step that was cancelled may still be writing there.
     folder_ = std::filesystem::temp_directory_path() /
               ("patina-demo-" + std::to_string(getpid()) + "-" + std::to_string(++begun_));
+    scratch_.folders.push_back(folder_);
     demo_ = std::make_shared<Demo>(folder_, 1);
   }
   const QString title = tr("From a scan to a feel");
@@ -123,7 +131,9 @@ void TextureDesk::takeStep() {
   showProfile();
   draw();
   if (demo_ && isDone(*demo_))
-    emit said({tr("Every step's files are in %1").arg(QString::fromStdString(folder_.string()))});
+    emit said({tr("Every step's files are in %1, until the window is closed; if the toy is felt "
+                  "from there, they stay")
+                   .arg(QString::fromStdString(folder_.string()))});
   emit changed();
 }
 

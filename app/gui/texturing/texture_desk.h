@@ -53,7 +53,15 @@ class TextureDesk : public QObject {
   void showProfile();
   void choosePage();
 
+  // Hundreds of megabytes that nobody named: they go with the desk, but for one whose workspace was
+  // opened. Outlives the job that may be writing there.
+  struct Scratch {
+    std::vector<std::filesystem::path> folders;
+    ~Scratch();
+  };
+
   QWidget& window_;
+  Scratch scratch_;
   Background job_;
   std::shared_ptr<Demo> demo_; // not read while a step runs
   std::filesystem::path folder_;
