@@ -15,7 +15,7 @@ namespace patina {
 namespace {
 
 constexpr double kLength = 0.02, kHeight = 1e-3;
-constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kPlaneTurn = 2 * std::numbers::pi;
 
 template <class Height> Picture pictureOf(int side, const Height& grey) {
   Picture picture{side, side, 1, {}};
@@ -27,8 +27,8 @@ template <class Height> Picture pictureOf(int side, const Height& grey) {
 }
 // Two products: waves along each axis, and one that goes across both.
 double twoProducts(double x, double y) {
-  return 0.5 + 0.2 * std::cos(kTwoPi * 3 * x) * std::cos(kTwoPi * 2 * y) +
-         0.1 * std::sin(kTwoPi * 5 * x) * (std::sin(kTwoPi * y) + 0.5 * std::cos(kTwoPi * 7 * y));
+  return 0.5 + 0.2 * std::cos(kPlaneTurn * 3 * x) * std::cos(kPlaneTurn * 2 * y) +
+         0.1 * std::sin(kPlaneTurn * 5 * x) * (std::sin(kPlaneTurn * y) + 0.5 * std::cos(kPlaneTurn * 7 * y));
 }
 FittedPlane fitted(const Picture& picture, PlaneFitOptions options) {
   options.length = kLength;
@@ -77,7 +77,7 @@ TEST(FitPlane, TheBestOfALowerRankIsTheStrongerProduct) {
   const FittedPlane one = fitted(pictureOf(64, twoProducts), options);
   EXPECT_EQ(one.rank, 1);
   const auto first = [](double x, double y) {
-    return kHeight * 0.2 * std::cos(kTwoPi * 3 * x) * std::cos(kTwoPi * 2 * y);
+    return kHeight * 0.2 * std::cos(kPlaneTurn * 3 * x) * std::cos(kPlaneTurn * 2 * y);
   };
   EXPECT_LT(worst(one.texture, first), 1e-9);
   const double left = 0.01 / 4 * 1.25, all = 0.04 / 4 + left;

@@ -28,7 +28,7 @@ Vec3 normalAt(const Vec3& p) {
   return slope.normalized();
 }
 
-struct Scan {
+struct JointScan {
   Pose mesh_from_path = Pose::Identity();
   Vec3 tip = Vec3(0.5e-3, -0.3e-3, 0.8e-3);
   double clock = 4e-3, noise = 50e-6, compliance = 0.5e-3;
@@ -62,9 +62,9 @@ struct Scan {
   }
 };
 
-Scan scanOf(unsigned seed) {
+JointScan scanOf(unsigned seed) {
   test::Draw draw(100 + seed);
-  Scan scan;
+  JointScan scan;
   scan.mesh_from_path.linear() =
       Eigen::AngleAxisd(0.4, draw.normal(1).normalized()).toRotationMatrix();
   scan.mesh_from_path.translation() = draw.normal(0.01);
@@ -88,7 +88,7 @@ const SurfaceTarget& body() {
   return target;
 }
 
-double missOf(const Pose& found, const Scan& scan) { // rms over the body [m]
+double bodyMissOf(const Pose& found, const JointScan& scan) { // rms over the body [m]
   double sum = 0;
   for (int i = 0; i < 300; ++i) {
     const Vec3 p = scan.tipAt(1e-2 * i);
@@ -101,7 +101,7 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
   const int rounds = 30;
   double nees = 0, joint = 0, apart = 0, tip = 0, clock = 0;
   for (unsigned seed = 0; seed < rounds; ++seed) {
-    const Scan scan = scanOf(seed);
+    const JointScan scan = scanOf(seed);
     const auto path = scan.path(seed);
     const std::vector<bool> counts(path.size(), true);
     const Pose before = separately(body(), path, scan.mesh_from_path, scan.compliance);
@@ -116,8 +116,8 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
     error << turn.angle() * turn.axis(), off * fit.middle - fit.middle, fit.tip - scan.tip,
         fit.clock - scan.clock;
     nees += error.dot(fit.covariance.ldlt().solve(error)) / kJointValues / rounds;
-    joint += missOf(fit.mesh_from_path, scan) / rounds;
-    apart += missOf(before, scan) / rounds;
+    joint += bodyMissOf(fit.mesh_from_path, scan) / rounds;
+    apart += bodyMissOf(before, scan) / rounds;
     tip += (fit.tip - scan.tip).norm() / rounds;
     clock += std::abs(fit.clock - scan.clock) / rounds;
   }
@@ -134,7 +134,7 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
 // A probe that never tilts cannot tell its tip from the path's shift; one that a rigid body holds
 // says nothing of the clock.
 TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
-  Scan scan = scanOf(1);
+  JointScan scan = scanOf(1);
   scan.tilts = false;
   scan.compliance = 0;
   const auto path = scan.path(1);
@@ -157,7 +157,7 @@ TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
 }
 
 TEST(JointFit, WhatIsNotAskedForStays) {
-  const Scan scan = scanOf(2);
+  const JointScan scan = scanOf(2);
   const auto path = scan.path(2);
   JointOptions options;
   options.compliance = scan.compliance;
