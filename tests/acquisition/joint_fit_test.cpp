@@ -62,7 +62,7 @@ struct JointScan {
   }
 };
 
-JointScan scanOf(unsigned seed) {
+JointScan jointScanOf(unsigned seed) {
   test::Draw draw(100 + seed);
   JointScan scan;
   scan.mesh_from_path.linear() =
@@ -101,7 +101,7 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
   const int rounds = 30;
   double nees = 0, joint = 0, apart = 0, tip = 0, clock = 0;
   for (unsigned seed = 0; seed < rounds; ++seed) {
-    const JointScan scan = scanOf(seed);
+    const JointScan scan = jointScanOf(seed);
     const auto path = scan.path(seed);
     const std::vector<bool> counts(path.size(), true);
     const Pose before = separately(body(), path, scan.mesh_from_path, scan.compliance);
@@ -134,7 +134,7 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
 // A probe that never tilts cannot tell its tip from the path's shift; one that a rigid body holds
 // says nothing of the clock.
 TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
-  JointScan scan = scanOf(1);
+  JointScan scan = jointScanOf(1);
   scan.tilts = false;
   scan.compliance = 0;
   const auto path = scan.path(1);
@@ -157,7 +157,7 @@ TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
 }
 
 TEST(JointFit, WhatIsNotAskedForStays) {
-  const JointScan scan = scanOf(2);
+  const JointScan scan = jointScanOf(2);
   const auto path = scan.path(2);
   JointOptions options;
   options.compliance = scan.compliance;
