@@ -151,6 +151,23 @@ TEST(TipTarget, ALeapIsFeltNowhereOnItsWay) {
   EXPECT_EQ(mouse->exchange(Vec3::Zero(), kPeriod).position, Vec3(-0.02, 0, 0));
 }
 
+// As a pointer does that hovered, whose time was not asked for, and then presses.
+TEST(TipTarget, ALeapIsNotWaitedForWhateverItsTime) {
+  const auto target = targetAt(Vec3::Zero());
+  const auto mouse = makeMouse(target);
+  const auto goesTo = [&](const Vec3& place, int ticks) {
+    DeviceState state;
+    for (int tick = 0; tick < ticks; ++tick) state = mouse->exchange(Vec3::Zero(), kPeriod);
+    return state.position == place && target->passed();
+  };
+  target->leap(Vec3(0.01, 0, 0), 0);
+  EXPECT_TRUE(goesTo(Vec3(0.01, 0, 0), 100));
+  target->leap(Vec3(0.02, 0, 0), 1000);
+  target->pass(Vec3(0.021, 0, 0), 1000);
+  target->pass(Vec3(0.022, 0, 0), 1000.01);
+  EXPECT_TRUE(goesTo(Vec3(0.022, 0, 0), 100));
+}
+
 TEST(TipTarget, ABodyOfMassGlidesWhereAMouseLeaps) {
   const auto target = targetAt(Vec3::Zero());
   const auto hand = makeSimulatedHand(target);

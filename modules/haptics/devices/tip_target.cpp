@@ -89,6 +89,7 @@ bool GlidingTip::take() noexcept {
     if (next.version < version_) target_->setPassed(); // set anew since
   } while (next.version < version_);
   version_ = next.version;
+  if (next.leaps) on_path_ = false; // one of its own begins: nobody waits for its time
   if (next.leaps && leaps_) {
     tip_ = next.world;
     lift_ = kLeapTime;
