@@ -12,6 +12,8 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kBlocks = 128; // points are averaged down to about so many
+// Deviations of what neighbours have alike by chance: less than that is none, and costs nothing.
+constexpr double kAlike = 3;
 
 struct Blocks {
   double size = 1; // points in one
@@ -127,7 +129,7 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
                                      .dot(blocks.misses.tail(blocks.misses.size() - 1)) /
                                  std::max(blocks.misses.squaredNorm(), 1e-300);
   if (static_cast<double>(blocks.misses.size()) < 16 ||
-      alike < 2 / std::sqrt(static_cast<double>(blocks.misses.size()))) {
+      alike < kAlike / std::sqrt(static_cast<double>(blocks.misses.size()))) {
     law.deviation = std::max(
         noise, fit.rms * std::sqrt(count / std::max(count - static_cast<double>(seen), 1.0)));
     law.scatter = law.deviation * law.deviation / blocks.size * law.normal;
@@ -138,7 +140,7 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
   if (!force.empty()) design.col(seen) = blocks.gradients.col(6);
   std::vector<TriedLaw> all;
   for (const double alone : {1e-3, 0.03, 0.2, 0.6})
-    for (double reach = 1; reach < 0.3 * static_cast<double>(blocks.misses.size()); reach *= 1.5) {
+    for (double reach = 1; reach < 0.3 * static_cast<double>(blocks.misses.size()); reach *= 2) {
       all.push_back({reach, alone});
       judgeLaw(all.back(), blocks, design);
     }
