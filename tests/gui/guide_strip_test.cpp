@@ -124,7 +124,9 @@ TEST_F(GuideStripTest, AScanOfOnesOwnComesToATextureStepByStep) {
   EXPECT_LT((belongs * align.alignment().pose().inverse() * middle - middle).norm(), 1.5e-3);
   EXPECT_TRUE(step(2).startsWith(QStringLiteral("✓")))
       << step(2).toStdString() << ": " << find<QLabel>("align_found")->text().toStdString();
+  wait(200); // the strip makes room for the new words
   clickOn("guide_3");
+  ASSERT_EQ(desk(), Desk::texture);
   clickOn("tab_library");
   clickOn("texture_scan");
   const auto& library = window_->findChild<TextureDesk*>()->library();
