@@ -18,14 +18,14 @@
 namespace patina {
 namespace {
 
-constexpr double kPaintedRadius = 0.03;
+constexpr double kRound = 0.03;
 
 class Painting : public WindowTest {
  protected:
   void SetUp() override {
     WindowTest::SetUp();
     if (IsSkipped()) return;
-    ASSERT_TRUE(open(saved(icosphere(kPaintedRadius, 30), "sphere.obj")));
+    ASSERT_TRUE(open(saved(icosphere(kRound, 30), "sphere.obj")));
     window_->activateWindow();
     view().setFocus();
   }
@@ -140,8 +140,7 @@ TEST_F(Painting, AQuickClickPaintsToo) {
   ASSERT_TRUE(waitUntil([&] { // the tip hovers there
     wait(50);
     const Vec3 before = std::exchange(tip, feel().sample().tip);
-    return (tip - before).norm() < 1e-5 && tip.norm() > kPaintedRadius &&
-           tip.norm() < 1.1 * kPaintedRadius;
+    return (tip - before).norm() < 1e-5 && tip.norm() > kRound && tip.norm() < 1.1 * kRound;
   }));
   send(QEvent::MouseButtonPress, middle(), Qt::LeftButton, Qt::LeftButton);
   send(QEvent::MouseButtonRelease, middle(), Qt::LeftButton, Qt::NoButton);
