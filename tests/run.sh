@@ -113,7 +113,7 @@ run_benchmarks() {
 
 run_fuzz() { # seconds each
   say "Fuzzing each reader for $1 s"
-  configure build-fuzz -DCMAKE_UNITY_BUILD=ON -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
+  configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
   build build-fuzz
   local program reader seeds
   for program in build-fuzz/bin/*_fuzz; do

@@ -84,8 +84,9 @@ void validate(const std::vector<SceneScan>& scans) {
                   "': use letters (UTF-8), digits, '-' and '_' only, up to 100 bytes");
     if (!seen.insert(scan.name).second) throw Error("scan name '" + scan.name + "' is used twice");
     for (const auto& [file, text] : scan.files)
-      if (!text || std::none_of(kScanFiles.begin(), kScanFiles.end(),
-                                [&](const ScanFile& known) { return known.name == file; }))
+      if (!text ||
+          std::none_of(kScanFiles.begin(), kScanFiles.end(),
+                       [&name = file](const ScanFile& known) { return known.name == name; }))
         throw Error("scan '" + scan.name + "': '" + file + "' is no file of a scan");
     if (scan.folder.empty() != scan.frames.empty() ||
         (!scan.folder.empty() && !scan.folder.is_absolute()))
