@@ -124,8 +124,7 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
   std::printf("NEES %.2f, pose %.4f mm (apart %.4f), tip %.4f mm of .99, clock %.3f ms of 4\n",
               nees, 1e3 * joint, 1e3 * apart, 1e3 * tip, 1e3 * clock);
   EXPECT_GT(nees, 0.7);
-  // 1.45: the mesh is .6 um inside of the body, and speeds of neighbouring samples err together.
-  EXPECT_LT(nees, 1.6);
+  EXPECT_LT(nees, 1.6); // 1.45, where 1 is due: it is not known why
   EXPECT_LT(joint, 0.2 * apart);
   EXPECT_LT(tip, 0.03e-3);
   EXPECT_LT(clock, 0.5e-3);
