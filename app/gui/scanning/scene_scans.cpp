@@ -98,15 +98,9 @@ void SceneScans::refresh() {
 
 void SceneScans::apply(const std::string& what, std::function<Scene(const Scene&)> edit) {
   if (edits_ == nullptr) return;
-  edits_->apply(
-      what,
-      [edit = std::move(edit)](const CompiledScene& now) {
-        return std::make_shared<const Scene>(edit(now.scene));
-      },
-      false,
-      [this](const std::string& problem) {
-        if (!problem.empty()) emit failed(QString::fromStdString(problem));
-      });
+  edits_->edit(what, std::move(edit), [this](const std::string& problem) {
+    emit failed(QString::fromStdString(problem));
+  });
 }
 
 void SceneScans::put(const std::vector<SceneScan>& steps) {

@@ -144,16 +144,9 @@ void TextureLibrary::keepDialog() {
 
 void TextureLibrary::apply(const std::string& what, std::function<Scene(const Scene&)> edit) {
   if (edits_ == nullptr || scene_ == nullptr) return;
-  edits_->apply(
-      what,
-      [edit = std::move(edit)](const CompiledScene& now) {
-        return std::make_shared<const Scene>(edit(now.scene));
-      },
-      false,
-      [this](const std::string& problem) {
-        if (!problem.empty() && problem != Cancelled().what())
-          card_->setHint(QString::fromStdString(problem));
-      });
+  edits_->edit(what, std::move(edit), [this](const std::string& problem) {
+    card_->setHint(QString::fromStdString(problem));
+  });
 }
 
 void TextureLibrary::lay(int object, const std::vector<Vec3>& points) {

@@ -221,6 +221,19 @@ void EditThread::apply(const std::string& what, Change change, bool replaces, Do
                std::move(done), replaces ? what : std::string()});
 }
 
+void EditThread::edit(const std::string& what, std::function<Scene(const Scene&)> change,
+                      Done failed) {
+  apply(
+      what,
+      [change = std::move(change)](const CompiledScene& now) {
+        return std::make_shared<const Scene>(change(now.scene));
+      },
+      false,
+      [failed = std::move(failed)](const std::string& problem) {
+        if (!problem.empty() && problem != Cancelled().what()) failed(problem);
+      });
+}
+
 void EditThread::goTo(std::size_t position, Done done) {
   impl_->push(
       {"History",
