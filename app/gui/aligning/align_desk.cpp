@@ -9,15 +9,13 @@
 #include "acquisition/registration/first_guess.h"
 #include "acquisition/registration/rigid_fit.h"
 #include "app/gui/aligning/fit_words.h"
-#include "app/gui/loading/load_dialogs.h"
 #include "app/gui/scanning/scan_path.h"
 
 namespace patina {
 namespace {
 
-constexpr int kSettle = 350;         // after its last change a value is a step [ms]
-constexpr double kSpread = 0.01;     // of the mesh, that three points are apart at least
-constexpr double kPlaces = 1. / 200; // samples this near are one place, of the path's radius
+constexpr int kSettle = 350;     // after its last change a value is a step [ms]
+constexpr double kSpread = 0.01; // of the mesh, that three points are apart at least
 
 } // namespace
 
