@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -116,22 +117,62 @@ std::string_view nameOf(FileKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-void requireSameKind(const std::filesystem::path& path, FileKind kind) {
-  const std::string name = path.string();
+std::optional<FileKind> kindOfName(const std::filesystem::path& path) {
+  struct Ending {
+    std::string_view text;
+    FileKind kind;
+  };
+  constexpr std::array<Ending, 14> endings = {{{".csv", FileKind::table},
+                                               {".json", FileKind::json},
+                                               {".obj", FileKind::obj},
+                                               {".ply", FileKind::ply},
+                                               {".stl", FileKind::stl},
+                                               {".vti", FileKind::image_data},
+                                               {".vtp", FileKind::poly_data},
+                                               {".png", FileKind::png},
+                                               {".exr", FileKind::exr},
+                                               {".yaml", FileKind::yaml},
+                                               {".yml", FileKind::yaml},
+                                               {".pgm", FileKind::pnm},
+                                               {".ppm", FileKind::pnm},
+                                               {".tum", FileKind::poses}}};
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const Ending& one : endings)
+    if (one.text == ending) return one.kind;
+  return std::nullopt;
+}
+
+namespace {
+
+// What is there, if it is a file with something in it that may be read.
+std::optional<FileKind> kindOfFile(const std::string& name) {
   struct stat info {};
-  if (::stat(name.c_str(), &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0) return;
+  if (::stat(name.c_str(), &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0) return {};
   const Descriptor file(openRetrying(name.c_str(), O_RDONLY));
-  if (file.get() < 0 && errno == EACCES) return; // one that only may be written
+  if (file.get() < 0 && errno == EACCES) return {}; // one that only may be written
   if (file.get() < 0) throw DiskError(name, "cannot be opened: " + reason(errno));
   std::array<char, kHead> buffer{};
   const std::size_t got = readSome(file.get(), name, buffer.data(), buffer.size());
-  const FileKind old =
-      kindOf(std::string_view(buffer.data(), got), static_cast<std::uint64_t>(info.st_size));
-  if (old == kind || kind == FileKind::empty) return;
-  throw FileError(name, 0,
-                  "is " + std::string(nameOf(old)) + ", and is not overwritten by " +
-                      (kind == FileKind::other ? "another" : std::string(nameOf(kind))) +
-                      "; remove it or choose another name");
+  return kindOf(std::string_view(buffer.data(), got), static_cast<std::uint64_t>(info.st_size));
+}
+
+} // namespace
+
+void requireSameKind(const std::filesystem::path& path, FileKind kind) {
+  if (kind == FileKind::empty) return;
+  const std::string name = path.string();
+  if (const std::optional<FileKind> old = kindOfFile(name); old && *old != kind)
+    throw FileError(name, 0,
+                    "is " + std::string(nameOf(*old)) + ", and is not overwritten by " +
+                        (kind == FileKind::other ? "another" : std::string(nameOf(kind))) +
+                        "; remove it or choose another name");
+  if (kind == FileKind::other) return;
+  if (const std::optional<FileKind> told = kindOfName(path); told && *told != kind)
+    throw FileError(name, 0,
+                    "is the name of " + std::string(nameOf(*told)) + ", but " +
+                        std::string(nameOf(kind)) + " is to be written");
 }
 
 } // namespace patina

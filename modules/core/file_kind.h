@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 namespace patina {
@@ -30,8 +31,11 @@ FileKind kindOf(std::string_view head, std::uint64_t size);
 // "a JSON object", "a PLY mesh".
 std::string_view nameOf(FileKind kind);
 
-// FileError if what is at `path` is a file that `kind` may not take the place of: one of another
-// kind. Nothing there, nothing in it, or the same kind is no error.
+// What a file's ending says of it, in either case; nothing of an ending that is not ours.
+std::optional<FileKind> kindOfName(const std::filesystem::path& path);
+
+// FileError if `kind` may not be written to `path`: a file of another kind is there, or the name
+// ends as that of another kind does. Nothing there, nothing in it, or the same kind is no error.
 void requireSameKind(const std::filesystem::path& path, FileKind kind);
 
 } // namespace patina

@@ -156,6 +156,14 @@ TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(out), {}), 4);
 }
 
+TEST_F(OutputTargets, ANameThatEndsAsAnotherKindDoesIsRefused) {
+  EXPECT_THROW(requireSameKind(folder / "new.csv", FileKind::json), FileError);
+  EXPECT_THROW(requireSameKind(folder / "new.OBJ", FileKind::table), FileError);
+  EXPECT_NO_THROW(requireSameKind(folder / "new.json", FileKind::json));
+  EXPECT_NO_THROW(requireSameKind(folder / "new.dat", FileKind::json));
+  EXPECT_NO_THROW(requireSameKind(folder / "new", FileKind::table));
+}
+
 // What cannot be looked into for want of a descriptor may be anything.
 TEST_F(OutputTargets, AFileThatCannotBeOpenedForNowIsNotReplaced) {
   const std::string mesh = write("g.obj", "v 1 2 3\n");
