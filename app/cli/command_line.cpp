@@ -154,6 +154,7 @@ int run(const Words& words, Console& console) {
   for (const Argument& argument : commonArguments(command)) command.arguments.push_back(argument);
   const Given given = parse(command, {words.begin() + 1, words.end()});
   checkFiles(command, given, console);
+  for (const auto& [name, values] : given) console.given.insert(name);
   return command.run(console);
 }
 

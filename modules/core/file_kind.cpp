@@ -111,9 +111,10 @@ FileKind kindOf(std::string_view head, std::uint64_t size) {
 
 std::string_view nameOf(FileKind kind) {
   constexpr std::array<std::string_view, 15> names = {
-      "empty",       "a table",       "a JSON file",    "an OBJ mesh",   "a PLY mesh",
-      "an STL mesh", "a .vti volume", "a .vtp surface", "a PNG picture", "an EXR picture",
-      "a YAML file", "a PNM picture", "poses",          "a manual page", "a file of another kind"};
+      "an empty file", "a table",        "a JSON file",           "an OBJ mesh",
+      "a PLY mesh",    "an STL mesh",    "a .vti volume",         "a .vtp surface",
+      "a PNG picture", "an EXR picture", "a YAML file",           "a PNM picture",
+      "poses",         "a manual page",  "a file of another kind"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -161,14 +162,14 @@ std::optional<FileKind> kindOfFile(const std::string& name) {
 } // namespace
 
 void requireSameKind(const std::filesystem::path& path, FileKind kind) {
-  if (kind == FileKind::empty) return;
   const std::string name = path.string();
-  if (const std::optional<FileKind> old = kindOfFile(name); old && *old != kind)
+  const bool nameless = kind == FileKind::other || kind == FileKind::empty;
+  if (const std::optional<FileKind> old = kindOfFile(name); old && (nameless || *old != kind))
     throw FileError(name, 0,
                     "is " + std::string(nameOf(*old)) + ", and is not overwritten by " +
                         (kind == FileKind::other ? "another" : std::string(nameOf(kind))) +
                         "; remove it or choose another name");
-  if (kind == FileKind::other) return;
+  if (nameless) return;
   if (const std::optional<FileKind> told = kindOfName(path); told && *told != kind)
     throw FileError(name, 0,
                     "is the name of " + std::string(nameOf(*told)) + ", but " +

@@ -35,7 +35,8 @@ std::string_view nameOf(FileKind kind);
 std::optional<FileKind> kindOfName(const std::filesystem::path& path);
 
 // FileError if `kind` may not be written to `path`: a file of another kind is there, or the name
-// ends as that of another kind does. Nothing there, nothing in it, or the same kind is no error.
+// ends as that of another kind does. Nothing there, nothing in it, or the same kind is no error;
+// `other` is the same as no other.
 void requireSameKind(const std::filesystem::path& path, FileKind kind);
 
 } // namespace patina

@@ -60,6 +60,7 @@ StagedFolder::~StagedFolder() {
 }
 
 void StagedFolder::commit() {
+  const bool ours = pathExists(folder_ / last_); // what an earlier run has made
   std::vector<Move> moves;
   std::vector<fs::path> folders = {folder_};
   for (const fs::directory_entry& file : fs::recursive_directory_iterator(staging_)) {
@@ -72,7 +73,9 @@ void StagedFolder::commit() {
     if (target.is_stream)
       throw FileError(to.string(), 0,
                       "cannot be written: a folder's files are no pipes or devices");
-    requireSameKind(target.path, kindOf(headOf(file.path()), file.file_size()));
+    const FileKind kind = kindOf(headOf(file.path()), file.file_size());
+    if (!ours || (kind != FileKind::other && kind != FileKind::empty))
+      requireSameKind(target.path, kind);
     moves.push_back({file.path(), target.path});
   }
   for (const fs::path& folder : folders) makeFolder(folder);

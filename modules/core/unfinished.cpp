@@ -32,13 +32,13 @@ void removeUnlessWhole(const Unfinished::Place& place) noexcept {
   };
   if (isWhole(place.path)) return;
   fs::path aside = place.path;
-  if (!place.whole.empty()) {
+  std::error_code ignored;
+  if (!place.whole.empty() || fs::is_directory(place.path, ignored)) { // others may write there yet
     aside = place.path.parent_path() /
             ("." + place.path.filename().string() + "." + std::to_string(::getpid()) + ".tmp");
     if (::rename(place.path.c_str(), aside.c_str()) != 0) return;
     if (isWhole(aside) && ::rename(aside.c_str(), place.path.c_str()) == 0) return;
   }
-  std::error_code ignored;
   fs::remove_all(aside, ignored);
 }
 

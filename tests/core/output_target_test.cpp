@@ -143,6 +143,16 @@ TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
   }
   EXPECT_EQ(readFile(out / "last"), "old");
   fs::remove(out / "a.csv");
+  fs::remove(out / "last");
+  write("out/notes.md", "somebody's own");
+  {
+    StagedFolder staged(out, "last");
+    writeFileAtomically(staged.path() / "notes.md", "ours");
+    writeFileAtomically(staged.path() / "last", "new");
+    EXPECT_THROW(staged.commit(), FileError) << "of a kind that nobody knows, in a folder not ours";
+  }
+  EXPECT_EQ(readFile(out / "notes.md"), "somebody's own");
+  fs::remove(out / "notes.md");
   {
     StagedFolder staged(out, "last");
     writeFileAtomically(staged.path() / "a.csv", "x [m],y\n1,2\n");

@@ -192,6 +192,25 @@ TEST_F(BadInput, MistypedWordsAreToldWhatTheyMayHaveMeant) {
                      {"unknown model 'spere'; did you mean 'sphere'?", "galleon"});
 }
 
+TEST_F(BadInput, OptionsOfAnotherModeAreWarnedOf) {
+  const auto warned = [&](const std::vector<std::string>& words, const std::string& line) {
+    const Outcome outcome = run(words);
+    EXPECT_NE(outcome.err.find("warning: " + line), std::string::npos) << outcome.err;
+  };
+  warned({"latency-test", "--seconds", "0.01", "--load", "3"},
+         "--load has no effect without --wire");
+  warned({"latency-test", "--seconds", "0.01", "--wire", "--rate", "500"},
+         "--rate has no effect with --wire");
+  warned({"simulate-device", "falcon", "--seconds", "0.01", "--skew", "5"},
+         "--skew has no effect on a falcon");
+#ifdef PATINA_HAS_ACQUISITION
+  warned({"simulate-device", "probe", "--seconds", "0.01", "--refuse", "claim"},
+         "--refuse has no effect on a probe");
+  warned({"fit-texture", box, "-o", folder / "t.json", "--seed", "7"},
+         "--seed has no effect without --kind spectrum");
+#endif
+}
+
 TEST_F(BadInput, OptionsWithoutTheirValueAndFlagsWithOneAreNamed) {
   expectOneLineError(run({"info", box, "--voxel"}), {"--voxel", "LENGTH is missing"});
   expectOneLineError(run({"info", box, "--json=yes"}), {"--json takes no value"});

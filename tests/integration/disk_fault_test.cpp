@@ -94,6 +94,7 @@ class RefusingDisk : public EveryCommand {
     if (long_) { // else once, at the end
       EXPECT_EQ(run({"info", workspace}).exit, 0) << what;
     }
+    if (judge_) judge_(what);
     // The index comes last: where it is, all that a retry makes is there already.
     const bool whole = std::filesystem::exists(out + "/scene.vtm");
     const std::set<std::string> had = namesIn(out);
@@ -111,17 +112,26 @@ class RefusingDisk : public EveryCommand {
   // All calls in the long form; else one or two for each command and fault, ever other ones.
   void refuseInTurn(const std::vector<CommandLine>& lines, const std::vector<const char*>& faults,
                     const std::function<std::string(const CommandLine&)>& output) {
-    int turn = 0;
     for (const CommandLine& line : lines)
       for (const char* fault : faults) {
-        const int first = long_ ? 1 : 1 + 5 * turn++ % 13, last = long_ ? 2000 : first;
+        const int first = long_ ? 1 : 1 + 5 * turn_++ % 13, last = long_ ? 2000 : first;
         for (int at = first; at <= last; ++at)
           if (!refuse(line, fault, at, output(line))) break;
       }
   }
 
+  // What the commands see of a workspace: its edits, values and objects.
+  std::string stateOf(const std::string& folder_of) const {
+    std::string state = run({"info", folder_of, "--no-field", "--json"}).out;
+    const Json list = runJson({"undo", folder_of, "--list"});
+    for (const Json& edit : list.at("edits").asArray())
+      state += edit.at("what").asString() + (edit.at("done").asBool() ? " done\n" : " undone\n");
+    return state;
+  }
+
   const bool long_ = longer(1) > 1;
-  int refused_ = 0;
+  int refused_ = 0, turn_ = 0;
+  std::function<void(const std::string&)> judge_; // after a fault, before it is done again
 };
 
 TEST_F(RefusingDisk, BlocksNoRetryAndBreaksNothing) {
@@ -146,14 +156,39 @@ TEST_F(RefusingDisk, BlocksNoRetryAndBreaksNothing) {
 }
 
 TEST_F(RefusingDisk, LeavesAWorkspaceThatIsChangedInPlaceAsItWasOrAsItIsToBe) {
+  const std::string one = script(
+      "one.json",
+      {stroke(Tool::material(MaterialChannel::static_friction), 0.4, 0.006, {{0, 0, kTop}})});
   const CommandLine set{"set", {"scene", "-o", workspace, "--set", "stiffness=321"}, ""};
   const CommandLine add{"add", {"scene", "-o", workspace, "--add", box}, ""};
-  const CommandLine paint{"paint", {"paint", workspace, "--strokes", strokes, "-o", workspace}, ""};
+  const CommandLine paint{"paint", {"paint", workspace, "--strokes", one, "-o", workspace}, ""};
   const CommandLine undo{"undo", {"undo", workspace}, ""};
-  refuseInTurn({set, add, paint, undo}, {"kill", "eio", "full"},
-               [&](const CommandLine&) { return workspace; });
+  const std::string start = folder / "start";
+  std::filesystem::copy(workspace, start, std::filesystem::copy_options::recursive);
+  const auto startAnew = [&] {
+    std::filesystem::remove_all(workspace);
+    std::filesystem::copy(start, workspace, std::filesystem::copy_options::recursive);
+  };
+  const std::string before = stateOf(workspace);
+  int as_it_was = 0;
+  for (const CommandLine& line : {set, add, paint, undo}) {
+    startAnew();
+    ASSERT_EQ(run(line.to(workspace)).exit, 0) << line.name;
+    const std::string after = stateOf(workspace);
+    ASSERT_NE(after, before) << line.name;
+    judge_ = [&](const std::string& what) {
+      const std::string state = stateOf(workspace);
+      EXPECT_TRUE(state == before || state == after) << what << '\n' << state << before << after;
+      as_it_was += state == before;
+    };
+    refuseInTurn({line}, {"kill", "eio", "full"}, [&](const CommandLine&) {
+      startAnew();
+      return workspace;
+    });
+  }
   EXPECT_EQ(run({"info", workspace}).exit, 0);
   EXPECT_GT(refused_, long_ ? 60 : 8);
+  EXPECT_GT(as_it_was, 0);
 }
 
 // One failure while it reads must not cost the history.

@@ -70,8 +70,7 @@ int reportCamera(const CalibrateOptions& options, Console& console) {
                  (found.rejected.size() > 1
                       ? ", nor in " + formatCount(found.rejected.size() - 1) + " others"
                       : ""));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 int calibrateTip(const CalibrateOptions& options, Console& console) {
@@ -87,8 +86,7 @@ int calibrateTip(const CalibrateOptions& options, Console& console) {
                   std::sqrt(fit.covariance(i, i)), 1e3, " mm");
   report.set("parameters", parameters);
   writeFileAtomically(options.output, rigWithTip(rig, options.rig.string(), fit));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 int calibrateStill(const CalibrateOptions& options, Console& console) {
@@ -123,8 +121,7 @@ int calibrateStill(const CalibrateOptions& options, Console& console) {
   json.set("accelerometers", axes).set("gravity", vectorJson(fit->gravity));
   json.set("force_zero", fit->force_zero);
   writeFileAtomically(options.output, json.dump() + "\n");
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 int calibrateForce(const CalibrateOptions& options, Console& console) {
@@ -165,8 +162,7 @@ int calibrateForce(const CalibrateOptions& options, Console& console) {
                  (fit->rejected.size() > 1
                       ? ", as do " + formatCount(fit->rejected.size() - 1) + " more"
                       : ""));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 int runCalibrate(const CalibrateOptions& options, Console& console) {

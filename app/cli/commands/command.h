@@ -12,8 +12,6 @@
 
 namespace patina::cli {
 
-enum ExitCode { kDone = 0, kNotSolved = 1, kBadInput = 2, kCancelledByUser = 130 };
-
 using Setter = std::function<void(const std::string&)>; // throws Error on a bad value
 
 // How often an argument is given.

@@ -82,8 +82,7 @@ int runDemo(const DemoOptions& options, Console& console) {
   report.set("holds", found.at("holds")).set("pictures", jsonOf(drawn), joined(drawn));
   report.set("folder", options.output.string(),
              options.output.string() + ", where report.md tells and shows each step");
-  console.report(report);
-  return found.at("holds").asBool() ? kDone : kNotSolved;
+  return console.report(report, found.at("holds").asBool() ? kDone : kNotSolved);
 }
 
 } // namespace

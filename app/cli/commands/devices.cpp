@@ -245,8 +245,7 @@ int runDevices(const DevicesOptions& options, Console& console) {
                             "'@audio - rtprio 60' to /etc/security/limits.conf, join that "
                             "group, log in again");
   }
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

@@ -53,8 +53,7 @@ int runEmboss(const EmbossOptions& options, Console& console) {
   report.set("unit", std::string(name(options.unit))).set("voxel", voxel);
   report.set("highest", deviation.highest);
   report.set("deviation_rms", deviation.rms).set("deviation_max", deviation.most);
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

@@ -42,8 +42,7 @@ int runExport(const ExportOptions& options, Console& console) {
   }
   report.set("folder", folder.string()).set("files", files);
   if (stability) report.set("stability", stabilityReport(*stability, compiled->scene));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

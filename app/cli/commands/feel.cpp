@@ -96,8 +96,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   if (contact_ticks == 0 && bad_tips < ticks)
     console.warn(options.path.string() +
                  ": the path never touches the object; compare their positions and check --unit");
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

@@ -32,8 +32,7 @@ int runField(const FieldOptions& options, Console& console) {
   }
   console.progress().throwIfCancelled();
   writeField(options.output, *built.field);
-  console.report(fieldReport(*built.field, built.report));
-  return kDone;
+  return console.report(fieldReport(*built.field, built.report));
 }
 
 } // namespace

@@ -311,8 +311,7 @@ int runFilter(FilterOptions options, Console& console) {
   report.set("seconds", taken.count());
   warnOf(scan.without_pose, options.input, in.poses, "a pose", console);
   warnOf(scan.without_sample, options.probe, in.samples, "a sample", console);
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

@@ -131,14 +131,16 @@ int runFitPlane(const FitTextureOptions& options, Console& console) {
       .set("low", texture.low);
   if (texture.compliance)
     report.set("compliance", *texture.compliance, formatNumber(*texture.compliance) + " m/N");
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 int runFitTexture(FitTextureOptions options, Console& console) {
   requireWritable(options.output, {options.profile}, FileKind::json);
-  if (options.kind == Kind::plane || options.kind == Kind::products)
+  if (options.kind != Kind::spectrum) console.warnOfNoEffect({"--seed"}, "without --kind spectrum");
+  if (options.kind == Kind::plane || options.kind == Kind::products) {
+    console.warnOfNoEffect({"--step", "--cutoff", "--over-noise", "--stretch"}, "on a picture");
     return runFitPlane(options, console);
+  }
   if (options.length || options.height || options.plane.rank)
     throw Error("--length, --height and --rank: are of a picture, --kind plane or products");
   options.fit.harmonics = options.harmonics.value_or(options.fit.harmonics);
@@ -187,8 +189,7 @@ int runFitTexture(FitTextureOptions options, Console& console) {
       .set("low", texture.low);
   if (texture.compliance)
     report.set("compliance", *texture.compliance, formatNumber(*texture.compliance) + " m/N");
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 Kind parseKind(const std::string& word) {

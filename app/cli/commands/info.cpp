@@ -227,8 +227,7 @@ int runInfo(const InfoOptions& options, Console& console) {
   } else {
     describeCompiled(*compileFor(std::move(scene), console), report, console.progress());
   }
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

@@ -77,8 +77,8 @@ int runOnWire(const LatencyOptions& options, double load, Console& console) {
                                    {"stale", run.stale}})
     report.set(key, static_cast<std::int64_t>(count));
   report.set("load", load, rounded(load));
-  console.report(report);
-  return run.stale + run.unnoticed + run.uncounted == 0 ? kDone : kNotSolved;
+  return console.report(report,
+                        run.stale + run.unnoticed + run.uncounted == 0 ? kDone : kNotSolved);
 }
 
 // A device of the list, whose hand feels the plane through the middle of its workspace.
@@ -126,13 +126,16 @@ int runOnDevice(const LatencyOptions& options, double load, Console& console) {
     report.set("held", held);
   }
   report.set("missed", static_cast<std::int64_t>(timing.missed)).set("load", load, rounded(load));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 int runLatencyTest(const LatencyOptions& options, Console& console) {
   double load = 0;
   if (getloadavg(&load, 1) != 1) load = 0;
+  if (options.wire)
+    console.warnOfNoEffect({"--device", "--rate"}, "with --wire");
+  else
+    console.warnOfNoEffect({"--load", "--faults"}, "without --wire");
   if (options.wire) return runOnWire(options, load, console);
   if (!options.device.empty()) return runOnDevice(options, load, console);
   console.endOnInterrupt();
@@ -147,8 +150,7 @@ int runLatencyTest(const LatencyOptions& options, Console& console) {
   if (latency.wait_us)
     setSpread("wait_us", "of it waiting for a processor", *latency.wait_us, report);
   report.set("missed", static_cast<std::int64_t>(latency.missed)).set("load", load, rounded(load));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

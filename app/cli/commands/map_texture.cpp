@@ -101,8 +101,7 @@ int runMapTexture(const MapOptions& options, Console& console) {
       .set("stretch", Json::object().set("least", laid.least).set("most", laid.most),
            rounded(laid.least) + " to " + rounded(laid.most))
       .set("farthest", laid.farthest);
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

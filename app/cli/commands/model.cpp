@@ -123,8 +123,7 @@ int runModel(const ModelOptions& options, Console& console) {
   report.set("triangles", counts.triangles).set("vertices", counts.vertices);
   report.set("bounds", Json(Json::Array{vectorJson(box.min()), vectorJson(box.max())}));
   report.set("watertight", counts.watertight).set("unit", std::string(name(options.unit)));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 Argument sizeArgument(const std::string& key, const std::string& users, Sizes& sizes) {

@@ -162,8 +162,7 @@ int report(const PaintOptions& options, const Editor& editor, std::size_t stroke
   report.set("dab_ms", toJson(dab), spreadText(dab, "ms") + ", until it is felt");
   const std::size_t undoable = editor.history().undoable();
   report.set("history", undoable, formatCount(undoable) + " to undo");
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 int runPaint(const PaintOptions& options, Console& console) {

@@ -74,10 +74,9 @@ int runRecord(RecordOptions options, Console& console) {
   report.set("unreadable", now.unreadable).set("samples", now.samples);
   report.set("dropouts", now.dropouts);
   if (now.probe) setHealth(*now.probe, report);
-  console.report(report);
-  if (now.frames > 0) return kDone;
-  console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
-  return kNotSolved;
+  if (now.frames == 0)
+    console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
+  return console.report(report, now.frames > 0 ? kDone : kNotSolved);
 }
 
 } // namespace

@@ -313,7 +313,6 @@ int runRegister(RegisterOptions options, Console& console) {
   path.resize(static_cast<std::size_t>(own));
   writeRegisteredPath(options.output, path, found);
   if (!options.report.empty()) writeFileAtomically(options.report, report.json().dump() + "\n");
-  console.report(report);
   if (!found.converged)
     console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
                                          "noise lets expect");
@@ -321,7 +320,7 @@ int runRegister(RegisterOptions options, Console& console) {
     console.warn(options.path.string() + ": its place is not unique: " + inWords(*found.rivals) +
                  "; scan more of the body, add a scan (--also), or, where you know about where it "
                  "lies, --initial with --no-search");
-  return isDoubtful(found) ? kNotSolved : kDone;
+  return console.report(report, isDoubtful(found) ? kNotSolved : kDone);
 }
 
 } // namespace

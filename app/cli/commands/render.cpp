@@ -164,8 +164,7 @@ int runRender(const RenderOptions& options, Console& console) {
                arrayName(*quantity) + " from " + formatNumber(range.low) + " to " +
                    formatNumber(range.high));
   }
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

@@ -172,8 +172,7 @@ int runSample(const SampleOptions& options, Console& console) {
   report.set("in_band", in_band).set("bad_points", bad_points);
   report.set("sampler", std::string(name(surface.sampler)));
   report.set("voxel", surface.field->grid.voxel);
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

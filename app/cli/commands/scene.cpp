@@ -45,8 +45,7 @@ int report(const std::filesystem::path& folder, const Scene& scene, bool saved, 
   report.set("workspace", folder.string()).set("saved", saved).set("objects", objects);
   tellScans(scene, report);
   tellValues(scene, report);
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 std::pair<std::string, std::string> parseSetting(const std::string& text) {

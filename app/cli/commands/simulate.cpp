@@ -248,8 +248,7 @@ int runSimulate(const SimulateOptions& options, Console& console) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!options.output.empty()) writeCsv(options.output, table.table());
   warnOfLeaving(options, spec, run, console);
-  console.report(reportOf(felt, spec, run, taken));
-  return kDone;
+  return console.report(reportOf(felt, spec, run, taken));
 }
 
 void addDeviceOptions(Command& command, SimulateOptions& options) {

@@ -32,14 +32,20 @@ const Keys kSimulateDeviceKeys = {
 
 int runSimulateDevice(const SimulateDeviceOptions& options, Console& console) {
   Report report(kSimulateDeviceKeys);
+  if (options.device == "probe")
+    console.warnOfNoEffect({"--bus", "--unplug", "--firmware", "--refuse"}, "on a probe");
+  else
+    console.warnOfNoEffect(
+        {"--rate", "--together", "--loss", "--corrupt", "--skew", "--link", "--seed"},
+        "on a " + options.device);
+  if (options.device == "spacemouse") console.warnOfNoEffect({"--firmware"}, "on a spacemouse");
 #ifdef PATINA_HAS_ACQUISITION
   if (options.device == "probe")
     simulateProbe(options.probe, options.link, options.seconds, console, report);
   else
 #endif
     simulateUsb(options.usb, options.seconds, console, report);
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

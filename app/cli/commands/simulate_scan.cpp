@@ -160,8 +160,7 @@ int runSimulateScan(ScanOptions options, Console& console) {
              rounded(hand.seconds()) + " s, touching for " + rounded(100 * touching) + " % of it");
   report.set("touching", touching);
   report.set("files", jsonOf(files));
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 } // namespace

@@ -114,8 +114,7 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
   Report report(kStudyKeys);
   report.set("rows", rows).set("order_fitted", order_fitted).set("order_expected", order_expected);
   report.set("tables", tables).set("files", files);
-  console.report(report, text);
-  return kDone;
+  return console.report(report, kDone, text);
 }
 
 } // namespace

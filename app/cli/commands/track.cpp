@@ -102,10 +102,9 @@ int runTrack(TrackOptions options, Console& console) {
                  std::find_if(found.without.begin(), found.without.end(), [](const NoPose& gap) {
                    return gap.why.find(": ") != std::string::npos;
                  })->why);
-  console.report(report);
-  if (!found.poses.empty()) return kDone;
-  console.warn(options.frames + ": no frame shows a pose of the rig, so nothing is written");
-  return kNotSolved;
+  if (found.poses.empty())
+    console.warn(options.frames + ": no frame shows a pose of the rig, so nothing is written");
+  return console.report(report, found.poses.empty() ? kNotSolved : kDone);
 }
 
 } // namespace

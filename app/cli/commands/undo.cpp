@@ -83,7 +83,7 @@ Counts move(const std::filesystem::path& folder, std::size_t steps, Way way, Con
 }
 
 int runHistory(const HistoryOptions& options, Way way, Console& console) {
-  if (options.list && options.steps != 1) console.warn("--steps has no effect with --list");
+  if (options.list) console.warnOfNoEffect({"--steps"}, "with --list");
   const std::filesystem::path folder = workspaceFolder(options.workspace);
   Counts counts;
   Report report(kUndoKeys);
@@ -104,8 +104,7 @@ int runHistory(const HistoryOptions& options, Way way, Console& console) {
   report.set("undone", back ? counts.moved : 0).set("redone", back ? 0 : counts.moved);
   report.set("history", counts.undoable, historyText(counts.undoable, counts.redoable));
   report.set("redo", counts.redoable);
-  console.report(report);
-  return kDone;
+  return console.report(report);
 }
 
 Command historyCommand(Way way) {

@@ -94,9 +94,9 @@ void Console::endWhatDoesNot() {
     return;
   if (ending.exchange(true) && endsWithin(descriptor, static_cast<int>(kPatience.count()))) return;
   if (anyFinished() && endsWithin(descriptor, static_cast<int>(kPatience.count()))) return;
-  if (anyFinished() && reported_) { // nothing is left but to give memory back
+  if (anyFinished() && reported_ >= 0) { // nothing is left but to give memory back
     std::fflush(stdout);
-    _exit(kDone);
+    _exit(reported_);
   }
   removeUnfinished();
   static constexpr std::string_view kLine = "patina: cancelled\n";
@@ -138,9 +138,15 @@ void Console::warn(const std::string& line) {
   std::fprintf(stderr, "patina: warning: %s\n", line.c_str());
 }
 
-void Console::report(const Report& report, const std::string& below) {
+void Console::warnOfNoEffect(std::initializer_list<const char*> options, const std::string& where) {
+  for (const char* option : options)
+    if (given.contains(option)) warn(std::string(option) + " has no effect " + where);
+}
+
+int Console::report(const Report& report, ExitCode code, const std::string& below) {
   print(json ? report.json().dump() + "\n" : report.text() + below);
-  reported_ = true;
+  reported_ = code;
+  return code;
 }
 
 void Console::print(const std::string& text) {

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <initializer_list>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -14,6 +16,8 @@
 #include "core/progress.h"
 
 namespace patina::cli {
+
+enum ExitCode { kDone = 0, kNotSolved = 1, kBadInput = 2, kCancelledByUser = 130 };
 
 class Console {
  public:
@@ -35,8 +39,13 @@ class Console {
   // From here on Ctrl-C ends the process: for work that touches no file and cannot be polled.
   void endOnInterrupt();
   void warn(const std::string& line);
-  // The object with --json, else the rows, and below them what else is for people.
-  void report(const Report& report, const std::string& below = "");
+  // The options that this run was given, by their long names.
+  std::set<std::string> given;
+  // Of these options, each that was given: "--load has no effect without --wire".
+  void warnOfNoEffect(std::initializer_list<const char*> options, const std::string& where);
+  // The object with --json, else the rows, and below them what else is for people. The last that a
+  // command says: returns the code, with which it ends even if Ctrl-C comes while it frees memory.
+  int report(const Report& report, ExitCode code = kDone, const std::string& below = "");
   void print(const std::string& text); // on stdout
   // One line on stderr and, with --json, an object on stdout. Returns the exit code.
   int fail(const std::exception& error);
@@ -52,7 +61,7 @@ class Console {
 
   bool stderr_is_terminal_;
   bool bar_drawn_ = false;
-  std::atomic<bool> reported_{false};
+  std::atomic<int> reported_{-1}; // the code, once all is said
   std::chrono::steady_clock::time_point last_draw_;
   Progress progress_;
   std::thread impatient_;
