@@ -44,6 +44,12 @@ const SceneScan* findScan(const Scene& scene, std::string_view name); // nullptr
 Scene withScan(Scene scene, SceneScan scan);
 // Throws Error naming those that there are.
 Scene withoutScan(Scene scene, std::string_view name);
+// `found` with what it lacks and `known`, which has its name, still has to give: nothing of another
+// recording (frames, frames.csv, probe.csv or truth.json differ, or one has what the other lacks),
+// and no file of a step before which something differs. Where a path lies follows from that alone.
+SceneScan renewed(const SceneScan& known, SceneScan found);
+// "path.csv, heights.csv": those of `before` that `after` lacks; empty: none.
+std::string filesLost(const SceneScan& before, const SceneScan& after);
 // "attach scan plate", "track and filter scan plate", for the history; empty: nothing has changed.
 std::string wordsFor(const SceneScan* before, const SceneScan& after);
 // The folder's name with '-' for what no name may hold.

@@ -5,6 +5,8 @@
 #include "acquisition/simulation/frame_renderer.h"
 #include "acquisition/tracking/lens.h"
 #include "app/gui/aligning/align_desk.h"
+#include "app/gui/aligning/aligned_scan.h"
+#include "core/error.h"
 #include "gui/scan_fixture.h"
 #include "workspace/workspace.h"
 
@@ -82,6 +84,37 @@ TEST_F(SceneScansTest, EachStepIsUndoneAndTheScanOpensAgainFromTheWorkspace) {
   EXPECT_EQ(status().edits.back(), "register scan " + name);
   ASSERT_NE(scene().scans.at(0).text("registered.txt"), nullptr);
   EXPECT_NE(scene().scans.at(0).text("registered.txt")->find("mesh_from_scan"), std::string::npos);
+}
+
+// The second is asked for before the first is done.
+TEST_F(SceneScansTest, AStoredPlaceOutlivesAScanThatIsPutInAtOnce) {
+  const TriangleMesh ball = icosphere(0.04, 12);
+  std::vector<PathSample> path(60);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    path[i].t = 0.01 * static_cast<double>(i);
+    path[i].position = ball.positions[7 * i % ball.positions.size()];
+    path[i].sigma = 1e-4;
+  }
+  const fs::path stroke = folder_ / "stroke";
+  fs::create_directories(stroke);
+  writePath(stroke / "path.csv", path);
+  std::ofstream(stroke / "rig.json") << "{\"tip\": [0, 0, -0.1]}\n";
+  openWorkspace(ball);
+  documents().open(requestFor(stroke));
+  ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr && !desk().work(); }, 10000));
+  auto& align = *window_->findChild<AlignDesk*>();
+  ASSERT_TRUE(waitUntil([&] { return align.alignment().isReady(); }, 10000));
+  find<QPushButton>("align_store")->click();
+  find<QPushButton>("put_scan")->click();
+  ASSERT_TRUE(waitForEdits(2));
+  ASSERT_EQ(scene().scans.size(), 1u);
+  for (const char* file : {"rig.json", "path.csv", "registered.csv", "registered.txt"})
+    EXPECT_NE(scene().scans[0].text(file), nullptr) << file;
+  // Another path under the name is none of its own.
+  for (PathSample& sample : path) sample.position.z() += 0.01;
+  align.setPath(QStringLiteral("stroke"), path);
+  const SceneScan before = scene().scans[0];
+  EXPECT_THROW((void)withAlignment(&before, alignedScan("stroke", align.alignment())), Error);
 }
 
 // A chessboard of black squares on white, in eight attitudes.
@@ -174,18 +207,25 @@ TEST_F(SceneScansTest, ATipFromPosesIsAnEditOfTheWorkspacesScan) {
   clickOn("put_scan");
   ASSERT_TRUE(waitUntil([&] { return status().done >= 1; }, 10000));
   wait(300);
+  ASSERT_TRUE(waitForEdits(2));
+  EXPECT_NE(scene().scans.at(0).text("path.csv"), nullptr);
   const std::size_t put = status().done;
+  const Vec3 was = scan().path()->path.front().position;
   clickOn("calibrate_tip");
   const auto* found = find<QLabel>("calibrate_found");
   EXPECT_TRUE(found->text().contains(QStringLiteral("z -120.000"))) << found->text().toStdString();
   wait(400);
   clickOn("calibrate_use");
   ASSERT_TRUE(waitForEdits(put + 1));
-  EXPECT_EQ(status().edits.back(), "calibrate scan turning");
+  EXPECT_EQ(status().edits.back(), "calibrate and filter scan turning");
   EXPECT_NEAR(parseRig(*scene().scans[0].text("rig.json"), "rig").probe.tip.z(), -0.12, 1e-6);
   EXPECT_NE(scene().scans[0].text("rig.json")->find("mine"), std::string::npos);
+  EXPECT_EQ(scene().scans[0].text("path.csv"), nullptr) << "of the tip before";
+  EXPECT_NE(scene().scans[0].text("poses.tum"), nullptr) << "of no tip";
   ASSERT_TRUE(waitUntil([&] { return scan().files()->of_scene && !desk().work(); }, 10000));
   EXPECT_NEAR(scan().files()->tip().z(), -0.12, 1e-6); // and used
+  ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr; }, 10000));
+  EXPECT_GT((scan().path()->path.front().position - was).norm(), 0.01); // the path, too
   EXPECT_NEAR(readRig(turning / "rig.json").probe.tip.z(), -0.1, 1e-12);
   type('z', kControl);
   ASSERT_TRUE(waitForEdits(put));

@@ -312,6 +312,34 @@ TEST_F(Scans, BelongToAWorkspaceStepByStep) {
   EXPECT_NE(told.err.find("other frames"), std::string::npos) << told.err;
 }
 
+TEST_F(Scans, OfTwoRecordingsAreNotMixedUnderOneName) {
+  const std::string workspace = folder / "workspace";
+  (void)simulate({"--seconds", "2"});
+  ASSERT_EQ(run({"filter", scan, "-o", scan + "/path.csv"}).exit, 0);
+  const Outcome first =
+      run({"scene", "-o", workspace, "--add", ball, "--unit", "mm", "--scan", scan});
+  ASSERT_EQ(first.exit, 0) << first.err;
+  const auto files = [&] {
+    std::string names;
+    const Json scene = runJson({"scene", "-o", workspace});
+    for (const Json& file : scene.at("scans").asArray().at(0).at("files").asArray())
+      names += file.asString() + " ";
+    return names;
+  };
+  // The same recording without its path: it stays, and nothing is said.
+  std::filesystem::remove(scan + "/path.csv");
+  const Outcome same = run({"scene", "-o", workspace, "--scan", scan});
+  EXPECT_EQ(same.exit, 0);
+  EXPECT_EQ(same.err.find("path.csv"), std::string::npos) << same.err;
+  EXPECT_NE(files().find("path.csv"), std::string::npos);
+  (void)simulate({"--seconds", "2", "--seed", "2"});
+  const Outcome other = run({"scene", "-o", workspace, "--scan", scan});
+  EXPECT_EQ(other.exit, 0);
+  EXPECT_NE(other.err.find("warning: scan scan: path.csv"), std::string::npos) << other.err;
+  EXPECT_EQ(files().find("path.csv"), std::string::npos) << files();
+  EXPECT_NE(files().find("poses.tum"), std::string::npos);
+}
+
 } // namespace
 } // namespace patina::test
 #endif

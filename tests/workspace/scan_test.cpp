@@ -94,5 +94,56 @@ TEST(Scans, OneOfANameAndItsStepsInWords) {
   EXPECT_EQ(scanNameOf("/tmp/a scan of a cup/"), "a-scan-of-a-cup");
 }
 
+SceneScan scanOf(const std::string& texts, const std::string& frames = "") {
+  SceneScan scan;
+  scan.name = "rim";
+  if (!frames.empty()) scan.folder = "/rim", scan.frames = std::string(64, frames[0]);
+  // "rig.json:a path.csv:b", one character each
+  for (std::size_t at = 0; at < texts.size(); at = texts.find(' ', at) + 1) {
+    const std::size_t end = std::min(texts.find(' ', at), texts.size());
+    scan.files[texts.substr(at, end - 2 - at)] =
+        std::make_shared<const std::string>(texts.substr(end - 1, 1));
+    if (end == texts.size()) break;
+  }
+  return scan;
+}
+
+TEST(Scans, KeepWhatFollowsFromWhatAFolderHasAndNothingElse) {
+  const auto kept = [](const SceneScan& known, const SceneScan& found) {
+    std::string names;
+    for (const auto& [file, text] : renewed(known, found).files) names += file + ":" + *text + " ";
+    return names;
+  };
+  const SceneScan known = scanOf(
+      "probe.csv:a rig.json:a poses.tum:a path.csv:a registered.csv:a registered.txt:a", "f");
+  const std::string whole = kept(known, known);
+  EXPECT_EQ(whole, "path.csv:a poses.tum:a probe.csv:a registered.csv:a registered.txt:a "
+                   "rig.json:a ");
+  EXPECT_EQ(kept(known, scanOf("probe.csv:a rig.json:a", "f")), whole);
+  EXPECT_EQ(kept(known, scanOf("probe.csv:a", "f")), whole);
+  // Another recording: by its frames, its samples, or in that only one has any.
+  EXPECT_EQ(kept(known, scanOf("probe.csv:a rig.json:a", "g")), "probe.csv:a rig.json:a ");
+  EXPECT_EQ(kept(known, scanOf("probe.csv:b", "f")), "probe.csv:b ");
+  EXPECT_EQ(kept(known, scanOf("rig.json:a", "f")), "rig.json:a ");
+  EXPECT_EQ(kept(known, scanOf("probe.csv:a rig.json:a")), "probe.csv:a rig.json:a ");
+  EXPECT_EQ(kept(scanOf("poses.tum:a path.csv:a"), scanOf("poses.tum:b")), "poses.tum:b ");
+  EXPECT_EQ(kept(scanOf("path.csv:a registered.txt:a"), scanOf("path.csv:b")), "path.csv:b ");
+  EXPECT_EQ(kept(scanOf("path.csv:a"), scanOf("poses.tum:a")), "poses.tum:a ");
+  // The same recording, another calibration: a camera makes no rig stale, but all that follows.
+  EXPECT_EQ(kept(known, scanOf("probe.csv:a rig.json:b", "f")), "probe.csv:a rig.json:b ");
+  EXPECT_EQ(kept(known, scanOf("probe.csv:a camera.yml:b", "f")),
+            "camera.yml:b probe.csv:a rig.json:a ");
+  // Where a path lies is of that path alone, whatever else of the scan has come since.
+  EXPECT_EQ(kept(scanOf("path.csv:a registered.csv:a registered.txt:a"),
+                 scanOf("probe.csv:a path.csv:a heights.csv:a", "f")),
+            "heights.csv:a path.csv:a probe.csv:a registered.csv:a registered.txt:a ");
+  EXPECT_EQ(kept(scanOf("path.csv:a registered.csv:a registered.txt:a"),
+                 scanOf("path.csv:a registered.csv:b")),
+            "path.csv:a registered.csv:b ");
+  EXPECT_EQ(filesLost(known, scanOf("probe.csv:b poses.tum:b")),
+            "rig.json, path.csv, registered.csv, registered.txt");
+  EXPECT_EQ(filesLost(known, known), "");
+}
+
 } // namespace
 } // namespace patina

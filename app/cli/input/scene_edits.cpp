@@ -168,11 +168,17 @@ SceneScan readScanOf(const std::string& text, Console& console) {
   return scan;
 }
 
-// What the scene's scan has and the folder has not stays: where it lies on a mesh, say.
-SceneScan renewed(const Scene& scene, SceneScan scan) {
-  if (const SceneScan* known = findScan(scene, scan.name))
-    scan.files.insert(known->files.begin(), known->files.end());
-  return scan;
+// What the scene's scan has and the folder has not stays, where it follows from what the folder
+// has: where it lies on a mesh, say.
+Scene withFolder(const Scene& scene, SceneScan scan, Console& console) {
+  const SceneScan* known = findScan(scene, scan.name);
+  if (known) {
+    scan = renewed(*known, std::move(scan));
+    if (const std::string lost = filesLost(*known, scan); !lost.empty())
+      console.warn("scan " + scan.name + ": " + lost +
+                   " of the workspace's followed from what was replaced, and goes with it");
+  }
+  return withScan(scene, std::move(scan));
 }
 
 } // namespace
@@ -188,7 +194,7 @@ Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& giv
   for (const std::string& text : edits.added) addObject(after, readObject(text, open, console));
   for (const std::string& name : edits.unscans) after = withoutScan(std::move(after), name);
   for (const std::string& text : edits.scans)
-    after = withScan(after, renewed(after, readScanOf(text, console)));
+    after = withFolder(after, readScanOf(text, console), console);
   layTextures(after, edits.textures);
   applySettings(after, edits.settings);
   validate(after);

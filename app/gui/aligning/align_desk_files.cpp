@@ -53,8 +53,7 @@ void AlignDesk::openScan(const QString& name) {
 }
 
 void AlignDesk::store() {
-  if (scene_ && alignment_.isReady())
-    emit storeAsked(withAlignment(*scene_, name_.toStdString(), alignment_));
+  if (scene_ && alignment_.isReady()) emit storeAsked(alignedScan(name_.toStdString(), alignment_));
 }
 
 void AlignDesk::openDialog() {

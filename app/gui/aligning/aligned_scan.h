@@ -17,8 +17,10 @@ struct AlignedPath {
 // Throws FileError. The scan has a path.
 AlignedPath alignedPathOf(const SceneScan& scan);
 
-// The scene's scan of this name, or one of its own for a path that came from a file, with the path
-// where it lies.
-SceneScan withAlignment(const Scene& scene, const std::string& name, const Alignment& alignment);
+// The path and where it lies, as a scan of this name has them.
+SceneScan alignedScan(const std::string& name, const Alignment& alignment);
+// The scene's scan of that name, or nullptr, with where its path lies. Throws Error where it has
+// another path.
+SceneScan withAlignment(const SceneScan* known, const SceneScan& aligned);
 
 } // namespace patina

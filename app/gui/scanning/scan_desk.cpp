@@ -10,6 +10,23 @@
 #include "core/file.h"
 
 namespace patina {
+namespace {
+
+// What a scan has that follows from `file` and that is found anew without it. Poses follow from the
+// camera where markers were tracked; a tip is no part of them.
+std::vector<std::string> foundAnew(const SceneScan& scan, const std::string& file, bool tracks) {
+  std::vector<std::string> later;
+  const bool camera = file == "camera.yml";
+  if (camera && !tracks) return later;
+  bool follows = false;
+  for (const auto& [name, step] : kScanFiles) {
+    follows = follows || name == (camera ? "poses.tum" : "path.csv");
+    if (follows && scan.text(std::string(name))) later.emplace_back(name);
+  }
+  return later;
+}
+
+} // namespace
 
 ScanDesk::ScanDesk(QWidget& window)
     : QObject(&window), window_(window), scan_(this), frame_(new FrameView(scan_)),
@@ -116,6 +133,7 @@ void ScanDesk::connectScans() {
     if (isOpen()) scans_->put(scan_.steps());
   });
   connect(scans_, &SceneScans::openAsked, this, qOverload<const SceneScan&>(&ScanDesk::open));
+  connect(scans_, &SceneScans::said, this, &ScanDesk::said);
   connect(scans_, &SceneScans::failed, this, [this](const QString& problem) {
     showProblem(&window_, tr("The workspace's scans stay as they are"), problem,
                 tr("Nothing has changed."));
@@ -152,26 +170,39 @@ void ScanDesk::openPictures() {
 
 void ScanDesk::use(const QString& file, const QString& text) {
   const ScanFiles& files = *scan_.files();
+  const auto calibrated = [name = file.toStdString(),
+                           given = std::make_shared<const std::string>(text.toStdString()),
+                           tracks = !files.markers.empty()](SceneScan scan) {
+    for (const std::string& later : foundAnew(scan, name, tracks)) scan.files.erase(later);
+    scan.files[name] = given;
+    return scan;
+  };
   SceneScan scan = files.scan;
   const SceneScan* known = scans_->scene() ? findScan(*scans_->scene(), scan.name) : nullptr;
-  const bool in_scene = known != nullptr && (files.of_scene || known->folder == scan.folder);
-  if (in_scene) scan = *known;
-  scan.files[file.toStdString()] = std::make_shared<const std::string>(text.toStdString());
-  if (in_scene) {
-    scans_->put({scan});
-    if (!files.of_scene) open(scan);
+  if (known != nullptr && (files.of_scene || known->folder == scan.folder)) {
+    scan = *known;
+    scans_->change(scan.name, [calibrated, scan](const SceneScan* now) {
+      return calibrated(now ? *now : scan);
+    });
+    if (!files.of_scene) open(calibrated(scan));
     return emit said({tr("%1 of scan %2 is in the workspace").arg(file, scan_.name())});
   }
   const std::filesystem::path folder = files.folder;
+  QString words = tr("%1 is in %2").arg(file, QString::fromStdString(folder.string()));
   try {
     if (folder.empty()) throw Error("the scan is not in the workspace any more, and has no folder");
     writeFileAtomically(folder / file.toStdString(), text.toStdString());
-  } catch (const Error& error) {
+    for (const std::string& later : foundAnew(scan, file.toStdString(), !files.markers.empty())) {
+      if (!std::filesystem::exists(folder / later)) continue; // the workspace's alone
+      std::filesystem::rename(folder / later, folder / (later + "~"));
+      words += tr(", %1 is %1~ now").arg(QString::fromStdString(later));
+    }
+  } catch (const std::exception& error) {
     return showProblem(&window_, tr("The calibration cannot be kept"),
                        QString::fromStdString(error.what()),
                        tr("Make room, or the folder writable."));
   }
-  emit said({tr("%1 is in %2").arg(file, QString::fromStdString(folder.string()))});
+  emit said({words});
   files.pictures ? scan_.openPictures(folder) : open(folder);
 }
 

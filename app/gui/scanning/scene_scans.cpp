@@ -1,7 +1,6 @@
 #include "app/gui/scanning/scene_scans.h"
 
 #include <algorithm>
-#include <optional>
 
 #include <QVBoxLayout>
 
@@ -103,18 +102,52 @@ void SceneScans::apply(const std::string& what, std::function<Scene(const Scene&
   });
 }
 
+// `before` is what the scan is once all is done that was asked for so far, as far as is known here.
+SceneScan SceneScans::ask(const std::string& name, const SceneScan* before, const Change& change) {
+  SceneScan after = change(before);
+  const std::string words = wordsFor(before, after);
+  if (!words.empty())
+    apply(words,
+          [name, change](const Scene& now) { return withScan(now, change(findScan(now, name))); });
+  return after;
+}
+
+void SceneScans::tellLost(const SceneScan* before, const SceneScan& after) {
+  if (const std::string lost = before ? filesLost(*before, after) : ""; !lost.empty())
+    emit said({tr("Scan %1: %2 followed from what was replaced, and went with it; undo brings it "
+                  "back")
+                   .arg(QString::fromStdString(after.name), QString::fromStdString(lost))});
+}
+
+void SceneScans::change(const std::string& name, const Change& change) {
+  if (scene_ == nullptr) return;
+  try {
+    const SceneScan* before = findScan(*scene_, name);
+    tellLost(before, ask(name, before, change));
+  } catch (const Error& error) {
+    emit failed(QString::fromStdString(error.what()));
+  }
+}
+
 void SceneScans::put(const std::vector<SceneScan>& steps) {
   if (scene_ == nullptr || steps.empty()) return;
-  const SceneScan* known = findScan(*scene_, steps.front().name);
-  std::optional<SceneScan> before;
-  if (known) before = *known;
-  for (SceneScan step : steps) {
-    if (known) step.files.insert(known->files.begin(), known->files.end()); // what it lacks
-    const std::string words = wordsFor(before ? &*before : nullptr, step);
-    if (words.empty()) continue;
-    apply(words, [step](const Scene& now) { return withScan(now, step); });
-    before = step;
-  }
+  const std::string& name = steps.front().name;
+  const SceneScan* known = findScan(*scene_, name);
+  SceneScan after;
+  for (const SceneScan& step : steps)
+    after =
+        ask(name, &step == &steps.front() ? known : &after,
+            [step, whole = steps.back()](const SceneScan* now) {
+              if (now == nullptr) return step;
+              // What stays beside the last step stays beside those on the way there.
+              const SceneScan last = renewed(*now, whole);
+              SceneScan next = step;
+              for (const auto& file : now->files)
+                if (const std::string* text = last.text(file.first); text && *text == *file.second)
+                  next.files.insert(file);
+              return next;
+            });
+  tellLost(known, after);
 }
 
 } // namespace patina

@@ -6,6 +6,7 @@
 #include <QPushButton>
 #include <QWidget>
 
+#include "app/gui/panels/message_panel.h"
 #include "session/edit/edit_thread.h"
 
 namespace patina {
@@ -20,14 +21,21 @@ class SceneScans : public QWidget {
   void setOpen(bool scan);                           // one is, that could be put in
   // Each as it is after one more step, which becomes an edit if it changes something.
   void put(const std::vector<SceneScan>& steps);
+  // What the scene's scan becomes, of what it is when the edit's turn comes; nullptr: there is
+  // none. Throws Error why it becomes nothing.
+  using Change = std::function<SceneScan(const SceneScan* now)>;
+  void change(const std::string& name, const Change& change);
   const Scene* scene() const { return scene_.get(); }
 
  signals:
   void putAsked();
   void openAsked(const patina::SceneScan& scan);
   void failed(const QString& problem);
+  void said(const patina::Message& message);
 
  private:
+  SceneScan ask(const std::string& name, const SceneScan* before, const Change& change);
+  void tellLost(const SceneScan* before, const SceneScan& after);
   const SceneScan* chosen() const;
   void apply(const std::string& what, std::function<Scene(const Scene&)> edit);
   void refresh();

@@ -9,6 +9,7 @@
 #include "app/gui/window/window_menus.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
+#include "app/gui/aligning/aligned_scan.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #endif
@@ -175,8 +176,10 @@ void MainWindow::connectScan() {
     documents_.openAsked(request);
   });
   parts_.scan->scans().setEdits(edits_.thread());
-  connect(parts_.align, &AlignDesk::storeAsked, this,
-          [this](const SceneScan& scan) { parts_.scan->scans().put({scan}); });
+  connect(parts_.align, &AlignDesk::storeAsked, this, [this](const SceneScan& aligned) {
+    parts_.scan->scans().change(
+        aligned.name, [aligned](const SceneScan* now) { return withAlignment(now, aligned); });
+  });
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);
