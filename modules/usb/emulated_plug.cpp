@@ -121,6 +121,13 @@ struct EmulatedPlug::Impl {
       message.msg_iovlen = size > 0 ? 2 : 1;
       ::sendmsg(socket.get(), &message, MSG_NOSIGNAL);
     }
+    void endReads(const std::function<bool(const UsbfsMessage&)>& which) {
+      std::erase_if(reads, [&](const UsbfsMessage& read) {
+        if (!which(read)) return false;
+        send({.kind = UsbfsMessage::done, .id = read.id, .status = -ENOENT});
+        return true;
+      });
+    }
     Descriptor socket;
     std::unique_ptr<UsbTransport> transport; // while it has claimed the interface
     std::vector<UsbfsMessage> reads;         // that wait for what comes
@@ -141,6 +148,7 @@ struct EmulatedPlug::Impl {
       const int next = 2 + last++ % 126;
       if (!fs::exists(devices / ("1-" + std::to_string(next)))) address = next;
     }
+    if (address == 0) throw FileError(folder.string(), 0, "has 126 devices: a bus takes no more");
     const std::string name = "1-" + std::to_string(address);
     char number[8];
     std::snprintf(number, sizeof number, "%03d", address);
@@ -239,15 +247,12 @@ struct EmulatedPlug::Impl {
     case UsbfsMessage::submit:
       return submit(session, urb, size);
     case UsbfsMessage::discard:
-      for (const UsbfsMessage& read : session.reads)
-        if (read.id == urb.head.id)
-          session.send({.kind = UsbfsMessage::done, .id = read.id, .status = -ENOENT});
-      std::erase_if(session.reads, [&](const UsbfsMessage& r) { return r.id == urb.head.id; });
-      return;
+      return session.endReads([&](const UsbfsMessage& read) { return read.id == urb.head.id; });
     case UsbfsMessage::claim:
       answer.status = claim(session);
       break;
     case UsbfsMessage::release:
+      session.endReads([](const UsbfsMessage&) { return true; });
       session.transport.reset();
       break;
     case UsbfsMessage::clear_halt:
@@ -263,13 +268,16 @@ struct EmulatedPlug::Impl {
     const bool taken = std::ranges::any_of(
         sessions, [&](const auto& s) { return s.get() != &session && s->transport; });
     if (taken || device.refusal == UsbRefusal::held_by_driver) return -EBUSY;
+    std::unique_ptr<UsbTransport> opened;
     try {
-      session.transport = open();
+      opened = open();
     } catch (const DeviceError&) {
       return -ENODEV;
     }
     ++claims;
-    return session.transport->claim(0) == UsbResult::ok ? 0 : -EBUSY;
+    if (opened->claim(0) != UsbResult::ok) return -EBUSY;
+    session.transport = std::move(opened);
+    return 0;
   }
 
   void submit(Session& session, const Urb& urb, std::size_t size) {

@@ -72,35 +72,19 @@ std::vector<UsbDevice> listUsbDevices() {
   return devices;
 }
 
-namespace {
-
-std::unique_ptr<UsbTransport> opened(const std::function<bool(const UsbFound&)>& wanted,
-                                     std::string who, std::uint16_t vendor, std::uint16_t product) {
+std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device) {
   std::optional<UsbRefusal> refusal;
   std::string cause;
-  std::unique_ptr<UsbTransport> usb = library().open(wanted, refusal, cause);
-  if (usb) return usb;
-  if (!cause.empty()) throw DeviceError(cause);
-  who += " (USB " + usbNumbers(vendor, product) + ")";
-  if (refusal) throw DeviceError(who + ": " + usbAdvice(*refusal, vendor, product));
-  throw NotAttached(who + " is not attached: plug it in, and its power supply too");
-}
-
-} // namespace
-
-std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product) {
-  const std::string_view known = hapticName(vendor, product);
-  return opened(
-      [&](const UsbFound& found) { return found.vendor == vendor && found.product == product; },
-      known.empty() ? "the device" : std::string(known), vendor, product);
-}
-
-std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device) {
-  return opened(
+  std::unique_ptr<UsbTransport> usb = library().open(
       [&](const UsbFound& found) {
         return found.bus == device.bus && found.address == device.address;
       },
-      device.name, device.vendor, device.product);
+      refusal, cause);
+  if (usb) return usb;
+  if (!cause.empty()) throw DeviceError(cause);
+  const std::string who = device.name + " (USB " + usbNumbers(device.vendor, device.product) + ")";
+  if (refusal) throw DeviceError(who + ": " + usbAdvice(*refusal, device.vendor, device.product));
+  throw NotAttached(who + " is not attached: plug it in, and its power supply too");
 }
 
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic) {

@@ -34,9 +34,8 @@ struct UsbDevice {
 // thread; slow.
 std::vector<UsbDevice> listUsbDevices();
 
-// The first device of these numbers, or whose `haptic` is this, that may be opened; nothing of it
-// is claimed yet. Throws DeviceError with what to do where there is none. Any thread; slow.
-std::unique_ptr<UsbTransport> openUsb(std::uint16_t vendor, std::uint16_t product);
+// The first device whose `haptic` is this that may be opened; nothing of it is claimed yet. Throws
+// DeviceError with what to do where there is none. Any thread; slow.
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic);
 std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device); // this one, where it was listed
 

@@ -24,7 +24,6 @@ struct UsbFound {
   int bus = 0, address = 0;            // as in /dev/bus/usb
   double megabits = 0;                 // of its cable; 0 if unknown
   bool openable = false;               // by this user
-  bool driver_holds = false;           // the kernel's, interface 0
   std::optional<UsbRefusal> refusal{}; // where it is not openable
 };
 

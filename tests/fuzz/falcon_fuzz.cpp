@@ -8,23 +8,17 @@
 #include "haptics/devices/falcon/falcon_device.h"
 #include "haptics/devices/falcon/falcon_frame.h"
 #include "haptics/devices/link/link_loop.h"
+#include "support/mute_transport.h"
 
 namespace {
 
 using namespace patina;
 
 // Each transfer takes a byte of the input that says how it ends and, of a read, how long it is.
-class FuzzedTransport final : public UsbTransport {
+class FuzzedTransport final : public test::MuteTransport {
  public:
   FuzzedTransport(std::span<const std::uint8_t>& input, DeviceClock& clock)
       : input_(input), clock_(clock) {}
-  UsbResult claim(int) noexcept override { return UsbResult::ok; }
-  UsbCount controlOut(const UsbRequest&, std::span<const std::byte>, unsigned) noexcept override {
-    return {};
-  }
-  UsbCount controlIn(const UsbRequest&, std::span<std::byte>, unsigned) noexcept override {
-    return {UsbResult::stall, 0};
-  }
   UsbCount write(std::uint8_t, std::span<const std::byte> data, unsigned) noexcept override {
     if (data.size() == kFalconFrame && data[0] == std::byte{'<'}) {
       for (std::size_t motor = 0; motor < 3; ++motor) {

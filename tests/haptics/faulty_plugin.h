@@ -2,6 +2,7 @@
 // on.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -41,6 +42,7 @@ struct Noted {
 inline struct Faulty {
   std::atomic<Fault> fault{Fault::none};
   std::atomic<int> calls{0}, closed{0};
+  std::atomic<double> left{0}; // [N], the most that was asked for right before a close
   std::array<Noted, 20000> noted;
   std::atomic<bool> release{false};
 } faulty;
@@ -119,14 +121,21 @@ inline void describeFaulty(patina_device_description* description) {
   description->workspace_low[0] = 1; // above the highest
 }
 
-inline const patina_device kFaulty{PATINA_DEVICE_ABI, sizeof(patina_device),
-                                   describeFaulty,    openFaulty,
-                                   exchangeFaulty,    [](void*) { ++faulty.closed; }};
+inline void closeFaulty(void*) {
+  if (const int calls = faulty.calls; calls > 0 && calls <= 20000)
+    faulty.left =
+        std::max<double>(faulty.left, faulty.noted[static_cast<std::size_t>(calls - 1)].force);
+  ++faulty.closed;
+}
+
+inline const patina_device kFaulty{PATINA_DEVICE_ABI, sizeof(patina_device), describeFaulty,
+                                   openFaulty,        exchangeFaulty,        closeFaulty};
 
 inline std::unique_ptr<Device> makeFaulty(const char* argument, std::shared_ptr<LinkNotes> notes) {
   faulty.fault = Fault::none;
   faulty.calls = 0;
   faulty.closed = 0;
+  faulty.left = 0;
   faulty.release = false;
   return makeLinkedDevice(
       makePluginLink(kFaulty, argument),

@@ -136,6 +136,7 @@ TEST(PluginDevice, InEveryFaultSendsNoForceWithTheNextExchangeAndTellsTheLoop) {
       const std::size_t until = first + 1;
       for (std::size_t i = until; i < static_cast<std::size_t>(faulty.calls); ++i)
         ASSERT_EQ(faulty.noted[i].force, 0) << id << ", exchange " << i - first;
+      EXPECT_EQ(faulty.left, 0) << id << ": closed with a force on it";
       faulty.fault = Fault::none;
     }
   }

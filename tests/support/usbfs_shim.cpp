@@ -323,7 +323,11 @@ int poll(pollfd* fds, nfds_t count, int timeout) {
     fds[i].revents = asked[i].revents;
     if (ours[i]) {
       const auto node = nodeOf(fds[i].fd);
-      const bool has = (asked[i].revents & POLLIN) != 0 || (node && !node->done.empty());
+      bool has = (asked[i].revents & POLLIN) != 0;
+      if (node) {
+        const std::lock_guard lock(node->lock);
+        has = has || !node->done.empty();
+      }
       const bool lost = (asked[i].revents & (POLLHUP | POLLERR)) != 0;
       fds[i].revents = static_cast<short>((has ? POLLOUT : 0) | (lost ? POLLERR | POLLHUP : 0));
     }

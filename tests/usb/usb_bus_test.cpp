@@ -24,8 +24,13 @@ TEST(UsbBus, IsListedOrSaysWhyNot) {
 }
 
 TEST(UsbBus, WhatIsNotAttachedIsNotOpenedAndSaysWhatToDo) {
+  UsbDevice none;
+  none.vendor = 0x0403;
+  none.product = 0xffff; // a number that nobody was given
+  none.name = "the device";
+  none.bus = 250;
   try {
-    (void)openUsb(0x0403, 0xffff); // a number that nobody was given
+    (void)openUsb(none);
     ADD_FAILURE();
   } catch (const DeviceError& error) {
     const std::string cause = error.what();

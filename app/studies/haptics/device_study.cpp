@@ -276,7 +276,7 @@ WorkPrecisionTable turns(bool quick, Progress& progress) {
                   {"ticks", static_cast<double>(run.ticks)},
                   {"missed", static_cast<double>(run.missed)},
                   {"injected", static_cast<double>(run.injected)},
-                  {"noticed", static_cast<double>(run.faults)},
+                  {"unnoticed", static_cast<double>(run.unnoticed)},
                   {"old places felt", static_cast<double>(run.stale)}};
       table.rows.push_back(std::move(row));
     }

@@ -104,7 +104,6 @@ UsbFound found(libusb_device* device, const libusb_device_descriptor& descriptor
   const std::string product = text(raw, descriptor.iProduct);
   out.name = maker.empty() || product.empty() ? maker + product : maker + " " + product;
   out.serial = text(raw, descriptor.iSerialNumber);
-  out.driver_holds = libusb_kernel_driver_active(raw, 0) == 1;
   return out;
 }
 
@@ -143,7 +142,9 @@ std::unique_ptr<UsbTransport> openFirst(const std::function<bool(const UsbFound&
     }
   }
   if (!handle) return nullptr;
-  return makeLibusbTransport(std::move(context), std::move(handle));
+  auto transport = makeLibusbTransport(std::move(context), std::move(handle));
+  if (!transport) cause = "no memory for a USB transfer: close other programs";
+  return transport;
 }
 
 } // namespace

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kMost = 4096;              // bytes of data of a transfer
 constexpr std::chrono::milliseconds kGrace{200}; // for what libusb itself would end by its time
-constexpr std::chrono::milliseconds kNap{1};     // where it cannot wait itself
+constexpr std::chrono::microseconds kSlice{100'000};
+constexpr std::chrono::milliseconds kNap{1}; // where it cannot wait itself
 
 struct FreeTransfer {
   void operator()(libusb_transfer* transfer) const { libusb_free_transfer(transfer); }
@@ -133,6 +134,7 @@ class LibusbTransport final : public UsbTransport {
 
   UsbCount control(const UsbRequest& request, std::size_t size, unsigned timeout_ms) noexcept {
     if (lost_ || gone_) return {UsbResult::gone, 0};
+    if (!mended(timeout_ms)) return {UsbResult::stall, 0};
     libusb_fill_control_setup(buffer_.data(), request.request_type, request.request, request.value,
                               request.index, static_cast<std::uint16_t>(size));
     libusb_fill_control_transfer(transfer_.get(), handle_.get(), buffer_.data(), &done, &completed_,
@@ -142,11 +144,7 @@ class LibusbTransport final : public UsbTransport {
 
   UsbCount move(unsigned endpoint, std::size_t size, unsigned timeout_ms) noexcept {
     if (lost_ || gone_) return {UsbResult::gone, 0};
-    if (mending_.valid()) { // this endpoint or another's: one at a time
-      if (mending_.wait_for(std::chrono::milliseconds(timeout_ms)) != std::future_status::ready)
-        return {UsbResult::stall, 0};
-      mending_.get();
-    }
+    if (!mended(timeout_ms)) return {UsbResult::stall, 0};
     const auto address = static_cast<unsigned char>(endpoint);
     libusb_fill_bulk_transfer(transfer_.get(), handle_.get(), address, buffer_.data(),
                               static_cast<int>(size), &done, &completed_, std::max(timeout_ms, 1U));
@@ -163,7 +161,9 @@ class LibusbTransport final : public UsbTransport {
     }
     const auto until = Clock::now() + std::chrono::milliseconds(transfer_->timeout) + kGrace;
     while (completed_ == 0) {
-      timeval wait{0, 100'000};
+      using std::chrono::microseconds;
+      const auto left = std::chrono::duration_cast<microseconds>(until - Clock::now());
+      timeval wait{0, std::clamp(left, microseconds(0), kSlice).count()};
       const int code = libusb_handle_events_timeout_completed(context_.get(), &wait, &completed_);
       if (completed_ != 0) break;
       if (code != LIBUSB_SUCCESS && code != LIBUSB_ERROR_INTERRUPTED)
@@ -177,6 +177,15 @@ class LibusbTransport final : public UsbTransport {
     if (result == UsbResult::stall && transfer_->type != LIBUSB_TRANSFER_TYPE_CONTROL)
       mend(transfer_->endpoint);
     return {result, static_cast<std::size_t>(std::max(transfer_->actual_length, 0))};
+  }
+
+  // Meanwhile the kernel holds the whole device: whatever is asked of it would wait in there.
+  bool mended(unsigned timeout_ms) noexcept {
+    if (!mending_.valid()) return true;
+    if (mending_.wait_for(std::chrono::milliseconds(timeout_ms)) != std::future_status::ready)
+      return false;
+    mending_.get();
+    return true;
   }
 
   // The kernel may take 5 s to end a halt, and takes no other time: so in a thread of its own.

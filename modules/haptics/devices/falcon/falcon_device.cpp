@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "haptics/devices/falcon/falcon_frame.h"
-#include "usb/usb_bus.h"
+#include "haptics/devices/link/usb_opening.h"
 
 namespace patina {
 namespace {
@@ -29,12 +29,9 @@ class FalconLink final : public DeviceLink {
   Opening open() noexcept override {
     try {
       return !line_ ? attach() : loader_ ? load() : probe();
-    } catch (const NotAttached& absent) {
+    } catch (const std::exception&) {
       close();
-      return {false, absent.what(), absent.told};
-    } catch (const std::exception& error) {
-      close();
-      return {false, error.what()};
+      return failedOpening();
     }
   }
 

@@ -17,8 +17,8 @@ inline const Box3 kFalconWorkspace(Vec3(-0.05, -0.05, -0.045), Vec3(0.05, 0.05, 
 
 inline constexpr double kFalconCount = 6.3589e-4;    // [rad] of a thigh, one count of its encoder
 inline constexpr double kFalconIndex = 0.6108652382; // [rad], where an encoder counts zero: 35 deg
-inline constexpr double kFalconPeak = 8.9;           // [N], as the maker states it
-// Of a thigh at kMostMotor [N m]: what bears kFalconPeak along z in the middle.
+// Of a thigh at kMostMotor [N m]: what bears 8.9 N along z in the middle, the peak that the maker
+// states.
 inline constexpr double kFalconFullTorque = 0.2242;
 
 // The force that the guard lets through: about half the peak, and what we take the motors to bear

@@ -15,7 +15,7 @@ inline constexpr std::size_t kFalconFrame = 16;
 using FalconBytes = std::array<std::byte, kFalconFrame>;
 
 struct FalconLights {
-  static constexpr std::uint8_t kGreen = 0x02, kBlue = 0x04, kRed = 0x08;
+  static constexpr std::uint8_t kGreen = 0x02, kRed = 0x08;
 };
 
 struct FalconCommand {

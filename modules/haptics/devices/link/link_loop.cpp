@@ -92,6 +92,7 @@ void LinkLoop::turn(const LinkCommand& command) noexcept {
 
 void LinkLoop::leave() noexcept {
   notes_->setCause(std::string("the device ") + text(reading_.status));
+  link_->turn(Vec3::Zero()); // the last may have carried force
   link_->close();
   open_ = false;
   notes_->hold = Hold::device;

@@ -49,7 +49,7 @@ typedef struct {
   // Sends the force on the hand and reads the state, about a thousand times a second; dt [s] since
   // the last time. 0: answered; anything else: no answer came this time.
   int (*exchange)(void* device, const double force[3], double dt, patina_device_state* state);
-  // The force has been zero for one exchange at least.
+  // The exchange before it, if there was any, asked for no force, whatever the device answered.
   void (*close)(void* device);
 } patina_device;
 

@@ -38,6 +38,7 @@ class PluginLink final : public DeviceLink {
   }
 
   DeviceState turn(const Vec3& force) noexcept override {
+    if (device_ == nullptr) return {.status = DeviceStatus::gone};
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     patina_device_state told{{kNone, kNone, kNone}, {1, 0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0};
     const std::int64_t before = monotonicNs();

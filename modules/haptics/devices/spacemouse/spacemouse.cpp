@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "usb/usb_bus.h"
+#include "haptics/devices/link/usb_opening.h"
 
 namespace patina {
 namespace {
@@ -44,12 +44,9 @@ class SpaceMouseLink final : public DeviceLink {
       usb_ = open_();
       if (usb_->claim(0) != UsbResult::ok)
         throw DeviceError("the SpaceMouse is held by another program: close it, or spacenavd");
-    } catch (const NotAttached& absent) {
+    } catch (const std::exception&) {
       close();
-      return {false, absent.what(), absent.told};
-    } catch (const std::exception& error) {
-      close();
-      return {false, error.what()};
+      return failedOpening();
     }
     cap_ = {};
     at_ = heard_at_ = clock_->now();

@@ -1,0 +1,20 @@
+// A USB device that takes what it is told and answers no request: what is read and written is up to
+// whoever derives.
+#pragma once
+
+#include "usb/usb_transport.h"
+
+namespace patina::test {
+
+class MuteTransport : public UsbTransport {
+ public:
+  UsbResult claim(int) noexcept override { return UsbResult::ok; }
+  UsbCount controlOut(const UsbRequest&, std::span<const std::byte>, unsigned) noexcept override {
+    return {};
+  }
+  UsbCount controlIn(const UsbRequest&, std::span<std::byte>, unsigned) noexcept override {
+    return {UsbResult::stall, 0};
+  }
+};
+
+} // namespace patina::test
