@@ -50,7 +50,9 @@ void StiffnessSlopeStage::apply(Contact& contact, ContactMemory& memory) const n
   if (contact.touching && contact.material.stiffness > 0) {
     // d of the potential: along the surface's own normal, not the slope of its relief.
     const double square = contact.depth * contact.depth / (1 + contact.slope.squaredNorm());
-    const double softened = contact.stiffness / contact.material.stiffness;
+    const double softened = contact.stiffness == contact.material.stiffness
+                                ? 1
+                                : contact.stiffness / contact.material.stiffness;
     const Vec3 force = -0.5 * square * softened * softened * contact.stiffness_gradient;
     contact.force += force;
     memory.stiffness_slope.force = force.norm();

@@ -29,7 +29,7 @@ double steepnessOf(const Contact& contact) noexcept {
 
 // Along n, of the contact as it is.
 double depthOf(const Contact& contact) noexcept {
-  return contact.depth / steepnessOf(contact);
+  return contact.slope.isZero(0) ? contact.depth : contact.depth / steepnessOf(contact);
 }
 
 // `depth` becomes that along n, and the normal leans by `slope` more. n - slope is longer than 1:
@@ -41,11 +41,12 @@ void settle(Contact& contact, double depth, const Vec3& slope) noexcept {
   }
   const Vec3 outward = steepnessOf(contact) * contact.normal - slope; // n - all slopes
   contact.slope += slope;
-  const double length = steepnessOf(contact), deep = depth * length, per_length = 1 / length;
-  const double more = deep / contact.depth;
+  // The root and both quotients at one time: a tick waits for the longest, not for their sum.
+  const double square = 1 + contact.slope.squaredNorm(), length = std::sqrt(square),
+               per_square = 1 / square, more = length * (depth / contact.depth);
   for (int i = 0; i < contact.walls; ++i) contact.wall[static_cast<std::size_t>(i)].load *= more;
-  contact.depth = deep;
-  contact.normal = per_length * outward;
+  contact.depth = depth * length;
+  contact.normal = length * per_square * outward;
   if (contact.walls == 1) contact.wall[0].normal = contact.normal;
   contact.candidate = contact.tip + depth * outward;
   contact.vcp = contact.candidate;

@@ -71,6 +71,7 @@ constexpr int kMostSteps = 64;
 // Steps across edges that bring the point no nearer: half way round a vertex they may be needed.
 constexpr int kMostStalls = 8;
 constexpr double kWellWithin = 1e-3; // of a barycentric coordinate
+constexpr int kMostCrossed = 4;      // edges, before a walk begins that unpacks corners and divides
 
 } // namespace
 
@@ -177,22 +178,23 @@ Foot walk(const ReliefFaces& mesh, const Vec3& p, std::int32_t start) noexcept {
   return best;
 }
 
-// The face that p is well over, near_face or one beyond the only edge of it that p is outside of;
-// -1: the walk has to tell. above: it [m].
+// The face that p is well over, near_face or one that a few steps across edges lead to, each time
+// the edge that p is farthest outside of; -1: the walk has to tell. above: it [m].
 std::int32_t faceUnder(const ReliefFaces& mesh, std::int32_t near_face, const Vec3& p,
                        double& above) noexcept {
   constexpr auto kLeast = static_cast<float>(kWellWithin);
-  for (int crossed = 0;; ++crossed) {
+  for (int crossed = 0; crossed <= kMostCrossed; ++crossed) {
     const FaceFrame& frame = mesh.frames[static_cast<std::size_t>(near_face)];
     const Float4 at = frame.at(p);
     const float least = std::min(at[0], at[1]), rest = 1 - (at[0] + at[1]);
     above = static_cast<double>(at[2]);
     if (std::min(least, rest) > kLeast) return near_face;
-    if (crossed > 0 || std::min(std::max(at[0], at[1]), std::max(least, rest)) <= 0) return -1;
+    if (std::min(least, rest) > 0) return -1; // on an edge
     // Corner k lies across the edge from k + 1 to k + 2.
-    near_face = frame.across(rest <= 0 ? 1 : at[0] <= 0 ? 2 : 0);
+    near_face = frame.across(rest <= least ? 1 : at[0] <= at[1] ? 2 : 0);
     if (near_face < 0) return -1;
   }
+  return -1;
 }
 
 struct Cubic {
