@@ -187,12 +187,7 @@ void fit(Demo& demo, Progress& progress) {
                 demo.registered.compliances[i], options, progress);
     FourierTexture& fitted = texture.scanned.fitted.texture;
     fitted.name = one.name;
-    CsvTable rows{{"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"}, {}};
-    for (const ScanHeight& height : texture.scanned.heights) {
-      rows.rows.push_back({height.t, height.point.along, height.point.height, height.point.sigma,
-                           static_cast<double>(height.stretch)});
-    }
-    writeCsv(demo.folder / ("heights-" + one.name + ".csv"), rows);
+    writeHeights(demo.folder / ("heights-" + one.name + ".csv"), texture.scanned.heights);
     writeTexture(demo.folder / (one.name + ".json"), fitted);
     texture.spectrum =
         spectrumError(fitted, trueProfile(demo.object, demo.object.materials[i]), kCutoff, kFloor);

@@ -42,7 +42,7 @@ const Keys kFitKeys = {
     {"rms", "m", "rms", "of the profile's heights from its best line, a picture's from their mean"},
     {"residual", "m", "residual", "rms of what the texture lacks of them"},
     {"variance_explained", "", "explained", "of the profile's variance"},
-    {"left_out", "m", "left out", "rms of the waves longer than --cutoff", Shown::if_any},
+    {"left_out", "m", "left out", "rms of what --cutoff leaves out", Shown::if_any},
     {"noise", "1/m", "noise", "of a harmonic over the square of its wavelength: the median of all",
      Shown::if_any},
     {"quiet", "", "quiet", "harmonics that --over-noise left out", Shown::if_any},
@@ -64,11 +64,13 @@ std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console&
                ? std::nullopt
                : std::optional(static_cast<std::size_t>(found - table.columns.begin()));
   };
-  const auto sigma = column("sigma [m]"), stretch = column("stretch");
+  const auto sigma = column("sigma [m]"), stretch = column("stretch"),
+             speed = column("speed [m/s]");
   std::map<std::int64_t, std::vector<ProfilePoint>> stretches;
   for (const auto& row : table.rows)
     stretches[stretch ? std::llround(row[*stretch]) : 0].push_back(
-        {row[first], row[first + 1], sigma ? row[*sigma] : 0});
+        {row[first], row[first + 1], sigma ? row[*sigma] : 0,
+         speed ? std::optional(row[*speed]) : std::nullopt});
   if (stretches.empty()) throw FileError(options.profile.string(), 0, "has no height");
   if (options.stretch) {
     const auto found = stretches.find(static_cast<std::int64_t>(*options.stretch));
@@ -258,7 +260,8 @@ Command fitTextureCommand() {
             inRange(
                 1e-9, 1, [options](double step) { options->fit.step = step; }, NumberKind::length)},
            {"--cutoff", "LENGTH", "m", "",
-            "Leave out longer waves: the shape of what was scanned, which its mesh has.",
+            "Leave out longer waves: the shape of what was scanned, which its mesh has. Of a scan, "
+            "what the tip was drawn over too slowly to be known, too.",
             inRange(
                 1e-9, 1, [options](double length) { options->fit.cutoff = length; },
                 NumberKind::length)},

@@ -75,6 +75,8 @@ void writePath(const std::filesystem::path& path, const std::vector<PathSample>&
 // Both files, or neither where the disk has no room for both.
 void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples,
                const std::filesystem::path& heights_path, const std::vector<ScanHeight>& heights);
+// Heights whose speeds are known.
+void writeHeights(const std::filesystem::path& path, const std::vector<ScanHeight>& heights);
 
 // What rig.json says beside its markers.
 struct Rig {

@@ -13,6 +13,9 @@ const std::vector<std::string> kProbeColumns = {"t [s]",       "force [N]",   "a
 const std::vector<std::string> kPathColumns = {"t [s]", "x [m]", "y [m]", "z [m]",     "qx",
                                                "qy",    "qz",    "qw",    "sigma [m]", "force [N]"};
 
+const std::vector<std::string> kHeightColumns = {"t [s]",     "along [m]", "height [m]",
+                                                 "sigma [m]", "stretch",   "speed [m/s]"};
+
 // Finite numbers, the first of them a time after `last`.
 void requireTimed(const std::vector<double>& row, const std::vector<std::string>& columns,
                   const std::string& name, std::size_t line, std::optional<double>& last) {
@@ -144,7 +147,12 @@ std::vector<double> numbersOf(const PathSample& s) {
 }
 
 std::vector<double> numbersOf(const ScanHeight& h) {
-  return {h.t, h.point.along, h.point.height, h.point.sigma, static_cast<double>(h.stretch)};
+  return {h.t,
+          h.point.along,
+          h.point.height,
+          h.point.sigma,
+          static_cast<double>(h.stretch),
+          h.point.speed.value()};
 }
 
 template <class Rows>
@@ -177,8 +185,14 @@ void writePath(const std::filesystem::path& path, const std::vector<PathSample>&
                const std::filesystem::path& heights_path, const std::vector<ScanHeight>& heights) {
   AtomicFile file(path), others(heights_path);
   append(file, kPathColumns, samples);
-  append(others, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"}, heights);
+  append(others, kHeightColumns, heights);
   others.commit();
+  file.commit();
+}
+
+void writeHeights(const std::filesystem::path& path, const std::vector<ScanHeight>& heights) {
+  AtomicFile file(path);
+  append(file, kHeightColumns, heights);
   file.commit();
 }
 

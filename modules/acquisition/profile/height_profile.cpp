@@ -264,7 +264,8 @@ HeightProfile heightAlong(const std::vector<TracedSample>& samples, const Height
     const ProfileStep& step = steps[i];
     const Vector Ph = step.P * height;
     profile.points[i] = {samples[i].along, height.dot(step.x) - Ph.dot(l),
-                         std::sqrt(std::max(height.dot(Ph) - Ph.dot(L * Ph), 0.))};
+                         std::sqrt(std::max(height.dot(Ph) - Ph.dot(L * Ph), 0.)),
+                         samples[i].speed};
     for (int k = step.count; k-- > 0;) {
       const Row& row = step.rows[k];
       const Square rest = Square::Identity(x.size(), x.size()) - row.gain * row.h.transpose();

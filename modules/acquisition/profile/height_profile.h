@@ -42,6 +42,8 @@ struct ProfilePoint {
   double along = 0;  // [m]
   double height = 0; // of the surface, along its normal [m]
   double sigma = 0;  // standard deviation [m]
+  // At which the tip was drawn over it [m/s]; absent: nobody knows.
+  std::optional<double> speed{};
 };
 
 struct HeightProfile {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/texture/drawn_heights.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"
@@ -36,46 +37,60 @@ double medianStep(const std::vector<ProfilePoint>& points) {
   return percentiles(steps).p50;
 }
 
-// Heights at from, from + step, ... `count` of them: means of what lies within half a step, or
-// straight between neighbours.
-std::vector<double> evenHeights(const std::vector<ProfilePoint>& points, double from, double step,
-                                std::size_t count) {
+struct EvenHeights {
+  std::vector<double> heights;
+  std::vector<double> speeds; // empty where not all are known
+};
+
+// At from, from + step, ... `count` of them: means of what lies within half a step, or straight
+// between neighbours.
+EvenHeights evenHeights(const std::vector<ProfilePoint>& points, double from, double step,
+                        std::size_t count) {
   std::vector<ProfilePoint> places; // one a step that has any
   std::vector<double> weights;
   const bool weighted =
       std::all_of(points.begin(), points.end(), [](const ProfilePoint& p) { return p.sigma > 0; });
+  const bool drawn =
+      std::all_of(points.begin(), points.end(), [](const ProfilePoint& p) { return p.speed; });
   std::ptrdiff_t last = -1;
   for (const ProfilePoint& point : points) {
     const auto place = static_cast<std::ptrdiff_t>(std::lround((point.along - from) / step));
     const double weight = weighted ? 1 / (point.sigma * point.sigma) : 1;
     if (place != last) {
-      places.push_back({0, 0, 0});
+      places.push_back({0, 0, 0, 0});
       weights.push_back(0);
       last = place;
     }
     places.back().along += weight * point.along;
     places.back().height += weight * point.height;
+    *places.back().speed += weight * point.speed.value_or(0);
     weights.back() += weight;
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
     places[i].along /= weights[i];
     places[i].height /= weights[i];
+    *places[i].speed /= weights[i];
   }
-  std::vector<double> heights;
+  EvenHeights even;
+  const auto add = [&](double height, double speed) {
+    even.heights.push_back(height);
+    if (drawn) even.speeds.push_back(speed);
+  };
   std::size_t next = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double x = from + step * static_cast<double>(i);
     while (next + 1 < places.size() && places[next].along < x - kSamePlace * step) ++next;
     const ProfilePoint& behind = places[next];
     if (next == 0 || std::abs(behind.along - x) <= kSamePlace * step || behind.along < x) {
-      heights.push_back(behind.height);
+      add(behind.height, *behind.speed);
       continue;
     }
     const ProfilePoint& before = places[next - 1];
     const double share = (x - before.along) / (behind.along - before.along);
-    heights.push_back((1 - share) * before.height + share * behind.height);
+    add((1 - share) * before.height + share * behind.height,
+        (1 - share) * *before.speed + share * *behind.speed);
   }
-  return heights;
+  return even;
 }
 
 // Slope a step of the line that is the best one beside a mean and the lowest harmonics of one
@@ -205,7 +220,7 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
                 " steps of " + formatLength(step) + "; choose a longer step");
   const auto m = static_cast<std::size_t>(std::lround(length / step));
   step = length / static_cast<double>(m);
-  std::vector<double> heights = evenHeights(points, from, step, m + 1);
+  auto [heights, speeds] = evenHeights(points, from, step, m + 1);
   FittedTexture fitted;
   fitted.length = length;
   fitted.samples = m;
@@ -214,6 +229,13 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
   double highest = 0;
   for (const ProfilePoint& point : points) highest = std::max(highest, std::abs(point.height));
   if (!(std::sqrt(fitted.variance) > kRounding * highest)) throw Error("the profile is flat");
+  double course = 0; // mean square of what is no texture
+  if (options.cutoff && !speeds.empty()) {
+    std::vector<double> drawn = drawnHeights(heights, speeds, step, *options.cutoff);
+    for (std::size_t i = 0; i < m; ++i)
+      course += std::pow(heights[i] - drawn[i], 2) / static_cast<double>(m);
+    heights = std::move(drawn);
+  }
 
   const auto blend = std::clamp<std::size_t>(
       static_cast<std::size_t>(std::lround(options.blend * static_cast<double>(m))), 2, m - 1);
@@ -243,7 +265,8 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
                                  texture.series.a.size());
     if (longer == texture.series.a.size())
       throw Error("all of the texture's waves are longer than " + formatLength(*options.cutoff));
-    fitted.left_out = leaveOut(texture.series, [&](std::size_t j) { return j < longer; });
+    fitted.left_out = std::hypot(
+        leaveOut(texture.series, [&](std::size_t j) { return j < longer; }), std::sqrt(course));
   }
   if (options.over_noise > 0) {
     const double quiet_rms = leaveOut(texture.series, [&](std::size_t j) {

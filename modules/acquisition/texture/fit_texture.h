@@ -15,7 +15,8 @@ struct FitOptions1d {
   // that turns over a wider zone lifts all of it.
   double blend = 0.01;
   std::optional<double> step; // of the even samples [m]; else the median of the points'
-  // Longer waves are the body's shape, which its mesh has, and are left out [m].
+  // Longer waves are the body's shape, which its mesh has, and are left out [m]. Where the points'
+  // speeds are known, so is what was drawn over too slowly to be known (drawn_heights.h).
   std::optional<double> cutoff{};
   // Harmonics are left out that are not so many times as high as the noise (noiseOf()); 0: none.
   double over_noise = 0;
@@ -28,7 +29,7 @@ struct FittedTexture {
   double tilt = 0;         // of the line that was taken off
   double variance = 0;     // of the profile without it [m^2]
   double residual = 0;     // rms of what the texture lacks of that, where nothing was blended [m]
-  double left_out = 0;     // rms of the waves longer than the cutoff [m]
+  double left_out = 0;     // rms of what the cutoff leaves out [m]
   double blended = 0;      // rms of what blending changed, over the whole [m]
   double noise = 0;        // noiseOf() the texture with all of its harmonics
   std::size_t quiet = 0;   // harmonics that over_noise left out

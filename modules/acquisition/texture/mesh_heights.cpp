@@ -28,13 +28,14 @@ void measureWay(std::vector<Placed>& places) {
     while (after + 1 < places.size() && alike(places[after + 1]) &&
            places[after + 1].height.t - here.t <= kLook)
       ++after;
+    const Vec3 way = places[after].at - places[before].at;
+    const double seconds = places[after].height.t - places[before].height.t;
+    here.point.speed = seconds > 0 ? way.norm() / seconds : 0;
     if (i == 0 || !alike(places[i - 1])) {
       here.point.along = 0;
       continue;
     }
-    const Vec3 way = places[after].at - places[before].at;
-    const double seconds = places[after].height.t - places[before].height.t;
-    const double step = way.norm() < kStandingSpeed * seconds
+    const double step = *here.point.speed < kStandingSpeed
                             ? 0
                             : (places[i].at - places[i - 1].at).dot(way.normalized());
     here.point.along = places[i - 1].height.point.along + std::max(step, 0.);

@@ -12,8 +12,8 @@ namespace patina {
 // half or more. `along` is the way over the mesh, from 0 in each stretch; `height` the distance in
 // front of the mesh, of the tip's middle less its radius where the target has an offset [m].
 // The target is sided. Stretches are numbered anew: beyond samples that were left out another one
-// begins. `path`: in the scan's frame, its times among those of the heights; both in the order of
-// time.
+// begins. `speed` is that over the mesh, over a fifth of a second. `path`: in the scan's frame, its
+// times among those of the heights; both in the order of time.
 std::vector<ScanHeight> heightsOverMesh(const SurfaceTarget& target, const Pose& mesh_from_path,
                                         const std::vector<PathSample>& path,
                                         const ScanHeights& heights);
