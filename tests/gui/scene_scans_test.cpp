@@ -24,6 +24,24 @@ class SceneScansTest : public ScanDeskTest {
     saveWorkspace(scene, folder_ / "workspace");
     ASSERT_TRUE(open(folder_ / "workspace"));
   }
+  // About its tip, 120 mm below, where its rig says 100.
+  fs::path turningScan() const {
+    const Vec3 tip(0.002, 0.01, -0.12);
+    std::vector<CameraPose> poses;
+    for (int i = 0; i < 60; ++i) {
+      CameraPose pose;
+      pose.t = 0.05 * i;
+      pose.orientation = Eigen::AngleAxisd(0.8 * i, Vec3::UnitZ()) *
+                         Eigen::AngleAxisd(0.1 + 0.012 * i, Vec3::UnitX());
+      pose.position = Vec3(0.1, 0, 0.5) - pose.orientation * tip;
+      poses.push_back(pose);
+    }
+    fs::path turning = folder_ / "turning";
+    fs::create_directories(turning);
+    writePoses(turning / "poses.tum", poses);
+    std::ofstream(turning / "rig.json") << "{\"tip\": [0, 0, -0.1], \"mine\": 7}\n";
+    return turning;
+  }
   const Scene& scene() { return edits().scene()->scene; }
   const EditStatus& status() { return edits().status(); }
   bool waitForEdits(std::size_t done) {
@@ -186,20 +204,7 @@ TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
 }
 
 TEST_F(SceneScansTest, ATipFromPosesIsAnEditOfTheWorkspacesScan) {
-  const Vec3 tip(0.002, 0.01, -0.12);
-  std::vector<CameraPose> poses;
-  for (int i = 0; i < 60; ++i) {
-    CameraPose pose;
-    pose.t = 0.05 * i;
-    pose.orientation = Eigen::AngleAxisd(0.8 * i, Vec3::UnitZ()) *
-                       Eigen::AngleAxisd(0.1 + 0.012 * i, Vec3::UnitX());
-    pose.position = Vec3(0.1, 0, 0.5) - pose.orientation * tip;
-    poses.push_back(pose);
-  }
-  const fs::path turning = folder_ / "turning";
-  fs::create_directories(turning);
-  writePoses(turning / "poses.tum", poses);
-  std::ofstream(turning / "rig.json") << "{\"tip\": [0, 0, -0.1], \"mine\": 7}\n";
+  const fs::path turning = turningScan();
   openWorkspace(icosphere(0.04, 12));
   documents().open(requestFor(turning));
   ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr && !desk().work(); }, 10000));
@@ -230,6 +235,30 @@ TEST_F(SceneScansTest, ATipFromPosesIsAnEditOfTheWorkspacesScan) {
   type('z', kControl);
   ASSERT_TRUE(waitForEdits(put));
   ASSERT_TRUE(waitUntil([&] { return scan().files()->tip().z() > -0.11; }, 10000));
+}
+
+TEST_F(SceneScansTest, ATipOfAFoldersScanSetsThePathOfTheOneBeforeAside) {
+  const fs::path turning = turningScan();
+  std::vector<PathSample> before(5);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    before[i].t = 0.1 * static_cast<double>(i);
+    before[i].position = Vec3(1, 1, 1);
+    before[i].sigma = 1e-4;
+  }
+  writePath(turning / "path.csv", before);
+  documents().open(requestFor(turning));
+  ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr && !desk().work(); }, 10000));
+  EXPECT_EQ(scan().path()->path.size(), 5u);
+  wait(300);
+  clickOn("calibrate_tip");
+  wait(400);
+  clickOn("calibrate_use");
+  ASSERT_TRUE(waitUntil([&] { return fs::exists(turning / "path.csv~"); }, 10000));
+  EXPECT_FALSE(fs::exists(turning / "path.csv"));
+  EXPECT_TRUE(fs::exists(turning / "poses.tum"));
+  ASSERT_TRUE(
+      waitUntil([&] { return scan().path() != nullptr && scan().path()->path.size() > 5; }, 10000));
+  EXPECT_NEAR(scan().files()->tip().z(), -0.12, 1e-6);
 }
 
 } // namespace
