@@ -12,6 +12,7 @@
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/percentiles.h"
+#include "geometry/io/pose_file.h"
 #include "geometry/io/textured_obj.h"
 #include "haptics/servo/feel.h"
 #include "pipeline/true_contact.h"
@@ -36,11 +37,10 @@ Pose objectFromCamera(const Demo& demo) {
 
 // As `patina register --truth` reads it.
 std::string truthText(const Demo& demo) {
-  const Eigen::Matrix4d matrix = demo.camera_from_object.inverse().matrix();
-  Json rows = Json::array();
-  for (int i = 0; i < 4; ++i)
-    rows.push(Json(Json::Array{matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)}));
-  return Json::object().set("mesh_from_camera", rows).dump() + "\n";
+  return Json::object()
+             .set("mesh_from_camera", poseJson(demo.camera_from_object.inverse()))
+             .dump() +
+         "\n";
 }
 
 // Each scan as a folder that every command and the Scan desk open.

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_unit.h"
 #include "session/store/attach_scan.h"
 #include "workspace/workspace.h"
@@ -14,21 +15,10 @@
 namespace patina {
 namespace {
 
-Pose poseIn(const Json& rows) {
-  Eigen::Matrix4d matrix;
-  if (rows.asArray().size() != 4) throw Error("'mesh_from_camera' has not four rows");
-  for (int i = 0; i < 4; ++i) {
-    const Json::Array& row = rows.asArray()[static_cast<std::size_t>(i)].asArray();
-    if (row.size() != 4) throw Error("a row of 'mesh_from_camera' has not four numbers");
-    for (int k = 0; k < 4; ++k) matrix(i, k) = row[static_cast<std::size_t>(k)].asNumber();
-  }
-  return Pose(matrix);
-}
-
 // Where the mesh is that was scanned, of a scan that was simulated.
 void readTruth(const std::string& text, const std::string& name, ScanFiles& files) try {
   const Json truth = parseJson(text, name);
-  if (const Json* rows = truth.find("mesh_from_camera")) files.mesh_from_camera = poseIn(*rows);
+  if (truth.find("mesh_from_camera")) files.mesh_from_camera = poseIn(truth, "mesh_from_camera");
   const std::filesystem::path mesh = files.folder / "mesh.obj";
   if (!files.mesh_from_camera || files.folder.empty() || !std::filesystem::exists(mesh)) return;
   const Json* unit = truth.find("mesh_unit");

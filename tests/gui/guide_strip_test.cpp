@@ -10,6 +10,7 @@
 #include "app/gui/texturing/texture_desk.h"
 #include "core/file.h"
 #include "core/json.h"
+#include "geometry/io/pose_file.h"
 #include "geometry/mesh/pose_values.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
@@ -102,15 +103,7 @@ TEST_F(GuideStripTest, AScanOfOnesOwnComesToATextureStepByStep) {
   wait(500);
   EXPECT_TRUE(step(2).startsWith(QStringLiteral("○"))) << step(2).toStdString();
   // Near where it belongs by six values; the rest is the fit's.
-  const Json truth = parseJson(readFile(scan / "truth.json"), "truth.json");
-  Eigen::Matrix4d matrix;
-  for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < 4; ++k)
-      matrix(i, k) = truth.at("mesh_from_camera")
-                         .asArray()[static_cast<std::size_t>(i)]
-                         .asArray()[static_cast<std::size_t>(k)]
-                         .asNumber();
-  const Pose belongs(matrix);
+  const Pose belongs = readPoseAt(scan / "truth.json", "mesh_from_camera");
   const PoseValues values = valuesOf(belongs);
   constexpr const char* kRows[] = {"align_x", "align_y", "align_z",
                                    "align_a", "align_b", "align_c"};

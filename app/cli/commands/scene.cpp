@@ -5,6 +5,7 @@
 #include "core/disk_error.h"
 #include "core/numbers.h"
 #include "core/output_target.h"
+#include "geometry/io/pose_file.h"
 #include "session/store/replay.h"
 #include "session/store/workspace_link.h"
 #include "workspace/workspace.h"

@@ -13,6 +13,7 @@
 #include "core/numbers.h"
 #include "core/staged_folder.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_report.h"
 
 namespace patina::cli {

@@ -13,14 +13,6 @@ Json vectorJson(const Vec3& v) {
   return Json(Json::Array{v.x(), v.y(), v.z()});
 }
 
-Json poseJson(const Pose& pose) {
-  const Eigen::Matrix4d matrix = pose.matrix();
-  Json rows = Json::array();
-  for (int row = 0; row < 4; ++row)
-    rows.push(Json(Json::Array{matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)}));
-  return rows;
-}
-
 const Keys& fieldKeys() {
   static const Keys keys = {
       {"seconds", "s", "built in", "on the wall", Shown::if_any},

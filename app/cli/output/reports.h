@@ -16,7 +16,6 @@
 namespace patina::cli {
 
 Json vectorJson(const Vec3& v);
-Json poseJson(const Pose& pose); // its rows
 
 const Keys& fieldKeys();
 Report fieldReport(const SurfaceField& field, const FieldReport& built);

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json.h"
+#include "geometry/io/pose_file.h"
 
 namespace patina {
 namespace {
@@ -66,23 +67,9 @@ Rig rigIn(const Json& json) {
 
 // Numbers of a rigid motion are mended where they are rounded, refused where they are another
 // thing.
-Pose poseIn(const Json& json) {
-  Eigen::Matrix4d m;
-  const Json::Array& rows = json.asArray();
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = 0; j < 4; ++j) {
-      if (rows.size() != 4 || rows[i].asArray().size() != 4)
-        throw Error("'probe_from_marker' must be 4 x 4");
-      m(static_cast<int>(i), static_cast<int>(j)) = rows[i].asArray()[j].asNumber();
-    }
-  const Eigen::Matrix3d turn = m.topLeftCorner<3, 3>();
-  const bool rigid = m.allFinite() && m.row(3) == Eigen::RowVector4d(0, 0, 0, 1) &&
-                     (turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm() < 0.01 &&
-                     turn.determinant() > 0;
-  if (!rigid) throw Error("'probe_from_marker' is no rigid motion");
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
-  pose.translation() = m.topRightCorner<3, 1>();
+Pose roundedPoseIn(const Json& json, const std::string& key) {
+  Pose pose = poseIn(json, key, 0.01);
+  pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
   return pose;
 }
 
@@ -96,7 +83,7 @@ RigMarker markerIn(const Json& json) {
   marker.id = static_cast<int>(id);
   marker.size = json.at("size").asNumber();
   if (!(marker.size > 0 && marker.size < 100)) throw Error("a 'size' must be above 0 [m]");
-  marker.probe_from_marker = poseIn(json.at("probe_from_marker"));
+  marker.probe_from_marker = roundedPoseIn(json, "probe_from_marker");
   return marker;
 }
 
@@ -126,12 +113,9 @@ auto readJson(const std::string& text, const std::string& name, const Read& read
 }
 
 Json jsonOf(const RigMarker& marker) {
-  Json rows = Json::array();
-  const Eigen::Matrix4d m = marker.probe_from_marker.matrix();
-  for (int i = 0; i < 4; ++i) rows.push(Json(Json::Array{m(i, 0), m(i, 1), m(i, 2), m(i, 3)}));
   Json json = Json::object();
   json.set("dictionary", marker.family).set("id", marker.id).set("size", marker.size);
-  return json.set("probe_from_marker", rows);
+  return json.set("probe_from_marker", poseJson(marker.probe_from_marker));
 }
 
 } // namespace

@@ -1,16 +1,41 @@
 #include "geometry/io/pose_file.h"
 
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/json.h"
 #include "core/numbers.h"
 
 namespace patina {
+namespace {
+
+struct PoseFault {
+  int row; // the first is 0
+  std::string cause;
+};
+
+// Why these numbers are no rigid motion.
+std::optional<PoseFault> faultOf(const Eigen::Matrix4d& pose, double rigid = kRigid) {
+  for (int row = 0; row < 4; ++row)
+    if (!pose.row(row).allFinite()) return PoseFault{row, "not finite"};
+  if (pose.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+    return PoseFault{3, "the last row of a pose is 0 0 0 1"};
+  const Eigen::Matrix3d rotation = pose.topLeftCorner<3, 3>();
+  for (int row = 0; row < 3; ++row)
+    if (const double length = rotation.row(row).norm(); std::abs(length - 1) > rigid)
+      return PoseFault{row, "this row of the rotation has the length " + formatNumber(length) +
+                                ", not 1: a pose may not scale"};
+  if (!((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < rigid))
+    return PoseFault{0, "the rotation's rows are not at right angles"};
+  if (rotation.determinant() < 0) return PoseFault{0, "a reflection, not a rotation"};
+  return std::nullopt;
+}
+
+} // namespace
 
 Pose readPose(const std::filesystem::path& path) {
   return parsePose(readFile(path), path.string());
@@ -48,39 +73,42 @@ Pose parsePose(const std::string& whole, const std::string& name) {
   if (values.size() != kNumbers)
     refuse(line_number,
            "the file ends after " + std::to_string(values.size()) + " numbers; a pose has 4 x 4");
-  Pose pose;
-  for (std::size_t i = 0; i < kNumbers; ++i)
-    pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = values[i];
-  if (pose.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    refuse(line_of[12], "the last row of a pose is 0 0 0 1");
-  constexpr double kRigid = 1e-6;
-  for (int row = 0; row < 3; ++row)
-    if (std::abs(pose.linear().row(row).norm() - 1) > kRigid)
-      refuse(line_of[static_cast<std::size_t>(4 * row)],
-             "this row of the rotation has the length " +
-                 formatNumber(pose.linear().row(row).norm()) + ", not 1: a pose may not scale");
-  const Eigen::Matrix3d rotation = pose.linear();
-  if (!((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < kRigid))
-    refuse(line_of[0], "the rotation's rows are not at right angles");
-  if (rotation.determinant() < 0) refuse(line_of[0], "a reflection, not a rotation");
-  return pose;
+  const Eigen::Matrix4d pose = Eigen::Map<const Eigen::Matrix4d>(values.data()).transpose();
+  if (const auto fault = faultOf(pose))
+    refuse(line_of[static_cast<std::size_t>(4 * fault->row)], fault->cause);
+  return Pose(pose);
+}
+
+Json poseJson(const Pose& pose) {
+  const Eigen::Matrix4d m = pose.matrix();
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row)
+    rows.push(Json(Json::Array{m(row, 0), m(row, 1), m(row, 2), m(row, 3)}));
+  return rows;
+}
+
+Pose poseIn(const Json& object, const std::string& key, double rigid) {
+  const auto refuse = [&](int row, const std::string& cause) {
+    throw Error("'" + key + "', row " + std::to_string(row + 1) + ": " + cause);
+  };
+  const Json::Array& rows = object.at(key).asArray();
+  if (rows.size() != 4) throw Error("'" + key + "' has not four rows");
+  Eigen::Matrix4d pose;
+  for (int i = 0; i < 4; ++i) {
+    const Json::Array& row = rows[static_cast<std::size_t>(i)].asArray();
+    if (row.size() != 4) refuse(i, "has not four numbers");
+    for (int k = 0; k < 4; ++k) pose(i, k) = row[static_cast<std::size_t>(k)].asNumber();
+  }
+  if (const auto fault = faultOf(pose, rigid)) refuse(fault->row, fault->cause);
+  return Pose(pose);
 }
 
 Pose readPoseAt(const std::filesystem::path& path, const std::string& key) try {
-  const Json rows = parseJson(readFile(path), path.string()).at(key);
-  Eigen::Matrix4d matrix;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j)
-      matrix(i, j) = rows.asArray()
-                         .at(static_cast<std::size_t>(i))
-                         .asArray()
-                         .at(static_cast<std::size_t>(j))
-                         .asNumber();
-  return Pose(matrix);
+  return poseIn(parseJson(readFile(path), path.string()), key);
 } catch (const FileError&) {
   throw;
-} catch (const std::exception& error) {
-  throw FileError(path.string(), 0, key + ": " + error.what());
+} catch (const Error& error) {
+  throw FileError(path.string(), 0, error.what());
 }
 
 } // namespace patina

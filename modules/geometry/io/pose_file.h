@@ -1,9 +1,10 @@
-// A pose as a person writes it: 4 x 4 numbers in a text file.
+// A pose in files: 4 x 4 numbers, as a person writes them or as rows in JSON.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
+#include "core/json.h"
 #include "core/types.h"
 
 namespace patina {
@@ -15,8 +16,13 @@ Pose parsePose(const std::string& text, const std::string& name);
 // The same to be written; `frames` is the comment, "mesh_from_scan".
 std::string poseText(const Pose& pose, const std::string& frames);
 
-// The 4 x 4 numbers that an object in a JSON file has under this key: "mesh_from_scan" of a
-// registration, "mesh_from_camera" of a truth. Throws FileError.
+Json poseJson(const Pose& pose); // its rows
+// The rows that an object has under this key. Throws Error naming the key and the row, for all that
+// parsePose() refuses; `rigid`: how far lengths may be from 1.
+constexpr double kRigid = 1e-6;
+Pose poseIn(const Json& object, const std::string& key, double rigid = kRigid);
+// The same of a file: "mesh_from_scan" of a registration, "mesh_from_camera" of a truth. Throws
+// FileError.
 Pose readPoseAt(const std::filesystem::path& path, const std::string& key);
 
 } // namespace patina
