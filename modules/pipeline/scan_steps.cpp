@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "acquisition/registration/scan_options.h"
 #include "core/error.h"
 #include "session/build/session.h"
 
 namespace patina {
 namespace {
-
-constexpr double kPlaceOfPath = 1. / 200; // of its radius: nearer samples are one place
 
 // Heights of the stretch that goes farthest.
 std::vector<ScanHeight> longestStroke(const std::vector<ScanHeight>& heights) {
@@ -52,11 +51,13 @@ FilteredScan touchedPath(const ScanStreams& streams, const ProbeModel& probe, co
 RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<FilteredScan>& scans,
                               const ProbeModel& probe, const Pose& start,
                               const RegistrationOptions& options, Progress& progress) {
+  std::vector<PathSample> path;
   std::vector<Vec3> points;
   for (const FilteredScan& scan : scans)
-    for (const PathSample& sample : scan.path) points.push_back(sample.position);
+    path.insert(path.end(), scan.path.begin(), scan.path.end());
+  for (const PathSample& sample : path) points.push_back(sample.position);
   RegistrationOptions fitting = options;
-  if (fitting.place == 0) fitting.place = kPlaceOfPath * scaleOf(points, start).radius;
+  if (fitting.place == 0) fitting.place = optionsFor(path).place;
   RegisteredScans found;
   found.registration = registerPath(target, points, start, fitting, progress);
   fitting.pressed.clear();

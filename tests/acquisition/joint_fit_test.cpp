@@ -124,7 +124,10 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
   std::printf("NEES %.2f, pose %.4f mm (apart %.4f), tip %.4f mm of .99, clock %.3f ms of 4\n",
               nees, 1e3 * joint, 1e3 * apart, 1e3 * tip, 1e3 * clock);
   EXPECT_GT(nees, 0.7);
-  EXPECT_LT(nees, 1.6); // 1.45, where 1 is due: it is not known why
+  // 1.45 where 1 is due, for there are biases as large as the deviations: 1.21 where the clock is
+  // right, as parabolas through 40 ms do not quite bend as the path does, 1.28 on facets a fifth as
+  // far from the body.
+  EXPECT_LT(nees, 1.6);
   EXPECT_LT(joint, 0.2 * apart);
   EXPECT_LT(tip, 0.03e-3);
   EXPECT_LT(clock, 0.5e-3);
@@ -143,7 +146,8 @@ TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
   for (const std::string& words : fit.frozen) std::printf("%s\n", words.c_str());
   EXPECT_EQ(fit.frozen.size(), 4U);
   EXPECT_NEAR(fit.clock, 0, 1e-6);
-  EXPECT_LT(fit.covariance(9, 9), 1e-12); // adds nothing
+  EXPECT_FALSE(fit.clock_deviation.has_value()); // none is stated of what nobody told
+  EXPECT_FALSE(fit.tip_deviation.has_value());
   const auto names = [&](const char* what) {
     return std::count_if(fit.frozen.begin(), fit.frozen.end(), [&](const std::string& words) {
       return words.find(what) != std::string::npos;
@@ -155,6 +159,40 @@ TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
   EXPECT_LT(fit.tip.norm(), 0.05e-3);
 }
 
+// A tip that is millimetres off lets no pose fit; with it mended the pose is as good as any, and
+// all samples count again.
+TEST(JointFit, WhetherItConvergedIsJudgedByWhatIsLeft) {
+  JointScan scan = jointScanOf(3);
+  scan.tip = Vec3(2e-3, 1.5e-3, 0);
+  scan.clock = 0;
+  auto path = scan.path(3);
+  std::vector<Vec3> points;
+  RegistrationOptions registering;
+  registering.noise = scan.noise;
+  registering.search = false;
+  for (const PathSample& sample : path) {
+    points.push_back(sample.position);
+    registering.pressed.push_back(scan.compliance * sample.force);
+  }
+  Progress progress;
+  Registration found = registerPath(body(), points, scan.mesh_from_path, registering, progress);
+  EXPECT_FALSE(found.converged);
+  JointOptions options;
+  options.compliance = scan.compliance;
+  options.noise = scan.noise;
+  const JointFit fit = refine(body(), options, path, found);
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(found.rms, scan.noise, 0.1 * scan.noise);
+  EXPECT_GT(std::count(found.counts.begin(), found.counts.end(), true), 2900);
+  EXPECT_LT((fit.tip - scan.tip).norm(), 0.1e-3);
+  EXPECT_LT(found.together, 2); // white noise is what is left
+  // Where the noise that is told does not explain what is left, it has not.
+  auto again = scan.path(3);
+  options.noise = 0.3 * scan.noise;
+  EXPECT_TRUE(refine(body(), options, again, found).converged); // at rest
+  EXPECT_FALSE(found.converged);
+}
+
 TEST(JointFit, WhatIsNotAskedForStays) {
   const JointScan scan = jointScanOf(2);
   const auto path = scan.path(2);
@@ -164,6 +202,9 @@ TEST(JointFit, WhatIsNotAskedForStays) {
   const JointFit fit =
       fitJointly(body(), path, std::vector<bool>(path.size(), true), scan.mesh_from_path, options);
   EXPECT_EQ(fit.clock, 0);
+  EXPECT_FALSE(fit.clock_deviation.has_value());
+  ASSERT_TRUE(fit.tip_deviation.has_value());
+  EXPECT_NEAR(*fit.tip_deviation, std::sqrt(fit.covariance.block<3, 3>(6, 6).trace() / 3), 1e-12);
   EXPECT_TRUE(fit.frozen.empty());
   EXPECT_LT((fit.tip - scan.tip).norm(), 0.1e-3);
   EXPECT_THROW(fitJointly(body(), path, {true}, Pose::Identity()), std::invalid_argument);

@@ -139,6 +139,89 @@ TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
   }
 }
 
+// The same without a mesh, where the fit is linear: what the pose errs by, in the metric of its
+// normal equations, over what is stated of it. Blocks are as long as the errors go together,
+// shorter and longer. T-A28
+TEST(ErrorLaw, StatedVarianceIsThatOfErrorsHoweverBlocksCutThem) {
+  for (const int n : {800, 1655, 5327})
+    for (const int width : {1, 4, 8, 12, 24, 60}) {
+      Draw draw(7);
+      double actual = 0, stated = 0, together = 0;
+      const int rounds = 16;
+      for (int round = 0; round < rounds; ++round) {
+        const Vec3 phase(draw.uniform(0, 6), draw.uniform(0, 6), draw.uniform(0, 6));
+        std::vector<Vec3> points;
+        PathFit fit;
+        fit.weights.assign(static_cast<std::size_t>(n), 1);
+        std::vector<double> drawn;
+        for (int i = 0; i < n + width; ++i) drawn.push_back(draw.normal(kTrustNoise).x());
+        Eigen::VectorXd errors(n);
+        for (int i = 0; i < n; ++i) {
+          const double u = 6.2 * i / n;
+          const Vec3 d = Vec3(std::sin(u + phase.x()), std::sin(2 * u + phase.y()),
+                              std::sin(3 * u + phase.z()))
+                             .normalized();
+          points.emplace_back(0.045 * d.x(), 0.035 * d.y(), 0.03 * d.z());
+          const Vec3& p = points.back(); // whose normal its bumps tilt
+          Miss miss;
+          miss.direction =
+              (Vec3(d.x() / 0.045, d.y() / 0.035, d.z() / 0.03).normalized() +
+               0.35 * Vec3(std::sin(150 * p.y()), std::cos(130 * p.z()), std::sin(170 * p.x())))
+                  .normalized();
+          fit.misses.push_back(miss);
+          errors[i] = 0;
+          for (int k = 0; k < width; ++k)
+            errors[i] += drawn[static_cast<std::size_t>(i + k)] / std::sqrt(width);
+        }
+        const MotionScale scale = scaleOf(points, Pose::Identity());
+        Eigen::MatrixXd design(n, 6);
+        for (int i = 0; i < n; ++i) {
+          const auto at = static_cast<std::size_t>(i);
+          design.row(i) << ((points[at] - scale.centre).cross(fit.misses[at].direction) /
+                            scale.radius)
+                               .transpose(),
+              fit.misses[at].direction.transpose();
+        }
+        const Mat6 normal = design.transpose() * design;
+        const Vec6 off = normal.ldlt().solve(design.transpose() * errors);
+        errors -= design * off;
+        for (int i = 0; i < n; ++i) fit.misses[static_cast<std::size_t>(i)].distance = errors[i];
+        fit.rms = std::sqrt(errors.squaredNorm() / n);
+        const ErrorLaw law = errorLaw(points, fit, 1e-9);
+        actual += off.dot(normal * off) / rounds;
+        stated +=
+            (normal * law.covariance(Eigen::Matrix<double, 6, Eigen::Dynamic>(6, 0))).trace() /
+            rounds;
+        together += law.together / rounds;
+      }
+      std::printf("%d points, %d alike: variance %.2f of what is stated, worth one %.1f\n", n,
+                  width, actual / stated, together);
+      EXPECT_GT(actual / stated, 0.45); // .55 to 1.36 of 16 rounds
+      EXPECT_LT(actual / stated, 1.5);
+    }
+}
+
+// Four samples where one was, with its error: a place is one, and worth one are samples.
+TEST(ErrorLaw, WhatIsWorthOneCountsSamplesWherePlacesWereFitted) {
+  const SurfaceTarget target(test::lumpy(), 0);
+  Draw draw(29);
+  const auto truth = draw.pathOn(target, 300);
+  std::vector<Vec3> once, often;
+  for (const Vec3& p : truth) {
+    once.push_back(p + draw.normal(kTrustNoise));
+    often.insert(often.end(), 4, once.back());
+  }
+  RegistrationOptions options;
+  options.noise = kTrustNoise;
+  const Pose start = draw.off(truth, 3, 1e-3);
+  Progress progress;
+  const Registration one = registerPath(target, once, start, options, progress);
+  options.place = 1e-9;
+  const Registration four = registerPath(target, often, start, options, progress);
+  EXPECT_NEAR(four.together, 4 * one.together, 1e-9 * four.together);
+  EXPECT_TRUE(four.covariance.isApprox(one.covariance, 1e-6));
+}
+
 // T-A30
 TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
   const SurfaceTarget target(test::lumpy(), 0, true);
@@ -168,6 +251,38 @@ TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
   options.force.pop_back();
   EXPECT_THROW(registerPath(target, path, Pose::Identity(), options, progress),
                std::invalid_argument);
+}
+
+// One half is higher where the probe presses more, as if it gave way by more; what was
+// pressed in there is nothing to the place that is found after it.
+TEST(YieldingFit, ForgetsHowFarAnotherPlaceGaveWay) {
+  const double compliance = 4e-4; // [m/N]
+  const auto force = [](const Vec3& p) { return 1 + 0.5 * std::sin(300 * p.z()); };
+  TriangleMesh mesh = twofold();
+  for (Vec3& p : mesh.positions)
+    if (p.x() < 0)
+      p += (0.15 * compliance * force(p) + 1.5e-4 * std::cos(500 * p.z())) * p.normalized();
+  const SurfaceTarget target(std::move(mesh), 0, true);
+  Draw draw(28);
+  std::vector<Vec3> truth, path;
+  RegistrationOptions options;
+  options.noise = kTrustNoise;
+  options.rivals = true;
+  options.around.turn = std::numbers::pi;
+  for (const Vec3& p : draw.pathOn(target, 900)) {
+    if (p.x() < 4e-3) continue;
+    const std::int32_t face = target.tree().closestPoint(p).surface.face;
+    truth.push_back(p);
+    options.force.push_back(force(p));
+    path.push_back(p - compliance * force(p) * faceNormal(target.mesh(), index(face)) +
+                   draw.normal(kTrustNoise));
+  }
+  ASSERT_GT(path.size(), 300U);
+  const Pose half(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitZ()));
+  Progress progress;
+  const Registration found = registerPath(target, path, half, options, progress);
+  EXPECT_LT(missOf(found.mesh_from_path, truth), 0.2e-3);
+  EXPECT_NEAR(found.compliance, compliance, 0.1 * compliance);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "acquisition/registration/closest_point_loop.h"
 #include "acquisition/registration/first_guess.h"
 #include "acquisition/registration/joint_fit.h"
+#include "acquisition/registration/scan_options.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
@@ -122,12 +123,6 @@ Method parseMethod(const std::string& word) {
   throw Error("'" + word + "' is none of distance, loop, literal");
 }
 
-double medianSigma(const std::vector<PathSample>& path) {
-  std::vector<double> sigmas;
-  for (const PathSample& sample : path) sigmas.push_back(sample.sigma);
-  return percentiles(sigmas).p50;
-}
-
 Registration byLoop(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,
                     bool literal, Console& console, const std::string& file) {
   LoopOptions options;
@@ -150,12 +145,19 @@ Registration byLoop(const SurfaceTarget& target, const std::vector<Vec3>& points
 }
 
 void addJoint(const JointFit& joint, Report& report) {
-  const double tip = std::sqrt(joint.covariance.block<3, 3>(6, 6).trace() / 3),
-               clock = std::sqrt(joint.covariance(9, 9));
-  report.set("tip", Json::object().set("added", vectorJson(joint.tip)).set("deviation", tip),
-             "moved by " + formatLength(joint.tip.norm()) + ", each axis to " + formatLength(tip));
-  report.set("clock", Json::object().set("added", joint.clock).set("deviation", clock),
-             rounded(1e3 * joint.clock) + " ms, to " + rounded(1e3 * clock) + " ms");
+  Json tip = Json::object().set("added", vectorJson(joint.tip)),
+       clock = Json::object().set("added", joint.clock);
+  std::string tip_words = "moved by " + formatLength(joint.tip.norm()),
+              clock_words = rounded(1e3 * joint.clock) + " ms";
+  if (joint.tip_deviation) {
+    tip.set("deviation", *joint.tip_deviation);
+    tip_words += ", each axis to " + formatLength(*joint.tip_deviation);
+  }
+  if (joint.clock_deviation) {
+    clock.set("deviation", *joint.clock_deviation);
+    clock_words += ", to " + rounded(1e3 * *joint.clock_deviation) + " ms";
+  }
+  report.set("tip", tip, tip_words).set("clock", clock, clock_words);
   Json list = Json::array();
   std::string words;
   for (const std::string& each : joint.frozen) {
@@ -267,27 +269,22 @@ int runRegister(RegisterOptions options, Console& console) {
       options.truth.empty() ? std::nullopt
                             : std::optional(readPoseAt(options.truth, "mesh_from_camera"));
   std::vector<Vec3> points;
-  RegistrationOptions fitting;
-  for (const PathSample& sample : path) {
-    points.push_back(sample.position);
-    if (options.compliance) fitting.pressed.push_back(*options.compliance * sample.force);
-    if (!options.compliance) fitting.force.push_back(sample.force);
-  }
-  // Without a force nothing is known of what yields.
-  if (std::all_of(fitting.force.begin(), fitting.force.end(), [](double f) { return f == 0; }))
+  for (const PathSample& sample : path) points.push_back(sample.position);
+  RegistrationOptions fitting = optionsFor(path);
+  if (options.compliance) {
     fitting.force.clear();
+    for (const PathSample& sample : path)
+      fitting.pressed.push_back(*options.compliance * sample.force);
+  }
   const Pose start = options.align             ? poseOf(*options.align)
                      : options.initial.empty() ? middleOnMiddle(mesh, points)
                                                : readPose(options.initial);
-  if (!options.noise) options.noise = medianSigma(path);
+  if (!options.noise) options.noise = fitting.noise;
   fitting.noise = *options.noise;
-  fitting.place = scaleOf(points, Pose::Identity()).radius / 200;
   fitting.search = fitting.rivals = !options.no_search;
-  if (options.initial.empty() && !options.align) {
-    fitting.around = {std::numbers::pi, bounds(mesh).sizes().norm() / 2, 12, 8000};
-  }
   const SurfaceTarget target(std::move(mesh), options.tip_radius,
                              !fitting.force.empty() || options.compliance.value_or(0) > 0);
+  if (options.initial.empty() && !options.align) fitting.around = anywhereOn(target);
 
   const auto begin = std::chrono::steady_clock::now();
   Registration found = options.method == Method::distance
@@ -297,6 +294,7 @@ int runRegister(RegisterOptions options, Console& console) {
   std::optional<JointFit> joint;
   if (options.refine) {
     JointOptions joining;
+    joining.noise = *options.noise;
     joining.compliance = options.compliance.value_or(found.compliance);
     joint = refine(target, joining, path, found);
   }

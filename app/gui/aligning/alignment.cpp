@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "acquisition/registration/first_guess.h"
-#include "core/percentiles.h"
+#include "acquisition/registration/scan_options.h"
 #include "geometry/mesh/mesh_report.h"
 
 namespace patina {
@@ -113,11 +113,6 @@ void Alignment::setPath(std::vector<PathSample> path) {
   begin();
 }
 
-bool Alignment::hasForces() const {
-  return std::any_of(path_.begin(), path_.end(),
-                     [](const PathSample& sample) { return sample.force != 0; });
-}
-
 void Alignment::begin() {
   steps_.clear();
   at_ = 0;
@@ -156,19 +151,8 @@ bool Alignment::redo() {
 }
 
 RegistrationOptions fitOptions(const Alignment& alignment) {
-  constexpr double kPlaces = 1. / 200; // samples this near are one place, of the path's radius
-  RegistrationOptions options;
-  std::vector<Vec3> points;
-  std::vector<double> sigmas;
-  for (const PathSample& sample : alignment.path()) {
-    points.push_back(sample.position);
-    sigmas.push_back(sample.sigma);
-    if (alignment.hasForces()) options.force.push_back(sample.force);
-  }
-  options.noise = percentiles(sigmas).p50;
-  options.place = kPlaces * scaleOf(points, Pose::Identity()).radius;
+  RegistrationOptions options = optionsFor(alignment.path());
   options.search = false; // the hand has said where
-  options.rivals = true;
   return options;
 }
 

@@ -42,7 +42,6 @@ class Alignment {
   // mesh is made with the first path.
   void setMesh(std::shared_ptr<const TriangleMesh> mesh);
   void setPath(std::vector<PathSample> path);
-  bool hasForces() const; // of a probe that pressed
   bool isReady() const { return target_ != nullptr && !path_.empty(); }
 
   const std::vector<PathSample>& path() const { return path_; }

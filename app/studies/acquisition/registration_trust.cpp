@@ -3,10 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "acquisition/registration/first_guess.h"
-#include "acquisition/registration/register_path.h"
+#include "acquisition/registration/scan_options.h"
 #include "app/studies/acquisition/registration_cases.h"
 #include "app/studies/query_timing.h"
 #include "core/percentiles.h"
@@ -43,17 +42,9 @@ TrustTrial trustTrial(const SurfaceTarget& target, double seconds, unsigned seed
                       Progress& progress) {
   const ScannedCase scan = scanCase(target.mesh(), seconds, seed, progress);
   std::vector<Vec3> points;
-  std::vector<double> sigmas;
-  RegistrationOptions options;
-  for (const PathSample& sample : scan.path) {
-    points.push_back(sample.position);
-    sigmas.push_back(sample.sigma);
-    options.force.push_back(sample.force);
-  }
-  options.noise = percentiles(sigmas).p50;
-  options.place = scaleOf(points, Pose::Identity()).radius / 200;
-  options.around = {std::numbers::pi, target.extent() / 2, 12, 8000};
-  options.rivals = true;
+  for (const PathSample& sample : scan.path) points.push_back(sample.position);
+  RegistrationOptions options = optionsFor(scan.path);
+  options.around = anywhereOn(target);
   TrustTrial trial;
   const double begin = threadSeconds();
   const Registration found =

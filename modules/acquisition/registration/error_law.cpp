@@ -12,11 +12,11 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kBlocks = 128; // points are averaged down to about so many
-// Deviations of what neighbours have alike by chance: less than that is none, and costs nothing.
-constexpr double kAlike = 3;
+constexpr double kFewest = 16;       // points: fewer tell nothing of how they go together
 
 struct Blocks {
-  double size = 1; // points in one
+  double size = 1;   // points in one
+  double within = 0; // mean square of points' misses off their block's [m^2]
   Eigen::MatrixXd gradients;
   Eigen::VectorXd misses;
 };
@@ -30,7 +30,7 @@ Blocks blocksOf(const std::vector<Vec3>& points, const PathFit& fit,
     if (fit.weights[i] > 0) counting.push_back(i);
   const std::size_t size = counting.size() / kBlocks + 1;
   const auto count = static_cast<Eigen::Index>((counting.size() + size - 1) / size);
-  Blocks blocks{static_cast<double>(size), Eigen::MatrixXd::Zero(count, force.empty() ? 6 : 7),
+  Blocks blocks{static_cast<double>(size), 0, Eigen::MatrixXd::Zero(count, force.empty() ? 6 : 7),
                 Eigen::VectorXd::Zero(count)};
   for (std::size_t k = 0; k < counting.size(); ++k) {
     const std::size_t i = counting[k], first = k / size * size;
@@ -40,6 +40,11 @@ Blocks blocksOf(const std::vector<Vec3>& points, const PathFit& fit,
         share * scale.gradient(fit.mesh_from_path * points[i], fit.misses[i].direction).transpose();
     if (!force.empty()) blocks.gradients(row, 6) += share * force[i] / usual;
     blocks.misses[row] += share * fit.misses[i].distance;
+  }
+  for (std::size_t k = 0; k < counting.size(); ++k) {
+    const double off =
+        fit.misses[counting[k]].distance - blocks.misses[static_cast<Eigen::Index>(k / size)];
+    blocks.within += off * off / static_cast<double>(counting.size());
   }
   return blocks;
 }
@@ -53,7 +58,7 @@ double likeness(double lag, double reach) {
 // One law that is tried: the part `alone` of a block's variance is its own.
 struct TriedLaw {
   double reach = 1, alone = 1; // [blocks], of 1
-  double weight = 0;           // logarithm of the restricted likelihood
+  double weight = 0;           // logarithm of the restricted likelihood, and what it was beforehand
   double variance = 0;         // of a block's miss [m^2]
   Eigen::MatrixXd scatter = {};
 };
@@ -118,52 +123,52 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
   const Blocks blocks = blocksOf(points, fit, force);
   ErrorLaw law;
   law.normal = blocks.gradients.transpose() * blocks.gradients;
-  const auto count = static_cast<double>(
-      std::count_if(fit.weights.begin(), fit.weights.end(), [](double w) { return w > 0; }));
+  const auto count = static_cast<double>(blocks.misses.size());
   const Eigen::SelfAdjointEigenSolver<Mat6> eigen(law.normal.topLeftCorner<6, 6>());
   Eigen::Index seen = 0;
   while (seen < 6 && eigen.eigenvalues()[5 - seen] > kBlind * eigen.eigenvalues()[5]) ++seen;
-  const double alike = blocks.misses.size() < 2
-                           ? 0
-                           : blocks.misses.head(blocks.misses.size() - 1)
-                                     .dot(blocks.misses.tail(blocks.misses.size() - 1)) /
-                                 std::max(blocks.misses.squaredNorm(), 1e-300);
-  if (static_cast<double>(blocks.misses.size()) < 16 ||
-      alike < kAlike / std::sqrt(static_cast<double>(blocks.misses.size()))) {
+  if (count < kFewest) {
     law.deviation = std::max(
         noise, fit.rms * std::sqrt(count / std::max(count - static_cast<double>(seen), 1.0)));
-    law.scatter = law.deviation * law.deviation / blocks.size * law.normal;
-    return withPrior(std::move(law), blocks.size, usualForce(force));
+    law.scatter = law.deviation * law.deviation * law.normal;
+    return withPrior(std::move(law), 1, usualForce(force));
   }
   Eigen::MatrixXd design(blocks.gradients.rows(), seen + (force.empty() ? 0 : 1));
   design.leftCols(seen) = blocks.gradients.leftCols<6>() * eigen.eigenvectors().rightCols(seen);
   if (!force.empty()) design.col(seen) = blocks.gradients.col(6);
   std::vector<TriedLaw> all;
   for (const double alone : {1e-3, 0.03, 0.2, 0.6})
-    for (double reach = 1; reach < 0.3 * static_cast<double>(blocks.misses.size()); reach *= 2) {
-      all.push_back({reach, alone});
-      judgeLaw(all.back(), blocks, design);
-    }
+    for (double reach = 1; reach < 0.3 * count; reach *= 2) all.push_back({reach, alone});
+  // What the fit has taken out of the misses would let long reaches pass for nothing in common:
+  // beforehand they weigh less, and nothing in common as much as there are others.
+  const auto others = static_cast<double>(all.size());
+  all.push_back({1, 1});
+  for (TriedLaw& tried : all) {
+    judgeLaw(tried, blocks, design);
+    tried.weight += std::log(tried.alone < 1 ? 1 / tried.reach : others);
+  }
   const double most =
       std::max_element(all.begin(), all.end(), [](const TriedLaw& a, const TriedLaw& b) {
         return a.weight < b.weight;
       })->weight;
-  double sum = 0, variance = 0, together = 0;
+  // Of a block: its variance, and that times the blocks that are worth one.
+  double sum = 0, variance = 0, shared = 0;
   Eigen::MatrixXd scatter = 0 * law.normal;
   for (const TriedLaw& tried : all) {
-    const double weight = std::exp(tried.weight - most), shared = 1 - tried.alone;
+    const double weight = std::exp(tried.weight - most);
     sum += weight;
-    variance += weight * tried.variance * (shared + tried.alone * blocks.size);
+    variance += weight * tried.variance;
     // Of Matern's law the sum over all lags is 4 / sqrt 3 of its reach.
-    together += weight * tried.variance * blocks.size *
-                (tried.alone + shared * std::max(1., 4 / std::sqrt(3.) * tried.reach));
+    shared += weight * tried.variance *
+              (tried.alone + (1 - tried.alone) * 4 / std::sqrt(3.) * tried.reach);
     scatter += weight * tried.scatter;
   }
-  variance /= sum;
-  law.together = std::max(1., together / sum / variance);
-  const double stated = std::max(1., noise * noise / variance);
-  law.deviation = std::sqrt(stated * variance);
-  law.scatter = stated / sum * scatter;
+  // What points in a block go together by is in how much their mean varies.
+  const double square = variance / sum + blocks.within;
+  const double together = blocks.size * shared / sum / square;
+  law.together = std::max(1., together);
+  law.deviation = std::max(noise, std::sqrt(square));
+  law.scatter = law.deviation * law.deviation / square * law.together / together / sum * scatter;
   return withPrior(std::move(law), blocks.size, usualForce(force));
 }
 

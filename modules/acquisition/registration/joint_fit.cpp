@@ -12,10 +12,10 @@
 namespace patina {
 namespace {
 
-constexpr int kJointWindow = 20;  // samples to either side, of a parabola
+constexpr std::size_t kJointWindow = 20, kJointLeast = 10; // samples to either side of a parabola
 constexpr double kJointPause = 5; // median steps of time: beyond it another stretch begins
 constexpr double kJointFar = 10;  // times the noise: as far as a direction must be told
-constexpr int kJointMostSteps = 30;
+constexpr int kJointMostSteps = 30, kJointRecounts = 5;
 constexpr double kJointSettled = 1e-3; // of the deviation: less is no step
 constexpr double kJointClear = 10; // times what the speed's own error says of the clock: it is told
 constexpr double kJointNamed = 0.15; // of a frozen direction's square: less is not named
@@ -36,11 +36,13 @@ std::vector<Course> coursesOf(const std::vector<PathSample>& path) {
   for (std::size_t i = 1; i <= path.size(); ++i) {
     const double step = i < path.size() ? path[i].t - path[i - 1].t : -1;
     if (step > 0 && step <= pause) continue;
-    for (std::size_t k = begin; k < i; ++k) {
-      // Of as many samples towards either end, that the middle's error does not lean.
-      const std::size_t low = k - std::min<std::size_t>(k - begin, kJointWindow),
-                        high = std::min(k + kJointWindow, i - 1);
-      if (high - low < 4) continue;
+    const std::size_t least = std::min(kJointLeast, (i - begin - 1) / 2);
+    for (std::size_t k = begin; k < i && least > 1; ++k) {
+      // Of as many samples towards either end, that the middle's error does not lean; what is too
+      // near an end for that goes as the nearest parabola does.
+      const std::size_t middle = std::clamp(k, begin + least, i - 1 - least);
+      const std::size_t half = std::min({middle - begin, i - 1 - middle, kJointWindow});
+      const std::size_t low = middle - half, high = middle + half;
       Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
       const double scale = path[high].t - path[low].t;
       for (std::size_t j = low; j <= high; ++j) {
@@ -182,6 +184,8 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
   Values at{mesh_from_path};
   std::vector<Miss> misses(path.size());
   double sum = joint.squares(at, misses), damping = 0;
+  // A tip that is off would pass for noise in which the clock is lost.
+  bool clock_waits = options.tip && options.clock;
   while (fit.iterations < kJointMostSteps && !fit.converged) {
     ++fit.iterations;
     std::vector<Vec3> places;
@@ -193,6 +197,7 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
     for (std::size_t i = 0; i < path.size(); ++i) {
       if (!counts[i]) continue;
       JointVector g = joint.gradient(i, at, misses[i], scale);
+      if (clock_waits) g[9] = 0;
       for (const JointVector& each : shut) g -= each * each.dot(g);
       const double r = misses[i].distance + options.compliance * path[i].force;
       normal += g * g.transpose();
@@ -236,8 +241,13 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
       }
       damping = std::max(1e-4, damping * 10);
     }
+    if (clock_waits && fit.converged) {
+      clock_waits = fit.converged = false;
+      continue;
+    }
     if (!fit.converged && fit.iterations < kJointMostSteps) continue;
     // What is left unknown, in the values' own units.
+    double tip_frozen = 0, clock_frozen = 0; // squares of what is not told
     JointVector units;
     units << Vec3::Constant(1 / scale.radius), Vec3::Ones(), Vec3::Ones(), 1 / joint.speed;
     for (int k = 0; k < kJointValues; ++k) {
@@ -247,10 +257,15 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
         fit.covariance += noise * noise * worth / eigen.eigenvalues()[k] * unit * unit.transpose();
         continue;
       }
+      tip_frozen += direction.segment<3>(6).squaredNorm();
+      clock_frozen += direction[9] * direction[9];
       double of_shut = 0; // of which nothing more is said
       for (const JointVector& each : shut) of_shut += std::pow(each.dot(direction), 2);
       if (of_shut < 0.5) fit.frozen.push_back("free to move " + directionInWords(direction));
     }
+    if (tip_frozen < 0.5)
+      fit.tip_deviation = std::sqrt(fit.covariance.block<3, 3>(6, 6).trace() / 3);
+    if (clock_frozen < 0.5) fit.clock_deviation = std::sqrt(fit.covariance(9, 9));
     fit.middle = scale.centre;
   }
   fit.mesh_from_path = at.pose;
@@ -267,23 +282,53 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
 
 JointFit refine(const SurfaceTarget& target, JointOptions options, std::vector<PathSample>& path,
                 Registration& found) {
-  options.together = found.together;
-  JointFit joint = fitJointly(target, path, found.counts, found.mesh_from_path, options);
+  options.together = 1; // what it seems with a wrong calibration is another thing
+  const Pose start = found.mesh_from_path;
+  JointFit joint;
+  std::vector<Vec3> points(path.size());
+  PathFit fit;
+  fit.weights.resize(path.size());
+  fit.misses.resize(path.size());
+  // What a wrong calibration had left out may count now, and errors go together otherwise.
+  for (int round = 0; round < kJointRecounts; ++round) {
+    joint = fitJointly(target, path, found.counts, start, options);
+    fit.mesh_from_path = joint.mesh_from_path;
+    fit.rms = joint.rms;
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      points[i] = joint.path[i].position;
+      fit.misses[i] = target.miss(joint.mesh_from_path * points[i], fit.misses[i].foot.face);
+      fit.misses[i].distance += options.compliance * path[i].force;
+      fit.weights[i] = found.counts[i] ? 1 : 0;
+      sizes.push_back(std::abs(fit.misses[i].distance));
+    }
+    const double most = reachOfCounting(sizes, leastNoise(points, options.noise));
+    std::vector<bool> counts;
+    for (const double size : sizes) counts.push_back(size <= most);
+    if (round + 1 == kJointRecounts) break;
+    const double together = errorLaw(points, fit, options.noise).together;
+    if (counts == found.counts && std::abs(std::log(together / options.together)) < 0.1) break;
+    found.counts = std::move(counts);
+    options.together = together;
+  }
   path = joint.path;
   found.mesh_from_path = joint.mesh_from_path;
   found.covariance = joint.covariance.topLeftCorner<6, 6>();
   found.middle = joint.middle;
   found.rms = joint.rms;
-  found.converged = found.converged && joint.converged;
+  found.together = options.together;
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    found.misses[i] = target.miss(found.mesh_from_path * path[i].position);
-    found.misses[i].distance += options.compliance * path[i].force;
     if (!found.counts[i]) continue;
-    sum += std::abs(found.misses[i].distance);
+    sum += std::abs(fit.misses[i].distance);
     ++count;
   }
   found.mean_distance = sum / count;
+  found.noise = std::max(joint.rms, leastNoise(points, options.noise));
+  found.converged =
+      joint.converged && isExplained(joint.rms, count / static_cast<double>(path.size()),
+                                     options.noise, leastNoise(points, options.noise));
+  found.misses = std::move(fit.misses);
   return joint;
 }
 

@@ -2,6 +2,7 @@
 // of a scan's distances a wrong calibration explains is not left to the pose.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "acquisition/registration/register_path.h"
@@ -13,6 +14,7 @@ struct JointOptions {
   bool tip = true, clock = true; // refined beside the pose
   double compliance = 0;         // how far the surface yields to a newton [m/N]
   double together = 1;           // so many samples in a row are worth one (ErrorLaw)
+  double noise = 0;              // deviation of the samples, for refine(); 0: unknown [m]
 };
 
 constexpr int kJointValues = 10;
@@ -28,6 +30,8 @@ struct JointFit {
   // clock; what is frozen adds nothing. Errors that neighbouring samples share count once.
   JointMatrix covariance = JointMatrix::Zero();
   Vec3 middle = Vec3::Zero(); // [m], in the mesh's frame
+  // One deviation, rms of the tip's axes [m], of the clock [s]; none where not all of it is told.
+  std::optional<double> tip_deviation, clock_deviation;
   // In words, each a direction that the distances do not tell: it stays where it was.
   std::vector<std::string> frozen;
   std::vector<PathSample> path; // with the corrections
@@ -45,8 +49,8 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
                     const std::vector<bool>& counts, const Pose& mesh_from_path,
                     const JointOptions& options = {});
 
-// The same from a registration of the path, which with its samples becomes what the joint fit says;
-// what counts, and how many samples are worth one, stays.
+// The same from a registration of the path, which with its samples becomes what the joint fit says:
+// what counts is chosen anew, and whether it converged is judged by the distances that are left.
 JointFit refine(const SurfaceTarget& target, JointOptions options, std::vector<PathSample>& path,
                 Registration& found);
 

@@ -12,6 +12,13 @@ constexpr double kInlier = 3;      // deviations
 constexpr double kSettled = 1e-2;  // of what the misses leave unknown of the pose: less is no step
 constexpr double kNormal = 1.4826; // of a normal error, deviation over median
 
+// Deviation of the better half.
+double spreadOf(std::vector<double> sizes) {
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return kNormal * *middle;
+}
+
 struct Working {
   const SurfaceTarget& target;
   const std::vector<Vec3>& points;
@@ -40,14 +47,11 @@ struct Working {
         std::count_if(fit.weights.begin(), fit.weights.end(), [](double w) { return w > 0; }));
   }
 
-  // Deviation of the better half.
-  double spread() const {
+  std::vector<double> sizes() const {
     std::vector<double> sizes;
     for (std::size_t i = 0; i < points.size(); ++i)
       if (points[i].allFinite()) sizes.push_back(std::abs(fit.misses[i].distance));
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return kNormal * *middle;
+    return sizes;
   }
 
   Vec6 normalEquations(const MotionScale& scale) {
@@ -148,6 +152,10 @@ MotionScale scaleOf(const std::vector<Vec3>& points, const Pose& mesh_from_path)
   return scale;
 }
 
+double reachOfCounting(std::vector<double> sizes, double noise) {
+  return kInlier * std::max(noise, spreadOf(std::move(sizes)));
+}
+
 PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,
                 const FitOptions& options) {
   Working work{target, points, options.pressed, {}};
@@ -166,7 +174,7 @@ PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, co
   if (options.noise > 0) {
     // What is far off for all others counts little; how far that is follows from the better half.
     work.run(left / 2, 1e-2 * options.noise, [&] {
-      const double s = std::max(options.noise, 1.5 * work.spread());
+      const double s = std::max(options.noise, 1.5 * spreadOf(work.sizes()));
       countAll([&](double r) {
         const double q = s * s / (s * s + r * r);
         return q * q;
@@ -178,7 +186,7 @@ PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, co
   for (int round = 0; round < 8; ++round) {
     std::vector<double> before = fit.weights;
     if (options.noise > 0) {
-      const double most = kInlier * std::max(options.noise, work.spread());
+      const double most = reachOfCounting(work.sizes(), options.noise);
       countAll([&](double r) { return r <= most ? 1.0 : 0.0; });
       if (round > 0 && before == fit.weights) break;
     }

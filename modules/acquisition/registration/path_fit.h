@@ -54,4 +54,8 @@ struct FitOptions {
 PathFit fitPath(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,
                 const FitOptions& options = {});
 
+// How far off a point may be and count [m], by sizes of what is finite: three deviations, those of
+// `noise` or of the better half where that is more. One size or more.
+double reachOfCounting(std::vector<double> sizes, double noise);
+
 } // namespace patina

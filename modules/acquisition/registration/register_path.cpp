@@ -24,11 +24,6 @@ double shareThatCounts(const PathFit& fit) {
          static_cast<double>(fit.weights.size());
 }
 
-// A fit as close as `good` [m] lies where it should.
-bool isGood(const PathFit& fit, double good) {
-  return fit.rms <= good && shareThatCounts(fit) >= kEnough;
-}
-
 // For a comparison: beyond `far` a miss is as bad as any other.
 double cappedCost(const PathFit& fit, double far) {
   double sum = 0;
@@ -81,12 +76,22 @@ Registration registerPlaces(const SurfaceTarget& target, const std::vector<Vec3>
     if (!pressed.empty()) misses.back().distance += pressed[i];
     counts.push_back(found.counts[place]);
   }
+  found.together *= // counted in places
+      static_cast<double>(points.size()) / static_cast<double>(places.points.size());
   found.misses = std::move(misses);
   found.counts = std::move(counts);
   return found;
 }
 
 } // namespace
+
+double leastNoise(const std::vector<Vec3>& points, double noise) {
+  return std::max(noise, 1e-4 * scaleOf(points, Pose::Identity()).radius);
+}
+
+bool isExplained(double rms, double share, double noise, double least) {
+  return share >= kEnough && (noise <= 0 || rms <= kExpected * least);
+}
 
 Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& points,
                           const Pose& start, const RegistrationOptions& options,
@@ -96,9 +101,11 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   if (!options.force.empty() && (options.force.size() != points.size() || !options.pressed.empty()))
     throw std::invalid_argument("registerPath: a force for each point and no depth, or none");
   if (options.place > 0) return registerPlaces(target, points, start, options, progress);
-  const double extent = scaleOf(points, start).radius;
-  const double floor = 1e-4 * extent;
-  const double good = kExpected * std::max(options.noise, floor);
+  const double least = leastNoise(points, options.noise);
+  // Whether it lies where it should; without a noise only a fit without any does.
+  const auto isGood = [&](const PathFit& fit) {
+    return isExplained(fit.rms, shareThatCounts(fit), least, least);
+  };
   FitOptions fitting;
   fitting.pressed = options.pressed;
   Registration result;
@@ -112,12 +119,12 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   };
   progress.report(0, "fit");
   PathFit best = fitFrom(start, points); // where nothing is amiss, all that it takes
-  fitting.noise = options.robust ? std::max(options.noise, floor) : 0;
-  if (options.robust && !isGood(best, good)) best = fitFrom(start, points);
+  fitting.noise = options.robust ? least : 0;
+  if (options.robust && !isGood(best)) best = fitFrom(start, points);
   const bool anywhere = !(options.around.turn < std::numbers::pi);
-  if (options.search && !isGood(best, good) && !(options.rivals && anywhere)) {
+  if (options.search && !isGood(best) && !(options.rivals && anywhere)) {
     progress.report(0.2, "search");
-    const double far = 4 * std::max(options.noise, 10 * floor);
+    const double far = 4 * std::max(options.noise, 10 * leastNoise(points, 0));
     const std::vector<Pose> guesses = coarsePoses(target, points, start, options.around, progress);
     // Which of them is the place shows on a part of the points.
     std::vector<Vec3> few;
@@ -138,23 +145,21 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     std::swap(fitting.pressed, few_pressed);
     best = fitFrom(nearest.mesh_from_path, points);
   }
-  const auto noiseOf = [&](const PathFit& fit) {
-    return std::max({fit.rms, options.noise, floor});
-  };
+  const auto noiseOf = [&](const PathFit& fit) { return std::max(fit.rms, least); };
   ErrorLaw law;
   FreeMotions free;
+  FitOptions yielding = fitting; // with the depths that were found for `best`
   const auto judge = [&] {
     law = errorLaw(points, best, noiseOf(best), options.force);
     if (!options.force.empty()) {
-      YieldingFit yielding =
-          fitYielding(target, points, options.force, best, law.together, fitting);
-      best = std::move(yielding.fit);
-      result.compliance = yielding.compliance;
+      YieldingFit found = fitYielding(target, points, options.force, best, law.together, fitting);
+      best = std::move(found.fit);
+      result.compliance = found.compliance;
       law = errorLaw(points, best, noiseOf(best), options.force);
-      fitting.pressed.clear();
-      for (const double f : options.force) fitting.pressed.push_back(result.compliance * f);
+      yielding.pressed.clear();
+      for (const double f : options.force) yielding.pressed.push_back(result.compliance * f);
     }
-    free = freeMotions(target, points, best, noiseOf(best), law.together, fitting.pressed);
+    free = freeMotions(target, points, best, noiseOf(best), law.together, yielding.pressed);
   };
   judge();
   if (options.rivals) {
@@ -162,9 +167,9 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     // A first guess decides among places that cannot be told apart.
     const double better = anywhere ? 0 : kToldApart;
     std::vector<Pose> places =
-        placesAllOver(target, points, best.mesh_from_path, fitting, progress);
+        placesAllOver(target, points, best.mesh_from_path, yielding, progress);
     for (int round = 0;; ++round) {
-      result.rivals = rivalsOf(target, points, places, best, fitting, law, free, progress);
+      result.rivals = rivalsOf(target, points, places, best, yielding, law, free, progress);
       result.starts += static_cast<int>(places.size());
       if (round == 3 || result.rivals->empty() || result.rivals->front().better <= better) break;
       places.push_back(best.mesh_from_path);
@@ -192,8 +197,8 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   result.middle = scale.centre;
   result.last_turn = best.last_turn;
   result.last_shift = best.last_shift;
-  result.converged = best.converged &&
-                     (options.noise <= 0 ? shareThatCounts(best) >= kEnough : isGood(best, good));
+  result.converged =
+      best.converged && isExplained(best.rms, shareThatCounts(best), options.noise, least);
   result.misses = std::move(best.misses);
   return result;
 }

@@ -52,6 +52,11 @@ inline bool isDoubtful(const Registration& found) {
   return !found.converged || (found.rivals && !found.rivals->empty());
 }
 
+// What a place is judged by. The least noise that is taken for one, of points as they lie [m]; and
+// whether most points count and are as close as the noise lets expect, where that is told.
+double leastNoise(const std::vector<Vec3>& points, double noise);
+bool isExplained(double rms, double share, double noise, double least);
+
 // Throws std::invalid_argument: no finite point, `pressed` of another number; Cancelled.
 Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& points,
                           const Pose& start, const RegistrationOptions& options,
