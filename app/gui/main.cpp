@@ -15,10 +15,10 @@
 #include <QSurfaceFormat>
 #include <QTimer>
 
-#include "app/gui/loading/up_choice.h"
 #include "app/gui/loading/first_picture.h"
+#include "app/gui/loading/up_choice.h"
 #include "app/gui/window/main_window.h"
-#include "app/gui/window/theme.h"
+#include "app/gui/window/system_theme.h"
 #include "app/gui/window/tour.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -110,7 +110,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
   QApplication application(argc, argv);
   QApplication::setApplicationName(QStringLiteral("patina"));
   QApplication::setOrganizationName(QStringLiteral("patina"));
-  patina::applyStyle(application, patina::systemTheme());
+  const patina::SystemTheme theme(application);
   patina::MainWindow window;
   patina::DocumentController& documents = window.controllers().documents;
   patina::FeelController& feel = window.controllers().feel;

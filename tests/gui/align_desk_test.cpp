@@ -258,7 +258,7 @@ TEST_F(AlignDeskTest, SixValuesAreShiftsAndTurnsAboutTheFixedAxes) {
 TEST_F(AlignDeskTest, ThreePointsAndAFitPutThePathWhereItBelongs) {
   ASSERT_GT(farthest(), 0.005);
   clickOn("align_pick");
-  ASSERT_TRUE(find<QLabel>("align_hint")->isVisible());
+  ASSERT_TRUE(waitUntil([&] { return find<QLabel>("align_hint")->isVisible(); }, 3000));
   // Three that are far apart, and those of the path that are looked at.
   const std::vector<Vec3>& looked = desk().alignment().points();
   const auto& top = QStringLiteral("align_top");
@@ -295,6 +295,72 @@ TEST_F(AlignDeskTest, ThreePointsAndAFitPutThePathWhereItBelongs) {
                               quoted("path.csv") + " -o " + quoted("again.csv") + " --initial " +
                               quoted("kept.txt") + " > /dev/null 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
+}
+
+// The words of "rms 1.23 mm" and the like [m].
+double lengthAfter(const QString& words, const QString& what) {
+  const QStringList parts = words.mid(words.indexOf(what) + what.size()).split(' ');
+  return parts[1].toDouble() * (parts[2].startsWith(QStringLiteral("µm")) ? 1e-6 : 1e-3);
+}
+
+TEST_F(AlignDeskTest, AFitShowsItsResidualsAsLinesAndOverTheMesh) {
+  // Every sample is off by what is known: 0.4 mm outwards and inwards in turn.
+  std::vector<PathSample> path;
+  const Vec3 axes(0.04, 0.028, 0.018);
+  for (std::size_t i = 0; i < upper_.size(); ++i) {
+    PathSample sample;
+    sample.t = 0.01 * static_cast<double>(i);
+    const Vec3 out = upper_[i].cwiseQuotient(axes.cwiseProduct(axes)).normalized();
+    sample.position = upper_[i] + (i % 2 == 0 ? 4e-4 : -4e-4) * out;
+    sample.sigma = 4e-4;
+    path.push_back(sample);
+  }
+  writePath(folder_ / "noisy.csv", path);
+  answerWithPath(folder_ / "noisy.csv");
+  clickOn("align_open");
+  wait(800);
+  clickOn("align_fit");
+  ASSERT_TRUE(waitUntil([&] { return !desk().work() && desk().found(); }, 60000));
+  const Registration& found = *desk().found();
+  EXPECT_NEAR(found.rms, 4e-4, 0.6e-4);
+  EXPECT_NEAR(lengthAfter(find<QLabel>("align_found")->text(), QStringLiteral("rms")), found.rms,
+              1e-6);
+  const auto picture = [&](const char* name) {
+    wait(600);
+    keepPicture(QString::fromUtf8(name));
+    return cell("align_top").grabFramebuffer().convertToFormat(QImage::Format_RGB32);
+  };
+  const auto changed = [](const QImage& a, const QImage& b) { // share of the pixels
+    int count = 0;
+    for (int y = 0; y < a.height(); ++y)
+      for (int x = 0; x < a.width(); ++x) count += a.pixel(x, y) != b.pixel(x, y);
+    return static_cast<double>(count) / (a.width() * a.height());
+  };
+  const auto scrollTo = [&](const char* name) {
+    QScrollArea* area = nullptr;
+    for (QScrollArea* each : window_->findChildren<QScrollArea*>())
+      if (each->isAncestorOf(find<QCheckBox>(name))) area = each;
+    ASSERT_NE(area, nullptr);
+    area->ensureWidgetVisible(find<QCheckBox>(name));
+    wait(100);
+  };
+  const QImage plain = picture("align_plain");
+  scrollTo("align_lines");
+  clickOn("align_lines");
+  // The longest fills 6 % of the mesh: 0.4 mm is drawn 1, 2, 5, 10 ... times as long.
+  EXPECT_TRUE(find<QCheckBox>("align_lines")->text().contains(QStringLiteral("×")));
+  const QImage lines = picture("align_lines");
+  EXPECT_GT(changed(plain, lines), 0.01);
+  clickOn("align_lines");
+  EXPECT_LT(changed(plain, picture("align_plain_again")), 0.001);
+  scrollTo("align_map");
+  clickOn("align_map");
+  const QImage map = picture("align_map");
+  EXPECT_GT(changed(plain, map), 0.1);
+  // Moved by hand, the old map goes at once; the new one is of where it lies now.
+  type('z', kControl);
+  EXPECT_FALSE(desk().found());
+  EXPECT_GT(changed(map, picture("align_map_by_hand")), 0.05);
 }
 
 TEST_F(AlignDeskTest, EscapeEndsThePickingAndABadFileLeavesThePath) {

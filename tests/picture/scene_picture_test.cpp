@@ -1,7 +1,11 @@
+#include <cmath>
 #include <filesystem>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include <vtkCamera.h>
 
 #include "core/error.h"
 #include "field/store/surface_field.h"
@@ -92,6 +96,43 @@ TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
   EXPECT_GT(pixels.share(isCool, 0.88, 1, 0.2, 0.8), 0.01);
   EXPECT_GT(pixels.share([](const Vec3& c) { return c.maxCoeff() < 110; }, 0.88, 1, 0.2, 0.8),
             0.003);
+}
+
+TEST_F(ScenePicture, TheScaleBarIsARoundLengthWhateverTheZoomAndGoesWithWhatIsOpen) {
+  // The longest dark run in the rows of the bar, right of the axes [pixels].
+  const auto run = [](const Pixels& pixels) {
+    int longest = 0;
+    for (int y = 6; y < 18; ++y)
+      for (int x = int(0.13 * pixels.width()), now = 0; x < pixels.width(); ++x) {
+        now = pixels.at(x, y).maxCoeff() < 150 ? now + 1 : 0;
+        longest = std::max(longest, now);
+      }
+    return longest;
+  };
+  std::vector<double> lengths;
+  for (const double size : {0.2, 1.0, 37.0}) {
+    TriangleMesh mesh = torus(kMajor, kMinor, 60, 30);
+    for (Vec3& p : mesh.positions) p *= size;
+    view_.setField(nullptr);
+    view_.setMesh(std::make_shared<TriangleMesh>(mesh));
+    const int bar = run(drawn("scale", {Layer::scale}, ViewPreset::plus_z));
+    vtkCamera& camera = *view_.renderer().GetActiveCamera();
+    const double pixel =
+        2 * camera.GetDistance() * std::tan(camera.GetViewAngle() * M_PI / 360) / 720;
+    ASSERT_GT(bar, 40) << size;
+    const double length = bar * pixel, power = std::pow(10, std::floor(std::log10(0.9 * length)));
+    const double round = length < 1.5 * power ? power
+                         : length < 3 * power ? 2 * power
+                         : length < 7 * power ? 5 * power
+                                              : 10 * power;
+    EXPECT_NEAR(length, round, 3 * pixel) << size;
+    lengths.push_back(round);
+    EXPECT_LT(run(drawn("no_scale", {Layer::extent}, ViewPreset::plus_z)), 5);
+  }
+  EXPECT_LT(lengths[0], lengths[1]);
+  EXPECT_LT(lengths[1], lengths[2]);
+  view_.setMesh(nullptr);
+  EXPECT_LT(run(drawn("nothing_open", {Layer::scale}, ViewPreset::plus_z)), 5);
 }
 
 TEST_F(ScenePicture, TheBandIsAShellInItsOwnColourWithALegend) { // K12, K13

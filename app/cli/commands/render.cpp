@@ -121,7 +121,8 @@ int runRender(const RenderOptions& options, Console& console) {
     throw Error("--range: no layer of those shown has a range: show relief, stiffness ...");
   requireDisplay();
   const bool only_mesh = std::all_of(options.layers.begin(), options.layers.end(), [](Layer layer) {
-    return layer == Layer::mesh || layer == Layer::wireframe || paintOf(layer);
+    return layer == Layer::mesh || layer == Layer::wireframe || layer == Layer::scale ||
+           paintOf(layer);
   });
   SceneView view;
   if (quantity) view.lockPaintRange(*quantity, options.range);
@@ -183,7 +184,8 @@ Command renderCommand() {
           "acts; the layer stability colours the surface by K*(x)/K for the scene's device "
           "(device.* values; without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below "
           "1 the loop would buzz when pressed with 1 N, violet where the tip slips off, dark where "
-          "the force jumps, grey where nothing is touched; colours end at 0.25 and 4. The layers "
+          "the force jumps, grey where nothing is touched; colours end at 0.25 and 4. The layer "
+          "scale is a bar of a round length, of what is as far away as the middle. The layers "
           "from color on show what was painted in a workspace: color with "
           "relief shaded as relief, the others against a scale, one at a time, material also on "
           "the slice; objects without it stay as they are.\n"

@@ -1,21 +1,28 @@
 #include "app/gui/aligning/align_desk.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <QGridLayout>
 #include <QShortcut>
 #include <QVBoxLayout>
 
+#include "acquisition/registration/error_map.h"
 #include "acquisition/registration/first_guess.h"
 #include "acquisition/registration/rigid_fit.h"
 #include "app/gui/aligning/fit_words.h"
 #include "app/gui/scanning/scan_path.h"
+#include "visualization/layers/scale_layer.h"
 
 namespace patina {
 namespace {
 
-constexpr int kSettle = 350;     // after its last change a value is a step [ms]
-constexpr double kSpread = 0.01; // of the mesh, that three points are apart at least
+constexpr double kFinest = 1e-3;  // of the colours' scale [mm]
+constexpr int kSettle = 350;      // after its last change a value is a step [ms]
+constexpr double kLongest = 0.06; // of the mesh, that lines are stretched to
+constexpr double kNoLine = 1e-9;  // [m]: shorter is rounding
+constexpr double kSpread = 0.01;  // of the mesh, that three points are apart at least
 
 } // namespace
 
@@ -42,6 +49,8 @@ AlignDesk::AlignDesk(QWidget& window)
   connect(panel_, &AlignPanel::edited, this, [this](const PoseValues& values) {
     if (!alignment_.isReady() || work_) return;
     alignment_.setPose(poseOf(values));
+    found_.reset();
+    forgetMap();
     stale_ = true;
     settle_.start(kSettle);
   });
@@ -55,6 +64,11 @@ AlignDesk::AlignDesk(QWidget& window)
     if (!work_) return;
     work_->fraction = fraction;
     emit changed();
+  });
+  connect(panel_, &AlignPanel::shownChanged, this, [this] {
+    if (!alignment_.isReady()) return;
+    draw();
+    drawMap();
   });
   begin();
 }
@@ -146,15 +160,21 @@ void AlignDesk::move(const Pose& pose) {
   if (!alignment_.isReady() || work_) return;
   alignment_.setPose(pose);
   settle_.stop();
+  found_.reset();
+  forgetMap();
   draw();
 }
 
 void AlignDesk::settle() {
+  settleBy(std::nullopt);
+}
+
+void AlignDesk::settleBy(std::optional<Registration> fit) {
   if (!alignment_.isReady() || work_) return;
   settle_.stop();
-  found_.reset();
   alignment_.commit();
-  panel_->setFit({});
+  found_ = std::move(fit);
+  panel_->setFit(found_ ? fitWords(*found_) : QString());
   draw();
   lookAbout();
   emit changed();
@@ -179,9 +199,25 @@ void AlignDesk::draw() {
   DrawnPath path;
   path.title = tr("distance [mm]").toStdString();
   path.through = true;
-  for (std::size_t i = 0; i < alignment_.points().size(); ++i)
-    path.samples.push_back({static_cast<double>(i), pose * alignment_.points()[i],
-                            1e3 * off.distances[i], false, false});
+  path.least_span = kFinest;
+  double longest = 0;
+  const auto add = [&](const Vec3& at, double distance, const Vec3& foot) {
+    path.samples.push_back({static_cast<double>(path.samples.size()), at, 1e3 * std::abs(distance),
+                            false, false, foot});
+    longest = std::max(longest, (at - foot).norm());
+  };
+  if (found_) { // by its own numbers
+    for (std::size_t i = 0; i < found_->misses.size(); ++i)
+      if (found_->counts[i])
+        add(pose * alignment_.path()[i].position, found_->misses[i].distance, found_->misses[i].at);
+  } else {
+    for (std::size_t i = 0; i < alignment_.points().size(); ++i)
+      add(pose * alignment_.points()[i], off.distances[i], off.feet[i]);
+  }
+  const double room = kLongest * alignment_.target()->extent();
+  const double stretch = longest > kNoLine ? std::max(1.0, roundLength(room / longest)) : 1;
+  panel_->setStretch(panel_->linesShown() ? stretch : 0);
+  path.stretch = panel_->linesShown() ? stretch : 0;
   std::vector<DrawnMark> marks;
   for (const Vec3& point : on_path_) marks.push_back({0, pose * point});
   for (const Vec3& point : on_mesh_) marks.push_back({0, point});
@@ -194,23 +230,44 @@ void AlignDesk::draw() {
   }
 }
 
+void AlignDesk::forgetMap() {
+  if (error_.empty()) return;
+  error_.clear();
+  basin_job_.silence();
+  drawMap();
+}
+
+void AlignDesk::drawMap() {
+  std::vector<float> shown;
+  if (panel_->mapShown())
+    for (const float error : error_) shown.push_back(1e3F * error);
+  for (AlignView* view : views_) view->picture().setMeshValues(shown);
+}
+
 void AlignDesk::lookAbout() {
   plot_->setBasin(std::nullopt);
+  forgetMap();
   std::vector<double> rms;
   for (const Pose& step : alignment_.steps())
     rms.push_back(residualsOf(*alignment_.target(), alignment_.points(), step).rms);
   rms.resize(alignment_.done() + 1);
   plot_->setSteps(rms);
-  basin_job_.start(
-      [this, target = alignment_.target(), points = alignment_.points(),
-       pose = alignment_.pose()](Progress& progress, const Background::Deliver& deliver) {
-        try {
-          const Basin basin = basinOf(*target, points, pose, progress);
-          deliver(true, [this, basin] { plot_->setBasin(basin); });
-        } catch (const Cancelled&) {
-          deliver(true, [] {});
-        }
-      });
+  basin_job_.start([this, target = alignment_.target(), points = alignment_.points(),
+                    path = alignment_.path(), found = found_, pose = alignment_.pose()](
+                       Progress& progress, const Background::Deliver& deliver) {
+    try {
+      const Registration at = found ? *found : registeredAt(*target, path, pose);
+      deliver(false,
+              [this, error = errorMapOf(target->mesh(), at, kErrorReach * target->extent())] {
+                error_ = error;
+                drawMap();
+              });
+      const Basin basin = basinOf(*target, points, pose, progress);
+      deliver(true, [this, basin] { plot_->setBasin(basin); });
+    } catch (const Cancelled&) {
+      deliver(true, [] {});
+    }
+  });
 }
 
 void AlignDesk::registerFromHere() {
@@ -236,10 +293,7 @@ void AlignDesk::registerFromHere() {
       deliver(true, [this, rest, found] {
         rest();
         move(found.mesh_from_path);
-        settle();
-        found_ = found;
-        panel_->setFit(fitWords(found));
-        emit changed();
+        settleBy(found);
       });
     } catch (const std::exception& error) {
       deliver(true, [this, rest, problem = QString::fromStdString(error.what())] {

@@ -61,10 +61,13 @@ class AlignDesk : public QObject {
   void keepDialog();
   void keep(const std::filesystem::path& file);
   void store();
-  void begin();                // another path or mesh
-  void move(const Pose& pose); // while a hand moves it
-  void settle();               // it has
+  void begin();                                   // another path or mesh
+  void move(const Pose& pose);                    // while a hand moves it
+  void settle();                                  // it has
+  void settleBy(std::optional<Registration> fit); // nullopt: a hand has
   void draw();
+  void drawMap();
+  void forgetMap(); // of where the path lay before
   void lookAbout();
   void registerFromHere();
   void setPicking(bool on);
@@ -85,6 +88,7 @@ class AlignDesk : public QObject {
   std::vector<AlignView*> views_; // made with the first path
   QTimer settle_;
   std::optional<Registration> found_;
+  std::vector<float> error_;            // one a vertex [m]; empty: not known of where the path lies
   double reach_ = 1;                    // of the sliders [m]
   Pose held_ = Pose::Identity();        // as it was when a drag began
   std::vector<Vec3> on_path_, on_mesh_; // that were picked

@@ -7,6 +7,7 @@
 #include "app/gui/panels/form.h"
 #include "app/gui/scanning/scan_path.h"
 #include "app/gui/widgets/elided_label.h"
+#include "app/gui/widgets/words.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -98,6 +99,19 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
   off_ = quietIn(column, "align_error");
   off_->setProperty("quiet", false);
   fit_words_ = quietIn(column, "align_found");
+  lines_ = new QCheckBox(error);
+  lines_->setObjectName(QStringLiteral("align_lines"));
+  lines_->setToolTip(
+      tr("From the surface towards each sample that counts, coloured by its distance; "
+         "short ones are drawn longer, by the number that stands here"));
+  map_ = new QCheckBox(tr("Error map"), error);
+  map_->setObjectName(QStringLiteral("align_map"));
+  map_->setToolTip(tr("The mean distance of the samples near each place of the mesh; grey where "
+                      "none came"));
+  for (QCheckBox* box : {lines_, map_}) {
+    column->addWidget(box);
+    connect(box, &QCheckBox::toggled, this, &AlignPanel::shownChanged);
+  }
   all->addWidget(error);
   error_ = error;
 
@@ -115,6 +129,7 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
   setReady(false, false);
   setPicking({});
   setFit({});
+  setStretch(0);
 }
 
 PoseValues AlignPanel::values() const {
@@ -155,9 +170,14 @@ void AlignPanel::setValues(const PoseValues& values, double reach) {
 }
 
 void AlignPanel::setResiduals(const Residuals& residuals) {
-  off_->setText(tr("All samples: mean %1 · rms %2 · worst %3")
-                    .arg(lengthWords(residuals.mean), lengthWords(residuals.rms),
-                         lengthWords(residuals.worst)));
+  off_->setText(
+      tr("All samples: mean %1 · rms %2 · worst %3")
+          .arg(inWords(residuals.mean), inWords(residuals.rms), inWords(residuals.worst)));
+}
+
+void AlignPanel::setStretch(double times) {
+  lines_->setText(times > 1 ? tr("Lines to the surface × %1").arg(times, 0, 'g', 4)
+                            : tr("Lines to the surface"));
 }
 
 void AlignPanel::setFit(const QString& words) {

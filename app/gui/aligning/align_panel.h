@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
@@ -24,6 +25,9 @@ class AlignPanel : public QWidget {
   void setReady(bool ready, bool works);                  // there is something to align; or not now
   void setValues(const PoseValues& values, double reach); // [m] that shifts may be
   void setResiduals(const Residuals& residuals);
+  bool linesShown() const { return lines_->isChecked(); }
+  bool mapShown() const { return map_->isChecked(); }
+  void setStretch(double times);         // of the lines; 0: there are none
   void setFit(const QString& words);     // of a registration; empty: none
   void setPicking(const QString& words); // what is to be clicked; empty: it is over
 
@@ -35,6 +39,7 @@ class AlignPanel : public QWidget {
   void beginAsked();
   void keepAsked();
   void storeAsked();
+  void shownChanged(); // lines or map
   void scanChosen(const QString& name);
 
  private:
@@ -44,6 +49,7 @@ class AlignPanel : public QWidget {
   std::array<ValueRow*, 6> rows_;
   QPushButton *pick_, *fit_, *begin_, *keep_, *store_;
   QComboBox* scans_;
+  QCheckBox *lines_, *map_;
   QWidget *place_, *error_;
 };
 

@@ -6,6 +6,8 @@
 
 #include <vtkGenericOpenGLRenderWindow.h>
 
+#include "app/gui/window/theme.h"
+
 namespace patina {
 namespace {
 constexpr int kShake = 3;         // [px] that a click may shake
@@ -16,6 +18,8 @@ AlignView::AlignView(const char* name, ViewPreset from) : from_(from) {
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->SetMultiSamples(0);
   setRenderWindow(window);
+  picture_.setGround(pictureGround());
+  picture_.setScale(true);
   picture_.attachTo(*window);
   picture_.renderer().SetUseFXAA(true);
   setParallel(*picture_.renderer().GetActiveCamera(), true);
@@ -124,6 +128,9 @@ bool AlignView::event(QEvent* event) {
     picture_.handle().setHot(std::nullopt);
     picture_.setDirty();
     return true;
+  case QEvent::PaletteChange:
+    picture_.setGround(pictureGround());
+    return QVTKOpenGLNativeWidget::event(event);
   case QEvent::ContextMenu:
     return true;
   case QEvent::KeyPress: // VTK's own keys are not ours

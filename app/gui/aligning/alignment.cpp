@@ -47,6 +47,7 @@ Residuals residualsOf(const SurfaceTarget& target, const std::vector<Vec3>& poin
     const ClosestPoint near = target.tree().closestPoint(mesh_from_path * point, face);
     face = near.surface.face;
     found.distances.push_back(near.distance);
+    found.feet.push_back(near.point);
     found.mean += near.distance;
     squares += near.distance * near.distance;
     found.worst = std::max(found.worst, near.distance);

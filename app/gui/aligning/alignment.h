@@ -14,6 +14,7 @@ namespace patina {
 // Of points from a surface.
 struct Residuals {
   std::vector<double> distances; // [m], one a point
+  std::vector<Vec3> feet;        // nearest of the surface [m], one a point
   double mean = 0, rms = 0, worst = 0;
 };
 Residuals residualsOf(const SurfaceTarget& target, const std::vector<Vec3>& points,

@@ -10,6 +10,7 @@ namespace patina {
 namespace {
 
 constexpr double kMilli = 1e3;
+constexpr double kNothing = 1e-6; // [mm]: rounding, no length
 
 QColor colorOf(double part) {
   const double at = std::clamp(part, 0., 1.) * (palette::kMuch.size() - 1);
@@ -42,8 +43,8 @@ void BasinPlot::setBasin(const std::optional<Basin>& basin) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::vector<double>& rms = basin->along[axis + (turns ? 3 : 0)];
         GraphCurve curve{(axis > 0 ? tr("%1")
-                          : turns  ? tr("rms if turned about %1")
-                                   : tr("rms if shifted along %1"))
+                          : turns  ? tr("rms, turned %1")
+                                   : tr("rms, shifted %1"))
                              .arg(names[axis]),
                          kInks[axis],
                          {}};
@@ -95,8 +96,8 @@ void BasinPlot::paintMap(QPainter& painter, const QRectF& whole) const {
                    Qt::AlignLeft | Qt::AlignVCenter,
                    tr("±%1 mm: %2 to %3 mm")
                        .arg(reach_mm_, 0, 'f', 0)
-                       .arg(least_mm_, 0, 'g', 3)
-                       .arg(most_mm_, 0, 'g', 3));
+                       .arg(least_mm_ < kNothing ? 0 : least_mm_, 0, 'g', 3)
+                       .arg(most_mm_ < kNothing ? 0 : most_mm_, 0, 'g', 3));
 }
 
 void BasinPlot::paintEvent(QPaintEvent*) {
@@ -107,7 +108,9 @@ void BasinPlot::paintEvent(QPaintEvent*) {
     painter.drawText(rect(), Qt::AlignCenter, tr("Looking about …"));
     return;
   }
-  const double map_wide = std::min(0.25 * width(), 1.3 * height());
+  // Its words fit below it.
+  const double map_wide = std::max(std::min(0.25 * width(), 1.3 * height()),
+                                   28. + fontMetrics().horizontalAdvance(QString(24, '0')));
   const bool stepped = steps_.curves[0].points.size() > 1;
   const double wide = (width() - map_wide) / (stepped ? 3 : 2);
   for (std::size_t i = 0; i < graphs_.size(); ++i)

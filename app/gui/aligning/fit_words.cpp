@@ -6,6 +6,7 @@
 #include <QObject>
 
 #include "app/gui/scanning/scan_path.h"
+#include "app/gui/widgets/words.h"
 
 namespace patina {
 
@@ -18,10 +19,10 @@ QString fitWords(const Registration& found) {
   };
   QString words = QObject::tr("Fitted: rms %1 of the %2 samples that count, %3 left out; place "
                               "known to %4 and %5°")
-                      .arg(lengthWords(found.rms))
+                      .arg(inWords(found.rms))
                       .arg(count)
                       .arg(left_out)
-                      .arg(lengthWords(deviation(3)))
+                      .arg(inWords(deviation(3)))
                       .arg(deviation(0) * 180 / M_PI, 0, 'g', 2);
   if (isDoubtful(found))
     words += QObject::tr("; not unique: ") + QString::fromStdString(inWords(*found.rivals));

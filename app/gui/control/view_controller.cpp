@@ -11,6 +11,7 @@ namespace patina {
 ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(parent), at_(parts) {
   connect(&at_.display, &DisplayPanel::layerToggled, this,
           [this](Layer layer, bool on) { view().show(layer, on); });
+  view().show(Layer::scale, at_.display.shown(Layer::scale));
   connect(&at_.display, &DisplayPanel::sliceMoved, this,
           [this](const SlicePlace& place) { view().setSlice(place); });
   connect(&at_.display, &DisplayPanel::isoMoved, this, [this](double iso) { view().setIso(iso); });

@@ -13,7 +13,7 @@ namespace patina {
 RecoverBar::RecoverBar(QWidget* parent) : QWidget(parent), words_(new ElidedLabel(this)) {
   setAttribute(Qt::WA_StyledBackground);
   setObjectName(QStringLiteral("recover_bar"));
-  setStyleSheet(themed("#recover_bar { background: @notice; }"));
+  dress(*this, QStringLiteral("#recover_bar { background: @notice; }"));
   auto* line = new QHBoxLayout(this);
   line->setContentsMargins(6, 0, 4, 0);
   line->addWidget(words_, 1);

@@ -28,9 +28,9 @@ QColor qColor(const std::array<double, 3>& color) {
   return QColor::fromRgbF(color[0], color[1], color[2]);
 }
 
-QString swatchStyle(const std::array<double, 3>& color, const QString& border) {
-  return QStringLiteral("QToolButton { background: %1; border: %2; border-radius: 3px; }")
-      .arg(qColor(color).name(), border);
+void dressAsSwatch(QToolButton& button, const std::array<double, 3>& color, const char* border) {
+  dress(button, QStringLiteral("QToolButton { background: %1; border: %2; border-radius: 3px; }")
+                    .arg(qColor(color).name(), QString::fromUtf8(border)));
 }
 
 QString wordsOf(std::string_view utf8) {
@@ -89,7 +89,7 @@ void BrushPanel::addColor() {
   now->setToolTip(tr("What is painted with; choose another colour…"));
   const auto take = [this, now](const std::array<double, 3>& color) {
     brush_.color = color;
-    now->setStyleSheet(swatchStyle(color, themed("2px solid @accent")));
+    dressAsSwatch(*now, color, "2px solid @accent");
   };
   take(brush_.color);
   connect(now, &QToolButton::clicked, this, [this, take] {
@@ -100,7 +100,7 @@ void BrushPanel::addColor() {
   });
   for (const auto& color : kSwatches) {
     QToolButton* button = swatch(21);
-    button->setStyleSheet(swatchStyle(color, themed("1px solid @faint")));
+    dressAsSwatch(*button, color, "1px solid @faint");
     button->setToolTip(tr("Paint with %1").arg(qColor(color).name()));
     connect(button, &QToolButton::clicked, this, [this, color, take] {
       take(color);

@@ -141,7 +141,7 @@ void ReliefPanel::measure(std::shared_ptr<const CompiledScene> scene) {
       note_->setText(words);
       note_->setProperty("bad", beyond);
       note_->setProperty("quiet", !beyond);
-      note_->setStyleSheet(beyond ? themed("color: @bad;") : themed("color: @quiet;"));
+      dress(*note_, beyond ? QStringLiteral("color: @bad;") : QStringLiteral("color: @quiet;"));
     });
   });
 }

@@ -21,6 +21,8 @@ constexpr Box kBoxes[] = {
      "A plane through the field, coloured by distance; what stands before it is cut away"},
     {Layer::iso, "Iso-surface", "I", "The surface at a distance: 0 is the object"},
     {Layer::wireframe, "Wireframe", "W", "The edges of the triangles", false},
+    {Layer::scale, "Scale bar", "L",
+     "A round length, of what is as far away as the middle of the picture", false, true},
     {Layer::nodes, "Nodes at the tip", "N",
      "What contact computes with: warm inside, cool outside"},
     {Layer::extent, "Field extent", "E", "The box of the grid"},
@@ -47,9 +49,10 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   for (const Box& row : kBoxes) {
     const Layer layer = row.layer;
     auto* box = new QCheckBox(tr(row.words), this);
-    box->setToolTip(QStringLiteral("<b>%1</b> (%2)<br>%3")
-                        .arg(tr(row.words), QString::fromUtf8(row.key), tr(row.tip)));
     box->setObjectName(QString::fromUtf8(name(layer).data(), static_cast<int>(name(layer).size())));
+    box->setToolTip(
+        QStringLiteral("<b>%1</b> (%2)<br>%3<br>In commands: <i>--show %4</i>")
+            .arg(tr(row.words), QString::fromUtf8(row.key), tr(row.tip), box->objectName()));
     box->setChecked(row.shown);
     connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
       arrange();
@@ -132,6 +135,10 @@ void DisplayPanel::setStabilityNote(const QString& words) {
 void DisplayPanel::setShown(Layer layer, bool on) {
   const auto box = boxes_.find(layer);
   if (box != boxes_.end()) box->second->setChecked(on);
+}
+
+QString DisplayPanel::caption(Layer layer) const {
+  return boxes_.at(layer)->text();
 }
 
 bool DisplayPanel::shown(Layer layer) const {

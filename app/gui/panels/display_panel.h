@@ -24,6 +24,7 @@ class DisplayPanel : public QGroupBox {
   void setStabilityNote(const QString& words);
   void setShown(Layer layer, bool on); // sends layerToggled if it changes
   bool shown(Layer layer) const;
+  QString caption(Layer layer) const; // of its box; must have one
 
  signals:
   void layerToggled(patina::Layer layer, bool on);

@@ -12,10 +12,10 @@ HistoryPanel::HistoryPanel(QWidget* parent) : QListWidget(parent) {
   setFocusPolicy(Qt::NoFocus); // keys are the view's
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setTextElideMode(Qt::ElideRight);
-  setStyleSheet(themed("QListWidget { border: none; background: @card; }"
-                       "QListWidget::item { padding: 2px 6px; }"
-                       "QListWidget::item:selected { background: @chosen;"
-                       " color: @text; }"));
+  dress(*this, QStringLiteral("QListWidget { border: none; background: @card; }"
+                              "QListWidget::item { padding: 2px 6px; }"
+                              "QListWidget::item:selected { background: @chosen;"
+                              " color: @text; }"));
   connect(this, &QListWidget::itemClicked, this,
           [this](QListWidgetItem* item) { emit asked(static_cast<std::size_t>(row(item))); });
 }
@@ -29,16 +29,26 @@ void HistoryPanel::show(const EditStatus& status) {
   while (count() > static_cast<int>(kept) + 1) delete takeItem(count() - 1);
   for (std::size_t i = kept; i < status.edits.size(); ++i) addItem(wordsOfEdit(status.edits[i]));
   edits_ = status.edits;
+  done_ = status.done;
+  mark();
+  setCurrentRow(static_cast<int>(status.done));
+  scrollToItem(currentItem());
+}
+
+void HistoryPanel::changeEvent(QEvent* event) {
+  QListWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange) mark();
+}
+
+void HistoryPanel::mark() {
   for (int i = 0; i < count(); ++i) {
-    const bool done = i <= static_cast<int>(status.done);
+    const bool done = i <= static_cast<int>(done_);
     QFont font = this->font();
     font.setItalic(!done);
     item(i)->setFont(font);
     item(i)->setForeground(done ? ink("text") : ink("faint"));
     item(i)->setToolTip(done ? item(i)->text() : tr("%1 (undone)").arg(item(i)->text()));
   }
-  setCurrentRow(static_cast<int>(status.done));
-  scrollToItem(currentItem());
 }
 
 } // namespace patina

@@ -16,7 +16,13 @@ class HistoryPanel : public QListWidget {
  signals:
   void asked(std::size_t position); // so many edits are to be done
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
+  void mark(); // what is undone
+
+  std::size_t done_ = 0;
   std::vector<std::string> edits_;
 };
 

@@ -16,16 +16,24 @@ MessagePanel::MessagePanel(QWidget* parent) : QListWidget(parent) {
   setWordWrap(true);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setSelectionMode(QAbstractItemView::NoSelection);
-  setStyleSheet(themed("QListWidget { border: none; background: @card; }"
-                       "QListWidget::item { padding: 2px 6px; }"));
+  dress(*this, QStringLiteral("QListWidget { border: none; background: @card; }"
+                              "QListWidget::item { padding: 2px 6px; }"));
   setToolTip(tr("What the window has said since it was opened"));
 }
 
 void MessagePanel::add(const Message& message) {
   auto* item = new QListWidgetItem(
       QTime::currentTime().toString(QStringLiteral("hh:mm  ")) + message.words, this);
+  item->setData(Qt::UserRole, message.warns);
   if (message.warns) item->setForeground(ink("warn"));
   scrollToBottom();
+}
+
+void MessagePanel::changeEvent(QEvent* event) {
+  QListWidget::changeEvent(event);
+  if (event->type() != QEvent::PaletteChange) return;
+  for (int i = 0; i < count(); ++i)
+    if (item(i)->data(Qt::UserRole).toBool()) item(i)->setForeground(ink("warn"));
 }
 
 NoticeLine::NoticeLine(QWidget* parent) : QWidget(parent), words_(new ElidedLabel(this)) {
@@ -48,9 +56,7 @@ NoticeLine::NoticeLine(QWidget* parent) : QWidget(parent), words_(new ElidedLabe
 }
 
 void NoticeLine::show(const Message& message) {
-  QPalette colors = palette();
-  colors.setColor(QPalette::WindowText, message.warns ? ink("warn") : ink("text"));
-  words_->setPalette(colors);
+  dress(*words_, message.warns ? QStringLiteral("color: @warn;") : QStringLiteral("color: @text;"));
   words_->setText(message.words);
   message.warns ? patience_.stop() : patience_.start();
   setVisible(true);

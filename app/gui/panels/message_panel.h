@@ -19,6 +19,9 @@ class MessagePanel : public QListWidget {
  public:
   explicit MessagePanel(QWidget* parent = nullptr);
   void add(const Message& message);
+
+ protected:
+  void changeEvent(QEvent* event) override;
 };
 
 class NoticeLine : public QWidget {

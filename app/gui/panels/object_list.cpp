@@ -20,7 +20,7 @@ ObjectList::ObjectList(QWidget* parent)
   column->setSpacing(6);
   list_->setObjectName(QStringLiteral("objects"));
   list_->setToolTip(tr("What is felt as one surface; the chosen one is moved below"));
-  list_->setStyleSheet(themed("QListWidget { border: 1px solid @line; }"));
+  dress(*list_, QStringLiteral("QListWidget { border: 1px solid @line; }"));
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   column->addWidget(list_);
 

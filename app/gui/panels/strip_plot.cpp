@@ -129,7 +129,7 @@ void StripPlot::paintLegend(QPainter& painter, const QRectF& area) const {
     const double value = points_.empty() ? 0 : static_cast<double>(points_.back().value[c]);
     const QString words =
         withMinus(QStringLiteral("%1 %2 %3").arg(curves_[c].name).arg(value, 0, 'f', 2).arg(unit_));
-    painter.setPen(QPen(curves_[c].color, 3));
+    painter.setPen(QPen(ink(curves_[c].ink), 3));
     painter.drawLine(QPointF(x, middle), QPointF(x + 12, middle));
     painter.setPen(ink("text"));
     painter.drawText(QPointF(x + 17, 4 + metrics.ascent()), words);
@@ -153,7 +153,7 @@ void StripPlot::paintEvent(QPaintEvent*) {
     curve.reserve(static_cast<int>(points_.size()));
     for (const Point& point : points_)
       curve << QPointF(toX(area, point.t), toY(area, point.value[c]));
-    painter.setPen(QPen(curves_[c].color, curves_[c].width));
+    painter.setPen(QPen(ink(curves_[c].ink), curves_[c].width));
     painter.drawPolyline(curve);
   }
   painter.setClipping(false);

@@ -5,7 +5,6 @@
 #include <deque>
 #include <vector>
 
-#include <QColor>
 #include <QString>
 #include <QWidget>
 
@@ -13,9 +12,9 @@ namespace patina {
 
 struct StripCurve {
   QString name;
-  QColor color;
-  double width = 1.1;      // of the line [pixel]
-  bool keeps_peak = false; // drawn points hold the highest value since the one before
+  const char* ink = "text"; // see theme.h
+  double width = 1.1;       // of the line [pixel]
+  bool keeps_peak = false;  // drawn points hold the highest value since the one before
 };
 
 class StripPlot : public QWidget {

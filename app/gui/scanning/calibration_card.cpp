@@ -6,6 +6,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
+#include "app/gui/widgets/words.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
@@ -35,7 +36,7 @@ QString wordsOf(const CalibratedCamera& found, std::size_t frames) {
 
 QString wordsOf(const PivotFit& fit, std::size_t poses) {
   QString words = CalibrationCard::tr("rms %1, %2 of %3 poses")
-                      .arg(lengthWords(fit.rms))
+                      .arg(inWords(fit.rms))
                       .arg(poses - fit.rejected)
                       .arg(poses);
   for (int i = 0; i < 3; ++i)

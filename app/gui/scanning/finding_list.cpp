@@ -11,9 +11,9 @@ FindingList::FindingList(OpenScan& scan, QWidget* parent) : QListWidget(parent),
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setTextElideMode(Qt::ElideRight);
   setUniformItemSizes(true);
-  setStyleSheet(themed("QListWidget { border: none; background: @card; }"
-                       "QListWidget::item { padding: 2px 6px; }"
-                       "QListWidget::item:selected { background: @chosen; color: @text; }"));
+  dress(*this, QStringLiteral("QListWidget { border: none; background: @card; }"
+                              "QListWidget::item { padding: 2px 6px; }"
+                              "QListWidget::item:selected { background: @chosen; color: @text; }"));
   setToolTip(tr("What is missing or was left out, and why; a click goes there"));
   connect(this, &QListWidget::currentRowChanged, this, [this](int row) {
     if (row < 0 || scan_.path() == nullptr) return;

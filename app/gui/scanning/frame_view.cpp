@@ -226,9 +226,7 @@ void FrameView::showLive(const RecordedFrame& frame) {
 
 void FrameView::sayWhy(const QString& why) {
   why_->setText(why.isEmpty() ? tr("Nothing is missing here.") : why);
-  QPalette colors = palette();
-  colors.setColor(QPalette::WindowText, ink(why.isEmpty() ? "quiet" : "warn"));
-  why_->setPalette(colors);
+  dress(*why_, why.isEmpty() ? QStringLiteral("color: @quiet;") : QStringLiteral("color: @warn;"));
 }
 
 void FrameView::load() {

@@ -3,6 +3,7 @@
 #include <QVBoxLayout>
 
 #include "app/gui/widgets/elided_label.h"
+#include "app/gui/widgets/words.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"
 
@@ -124,11 +125,10 @@ void ScanPanel::fill() {
   std::vector<double> sigmas;
   for (const PathSample& sample : path->path) sigmas.push_back(sample.sigma);
   row(tr("Path"),
-      tr("%1 samples, %2").arg(countWords(path->path.size()), lengthWords(lengthOf(path->path))),
+      tr("%1 samples, %2").arg(countWords(path->path.size()), inWords(lengthOf(path->path))),
       tr("What touches, and its length"));
   row(tr("Sigma"),
-      tr("%1, at most %2")
-          .arg(lengthWords(percentiles(sigmas).p50), lengthWords(percentiles(sigmas).max)),
+      tr("%1, at most %2").arg(inWords(percentiles(sigmas).p50), inWords(percentiles(sigmas).max)),
       tr("Standard deviation of the tip's place: median and largest"));
   const std::size_t gaps = path->filtered.without_pose.size(),
                     dropouts = path->filtered.without_sample.size();

@@ -5,6 +5,7 @@
 
 #include <QCoreApplication>
 
+#include "app/gui/widgets/words.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -31,7 +32,7 @@ QString wordsOfOutlier(const CameraPose& pose, const CameraTrack& track, const V
   const double sigma_angle = std::hypot(pose.sigma_angle, motion.sigma_angle);
   return say("pose at %1 s left out: %2 and %3° from where the path lets expect it, %4 and %5 "
              "sigma")
-      .arg(secondsWords(pose.t), lengthWords(away))
+      .arg(secondsWords(pose.t), inWords(away))
       .arg(turned * 180 / M_PI, 0, 'f', 1)
       .arg(away / sigma, 0, 'f', 0)
       .arg(turned / sigma_angle, 0, 'f', 0);
@@ -83,7 +84,7 @@ void addGaps(const ScanPath& path, std::vector<Finding>& findings) {
     QString words =
         say("no pose from %1 to %2 s, for %3 s: the path is bridged")
             .arg(secondsWords(gap.from), secondsWords(gap.to), secondsWords(gap.to - gap.from));
-    if (most > 0) words += say(", sigma grows to %1").arg(lengthWords(most));
+    if (most > 0) words += say(", sigma grows to %1").arg(inWords(most));
     findings.push_back({Finding::Kind::gap, gap.from, gap.to, words});
   }
   for (const Gap& gap : path.filtered.without_sample)
@@ -115,11 +116,6 @@ ScanFilter filterFor(const ScanFiles& files) {
 }
 
 } // namespace
-
-QString lengthWords(double metres) {
-  if (metres < 0.5e-9) return QStringLiteral("0 mm"); // rounding, no length
-  return QString::fromStdString(formatLength(metres)).replace(" um", " µm");
-}
 
 QString wordOf(Finding::Kind kind) {
   constexpr const char* kWords[] = {"unreadable", "no marker", "ambiguous",    "misfit",

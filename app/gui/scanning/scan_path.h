@@ -30,7 +30,6 @@ struct Finding {
   QString words;
 };
 QString wordOf(Finding::Kind kind); // "gap"
-QString lengthWords(double metres); // "1.2 mm"
 
 struct ScanPath {
   std::vector<CameraPose> poses;

@@ -6,6 +6,7 @@
 
 #include <vtkGenericOpenGLRenderWindow.h>
 
+#include "app/gui/window/theme.h"
 #include "visualization/view/camera.h"
 
 namespace patina {
@@ -18,6 +19,8 @@ ScanView::ScanView(QWidget* parent) : QVTKOpenGLNativeWidget(parent) {
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->SetMultiSamples(0);
   setRenderWindow(window);
+  picture_.setGround(pictureGround());
+  picture_.setScale(true);
   picture_.attachTo(*window);
   picture_.renderer().SetUseFXAA(true);
   setEnableHiDPI(true);
@@ -87,6 +90,9 @@ bool ScanView::event(QEvent* event) {
          std::pow(1.12, static_cast<QWheelEvent*>(event)->angleDelta().y() / 120.));
     refresh();
     return true;
+  case QEvent::PaletteChange:
+    picture_.setGround(pictureGround());
+    return QVTKOpenGLNativeWidget::event(event);
   case QEvent::ContextMenu:
     return true;
   case QEvent::KeyPress: // VTK's own keys are not ours

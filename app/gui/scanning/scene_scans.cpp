@@ -32,7 +32,7 @@ SceneScans::SceneScans(QWidget* parent)
   list_->setObjectName(QStringLiteral("scene_scans"));
   list_->setToolTip(tr("Scans of the workspace, with the files that each has; frames stay where "
                        "they are"));
-  list_->setStyleSheet(themed("QListWidget { border: 1px solid @line; }"));
+  dress(*list_, QStringLiteral("QListWidget { border: 1px solid @line; }"));
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   list_->setTextElideMode(Qt::ElideRight);
   put_->setObjectName(QStringLiteral("put_scan"));

@@ -3,16 +3,14 @@
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 
-#include "app/gui/window/theme.h"
-
 namespace patina {
 
 ForcePlot::ForcePlot(QWidget* parent)
     : StripPlot(QStringLiteral("N"),
-                {{QStringLiteral("|F|"), ink("text"), 2.0, true}, // told apart by any eye
-                 {QStringLiteral("x"), ink("series_x")},
-                 {QStringLiteral("y"), ink("series_y")},
-                 {QStringLiteral("z"), ink("series_z")}},
+                {{QStringLiteral("|F|"), "text", 2.0, true}, // told apart by any eye
+                 {QStringLiteral("x"), "series_x"},
+                 {QStringLiteral("y"), "series_y"},
+                 {QStringLiteral("z"), "series_z"}},
                 0.5, parent) {
   setToolTip(tr("Force on the hand over the last five seconds"));
 }
@@ -26,8 +24,7 @@ void ForcePlot::addSamples(const std::vector<ToolSample>& samples) {
 
 EnergyPlot::EnergyPlot(QWidget* parent)
     : StripPlot(QStringLiteral("mJ"),
-                {{QStringLiteral("E"), ink("series_e"), 2.0}, {tr("lowest"), ink("series_x")}}, 1.0,
-                parent) {
+                {{QStringLiteral("E"), "series_e", 2.0}, {tr("lowest"), "series_x"}}, 1.0, parent) {
   setToolTip(tr("Energy that the surface has taken from the hand. A spring gives back what it "
                 "took; friction and damping keep it. Well below zero the surface feeds the hand: "
                 "that is what a buzz lives on."));

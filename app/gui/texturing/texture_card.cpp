@@ -5,6 +5,7 @@
 
 #include "app/gui/panels/form.h"
 #include "app/gui/scanning/scan_path.h"
+#include "app/gui/widgets/words.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -27,7 +28,7 @@ QString tipOf(const TextureRow& row) {
   const FourierTexture& texture = row.texture->value;
   return TextureCard::tr("%1 harmonics over %2, rms height %3")
       .arg(harmonics(texture))
-      .arg(lengthWords(period(texture)), lengthWords(rmsHeight(texture)));
+      .arg(inWords(period(texture)), inWords(rmsHeight(texture)));
 }
 
 } // namespace

@@ -1,5 +1,9 @@
 #include "app/gui/widgets/drawn_icon.h"
 
+#include <algorithm>
+#include <utility>
+
+#include <QIconEngine>
 #include <QPainterPath>
 #include <QPixmap>
 
@@ -84,22 +88,38 @@ void drawLibrary(QPainter& p) {
   }
 }
 
+// Drawn whenever it is shown: in the theme of that moment, and sharp at every scale.
+class DrawnIcon final : public QIconEngine {
+ public:
+  explicit DrawnIcon(std::function<void(QPainter&)> draw) : draw_(std::move(draw)) {}
+  QIconEngine* clone() const override { return new DrawnIcon(draw_); }
+  void paint(QPainter* painter, const QRect& place, QIcon::Mode mode, QIcon::State) override {
+    const double scale = std::min(place.width(), place.height()) / 20.0;
+    painter->save();
+    painter->setRenderHint(QPainter::Antialiasing);
+    painter->translate(QRectF(place).center() - scale * QPointF(10, 10));
+    painter->scale(scale, scale);
+    if (mode == QIcon::Disabled) painter->setOpacity(0.4);
+    painter->setPen(QPen(ink("text"), 1.4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+    draw_(*painter);
+    painter->restore();
+  }
+  QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State state) override {
+    QPixmap made(size);
+    made.fill(Qt::transparent);
+    QPainter painter(&made);
+    paint(&painter, QRect(QPoint(), size), mode, state);
+    return made;
+  }
+
+ private:
+  std::function<void(QPainter&)> draw_;
+};
+
 } // namespace
 
 QIcon drawnIcon(const std::function<void(QPainter&)>& draw) {
-  QIcon icon;
-  for (const int scale : {1, 2, 3}) {
-    QPixmap pixmap(20 * scale, 20 * scale);
-    pixmap.fill(Qt::transparent);
-    QPainter painter(&pixmap);
-    painter.setRenderHint(QPainter::Antialiasing);
-    painter.scale(scale, scale);
-    painter.setPen(QPen(ink("text"), 1.4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-    draw(painter);
-    painter.end();
-    icon.addPixmap(pixmap);
-  }
-  return icon;
+  return QIcon(new DrawnIcon(draw));
 }
 
 QIcon iconOf(Tab tab) {

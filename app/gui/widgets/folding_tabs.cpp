@@ -12,10 +12,11 @@ FoldingTabs::FoldingTabs(Folds folds, QWidget* body, QWidget* parent)
       row_(new QBoxLayout(QBoxLayout::LeftToRight, strip_)), buttons_(new QButtonGroup(this)),
       body_(body) {
   setAttribute(Qt::WA_StyledBackground);
-  strip_->setStyleSheet(
-      themed("QToolButton { padding: 3px 4px; border: none; border-bottom: 2px solid transparent; }"
-             "QToolButton:hover { background: @hover; }"
-             "QToolButton:checked { border-bottom-color: @accent; color: @link; }"));
+  dress(*strip_,
+        QStringLiteral(
+            "QToolButton { padding: 3px 4px; border: none; border-bottom: 2px solid transparent; }"
+            "QToolButton:hover { background: @hover; }"
+            "QToolButton:checked { border-bottom-color: @accent; color: @link; }"));
   row_->setContentsMargins(2, 0, 2, 0);
   row_->setSpacing(0);
   auto* all = new QVBoxLayout(this);

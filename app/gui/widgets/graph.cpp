@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/gui/window/theme.h"
 
@@ -15,11 +16,11 @@ double stepFor(double range, int count) {
 }
 
 void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
-  const int line = painter.fontMetrics().height();
-  const QRectF area = whole.adjusted(46, line + 6, -10, -line - 6);
+  const QFontMetrics letters = painter.fontMetrics();
+  const int line = letters.height();
   QRectF box;
   for (const GraphCurve& curve : graph.curves) box = box.united(curve.points.boundingRect());
-  if (!(box.width() > 0) || area.width() < 40) return;
+  if (!(box.width() > 0) || whole.width() < 96) return;
   double low = box.top(), high = box.bottom();
   if (!(high > low)) high = low + std::max(1e-9, std::abs(low));
   if (graph.logarithmic) {
@@ -27,6 +28,19 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     high = std::ceil(std::log10(high));
     low = std::floor(low);
   }
+  const double step = graph.logarithmic ? 1 : stepFor(high - low, 4);
+  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
+  std::vector<std::pair<double, QString>> rows;
+  int widest = letters.horizontalAdvance(graph.y_unit);
+  for (double value = std::ceil(low / step) * step; value <= high + 1e-9; value += step) {
+    const double shown = graph.logarithmic ? std::pow(10, value) : value;
+    rows.emplace_back(shown, graph.logarithmic && shown < 1
+                                 ? QString::number(shown, 'g', 3)
+                                 : QString::number(shown, 'f', decimals));
+    widest = std::max(widest, letters.horizontalAdvance(rows.back().second));
+  }
+  const double margin = std::max(42, widest + 4);
+  const QRectF area = whole.adjusted(margin + 4, line + 6, -10, -line - 6);
   const auto xAt = [&](double x) {
     const double part = graph.logarithmic
                             ? std::log(x / box.left()) / std::log(box.right() / box.left())
@@ -37,20 +51,16 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     const double value = graph.logarithmic ? std::log10(y) : y;
     return area.bottom() - (value - low) / (high - low) * area.height();
   };
-  const double step = graph.logarithmic ? 1 : stepFor(high - low, 4);
-  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
-  for (double value = std::ceil(low / step) * step; value <= high + 1e-9; value += step) {
-    const double shown = graph.logarithmic ? std::pow(10, value) : value;
+  for (const auto& [shown, words] : rows) {
     painter.setPen(ink("line"));
     painter.drawLine(QPointF(area.left(), yAt(shown)), QPointF(area.right(), yAt(shown)));
     painter.setPen(ink("quiet"));
-    painter.drawText(QRectF(whole.left(), yAt(shown) - line / 2., 42, line),
-                     Qt::AlignRight | Qt::AlignVCenter,
-                     graph.logarithmic && shown < 1 ? QString::number(shown, 'g', 3)
-                                                    : QString::number(shown, 'f', decimals));
+    painter.drawText(QRectF(whole.left(), yAt(shown) - line / 2., margin, line),
+                     Qt::AlignRight | Qt::AlignVCenter, words);
   }
   painter.setPen(ink("quiet"));
-  painter.drawText(QRectF(whole.left(), whole.top() + 3, 42, line), Qt::AlignRight, graph.y_unit);
+  painter.drawText(QRectF(whole.left(), whole.top() + 3, margin, line), Qt::AlignRight,
+                   graph.y_unit);
   std::vector<double> marks;
   const double across =
       std::max(stepFor(box.width(), std::clamp(static_cast<int>(area.width() / 60), 2, 8)),
@@ -69,7 +79,12 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     painter.drawText(QRectF(from, area.bottom() + 3, wide, line), Qt::AlignCenter, words);
   }
   painter.setRenderHint(QPainter::Antialiasing);
-  double legend = area.left();
+  // A graph that is narrow has of its first name, the longest, what fits.
+  constexpr int kMark = 12, kGap = 5, kApart = 12;
+  double legend = area.left(), room = whole.right() - area.left();
+  for (const GraphCurve& curve : graph.curves)
+    room -= kMark + kGap + kApart +
+            (&curve == &graph.curves.front() ? 0 : letters.horizontalAdvance(curve.name));
   for (const GraphCurve& curve : graph.curves) {
     painter.setPen(QPen(ink(curve.ink), graph.bars ? 2 : 1.4));
     QPolygonF drawn;
@@ -81,14 +96,14 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     if (!graph.bars) painter.drawPolyline(drawn);
     painter.setPen(QPen(ink(curve.ink), 3));
     painter.drawLine(QPointF(legend, whole.top() + line / 2. + 3),
-                     QPointF(legend + 12, whole.top() + line / 2. + 3));
+                     QPointF(legend + kMark, whole.top() + line / 2. + 3));
     painter.setPen(ink("text"));
-    // A graph that is narrow has what fits of it.
-    const double room = whole.right() - legend - 17;
-    const QString words = painter.fontMetrics().elidedText(curve.name, Qt::ElideRight,
-                                                           static_cast<int>(std::max(0., room)));
-    painter.drawText(QPointF(legend + 17, whole.top() + painter.fontMetrics().ascent() + 3), words);
-    legend += 34 + painter.fontMetrics().horizontalAdvance(words);
+    const QString words =
+        &curve == &graph.curves.front()
+            ? letters.elidedText(curve.name, Qt::ElideRight, std::max(0, static_cast<int>(room)))
+            : curve.name;
+    painter.drawText(QPointF(legend + kMark + kGap, whole.top() + letters.ascent() + 3), words);
+    legend += kMark + kGap + kApart + letters.horizontalAdvance(words);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 
+#include "app/gui/window/theme.h"
 #include "scene/surface_pick.h"
 #include "visualization/view/camera.h"
 
@@ -28,6 +29,7 @@ SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent), fram
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
   setRenderWindow(window);
+  view_.setGround(pictureGround());
   view_.attachTo(*window);
   setEnableHiDPI(true);
   setMinimumSize(480,
@@ -199,6 +201,9 @@ bool SceneWidget::event(QEvent* event) {
   case QEvent::Wheel:
     wheel(*static_cast<QWheelEvent*>(event));
     return true;
+  case QEvent::PaletteChange:
+    view_.setGround(pictureGround());
+    return QVTKOpenGLNativeWidget::event(event);
   case QEvent::ContextMenu:
     return true;
   // VTK's own key bindings (e quits, w wireframes) are not ours: keys go to the window's menus.

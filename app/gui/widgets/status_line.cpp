@@ -8,7 +8,7 @@ namespace patina {
 
 StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   bar->setSizeGripEnabled(false);
-  bar->setStyleSheet(QStringLiteral("QStatusBar::item { border: none; }"));
+  dress(*bar, QStringLiteral("QStatusBar::item { border: none; } QLabel { color: @text; }"));
   const auto add = [&](auto* made, const char* name, int stretch = 0) {
     made->setObjectName(QString::fromUtf8(name));
     made->setContentsMargins(7, 1, 7, 1);
@@ -18,7 +18,7 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   const auto label = [&](const char* name) { return add(new QLabel(bar), name); };
   fault_ = label("fault");
   fault_->setText(tr("force faded: it comes back by itself"));
-  fault_->setStyleSheet(themed("background: @bad; color: @card;"));
+  dress(*fault_, QStringLiteral("background: @bad; color: @card;"));
   fault_->setToolTip(tr("The force would have jumped, so it was faded to zero. It comes back when "
                         "the tip has left the surface."));
   showFault(false);
@@ -27,12 +27,12 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   missed_ = label("missed");
   policy_ = label("policy");
   stabilisers_ = label("stabilisers");
-  stabilisers_->setStyleSheet(themed("color: @link; font-weight: bold;"));
+  dress(*stabilisers_, QStringLiteral("color: @link; font-weight: bold;"));
   bytes_ = label("bytes");
   stages_ = add(new ElidedLabel(bar), "stages", 2);
   picked_ = add(new ElidedLabel(bar), "picked", 3);
   picked_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-  picked_->setStyleSheet(themed("color: @link; padding-right: 8px;"));
+  dress(*picked_, QStringLiteral("color: @link; padding-right: 8px;"));
   picked_->setToolTip(tr("What is felt and painted under the pointer"));
   late_->setToolTip(
       tr("How late 99 % of the servo's wake-ups are at most, over the last 8192 ticks: 8 s"));
@@ -62,7 +62,7 @@ void StatusLine::showTiming(const ServoTiming& timing, bool running, const QStri
   late_->setText(tr("p99 late %1 µs").arg(timing.late_p99, 0, 'f', 0));
   missed_->setText(tr("missed %1").arg(timing.missed));
   policy_->setText(timing.realtime ? tr("real time") : tr("no real time"));
-  policy_->setStyleSheet(timing.realtime ? QString() : themed("color: @warn;"));
+  dress(*policy_, timing.realtime ? QString() : QStringLiteral("color: @warn;"));
   policy_->setToolTip(QString::fromStdString(timing.policy));
 }
 

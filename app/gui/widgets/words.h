@@ -1,6 +1,7 @@
 // Words for people where no class of Qt's is at hand to ask for them.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -15,7 +16,8 @@ inline QString tr(std::string_view words) {
 }
 
 inline QString inWords(double metres) {
-  return QString::fromStdString(formatLength(metres));
+  if (metres == 0 || std::abs(metres) < 0.5e-9) return QStringLiteral("0 mm"); // rounding
+  return QString::fromStdString(formatLength(metres)).replace(" um", " µm");
 }
 
 } // namespace patina

@@ -27,10 +27,9 @@ std::vector<GuideStep> guideSteps(const GuideFacts& facts) {
        counted(facts.samples, tr("samples")), facts.samples > 0},
       {Desk::align, tr("Place"),
        tr("Lay the path onto the mesh, and fit it: rms distance of the samples that count"),
-       facts.off ? tr("%1 off%2")
-                       .arg(QString::fromStdString(formatLength(*facts.off)).replace(" um", " µm"),
-                            facts.doubt ? tr(", not sure") : QString())
-                 : QString(),
+       facts.off
+           ? tr("%1 off%2").arg(inWords(*facts.off), facts.doubt ? tr(", not sure") : QString())
+           : QString(),
        facts.off && !facts.doubt},
       {Desk::texture, tr("Texture"),
        tr("Make a texture of the scan, or lay one along a path that you draw"),

@@ -37,10 +37,11 @@ ModeSwitch::ModeSwitch(QWidget* parent) : QWidget(parent), buttons_(new QButtonG
     buttons_->addButton(button, static_cast<int>(choice.mode));
     row->addWidget(button);
   }
-  setStyleSheet(
-      themed("QToolButton { border: 1px solid @grip; padding: 3px; background: @soft; }"
-             "QToolButton:hover { background: @hover; }"
-             "QToolButton:checked { background: @strong; color: white; border-color: @strong; }"));
+  dress(*this,
+        QStringLiteral(
+            "QToolButton { border: 1px solid @grip; padding: 3px; background: @soft; }"
+            "QToolButton:hover { background: @hover; }"
+            "QToolButton:checked { background: @strong; color: white; border-color: @strong; }"));
   setMode(TouchMode::contact);
   connect(buttons_, &QButtonGroup::idClicked, this,
           [this](int id) { emit chosen(static_cast<TouchMode>(id)); });

@@ -12,6 +12,8 @@
 #include <QRegularExpression>
 #include <QStyleFactory>
 #include <QStyleOption>
+#include <QVariant>
+#include <QWidget>
 
 namespace patina {
 namespace {
@@ -23,18 +25,19 @@ struct Ink {
 constexpr Ink kInks[] = {
     {"window", "#f1f3f6", "#23272e"}, // behind everything
     {"card", "#ffffff", "#2b3038"},   // what text and numbers stand on
-    {"soft", "#f6f8fa", "#31363f"},     {"button", "#e8ebf0", "#3a414c"},
-    {"hover", "#e0e6ee", "#434c59"},    {"chosen", "#cfe0f3", "#2d4a68"},
-    {"notice", "#e3eefa", "#2b3f55"},   {"text", "#222832", "#e6e9ee"},
+    {"soft", "#f6f8fa", "#31363f"},      {"button", "#e8ebf0", "#3a414c"},
+    {"hover", "#e0e6ee", "#434c59"},     {"chosen", "#cfe0f3", "#2d4a68"},
+    {"notice", "#e3eefa", "#2b3f55"},    {"text", "#222832", "#e6e9ee"},
     {"quiet", "#5b6575", "#aab4c2"}, // captions
     {"faint", "#5f6875", "#a9b3c1"}, // what is undone, or cannot be used
     {"line", "#d5dae2", "#454d59"},  // frames, grids
-    {"grip", "#c3cad5", "#5b6573"},     {"strong", "#2b6cb0", "#2b6cb0"}, // below white
-    {"accent", "#2b6cb0", "#6cabe6"},                                     // lines
-    {"link", "#14568c", "#8fc1f0"},     {"warm", "#cc4a2c", "#e8795c"},
-    {"warn", "#7a4f00", "#f0c060"},     {"bad", "#a12a1a", "#ff9d8f"},
-    {"series_x", "#d55e00", "#f08030"}, {"series_y", "#009e73", "#20c090"},
-    {"series_z", "#0072b2", "#56b4e9"}, {"series_e", "#1f5ca8", "#7fb2f0"}};
+    {"grip", "#c3cad5", "#5b6573"},      {"strong", "#2b6cb0", "#2b6cb0"}, // below white
+    {"recording", "#b3261e", "#b3261e"},                                   // below white
+    {"accent", "#2b6cb0", "#6cabe6"},                                      // lines
+    {"link", "#14568c", "#8fc1f0"},      {"warm", "#cc4a2c", "#e8795c"},
+    {"warn", "#7a4f00", "#f0c060"},      {"bad", "#a12a1a", "#ff9d8f"},
+    {"series_x", "#d55e00", "#f08030"},  {"series_y", "#009e73", "#20c090"},
+    {"series_z", "#0072b2", "#56b4e9"},  {"series_e", "#1f5ca8", "#7fb2f0"}};
 
 // Fusion frames a box in its ground made darker, which nobody sees where the ground is dark.
 class FramedBoxes final : public QProxyStyle {
@@ -57,6 +60,8 @@ class FramedBoxes final : public QProxyStyle {
   }
 };
 
+constexpr const char* kSheet = "sheet"; // as it was given, of what is dressed
+
 bool isDark() {
   return QApplication::palette().color(QPalette::Window).lightness() < 128;
 }
@@ -64,7 +69,11 @@ bool isDark() {
 } // namespace
 
 Theme systemTheme() {
-  return isDark() ? Theme::dark : Theme::light;
+  const QPalette ours = QApplication::palette();
+  QApplication::setPalette(QPalette()); // that of the platform shows through
+  const Theme found = isDark() ? Theme::dark : Theme::light;
+  if (ours.resolve() != 0) QApplication::setPalette(ours);
+  return found;
 }
 
 QColor ink(const char* name) {
@@ -74,27 +83,33 @@ QColor ink(const char* name) {
   throw std::invalid_argument(std::string("no ink is called ") + name);
 }
 
-QString themed(const char* sheet) {
+const palette::Ground& pictureGround() {
+  return isDark() ? palette::kDark : palette::kLight;
+}
+
+void dress(QWidget& widget, const QString& sheet) {
   static const QRegularExpression kName(QStringLiteral("@([a-z_]+)"));
-  QString made = QString::fromUtf8(sheet);
+  QString made = sheet;
   for (auto name = kName.match(made); name.hasMatch(); name = kName.match(made))
     made.replace(name.capturedStart(), name.capturedLength(),
                  ink(name.captured(1).toUtf8().constData()).name());
-  return made;
+  widget.setProperty(kSheet, sheet);
+  if (widget.styleSheet() != made) widget.setStyleSheet(made);
 }
 
-QString cardStyle() {
-  return themed("QGroupBox { background: @card; border: 1px solid @line;"
-                " border-radius: 6px; margin-top: 22px; padding: 6px 8px 6px 8px; }"
-                "QGroupBox::title { subcontrol-origin: margin; left: 2px; top: 2px;"
-                " color: @text; font-weight: bold; }"
-                "QScrollBar:vertical { width: 10px; border: none; background: transparent; }"
-                "QScrollBar::handle:vertical { background: @grip; border-radius: 4px;"
-                " min-height: 24px; margin: 1px; }"
-                "QScrollBar::handle:vertical:disabled { background: transparent; }"
-                "QScrollBar::add-line:vertical, QScrollBar::sub-line:vertical { height: 0; }"
-                "QLabel[quiet=\"true\"] { color: @quiet; }"
-                "QLabel[bad=\"true\"] { color: @bad; }");
+void dressAsCards(QWidget& widget) {
+  dress(widget,
+        QStringLiteral("QGroupBox { background: @card; border: 1px solid @line;"
+                       " border-radius: 6px; margin-top: 22px; padding: 6px 8px 6px 8px; }"
+                       "QGroupBox::title { subcontrol-origin: margin; left: 2px; top: 2px;"
+                       " color: @text; font-weight: bold; }"
+                       "QScrollBar:vertical { width: 10px; border: none; background: transparent; }"
+                       "QScrollBar::handle:vertical { background: @grip; border-radius: 4px;"
+                       " min-height: 24px; margin: 1px; }"
+                       "QScrollBar::handle:vertical:disabled { background: transparent; }"
+                       "QScrollBar::add-line:vertical, QScrollBar::sub-line:vertical { height: 0; }"
+                       "QLabel[quiet=\"true\"] { color: @quiet; }"
+                       "QLabel[bad=\"true\"] { color: @bad; }"));
 }
 
 void applyStyle(QApplication& application, Theme theme) {
@@ -121,6 +136,9 @@ void applyStyle(QApplication& application, Theme theme) {
   QFont font = application.font();
   font.setPointSizeF(9);
   application.setFont(font);
+  for (QWidget* widget : QApplication::allWidgets())
+    if (const QVariant sheet = widget->property(kSheet); sheet.isValid())
+      dress(*widget, sheet.toString());
 }
 
 } // namespace patina

@@ -34,12 +34,14 @@ ToolBar::ToolBar(QWidget* parent)
   setOrientation(Qt::Vertical);
   setIconSize({20, 20});
   setToolButtonStyle(Qt::ToolButtonIconOnly);
-  setStyleSheet(themed(
-      "QToolBar { border: none; border-right: 1px solid @line; padding: 6px 3px; spacing: 2px; }"
-      "QToolButton { padding: 5px; border: 1px solid transparent; border-radius: 4px; }"
-      "QToolButton:hover { background: @hover; }"
-      "QToolButton:checked { background: @chosen; border-color: @accent; }"
-      "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
+  dress(*this,
+        QStringLiteral(
+            "QToolBar { border: none; border-right: 1px solid @line; padding: 6px 3px; spacing: "
+            "2px; }"
+            "QToolButton { padding: 5px; border: 1px solid transparent; border-radius: 4px; }"
+            "QToolButton:hover { background: @hover; }"
+            "QToolButton:checked { background: @chosen; border-color: @accent; }"
+            "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
   auto* menu = new QMenu(more_);
   for (const ToolCard& card : toolCards()) {
     QAction* action = group_->addAction(iconOf(card.choice), card.words);

@@ -50,7 +50,7 @@ FoldingTabs* makeColumn(const WindowParts& parts) {
   parts.display->layout()->addWidget(parts.paint);
   auto* scroll = new QScrollArea;
   scroll->setObjectName(QStringLiteral("cards"));
-  scroll->setStyleSheet(cardStyle());
+  dressAsCards(*scroll);
   scroll->setWidget(side);
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);

@@ -43,7 +43,8 @@ QString shortcutsText() {
       "<tr><td><b>O</b></td><td>without perspective, and with it</td></tr>"
       "<tr><td><b>M T S I W N B E K</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
       "band, field extent, stability</td></tr>"
-      "<tr><td><b>V A P H D G J U X</b></td><td>feel, navigate, paint, relief, stiffness, friction, "
+      "<tr><td><b>V A P H D G J U X</b></td><td>feel, navigate, paint, relief, stiffness, "
+      "friction, "
       "damping, roughness, erase</td></tr>"
       "<tr><td><b>Ctrl + 0, 8, 9, 1, 2, 3</b></td><td>the desks Scan, Align, Texture, Feel, Paint, "
       "Analyse</td></tr>"
@@ -182,14 +183,13 @@ void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
 }
 
 void addLayers(QMenu& menu, DisplayPanel* display) {
-  const std::pair<Layer, int> keys[] = {
-      {Layer::mesh, Qt::Key_M}, {Layer::tip, Qt::Key_T},       {Layer::slice, Qt::Key_S},
-      {Layer::iso, Qt::Key_I},  {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
-      {Layer::band, Qt::Key_B}, {Layer::extent, Qt::Key_E},    {Layer::stability, Qt::Key_K}};
+  const std::pair<Layer, int> keys[] = {{Layer::mesh, Qt::Key_M},      {Layer::tip, Qt::Key_T},
+                                        {Layer::slice, Qt::Key_S},     {Layer::iso, Qt::Key_I},
+                                        {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
+                                        {Layer::band, Qt::Key_B},      {Layer::extent, Qt::Key_E},
+                                        {Layer::stability, Qt::Key_K}, {Layer::scale, Qt::Key_L}};
   for (const auto& [layer, key] : keys) {
-    const auto words = name(layer);
-    QAction* action = menu.addAction(
-        tr("Show %1").arg(QString::fromUtf8(words.data(), static_cast<int>(words.size()))));
+    QAction* action = menu.addAction(tr("Show %1").arg(display->caption(layer).toLower()));
     action->setCheckable(true);
     action->setChecked(display->shown(layer));
     action->setShortcut(key);
@@ -271,6 +271,8 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       Qt::Key_F9);
   bar.addSeparator();
   bar.addAction(parts.commands[Command::record]);
+  bar.widgetForAction(parts.commands[Command::record])
+      ->setObjectName(QStringLiteral("record_button"));
 }
 
 void addHelpMenu(QMainWindow* window) {
@@ -303,12 +305,15 @@ void addMenus(QMainWindow& window, WindowParts& parts, const Controllers& contro
   bar->setObjectName(QStringLiteral("tools"));
   bar->setMovable(false);
   bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
-  bar->setStyleSheet(themed(
-      "QToolBar { border: none; border-bottom: 1px solid @line; padding: 1px 6px; spacing: 2px; }"
-      "QToolButton { padding: 3px 8px; border: 1px solid transparent; border-radius: 4px; }"
-      "QToolButton:hover { background: @hover; }"
-      "QToolButton:checked { background: @strong; color: white; }"
-      "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
+  dress(*bar,
+        QStringLiteral(
+            "QToolBar { border: none; border-bottom: 1px solid @line; padding: 1px 6px; spacing: "
+            "2px; }"
+            "QToolButton { padding: 3px 8px; border: 1px solid transparent; border-radius: 4px; }"
+            "QToolButton:hover { background: @hover; }"
+            "QToolButton:checked { background: @strong; color: white; }"
+            "QToolButton#record_button:checked { background: @recording; }"
+            "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
   bar->addActions(controllers.desks.actions());
   bar->addSeparator();
   addFileMenu(window, parts, controllers, *bar);

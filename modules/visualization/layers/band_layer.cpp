@@ -22,10 +22,7 @@ BandLayer::BandLayer(vtkRenderer& scene, vtkRenderer& overlay)
   scene.AddActor(shell_);
 
   vtkTextProperty* text = legend_->GetTextProperty();
-  text->SetFontFamilyToArial();
   text->BoldOn();
-  text->SetBackgroundColor(1, 1, 1);
-  text->SetBackgroundOpacity(0.72);
   text->SetVerticalJustificationToTop();
   legend_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   legend_->SetPosition(0.014, 0.975);
@@ -40,7 +37,6 @@ void BandLayer::update(const SurfaceField& field, const TouchBand& band) {
   const palette::Color& color = bandColor(band);
   shell_->GetProperty()->SetColor(palette::forVtk(color));
   legend_->SetInput((" " + bandLegend(band, field) + " ").c_str());
-  legend_->GetTextProperty()->SetColor(0.62 * color[0], 0.62 * color[1], 0.62 * color[2]);
 }
 
 void BandLayer::setVisible(bool shell, bool legend) {
@@ -48,8 +44,10 @@ void BandLayer::setVisible(bool shell, bool legend) {
   legend_->SetVisibility(legend);
 }
 
-void BandLayer::setTextSize(int pixels) {
-  legend_->GetTextProperty()->SetFontSize(pixels);
+void BandLayer::setLettering(const Lettering& letters) {
+  palette::Color color;
+  shell_->GetProperty()->GetColor(color.data());
+  write(*legend_->GetTextProperty(), letters, color, true);
 }
 
 } // namespace patina

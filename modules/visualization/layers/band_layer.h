@@ -7,6 +7,7 @@
 #include <vtkTextActor.h>
 
 #include "field/store/surface_field.h"
+#include "visualization/values/lettering.h"
 #include "visualization/values/touch_band.h"
 
 namespace patina {
@@ -20,7 +21,7 @@ class BandLayer {
   void update(const SurfaceField& field, const TouchBand& band);
   // The legend alone goes with the tint of a slice.
   void setVisible(bool shell, bool legend);
-  void setTextSize(int pixels);
+  void setLettering(const Lettering& letters);
   vtkActor& shell() { return *shell_; } // to be cut by the slice
 
  private:

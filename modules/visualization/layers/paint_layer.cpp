@@ -90,7 +90,7 @@ void PaintLayer::Impl::setColors(const ValueRange& wanted) {
   read->DeepCopy(colors);
   read->SetRange(reading.per_si * wanted.low, reading.per_si * wanted.high);
   bar->SetLookupTable(read);
-  bar->SetTitle((reading.title + "\n").c_str());
+  setTitle(*bar, reading.title);
   bar->SetLabelFormat("%.4g");
 }
 
@@ -203,10 +203,6 @@ void PaintLayer::prepare() {
       drawn.image->prepare(quantity, my.colors);
   }
   my.showWhatIsDrawn();
-}
-
-void PaintLayer::setTextSize(int pixels) {
-  patina::setTextSize(*impl_->bar, pixels);
 }
 
 void PaintLayer::setWireframe(bool on) {

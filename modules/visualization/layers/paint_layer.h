@@ -47,7 +47,6 @@ class PaintLayer {
   void setVisible(bool on); // surfaces and bar
   // Brings textures and values up to date with what was given. Before a render.
   void prepare();
-  void setTextSize(int pixels);
   void setWireframe(bool on);
   void setClippingPlane(vtkPlane* plane); // nullptr: none
   vtkScalarBarActor& bar();

@@ -86,6 +86,26 @@ vtkSmartPointer<vtkPolyData> linesOf(const std::vector<DrawnSample>& samples, bo
   return data;
 }
 
+vtkSmartPointer<vtkPolyData> residualsOf(const std::vector<DrawnSample>& samples, double stretch) {
+  const vtkNew<vtkPoints> points;
+  const vtkNew<vtkCellArray> lines;
+  const vtkNew<vtkDoubleArray> values;
+  for (const DrawnSample& sample : samples) {
+    if (!sample.foot || !(stretch > 0)) continue;
+    const Vec3 end = *sample.foot + stretch * (sample.position - *sample.foot);
+    lines->InsertNextCell(2);
+    for (const Vec3* point : {&*sample.foot, &end}) {
+      lines->InsertCellPoint(points->InsertNextPoint(point->data()));
+      values->InsertNextValue(sample.value);
+    }
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(lines);
+  data->GetPointData()->SetScalars(values);
+  return data;
+}
+
 vtkPolyDataMapper* meshMapper(vtkActor& actor) {
   return vtkPolyDataMapper::SafeDownCast(actor.GetMapper());
 }
@@ -96,6 +116,7 @@ vtkSmartPointer<vtkLookupTable> pathColors(const ValueRange& range) {
   auto colors = vtkSmartPointer<vtkLookupTable>::New();
   colors->SetNumberOfTableValues(256);
   colors->SetRange(range.low, range.high);
+  colors->SetNanColor(palette::kNoValue[0], palette::kNoValue[1], palette::kNoValue[2], 1);
   for (int i = 0; i < 256; ++i) {
     double color[4];
     const double part = kPalest + (1 - kPalest) * i / 255;
@@ -110,13 +131,15 @@ vtkSmartPointer<vtkLookupTable> pathColors(const ValueRange& range) {
 PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : tube_(surfaceActor(palette::kForce)), line_(surfaceActor(palette::kForce)),
       thread_(surfaceActor(palette::kToolShaft)), bridge_(surfaceActor(palette::kQuiet)),
-      mark_actor_(vtkSmartPointer<vtkActor>::New()),
+      residuals_(surfaceActor(palette::kForce)), mark_actor_(vtkSmartPointer<vtkActor>::New()),
       mark_mapper_(vtkSmartPointer<vtkGlyph3DMapper>::New()), bar_(scalarBar("")) {
   tube_->GetProperty()->SetAmbient(0.35);
   line_->GetProperty()->SetLineWidth(3);
   bridge_->GetProperty()->SetLineWidth(2);
   thread_->GetProperty()->SetLineWidth(1.5);
-  for (const auto& actor : {line_, thread_, bridge_}) actor->GetProperty()->LightingOff();
+  residuals_->GetProperty()->SetLineWidth(1.5);
+  for (const auto& actor : {line_, thread_, bridge_, residuals_})
+    actor->GetProperty()->LightingOff();
   const vtkNew<vtkSphereSource> ball;
   ball->SetRadius(1);
   mark_mapper_->SetSourceConnection(ball->GetOutputPort());
@@ -124,7 +147,7 @@ PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
   mark_mapper_->SetInputData(vtkSmartPointer<vtkPolyData>::New());
   mark_actor_->SetMapper(mark_mapper_);
   mark_actor_->GetProperty()->SetColor(palette::forVtk(palette::kForce));
-  for (const auto& actor : {tube_, line_, bridge_, mark_actor_}) scene.AddActor(actor);
+  for (const auto& actor : {tube_, line_, bridge_, residuals_, mark_actor_}) scene.AddActor(actor);
   overlay.AddActor(thread_);
   bar_->SetLabelFormat("%.3g");
   bar_->SetVisibility(false);
@@ -156,16 +179,19 @@ void PathLayer::setPath(const DrawnPath& path) {
   if (path.through) thread->SetLines(lines->GetLines());
   meshMapper(*thread_)->SetInputData(thread);
   meshMapper(*bridge_)->SetInputData(linesOf(drawn_, true));
+  meshMapper(*residuals_)->SetInputData(residualsOf(drawn_, path.stretch));
+  colors_ = nullptr;
   setMarks(marks_);
   if (!has_values) return;
-  const auto colors = pathColors(rounded(range));
-  for (const auto& actor : {tube_, line_}) {
+  range.high = std::max(range.high, range.low + path.least_span);
+  colors_ = pathColors(rounded(range));
+  for (const auto& actor : {tube_, line_, residuals_}) {
     meshMapper(*actor)->ScalarVisibilityOn();
-    meshMapper(*actor)->SetLookupTable(colors);
+    meshMapper(*actor)->SetLookupTable(colors_);
     meshMapper(*actor)->UseLookupTableScalarRangeOn();
   }
-  bar_->SetLookupTable(colors);
-  bar_->SetTitle((path.title + "\n").c_str());
+  bar_->SetLookupTable(colors_);
+  setTitle(*bar_, path.title);
 }
 
 void PathLayer::setMarks(const std::vector<DrawnMark>& marks) {
@@ -176,11 +202,6 @@ void PathLayer::setMarks(const std::vector<DrawnMark>& marks) {
   data->SetPoints(points);
   mark_mapper_->SetInputData(data);
   mark_mapper_->SetScaleFactor(kMark * sizeOf(boxOf(drawn_)));
-}
-
-void PathLayer::setTextSize(int pixels, int wide) {
-  patina::setTextSize(*bar_, pixels);
-  placeScalarBar(*bar_, 0, scalarBarShare(wide, pixels));
 }
 
 Box3 PathLayer::extent() const {

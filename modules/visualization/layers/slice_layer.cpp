@@ -57,7 +57,7 @@ struct Ink {
       const double cover = std::clamp(8 * value.weight, 0.0, 1.0);
       const unsigned char* of_value = material->colors->MapValue(value.felt);
       for (std::size_t c = 0; c < 3; ++c)
-        color[c] = cover * of_value[c] + (1 - cover) * 255 * palette::kBackgroundLow[c];
+        color[c] = cover * of_value[c] + (1 - cover) * 255 * palette::kLight.low[c];
     } else {
       const unsigned char* of_distance = map->MapValue(mm);
       std::copy(of_distance, of_distance + 3, color.begin());
@@ -199,10 +199,6 @@ void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
                                  ink));
   bar_->SetLookupTable(map);
   bar_->SetLabelFormat(limit_mm < 1 ? "%+.2f" : limit_mm < 50 ? "%+.1f" : "%+.0f");
-}
-
-void SliceLayer::setTextSize(int pixels) {
-  patina::setTextSize(*bar_, pixels);
 }
 
 void SliceLayer::setVisible(bool on) {

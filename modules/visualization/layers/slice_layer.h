@@ -44,7 +44,6 @@ class SliceLayer {
               const std::optional<TouchBand>& band = {},
               const std::optional<SliceMaterial>& material = {});
   void setVisible(bool on);
-  void setTextSize(int pixels);
   // The plane itself, to cut the surfaces with; its normal is the slice's axis.
   vtkPlane& plane() { return *plane_; }
   vtkScalarBarActor& bar() { return *bar_; }

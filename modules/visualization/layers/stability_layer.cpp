@@ -104,8 +104,4 @@ void StabilityLayer::setVisible(bool on) {
   bar_->SetVisibility(on);
 }
 
-void StabilityLayer::setTextSize(int pixels) {
-  patina::setTextSize(*bar_, pixels);
-}
-
 } // namespace patina

@@ -31,7 +31,6 @@ class StabilityLayer {
   // is has its colour in the legend. Throws std::invalid_argument for another number of them.
   void update(const TriangleMesh& surface, const std::vector<float>& ratio);
   void setVisible(bool on);
-  void setTextSize(int pixels);
   bool hasTags() const { return tags_; }  // at the scale, which then needs more room
   vtkActor& surface() { return *actor_; } // to be cut by the slice
   vtkScalarBarActor& bar() { return *bar_; }

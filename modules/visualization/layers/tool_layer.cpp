@@ -109,12 +109,7 @@ ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
   for (const auto& actor : {spring_, stem_, ghost_, contact_, arrow_shaft_, arrow_head_})
     overlay.AddActor(actor);
   vtkTextProperty* text = label_->GetTextProperty();
-  text->SetFontFamilyToArial();
-  text->SetFontSize(16);
   text->BoldOn();
-  text->SetColor(palette::forVtk(palette::kForce));
-  text->SetBackgroundColor(1, 1, 1);
-  text->SetBackgroundOpacity(0.72);
   text->SetVerticalJustificationToCentered();
   label_->SetDisplayOffset(12, 0);
   overlay.AddActor(label_);
@@ -144,6 +139,13 @@ void ToolLayer::faceCamera(vtkCamera& camera) {
 void ToolLayer::setVisible(bool on) {
   visible_ = on;
   place();
+}
+
+void ToolLayer::setLettering(const Lettering& letters) {
+  Lettering larger = letters;
+  larger.size += 3;
+  write(*label_->GetTextProperty(), larger, palette::kForce, true);
+  shaft_->GetProperty()->SetColor(palette::forVtk(letters.ground.shaft));
 }
 
 std::optional<Vec3> ToolLayer::arrowEnd() const {

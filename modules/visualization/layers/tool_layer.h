@@ -10,6 +10,7 @@
 #include <vtkSmartPointer.h>
 
 #include "scene/tool_sample.h"
+#include "visualization/values/lettering.h"
 
 namespace patina {
 
@@ -29,6 +30,7 @@ class ToolLayer {
   // arrow keep their size in the picture, whatever the zoom.
   void faceCamera(vtkCamera& camera);
   void setVisible(bool on);
+  void setLettering(const Lettering& letters);
   // Of the force, for the camera last faced; nullopt where none is drawn.
   std::optional<Vec3> arrowEnd() const;
 

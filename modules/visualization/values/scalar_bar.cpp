@@ -9,48 +9,50 @@
 
 namespace patina {
 
+// With an empty line below, or the bar would touch it.
+void setTitle(vtkScalarBarActor& bar, const std::string& title) {
+  bar.SetTitle((title + "\n").c_str());
+}
+
 vtkSmartPointer<vtkScalarBarActor> scalarBar(const std::string& title) {
   auto bar = vtkSmartPointer<vtkScalarBarActor>::New();
-  bar->SetTitle((title + "\n").c_str());
-  bar->SetNumberOfLabels(5);
+  setTitle(*bar, title);
   bar->UnconstrainedFontSizeOn();
   for (vtkTextProperty* text : {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
-    text->SetColor(palette::forVtk(palette::kText));
-    text->SetFontFamilyToArial();
     text->ItalicOff();
     text->BoldOff();
     text->ShadowOff();
   }
   bar->GetTitleTextProperty()->BoldOn();
   // Of what is no value: a tag beside its swatch.
-  vtkTextProperty* tag = bar->GetAnnotationTextProperty();
-  tag->ShallowCopy(bar->GetLabelTextProperty());
-  tag->SetBackgroundColor(palette::forVtk(palette::kBackgroundHigh));
-  tag->SetBackgroundOpacity(1);
+  bar->GetAnnotationTextProperty()->ShallowCopy(bar->GetLabelTextProperty());
   bar->SetBarRatio(0.22);
   // Its own plate: what lies behind never mixes with the colours that are read.
   bar->DrawBackgroundOn();
-  bar->GetBackgroundProperty()->SetColor(palette::forVtk(palette::kBackgroundHigh));
-  bar->SetTextPad(6);
   bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  bar->SetHeight(0.5);
-  placeScalarBar(*bar, 0, 0.12);
   return bar;
 }
 
-double scalarBarShare(int wide, int text_size) {
-  return wide > 0 ? std::clamp(8.8 * text_size / wide, 0.12, 0.3) : 0.12;
+double scalarBarShare(int wide, const Lettering& letters) {
+  return wide > 0 ? std::clamp(8.8 * letters.pixels / wide, 0.12, 0.3) : 0.12;
 }
 
-void placeScalarBar(vtkScalarBarActor& bar, int place, double share) {
+void placeScalarBar(vtkScalarBarActor& bar, int place, const Lettering& letters,
+                    const std::array<int, 2>& size) {
+  const auto [wide, high] = size;
+  const double share = scalarBarShare(wide, letters);
+  const double line = high > 0 ? 1.0 * letters.pixels / high : 0.02;
+  const double height = std::clamp(14 * line, 0.5, 0.8);
   bar.SetWidth(share - 0.01);
-  bar.SetPosition(1 - share * (place + 1), 0.26);
-}
-
-void setTextSize(vtkScalarBarActor& bar, int pixels) {
-  for (vtkTextProperty* text :
-       {bar.GetTitleTextProperty(), bar.GetLabelTextProperty(), bar.GetAnnotationTextProperty()})
-    text->SetFontSize(pixels);
+  bar.SetHeight(height);
+  bar.SetPosition(1 - share * (place + 1), 0.52 - height / 2);
+  // As many numbers as stand apart.
+  bar.SetNumberOfLabels(std::clamp(static_cast<int>((height / line - 4.5) / 1.8), 2, 5));
+  bar.SetTextPad(letters.pixels / 2);
+  for (vtkTextProperty* text : {bar.GetTitleTextProperty(), bar.GetLabelTextProperty()})
+    write(*text, letters, letters.ground.text, false);
+  write(*bar.GetAnnotationTextProperty(), letters, letters.ground.text, true);
+  bar.GetBackgroundProperty()->SetColor(palette::forVtk(letters.ground.plate));
 }
 
 } // namespace patina

@@ -4,12 +4,15 @@
 
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
+#include <vtkFloatArray.h>
 #include <vtkLineSource.h>
+#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 
+#include "visualization/layers/scale_layer.h"
 #include "visualization/surfaces/surface_data.h"
 #include "visualization/values/palette.h"
 #include "visualization/values/scalar_bar.h"
@@ -60,14 +63,21 @@ std::array<Vec3, 4> frustumCorners(const DrawnCamera& camera) {
 
 struct ScanPicture::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
+  vtkSmartPointer<vtkAxesActor> corner_axes = axesActor();
+  palette::Ground ground = palette::kLight;
   PathLayer path{*scene, *overlay};
   HandleLayer handle{*overlay};
+  ScaleLayer scale{*overlay};
+  bool has_scale = false;
   vtkSmartPointer<vtkActor> mesh = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> highlight = surfaceActor(palette::kTool);
   vtkSmartPointer<vtkActor> frustum = lineActor(palette::kToolShaft, 1.6);
   vtkSmartPointer<vtkActor> shaft = lineActor(palette::kToolShaft, 3);
   vtkSmartPointer<vtkActor> ball = surfaceActor(palette::kTool);
   std::array<vtkSmartPointer<vtkActor>, 3> axes;
+  vtkSmartPointer<vtkPolyData> mesh_data;
+  std::vector<std::int32_t> vertex_of_point; // of the mesh
+  bool has_values = false;
   Box3 mesh_box;
   std::optional<DrawnCamera> camera;
   std::optional<DrawnProbe> probe;
@@ -80,6 +90,7 @@ struct ScanPicture::Impl {
     return window != nullptr ? std::array{window->GetSize()[0], window->GetSize()[1]}
                              : std::array{1, 1};
   }
+  Lettering letters() const { return letteringOf(scene->GetRenderWindow(), ground); }
   std::vector<Vec3> outermost(bool with_camera) const {
     std::vector<Vec3> points;
     for (const Box3& box : {mesh_box, path.extent()})
@@ -108,7 +119,7 @@ struct ScanPicture::Impl {
     small->SetFocalPoint(0, 0, 0);
     small->SetViewUp(eye.GetViewUp());
     const auto [wide, high] = size();
-    const double side = std::max(0.15 * high, 8. * textSize(scene->GetRenderWindow()));
+    const double side = std::max(0.15 * high, 8. * letters().pixels);
     corner->SetViewport(0, 0, std::min(1., side / std::max(1, wide)),
                         std::min(1., side / std::max(1, high)));
     corner->ResetCameraClippingRange();
@@ -117,9 +128,7 @@ struct ScanPicture::Impl {
 
 ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   Impl& my = *impl_;
-  my.scene->SetBackground(palette::forVtk(palette::kBackgroundLow));
-  my.scene->SetBackground2(palette::forVtk(palette::kBackgroundHigh));
-  my.scene->GradientBackgroundOn();
+  setBackground(*my.scene, my.ground);
   addLights(*my.scene);
   const vtkNew<vtkSphereSource> ball;
   ball->SetRadius(1);
@@ -146,7 +155,7 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   addLights(*my.overlay);
   my.corner->SetLayer(1);
   my.corner->InteractiveOff();
-  my.corner->AddActor(axesActor());
+  my.corner->AddActor(my.corner_axes);
   for (const auto& each : {my.mesh, my.highlight, my.frustum}) each->SetVisibility(false);
   setProbe(std::nullopt);
 }
@@ -168,8 +177,26 @@ void ScanPicture::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   Impl& my = *impl_;
   my.mesh_box = mesh ? bounds(*mesh) : Box3();
   my.mesh->SetVisibility(mesh != nullptr);
-  setData(*my.mesh, mesh ? surfaceData(*mesh) : vtkSmartPointer<vtkPolyData>::New());
+  my.vertex_of_point.clear();
+  my.mesh_data = mesh ? surfaceData(*mesh, smoothNormals(*mesh), my.vertex_of_point)
+                      : vtkSmartPointer<vtkPolyData>::New();
+  setData(*my.mesh, my.mesh_data);
+  setMeshValues({});
+}
+
+void ScanPicture::setMeshValues(const std::vector<float>& values) {
+  Impl& my = *impl_;
+  my.has_values = !values.empty();
   my.dirty = true;
+  my.mesh->GetMapper()->SetScalarVisibility(my.has_values);
+  // Shine would shift colours that are to be read.
+  my.mesh->GetProperty()->SetSpecular(my.has_values ? 0 : 0.16);
+  if (!my.has_values) return;
+  const vtkNew<vtkFloatArray> shown;
+  for (const std::int32_t vertex : my.vertex_of_point)
+    shown->InsertNextValue(values[static_cast<std::size_t>(vertex)]);
+  my.mesh_data->GetPointData()->SetScalars(shown);
+  my.mesh_data->Modified();
 }
 
 void ScanPicture::setHighlight(std::shared_ptr<const TriangleMesh> faces) {
@@ -225,6 +252,11 @@ void ScanPicture::setProbe(const std::optional<DrawnProbe>& probe) {
                                        (kAxis * Vec3::Unit(static_cast<Eigen::Index>(i)))}}));
 }
 
+void ScanPicture::setScale(bool on) {
+  impl_->has_scale = on;
+  impl_->dirty = true;
+}
+
 HandleLayer& ScanPicture::handle() {
   return impl_->handle;
 }
@@ -244,6 +276,15 @@ void ScanPicture::lookAtAll(const Vec3& up) {
   my.fit(my.mesh_box.isEmpty());
 }
 
+void ScanPicture::setGround(const palette::Ground& ground) {
+  Impl& my = *impl_;
+  my.ground = ground;
+  setBackground(*my.scene, ground);
+  for (const auto& thin : {my.frustum, my.shaft})
+    thin->GetProperty()->SetColor(palette::forVtk(ground.shaft));
+  my.dirty = true;
+}
+
 void ScanPicture::setView(ViewPreset view) {
   turnCamera(*impl_->scene->GetActiveCamera(), view);
   fit();
@@ -256,9 +297,8 @@ void ScanPicture::fit() {
 void ScanPicture::Impl::fit(bool with_camera) {
   Impl& my = *this;
   const auto [wide, high] = my.size();
-  const int text = textSize(my.scene->GetRenderWindow());
   // The scalar bar stands at the right edge: what is fitted goes to its left.
-  const double taken = my.path.hasBar() ? scalarBarShare(wide, text) : 0;
+  const double taken = my.path.hasBar() ? scalarBarShare(wide, my.letters()) : 0;
   const std::vector<Vec3> points = my.outermost(with_camera);
   Box3 box;
   for (const Vec3& point : points) box.extend(point);
@@ -274,7 +314,14 @@ std::optional<double> ScanPicture::timeAt(double x, double y, double reach) cons
 
 bool ScanPicture::prepare() {
   Impl& my = *impl_;
-  my.path.setTextSize(textSize(my.scene->GetRenderWindow()), my.size()[0]);
+  placeScalarBar(my.path.bar(), 0, my.letters(), my.size());
+  setLettering(*my.corner_axes, my.letters());
+  my.scale.setVisible(my.has_scale && !(my.mesh_box.isEmpty() && my.path.extent().isEmpty()));
+  my.scale.update(*my.scene->GetActiveCamera(), my.size()[1], my.letters());
+  if (my.has_values && my.path.colors() != nullptr) {
+    my.mesh->GetMapper()->SetLookupTable(my.path.colors());
+    my.mesh->GetMapper()->UseLookupTableScalarRangeOn();
+  }
   my.sizeBall();
   my.handle.prepare();
   my.syncCorner();

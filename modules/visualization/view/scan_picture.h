@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -11,6 +12,7 @@
 #include "geometry/mesh/triangle_mesh.h"
 #include "visualization/layers/handle_layer.h"
 #include "visualization/layers/path_layer.h"
+#include "visualization/values/palette.h"
 #include "visualization/view/view_options.h"
 
 namespace patina {
@@ -39,19 +41,24 @@ class ScanPicture {
   vtkRenderer& renderer();
 
   void setMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: none
+  // One a vertex of the mesh, in the unit and the colours of the path; not finite: none there.
+  // Empty: the mesh has its own colour.
+  void setMeshValues(const std::vector<float>& values);
   // Faces that lie on the mesh, in another colour; nullptr: none.
   void setHighlight(std::shared_ptr<const TriangleMesh> faces);
   void setPath(const DrawnPath& path);
   void setMarks(const std::vector<DrawnMark>& marks);
   void setCamera(const std::optional<DrawnCamera>& camera);
   void setProbe(const std::optional<DrawnProbe>& probe);
+  void setScale(bool on); // a bar of a round length, where there is something
   HandleLayer& handle();
   void setDirty(); // the handle has changed
 
   // Path and mesh in the picture, with `up` up, at an angle; the camera too where there is no mesh.
   void lookAtAll(const Vec3& up);
-  void setView(ViewPreset view); // and fit
-  void fit();                    // path and mesh, from the present direction
+  void setGround(const palette::Ground& ground); // light, unless said
+  void setView(ViewPreset view);                 // and fit
+  void fit();                                    // path and mesh, from the present direction
   std::optional<double> timeAt(double x, double y, double reach) const; // see PathLayer
 
   // Call before a render. True if something changed since the last call.

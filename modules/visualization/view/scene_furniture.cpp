@@ -1,6 +1,6 @@
 #include "visualization/view/scene_furniture.h"
 
-#include <algorithm>
+#include <array>
 
 #include <vtkCaptionActor2D.h>
 #include <vtkLight.h>
@@ -11,6 +11,14 @@
 #include <vtkTextProperty.h>
 
 namespace patina {
+namespace {
+constexpr palette::Color kAxes[] = {{0.76, 0.23, 0.20}, {0.25, 0.56, 0.27}, {0.20, 0.38, 0.72}};
+
+std::array<vtkCaptionActor2D*, 3> captionsOf(vtkAxesActor& axes) {
+  return {axes.GetXAxisCaptionActor2D(), axes.GetYAxisCaptionActor2D(),
+          axes.GetZAxisCaptionActor2D()};
+}
+} // namespace
 
 vtkSmartPointer<vtkActor> surfaceActor(const palette::Color& color) {
   auto actor = vtkSmartPointer<vtkActor>::New();
@@ -66,33 +74,35 @@ vtkSmartPointer<vtkAxesActor> axesActor() {
   axes->SetNormalizedShaftLength(0.75, 0.75, 0.75);
   axes->SetNormalizedTipLength(0.25, 0.25, 0.25);
   axes->SetNormalizedLabelPosition(1.25, 1.25, 1.25);
-  const palette::Color colors[] = {{0.76, 0.23, 0.20}, {0.25, 0.56, 0.27}, {0.20, 0.38, 0.72}};
   vtkProperty* shafts[] = {axes->GetXAxisShaftProperty(), axes->GetYAxisShaftProperty(),
                            axes->GetZAxisShaftProperty()};
   vtkProperty* tips[] = {axes->GetXAxisTipProperty(), axes->GetYAxisTipProperty(),
                          axes->GetZAxisTipProperty()};
-  vtkCaptionActor2D* captions[] = {axes->GetXAxisCaptionActor2D(), axes->GetYAxisCaptionActor2D(),
-                                   axes->GetZAxisCaptionActor2D()};
+  const auto captions = captionsOf(*axes);
   const char* letters[] = {"x", "y", "z"};
-  for (int i = 0; i < 3; ++i) {
-    shafts[i]->SetColor(palette::forVtk(colors[i]));
-    tips[i]->SetColor(palette::forVtk(colors[i]));
+  for (std::size_t i = 0; i < 3; ++i) {
+    shafts[i]->SetColor(palette::forVtk(kAxes[i]));
+    tips[i]->SetColor(palette::forVtk(kAxes[i]));
     captions[i]->SetCaption(letters[i]);
     captions[i]->GetTextActor()->SetTextScaleModeToNone();
     vtkTextProperty* text = captions[i]->GetCaptionTextProperty();
-    text->SetFontFamilyToArial();
-    text->SetFontSize(14);
     text->BoldOn();
     text->ItalicOff();
     text->ShadowOff();
-    text->SetColor(palette::forVtk(colors[i]));
   }
   return axes;
 }
 
-int textSize(vtkRenderWindow* window) {
-  const int high = window != nullptr ? window->GetSize()[1] : 0;
-  return std::max(13, high / 60);
+void setLettering(vtkAxesActor& axes, const Lettering& letters) {
+  const auto captions = captionsOf(axes);
+  for (std::size_t i = 0; i < 3; ++i)
+    write(*captions[i]->GetCaptionTextProperty(), letters, kAxes[i], false);
+}
+
+void setBackground(vtkRenderer& renderer, const palette::Ground& ground) {
+  renderer.SetBackground(palette::forVtk(ground.low));
+  renderer.SetBackground2(palette::forVtk(ground.high));
+  renderer.GradientBackgroundOn();
 }
 
 } // namespace patina

@@ -3,12 +3,11 @@
 
 #include <vtkActor.h>
 #include <vtkAxesActor.h>
-#include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
 #include "core/types.h"
-#include "visualization/values/palette.h"
+#include "visualization/values/lettering.h"
 
 namespace patina {
 
@@ -19,7 +18,7 @@ void place(vtkActor& actor, const Pose& world_from_object);
 // Three lamps that go with the camera.
 void addLights(vtkRenderer& renderer);
 vtkSmartPointer<vtkAxesActor> axesActor();
-// Of small text [pixel]: readable in a window, and in proportion in a large picture.
-int textSize(vtkRenderWindow* window);
+void setLettering(vtkAxesActor& axes, const Lettering& letters);
+void setBackground(vtkRenderer& renderer, const palette::Ground& ground);
 
 } // namespace patina

@@ -16,9 +16,7 @@
 namespace patina {
 SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   Impl& my = *impl_;
-  my.scene->SetBackground(palette::forVtk(palette::kBackgroundLow));
-  my.scene->SetBackground2(palette::forVtk(palette::kBackgroundHigh));
-  my.scene->GradientBackgroundOn();
+  setBackground(*my.scene, my.ground);
   my.scene->AddActor(my.mesh_actor);
   my.scene->AddActor(my.iso_actor);
   addLights(*my.scene);
@@ -45,7 +43,7 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   addLights(*my.overlay);
   my.corner->SetLayer(1);
   my.corner->InteractiveOff();
-  my.corner->AddActor(axesActor());
+  my.corner->AddActor(my.axes);
   my.applyVisibility();
 }
 
@@ -197,6 +195,12 @@ bool SceneView::shown(Layer layer) const {
   return impl_->on(layer);
 }
 
+void SceneView::setGround(const palette::Ground& ground) {
+  impl_->ground = ground;
+  setBackground(*impl_->scene, ground);
+  impl_->dirty = true;
+}
+
 void SceneView::setView(ViewPreset view) {
   turnCamera(*impl_->scene->GetActiveCamera(), view);
   fit();
@@ -269,12 +273,13 @@ bool SceneView::prepare() {
     my.nodes_stale = false;
   }
   my.cutAt();
-  my.slice.setTextSize(textSize(my.scene->GetRenderWindow()));
-  my.band_layer.setTextSize(textSize(my.scene->GetRenderWindow()));
-  my.paint.setTextSize(textSize(my.scene->GetRenderWindow()));
-  my.stability.setTextSize(textSize(my.scene->GetRenderWindow()));
+  const Lettering letters = my.letters();
+  my.band_layer.setLettering(letters);
+  my.tool.setLettering(letters);
+  setLettering(*my.axes, letters);
   vtkCamera* camera = my.scene->GetActiveCamera();
   my.tool.faceCamera(*camera);
+  my.scale.update(*camera, my.size()[1], letters);
   my.applyVisibility();
   my.syncCorner();
   my.scene->ResetCameraClippingRange();

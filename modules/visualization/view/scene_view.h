@@ -66,7 +66,8 @@ class SceneView {
   void showOnly(const std::set<Layer>& layers);
   bool shown(Layer layer) const;
 
-  void setView(ViewPreset view); // and fit
+  void setGround(const palette::Ground& ground); // light, unless said
+  void setView(ViewPreset view);                 // and fit
   // While the camera moves and that takes long: bodies are drawn at half the resolution, and a mesh
   // of many triangles with fewer, once these are made, which is done behind the picture.
   void setMoving(bool moving);

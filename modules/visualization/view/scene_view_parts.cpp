@@ -38,8 +38,7 @@ int SceneView::Impl::bars() const {
 }
 
 double SceneView::Impl::barShare() const {
-  auto* window = scene->GetRenderWindow();
-  return window != nullptr ? scalarBarShare(window->GetSize()[0], textSize(window)) : 0.12;
+  return scalarBarShare(size()[0], letters());
 }
 
 void SceneView::Impl::choosePaint() {
@@ -87,9 +86,9 @@ void SceneView::Impl::applyVisibility() {
   const bool map = mapShown();
   stability.setVisible(map);
   const int places = bars();
-  placeScalarBar(slice.bar(), 0, barShare());
-  placeScalarBar(stability.bar(), places - 1, barShare());
-  placeScalarBar(paint.bar(), places - 1, barShare());
+  placeScalarBar(slice.bar(), 0, letters(), size());
+  placeScalarBar(stability.bar(), places - 1, letters(), size());
+  placeScalarBar(paint.bar(), places - 1, letters(), size());
   paint.setVisible(shownPaint().has_value());
   paint.setWireframe(on(Layer::wireframe));
   // At 0 the iso-surface is the mesh: one of them is seen, for two would fight.
@@ -103,6 +102,7 @@ void SceneView::Impl::applyVisibility() {
   band_layer.setVisible(shellShown(), bandShown() && (!map || on(Layer::slice)));
   slice.setVisible(on(Layer::slice) && field != nullptr);
   tool.setVisible(on(Layer::tip) && sample.has_value());
+  scale.setVisible(on(Layer::scale) && (mesh != nullptr || field != nullptr));
   nodes.setVisible(on(Layer::nodes) && field != nullptr);
   for (vtkActor* actor : {mesh_actor.Get(), iso_actor.Get(), &stability.surface()})
     actor->GetProperty()->SetEdgeVisibility(on(Layer::wireframe));
@@ -178,7 +178,7 @@ void SceneView::Impl::syncCorner() {
   small->SetViewUp(camera->GetViewUp());
   // Letters do not shrink with the picture: there is room for them beside the axes.
   const auto [wide, high] = size();
-  const double side = std::max(0.17 * high, 8.5 * textSize(scene->GetRenderWindow()));
+  const double side = std::max(0.17 * high, 8.5 * letters().pixels);
   corner->SetViewport(0, 0, std::min(1.0, side / std::max(1, wide)),
                       std::min(1.0, side / std::max(1, high)));
   corner->ResetCameraClippingRange();

@@ -12,6 +12,7 @@
 #include "visualization/layers/brush_cursor.h"
 #include "visualization/layers/node_layer.h"
 #include "visualization/layers/paint_layer.h"
+#include "visualization/layers/scale_layer.h"
 #include "visualization/layers/slice_layer.h"
 #include "visualization/layers/stability_layer.h"
 #include "visualization/layers/tool_layer.h"
@@ -25,6 +26,8 @@ namespace patina {
 
 struct SceneView::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
+  vtkSmartPointer<vtkAxesActor> axes = axesActor();
+  palette::Ground ground = palette::kLight;
   vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> iso_actor = surfaceActor(palette::kIso);
   vtkSmartPointer<vtkActor> coarse_actor = surfaceActor(palette::kSurface); // while it moves
@@ -40,6 +43,7 @@ struct SceneView::Impl {
   NodeLayer nodes{*overlay};
   PaintLayer paint{*scene, *overlay};
   BrushCursor brush{*overlay};
+  ScaleLayer scale{*overlay};
 
   std::shared_ptr<const TriangleMesh> mesh;
   Scene painted; // no objects where nothing is painted or the mesh is not theirs
@@ -102,6 +106,7 @@ struct SceneView::Impl {
     const auto [wide, high] = size();
     return wide > 0 && high > 0 ? static_cast<double>(wide) / high : 4.0 / 3.0;
   }
+  Lettering letters() const { return letteringOf(scene->GetRenderWindow(), ground); }
   bool on(Layer layer) const { return layers.count(layer) != 0; }
   bool mapShown() const { return on(Layer::stability) && has_stability; }
   bool bandShown() const { return on(Layer::band) && field != nullptr && band.has_value(); }

@@ -13,8 +13,8 @@ const std::vector<Named<Layer>>& layerNames() {
         {Layer::slice, "slice"},         {Layer::band, "band"},
         {Layer::extent, "extent"},       {Layer::tip, "tip"},
         {Layer::nodes, "nodes"},         {Layer::stability, "stability"},
-        {Layer::wireframe, "wireframe"}, {Layer::color, "color"},
-        {Layer::relief, "relief"}};
+        {Layer::wireframe, "wireframe"}, {Layer::scale, "scale"},
+        {Layer::color, "color"},         {Layer::relief, "relief"}};
     for (const Channel& row : kChannels)
       names.push_back({layerOf(quantityOf(row.channel)), row.key});
     return names;

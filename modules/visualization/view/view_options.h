@@ -22,6 +22,7 @@ enum class Layer : std::uint8_t {
   nodes,     // the field's nodes near the tip (K26)
   stability, // K*/K as colour on the surface, in the place of mesh; see stability_layer.h
   wireframe, // edges of the mesh and of the iso-surface
+  scale,     // a bar of a round length
   // What was painted, on the surface and (material) on the slice. One is shown at a time: the last
   // of these that is on, under stability.
   color,        // in the objects' colours; with relief seen as relief

@@ -1,0 +1,48 @@
+// Round lengths of the scale bar, and letters that can be read on any ground.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "visualization/layers/scale_layer.h"
+#include "visualization/values/lettering.h"
+
+namespace patina {
+namespace {
+
+TEST(ScaleLayer, ItsLengthIsTheLongestRoundOneThatFits) {
+  for (double most = 1.7e-7; most < 30; most *= 1.013) {
+    const double length = roundLength(most);
+    EXPECT_LE(length, most * (1 + 1e-12));
+    EXPECT_GT(length, most / 2.5 * (1 - 1e-12)) << most; // the widest step is from 2 to 5
+    const double digit = length / std::pow(10, std::floor(std::log10(length) + 1e-9));
+    EXPECT_LT(std::min({std::abs(digit - 1), std::abs(digit - 2), std::abs(digit - 5)}), 1e-9);
+  }
+}
+
+TEST(Lettering, ContrastIsThatOfWcag) {
+  EXPECT_NEAR(contrastOf({0, 0, 0}, {1, 1, 1}), 21, 1e-9);
+  EXPECT_NEAR(contrastOf({0.3, 0.6, 0.9}, {0.3, 0.6, 0.9}), 1, 1e-12);
+  // #777777 on white is the well-known grey that just fails: 4.48.
+  const double grey = 0x77 / 255.;
+  EXPECT_NEAR(contrastOf({1, 1, 1}, {grey, grey, grey}), 4.48, 0.005);
+}
+
+TEST(Lettering, EveryColourBecomesLegibleOnEveryGroundAndKeepsItsHueWhereItCan) {
+  for (const palette::Ground& ground : {palette::kLight, palette::kDark}) {
+    for (const palette::Color& behind : {ground.low, ground.high, ground.plate})
+      EXPECT_GE(contrastOf(ground.text, behind), 4.5);
+    for (double r = 0; r <= 1; r += 0.1)
+      for (double g = 0; g <= 1; g += 0.1)
+        for (double b = 0; b <= 1; b += 0.1) {
+          const palette::Color color{r, g, b}, made = legible(color, ground);
+          for (const palette::Color& behind : {ground.low, ground.high, ground.plate})
+            EXPECT_GE(contrastOf(made, behind), 4.5) << r << ' ' << g << ' ' << b;
+          if (contrastOf(color, ground.plate) >= 4.8) {
+            EXPECT_EQ(made, color);
+          }
+        }
+  }
+}
+
+} // namespace
+} // namespace patina
