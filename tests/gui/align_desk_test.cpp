@@ -145,7 +145,7 @@ class AlignDeskTest : public DrivenWindow {
     answerWithPath(folder_ / "path.csv");
     clickOn("align_open");
     ASSERT_TRUE(waitUntil([&] { return desk().alignment().isReady(); }, 10000));
-    wait(600);
+    wait(1500); // four views, and the cards have their place
   }
   AlignDesk& desk() { return *window_->findChild<AlignDesk*>(); }
   const Pose& pose() { return desk().alignment().pose(); }

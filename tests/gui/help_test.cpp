@@ -72,5 +72,19 @@ TEST_F(Help, AnExportIsWhatParaViewOpens) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
 }
 
+TEST_F(Help, ExportsThatAreAskedForTogetherAreAllMadeAndTheSecondSaysThatItWaits) {
+  QStringList said;
+  QObject::connect(&saving(), &SaveController::said,
+                   [&](const Message& message) { said << message.words; });
+  for (const char* name : {"one", "two", "three"})
+    saving().exportTo(QString::fromStdString((folder_ / name).string()));
+  for (const char* name : {"one", "two", "three"})
+    EXPECT_TRUE(waitUntil([&] { return std::filesystem::exists(folder_ / name / "scene.vtm"); }))
+        << name;
+  ASSERT_TRUE(waitUntil([&] { return said.filter(QStringLiteral("Exported")).size() == 3; }));
+  EXPECT_EQ(said.filter(QStringLiteral("begins when the one before it is done")).size(), 2);
+  EXPECT_TRUE(said.filter(QStringLiteral("Exported")).front().contains(QStringLiteral("one")));
+}
+
 } // namespace
 } // namespace patina

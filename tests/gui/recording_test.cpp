@@ -75,6 +75,20 @@ TEST_F(Recorded, TimeIncreasesOverAReload) {
   for (std::size_t i = 1; i < samples.size(); ++i) ASSERT_GT(samples[i].t, samples[i - 1].t) << i;
 }
 
+TEST_F(Recorded, WhileItRecordsTheButtonIsRedAndSaysForHowLong) {
+  auto* button = find<QToolButton>("record_button");
+  ASSERT_NE(button, nullptr);
+  const QString plain = button->text();
+  trigger("record");
+  ASSERT_TRUE(waitUntil([&] { return button->text().endsWith(QStringLiteral("0:01")); }, 5000));
+  EXPECT_TRUE(button->text().startsWith(QStringLiteral("●")));
+  const QColor ground = button->grab().toImage().pixelColor(4, button->height() / 2);
+  EXPECT_GT(ground.red(), 2 * std::max(ground.green(), ground.blue()));
+  answerWith(QMessageBox::Discard);
+  trigger("record");
+  EXPECT_TRUE(waitUntil([&] { return button->text() == plain; }, 3000)) << "it is as it was";
+}
+
 TEST_F(Recorded, RLeavesTheLogAlone) {
   feel().startLog();
   wait(300);

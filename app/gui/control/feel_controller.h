@@ -45,6 +45,7 @@ class FeelController : public QObject {
   void collect(); // what it has said since the last time; of every window tick
 
   bool recording() const { return recording_.on(); }
+  double recordedSeconds() const { return recording_.seconds(); }
   void toggleRecording(); // begins, or ends and is saved
   bool settleRecording(); // saved or dropped; false: the person goes on
   void startLog();        // a recording of its own

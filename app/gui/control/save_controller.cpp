@@ -83,8 +83,18 @@ void SaveController::exportDialog() {
 }
 
 void SaveController::exportTo(const QString& folder) {
+  waiting_.emplace_back(folder, edits_.scene());
+  if (exports_.busy())
+    emit said({tr("The export to %1 begins when the one before it is done").arg(folder)});
+  exportNext();
+}
+
+void SaveController::exportNext() {
+  if (waiting_.empty() || exports_.busy()) return;
+  const auto [folder, scene] = waiting_.front();
+  waiting_.pop_front();
   emit said({tr("Exporting to %1 …").arg(folder)});
-  exports_.start([this, folder, scene = edits_.scene()](Progress& progress,
+  exports_.start([this, folder = folder, scene = scene](Progress& progress,
                                                         const Background::Deliver& deliver) {
     try {
       std::string noted;
@@ -94,11 +104,15 @@ void SaveController::exportTo(const QString& folder) {
       const QString words = tr("Exported %1 files to %2; open scene.vtm%3")
                                 .arg(files.size())
                                 .arg(folder, QString::fromStdString(noted));
-      deliver(true, [this, words, warns = !noted.empty()] { emit said({words, warns}); });
+      deliver(true, [this, words, warns = !noted.empty()] {
+        emit said({words, warns});
+        exportNext();
+      });
     } catch (const std::exception& error) {
       deliver(true, [this, words = QString::fromStdString(error.what())] {
         showProblem(&window_, tr("The scene cannot be exported"), words,
                     tr("Choose a new folder, in one that you may write to."));
+        exportNext();
       });
     }
   });

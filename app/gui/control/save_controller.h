@@ -1,7 +1,10 @@
 // Saves what is open, with the questions that belong to that.
 #pragma once
 
+#include <deque>
 #include <functional>
+#include <memory>
+#include <utility>
 
 #include <QObject>
 
@@ -20,10 +23,10 @@ class SaveController : public QObject {
   void setName(const QString& name) { name_ = name; } // until it is in a folder
   bool save();                                        // false: nothing was saved
   bool saveDialog();                                  // the same, into a folder that is asked for
-  void exportDialog(); // for ParaView, into a folder that is asked for
-  void exportTo(const QString& folder);
-  void saveTo(const QString& folder); // events go on until it is there; throws Error
-  bool settleEdits();                 // saved or dropped; false: the person goes on
+  void exportDialog();                  // for ParaView, into a folder that is asked for
+  void exportTo(const QString& folder); // after those that are under way
+  void saveTo(const QString& folder);   // events go on until it is there; throws Error
+  bool settleEdits();                   // saved or dropped; false: the person goes on
 
  signals:
   void said(const patina::Message& message);
@@ -36,7 +39,10 @@ class SaveController : public QObject {
   QWidget& window_; // which questions are asked over
   EditController& edits_;
   QString name_;
+  void exportNext();
+
   Background exports_;
+  std::deque<std::pair<QString, std::shared_ptr<const CompiledScene>>> waiting_; // to be exported
 };
 
 } // namespace patina

@@ -20,6 +20,9 @@ class Recording {
 
   bool on() const { return on_; }
   const std::vector<ToolSample>& samples() const { return samples_; }
+  double seconds() const { // from the first tick to the last
+    return samples_.empty() ? 0 : samples_.back().t - samples_.front().t;
+  }
   std::size_t lost() const { return lost_; } // ticks that are missing among the samples
   // Writes, and only then empties. Throws FileError; the samples are still there.
   void save(const std::filesystem::path& path);

@@ -242,6 +242,12 @@ void MainWindow::tick() {
   parts_.force->refresh();
   parts_.energy->refresh();
   if (ticks_++ % 10 != 0) return;
+  const int recorded = static_cast<int>(feel_.recordedSeconds());
+  parts_.commands.at(Command::record)
+      ->setIconText(feel_.recording() ? tr("● Recording %1:%2")
+                                            .arg(recorded / 60)
+                                            .arg(recorded % 60, 2, 10, QLatin1Char('0'))
+                                      : QString());
   if (!std::exchange(stages_shown_, true)) parts_.status->showScene(edits_.scene().get());
   parts_.status->showTiming(feel_.servo().timing(), feel_.servo().running(), feel_.heldBack());
   parts_.status->showFault(feel_.servo().running() && feel_.sample().fault);
