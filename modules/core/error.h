@@ -33,10 +33,11 @@ class DeviceError : public Error {
   using Error::Error;
 };
 
-// The person cancelled a long operation; the state is as before it began.
-class Cancelled : public Error {
+// The person cancelled a long operation; the state is as before it began. No Error: what adds a
+// file's or an object's name to an Error lets it through as it is.
+class Cancelled : public std::runtime_error {
  public:
-  Cancelled() : Error("cancelled") {}
+  Cancelled() : std::runtime_error("cancelled") {}
 };
 
 } // namespace patina

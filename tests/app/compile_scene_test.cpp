@@ -197,6 +197,23 @@ TEST(CompileScene, ABadEditThrowsAndNothingIsLost) {
   EXPECT_THROW((void)recompile(*old, old->scene, cancelled), Cancelled);
 }
 
+// While an object's field is built, too, whose errors are told with the object's name.
+TEST(CompileScene, CancelledAnywhereIsCancelled) {
+  for (int after = 0, done = 0; !done; after += 1 + after / 4) {
+    int reports = 0;
+    Progress progress([&](double, std::string_view) {
+      if (++reports > after) progress.cancel();
+    });
+    try {
+      (void)compile(threeBalls(), progress);
+      done = 1;
+    } catch (const Cancelled&) {
+    }
+    ASSERT_LT(after, 100000);
+    if (done) EXPECT_GT(after, 3);
+  }
+}
+
 bool hasLayer(const CompiledScene& compiled, const std::string& name) {
   const auto layers = compiled.built.field->layerBytes();
   return std::any_of(layers.begin(), layers.end(),

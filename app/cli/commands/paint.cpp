@@ -99,8 +99,6 @@ void paintAll(Editor& editor, const std::vector<ScriptStroke>& script, PaintRun&
                               "painting");
     try {
       paintOne(editor, script[i], run, console);
-    } catch (const Cancelled&) {
-      throw;
     } catch (const FileError&) {
       throw;
     } catch (const Error& error) {

@@ -68,8 +68,6 @@ int runTrack(TrackOptions options, Console& console) {
     found = trackFrames(*frames, camera, rig, options.finder, console.progress());
   } catch (const FileError&) {
     throw;
-  } catch (const Cancelled&) {
-    throw;
   } catch (const Error& error) {
     throw FileError(options.rig.string(), 0, error.what());
   }
