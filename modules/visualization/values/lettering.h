@@ -19,8 +19,7 @@ Lettering letteringOf(vtkRenderWindow* window, const palette::Ground& ground);
 
 // Relative luminances of two colours against one another (WCAG 2.1): 1 = none, 21 = black on white.
 double contrastOf(const palette::Color& a, const palette::Color& b);
-// The colour, darker on a light ground and paler on a dark one by what it takes to have a contrast
-// of 4.5 to its plate.
+// The colour, with as much of the ground's text as it takes to have a contrast of 4.5 to its plate.
 palette::Color legible(const palette::Color& color, const palette::Ground& ground);
 
 // Family, size, colour; on an opaque plate of the ground where it is asked for.
