@@ -124,8 +124,15 @@ void begin(const fs::path& folder) {
   makeFolder(folder);
   for (const char* part : kStoredFolders) insidePath(folder, part); // nothing through a link
   std::error_code code;
-  if (!isWorkspace(folder) && !fs::exists(folder / kUnfinishedName, code))
+  const auto isMarked = [&] {
+    return isWorkspace(folder) || fs::exists(folder / kUnfinishedName, code);
+  };
+  if (isMarked()) return;
+  try {
     createFile(folder / kUnfinishedName, "");
+  } catch (const FileError&) {
+    if (!isMarked()) throw; // else another program has begun it, too, or finished it
+  }
 }
 
 // Of scenes that were stored before: a history without one of them could not be opened.

@@ -1,4 +1,5 @@
 // Programs that save into one folder at the same time.
+#include <cstdio>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,7 +15,8 @@ template <typename Work> pid_t inAnotherProcess(const Work& work) {
   if (child != 0) return child;
   try {
     work();
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
     ::_exit(2);
   }
   ::_exit(0);

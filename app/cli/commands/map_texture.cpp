@@ -42,19 +42,13 @@ const Keys kMapKeys = {
      {{"least", "", ""}, {"most", "", ""}}},
     {"farthest", "m", "farthest", "of the path's points from the mesh"}};
 
-bool isObj(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".obj";
-}
-
 int runMapTexture(const MapOptions& options, Console& console) {
-  requireWritable(options.output, {options.path, options.heights}, FileKind::obj);
-  if (!isObj(options.output))
+  if (kindOfName(options.output) != FileKind::obj)
     throw FileError(options.output.string(), 0, "only an .obj holds haptic coordinates");
-  TexturedMesh file = isObj(options.mesh) ? readTexturedObj(options.mesh)
-                                          : TexturedMesh{readMesh(options.mesh), {}};
+  requireWritable(options.output, {options.path, options.heights}, FileKind::obj);
+  TexturedMesh file = kindOfName(options.mesh) == FileKind::obj
+                          ? readTexturedObj(options.mesh)
+                          : TexturedMesh{readMesh(options.mesh), {}};
   ScaledMesh scaled = inMetres(file.mesh, options.unit);
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
   // Faces that nothing can lie on keep their place in the file.
