@@ -28,7 +28,7 @@ TEST(PoseFile, WhatIsNoRigidMotionIsRefusedInTextAndInJsonByItsRow) {
   };
   const Eigen::Matrix4d good = somePose().matrix();
   std::vector<Case> cases(4, {good, 1, ""});
-  cases[0].pose.row(3) << 0, 0, 1, 1, cases[0].row = 4, cases[0].cause = "the last row";
+  cases[0].pose(3, 2) = 1, cases[0].row = 4, cases[0].cause = "the last row";
   cases[1].pose.row(1).head<3>() *= 1.01, cases[1].row = 2, cases[1].cause = "may not scale";
   cases[2].pose.row(2).head<3>() *= -1, cases[2].cause = "a reflection";
   cases[3].pose.row(1) = good.row(0), cases[3].cause = "right angles";
