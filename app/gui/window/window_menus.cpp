@@ -142,10 +142,12 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
 void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
   QMenu* edit = window.menuBar()->addMenu(tr("&Edit"));
   EditController* edits = &at.edits;
+#ifdef PATINA_HAS_ACQUISITION
   // Each desk's own history: on Align that of the path's place.
   const auto there = [desks = &at.desks, align = parts.align] {
     return desks->desk() == Desk::align ? align : nullptr;
   };
+#endif
   QAction* undo = edit->addAction(
       tr("&Undo"), edits,
       [=] {
