@@ -6,6 +6,7 @@
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
+#include "core/file_kind.h"
 #include "core/numbers.h"
 #include "geometry/io/textured_obj.h"
 #include "geometry/mesh/mesh_report.h"
