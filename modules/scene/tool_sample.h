@@ -24,6 +24,7 @@ struct ToolSample {
   bool deep = false;      // where contact is was found from inside, not by the way in
   bool fault = false;     // a jump faded the force to zero (F13)
   bool snap = false;      // the contact point ran by itself: no friction, no work of the hand
+  std::uint8_t buttons = 0; // of the device; bit i: button i is down
   std::uint8_t held = 0;  // how many walls hold the contact point: 1 a face, 2 an edge, 3 a corner
   std::uint32_t step_ns = 0; // time inside tick()
   std::uint32_t late_ns = 0; // wake-up after its deadline

@@ -57,10 +57,10 @@ TEST(StrokeTracker, OneStrokeFromTheFirstContactUntilTheButtonGoes) {
   ASSERT_EQ(second.size(), 1u);
   EXPECT_FALSE(second[0].begins);
   EXPECT_GT(second[0].samples.front().t, first[0].samples.back().t);
-  const auto last = tracker.feed({}, {});
+  const auto last = tracker.finish();
   ASSERT_EQ(last.size(), 1u);
   EXPECT_TRUE(last[0].ends);
-  EXPECT_TRUE(tracker.feed({}, {}).empty());
+  EXPECT_TRUE(tracker.finish().empty());
 }
 
 TEST(StrokeTracker, TheStrokeEndsWhereTheTipIsNotWhereASampleFell) {
@@ -68,7 +68,7 @@ TEST(StrokeTracker, TheStrokeEndsWhereTheTipIsNotWhereASampleFell) {
   std::vector<ToolSample> ticks;
   for (int i = 0; i < 20; ++i) ticks.push_back(touching(i * kTick, i * 1e-4));
   (void)tracker.feed(ticks, kDown);
-  const auto last = tracker.feed({}, {});
+  const auto last = tracker.finish();
   ASSERT_EQ(last.size(), 1u);
   EXPECT_TRUE(last[0].ends);
   ASSERT_EQ(last[0].samples.size(), 1u);
@@ -106,6 +106,51 @@ TEST(StrokeTracker, ATipOnItsWayToThePlacePaintsNothing) {
 TEST(StrokeTracker, WithoutTheButtonContactIsOnlyFelt) {
   StrokeTracker tracker;
   EXPECT_TRUE(tracker.feed(contact(0, 0.2), {}).empty());
+}
+
+// Ticks of a device whose buttons are these.
+std::vector<ToolSample> held(std::vector<ToolSample> ticks, unsigned buttons) {
+  for (ToolSample& tick : ticks) tick.buttons = static_cast<std::uint8_t>(buttons);
+  return ticks;
+}
+const StrokeTracker::Hand kDevice{.near = 1e-3, .device = true};
+
+TEST(StrokeTracker, ADevicePaintsWhereverItTouchesWhileItsFirstButtonIsHeld) {
+  StrokeTracker tracker;
+  EXPECT_EQ(count(tracker.feed(held(contact(0, 0.05), 2), kDevice)), 0u) << "another button";
+  auto ticks = contact(0.05, 0.1);
+  for (ToolSample& tick : ticks) tick.surface.x() = 5; // far from any aim of the pointer
+  const auto first = tracker.feed(held(ticks, 1), kDevice);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_TRUE(first[0].begins);
+  EXPECT_TRUE(tracker.feed({}, kDevice).empty()) << "no news of the device is no end";
+  EXPECT_TRUE(tracker.painting());
+  const auto last = tracker.feed(held(contact(0.1, 0.11), 0), kDevice);
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_TRUE(last[0].ends);
+}
+
+TEST(StrokeTracker, ADevicesButtonPaintsNothingWhereItMayNot) {
+  StrokeTracker tracker;
+  EXPECT_TRUE(tracker.feed(held(contact(0, 0.1), 1), {}).empty());
+}
+
+TEST(StrokeTracker, AStrokeThatWasCancelledBeginsAgainOnlyAfterTheButtonWasLetGo) {
+  StrokeTracker tracker;
+  tracker.feed(held(contact(0, 0.05), 1), kDevice);
+  tracker.cancel();
+  EXPECT_TRUE(tracker.feed(held(contact(0.05, 0.1), 1), kDevice).empty());
+  EXPECT_TRUE(tracker.feed(held(contact(0.1, 0.11), 0), kDevice).empty());
+  EXPECT_FALSE(tracker.feed(held(contact(0.11, 0.12), 1), kDevice).empty());
+}
+
+TEST(StrokeTracker, FinishEndsAStrokeWhateverIsHeld) {
+  StrokeTracker tracker;
+  tracker.feed(held(contact(0, 0.05), 1), kDevice);
+  const auto pieces = tracker.finish();
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_TRUE(pieces[0].ends);
+  EXPECT_TRUE(tracker.finish().empty());
 }
 
 } // namespace

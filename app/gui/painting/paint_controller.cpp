@@ -54,7 +54,7 @@ PaintController::PaintController(const Parts& parts, QObject* parent)
 
 void PaintController::take(const ToolChoice& choice) {
   down_ = lingers_ = false;
-  send(tracker_.feed({}, {}));
+  send(tracker_.finish());
   presses_ = choice.handling == Handling::press;
   if (choice.handling == Handling::paint) {
     tool_ = choice.tool;
@@ -106,7 +106,7 @@ void PaintController::setForce(double newtons) {
 void PaintController::escape() {
   down_ = lingers_ = false;
   if (tracker_.painting()) at_.edits.cancelStroke();
-  tracker_ = {};
+  tracker_.cancel();
   if (scene_) lift();
 }
 
@@ -210,14 +210,15 @@ void PaintController::feed(const std::vector<ToolSample>& ticks) {
   if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
   if (presses_) return;
   const double near = std::max(brush().radius, 0.02 * presets_.extent());
-  send(tracker_.feed(ticks, {down_ || lingers_, begin_, near, kOff * brush().radius}));
+  const bool paints = at_.bar.choice().handling == Handling::paint;
+  send(tracker_.feed(ticks, {down_ || lingers_, begin_, near, kOff * brush().radius, paints}));
   const bool waits = lingers_ && !at_.feel.passed(); // for a tip that is still on its way
   const bool over = (!waits && lingered_ > kLingerTicks && released_.elapsed() > kLinger) ||
                     released_.elapsed() > kLongest;
   lingered_ += waits ? 0 : ticks.size(); // only after: the first may be from before the button
   if (!lingers_ || !(arrived(ticks) || over)) return;
   lingers_ = false;
-  send(tracker_.feed({}, {}));
+  send(tracker_.finish());
   lift();
 }
 

@@ -1,34 +1,61 @@
 #include "app/gui/painting/stroke_tracker.h"
 
+#include <utility>
+
 namespace patina {
+namespace {
+
+constexpr unsigned kPaintButton = 1; // of the device: the first
+
+StrokePiece& pieceIn(std::vector<StrokePiece>& pieces) {
+  if (pieces.empty() || pieces.back().ends) pieces.emplace_back();
+  return pieces.back();
+}
+
+} // namespace
+
+void StrokeTracker::end(std::vector<StrokePiece>& pieces) {
+  if (!std::exchange(painting_, false)) return;
+  // Where the tip is, not where the last sample fell.
+  if (way_.size() > 1) pieceIn(pieces).samples.push_back(way_.back());
+  pieceIn(pieces).ends = true;
+}
+
+std::vector<StrokePiece> StrokeTracker::finish() {
+  std::vector<StrokePiece> pieces;
+  end(pieces);
+  return pieces;
+}
+
+void StrokeTracker::cancel() {
+  painting_ = false;
+  spent_ = by_device_;
+}
 
 std::vector<StrokePiece> StrokeTracker::feed(std::span<const ToolSample> ticks, const Hand& hand) {
   std::vector<StrokePiece> pieces;
-  const auto piece = [&]() -> StrokePiece& {
-    if (pieces.empty() || pieces.back().ends) pieces.emplace_back();
-    return pieces.back();
-  };
-  const auto end = [&] { // where the tip is, not where the last sample fell
-    painting_ = false;
-    if (way_.size() > 1) piece().samples.push_back(way_.back());
-    piece().ends = true;
-  };
   for (const ToolSample& tick : ticks) {
-    if (!hand.down) break;
+    by_device_ = hand.device && (tick.buttons & kPaintButton) != 0;
+    spent_ = spent_ && by_device_;
+    const bool device_paints = by_device_ && !spent_;
+    if (!hand.down && !device_paints) {
+      end(pieces);
+      continue;
+    }
     if (!tick.contact) {
-      if (painting_ && tick.t - touched_ > kLost) end();
+      if (painting_ && tick.t - touched_ > kLost) end(pieces);
       continue;
     }
     touched_ = tick.t;
     if (!painting_) {
-      if (!((tick.surface - hand.aim).norm() <= hand.near)) continue;
+      if (!device_paints && !((tick.surface - hand.aim).norm() <= hand.near)) continue;
       painting_ = true;
       began_ = tick.t;
       way_.clear();
-      piece().begins = true;
+      pieceIn(pieces).begins = true;
     }
     const auto take = [&](const StrokeSample& sample) {
-      piece().samples.push_back(sample);
+      pieceIn(pieces).samples.push_back(sample);
       way_ = {sample};
     };
     const StrokeSample now{tick.t - began_, tick.surface, tick.force.norm(), tick.tip};
@@ -38,7 +65,7 @@ std::vector<StrokePiece> StrokeTracker::feed(std::span<const ToolSample> ticks, 
     else
       way_.push_back(now);
   }
-  if (painting_ && !hand.down) end();
+  if (!hand.down && !(hand.device && by_device_)) end(pieces);
   return pieces;
 }
 

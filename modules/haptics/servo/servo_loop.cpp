@@ -71,6 +71,7 @@ struct ServoLoop::Impl {
       const std::int64_t before = monotonicNs();
       const Contact contact = law.tick(state.position, dt);
       record(contact, law.field(), sample);
+      sample.buttons = static_cast<std::uint8_t>(state.buttons);
       force = contact.force;
       const std::int64_t step = monotonicNs() - before;
       sample.step_ns = static_cast<std::uint32_t>(std::min<std::int64_t>(step, UINT32_MAX));

@@ -222,7 +222,7 @@ std::vector<std::byte> FalconBench::answer() {
     const double counts = (encoder_[leg] - kFalconIndex) / kFalconCount;
     numberToLetters((static_cast<int>(std::lround(counts)) + offset_[leg]) & 0xffff, bytes);
   }
-  bytes.push_back(static_cast<std::byte>('A' + (homed_ << 4)));
+  bytes.push_back(static_cast<std::byte>('A' + (homed_ << 4) + static_cast<int>(buttons & 0xfU)));
   bytes.push_back(std::byte{'A'});
   bytes.push_back(std::byte{'>'});
   return bytes;

@@ -66,6 +66,7 @@ class FalconBench {
   } faults;
   Vec3 rest = Vec3::Zero(); // [m], device frame, of the hand's spring
   Vec3 push = Vec3::Zero(); // [N], of the hand besides
+  unsigned buttons = 0;     // bit i: button i of the four is down
   std::function<void(double t, const std::array<int, 3>& motors)>
       on_frame{}; // each that arrives whole
 
