@@ -1,5 +1,7 @@
 #include "app/gui/widgets/status_line.h"
 
+#include <utility>
+
 #include "app/gui/window/theme.h"
 #include "core/numbers.h"
 #include "haptics/stability/stabilisers.h"
@@ -49,13 +51,20 @@ void StatusLine::showPicked(const QString& words) {
   picked_->setText(words);
 }
 
-void StatusLine::showTiming(const ServoTiming& timing, bool running, const QString& held_back) {
+void StatusLine::showHeldBack(const QString& words) {
+  if (words == std::exchange(held_back_, words)) return;
+  if (words.isEmpty()) return;
+  rate_->setText(words);
+  rate_->repaint(); // before the picture, which may take long
+}
+
+void StatusLine::showTiming(const ServoTiming& timing, bool running) {
   for (QLabel* label : {late_, missed_, policy_}) label->setVisible(running);
   if (!running) {
     rate_->setText(tr("servo rests"));
     return;
   }
-  rate_->setText(!held_back.isEmpty() ? held_back
+  rate_->setText(!held_back_.isEmpty() ? held_back_
                  : timing.device == DeviceStatus::ok
                      ? tr("%1 Hz").arg(timing.rate_hz, 0, 'f', 0)
                      : tr("no force: the device %1").arg(tr(text(timing.device))));

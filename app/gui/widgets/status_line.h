@@ -15,7 +15,9 @@ class StatusLine : public QObject {
   explicit StatusLine(QStatusBar* bar);
   void showScene(const CompiledScene* scene); // nullptr: no scene, no stage
   // held_back: why a device gives no force; empty: it does.
-  void showTiming(const ServoTiming& timing, bool running, const QString& held_back = {});
+  void showTiming(const ServoTiming& timing, bool running);
+  // Why there is no force, or not all of it, in place of the rate from now on; empty: there is.
+  void showHeldBack(const QString& words);
   void showFault(bool on);               // the force jumped and was faded to zero (F13)
   void showPicked(const QString& words); // what is under the pointer; empty: nothing
 
@@ -24,6 +26,7 @@ class StatusLine : public QObject {
 
   QLabel* fault_;
   QLabel* rate_;
+  QString held_back_;
   QLabel* late_;
   QLabel* missed_;
   QLabel* policy_;

@@ -235,12 +235,14 @@ void MainWindow::say(const Message& message) {
 void MainWindow::tick() {
   edits_.tryValues();
   feel_.collect();
+  parts_.status->showHeldBack(feel_.heldBack());
   paint_.refresh();
   if (feel_.servo().running()) view_.view().setTool(feel_.sample());
   if (feel_.servo().running()) felt_ = std::max(felt_, feel_.sample().force.norm());
   view_.refresh();
   parts_.force->refresh();
   parts_.energy->refresh();
+  parts_.status->showFault(feel_.servo().running() && feel_.sample().fault);
   if (ticks_++ % 10 != 0) return;
   const int recorded = static_cast<int>(feel_.recordedSeconds());
   parts_.commands.at(Command::record)
@@ -249,8 +251,7 @@ void MainWindow::tick() {
                                             .arg(recorded % 60, 2, 10, QLatin1Char('0'))
                                       : QString());
   if (!std::exchange(stages_shown_, true)) parts_.status->showScene(edits_.scene().get());
-  parts_.status->showTiming(feel_.servo().timing(), feel_.servo().running(), feel_.heldBack());
-  parts_.status->showFault(feel_.servo().running() && feel_.sample().fault);
+  parts_.status->showTiming(feel_.servo().timing(), feel_.servo().running());
 }
 
 void MainWindow::clear() {
