@@ -55,28 +55,38 @@ leak_option() {
   fi
 }
 
-run_address() { # short or full
-  local folders="core geometry field scene" most='-*Signs*:Plate*:SampleLayer*:Redistance*:MergeFields*'
-  if [ "$1" = full ]; then
-    folders="$folders workspace haptics stability"
-    most='*'
-  fi
-  say "Address and undefined-behaviour sanitizers: $folders"
+# Each check is built first, by both processors, and run then, which takes one.
+address_folders() { # short or full
+  echo core geometry field scene
+  [ "$1" = short ] || echo workspace haptics stability
+}
+
+build_address() { # short or full
+  say "Building for the address and undefined-behaviour sanitizers"
   configure build-asan -DCMAKE_UNITY_BUILD=ON -DPATINA_SANITIZE=address -DPATINA_GUI=OFF
-  # shellcheck disable=SC2086
-  build build-asan ${folders// /_tests }_tests
-  local leaks folder
+  # shellcheck disable=SC2046
+  build build-asan $(address_folders "$1" | xargs -n 1 | sed 's/$/_tests/')
+}
+
+run_address() { # short or full
+  say "Address and undefined-behaviour sanitizers"
+  local leaks folder most='*'
+  [ "$1" = full ] || most='-*Signs*:Plate*:SampleLayer*:Redistance*:MergeFields*'
   leaks=$(leak_option build-asan/bin/core_tests)
-  for folder in $folders; do
+  for folder in $(address_folders "$1"); do
     ASAN_OPTIONS=$leaks:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
       timeout 1800 "build-asan/bin/${folder}_tests" --gtest_brief=1 --gtest_filter="$most" </dev/null
   done
 }
 
-run_thread() {
-  say "Thread sanitizer: hand-over and servo"
+build_thread() {
+  say "Building for the thread sanitizer"
   configure build-tsan -DCMAKE_UNITY_BUILD=ON -DPATINA_SANITIZE=thread -DPATINA_GUI=OFF
   build build-tsan core_tests haptics_tests
+}
+
+run_thread() {
+  say "Thread sanitizer: hand-over and servo"
   # gcc 12's runtime stops where the kernel spreads addresses too widely; a fixed layout helps.
   local run=()
   if ! build-tsan/bin/core_tests --gtest_list_tests >/dev/null 2>&1; then
@@ -111,10 +121,14 @@ run_benchmarks() {
   fi
 }
 
-run_fuzz() { # seconds each
-  say "Fuzzing each reader for $1 s"
+build_fuzz() {
+  say "Building the fuzzers"
   configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
   build build-fuzz
+}
+
+run_fuzz() { # seconds each
+  say "Fuzzing each reader for $1 s"
   local program reader seeds
   for program in build-fuzz/bin/*_fuzz; do
     reader=$(basename "$program" _fuzz)
@@ -184,18 +198,29 @@ all)
     [ $code -eq 0 ] || failed="$failed $1"
   }
   run_and_note run_tests
+  run_and_note build_address short
+  run_and_note build_thread
+  run_and_note build_fuzz
+  # All at once, for each takes one processor; what they print follows one after the other.
+  logs=$(mktemp -d)
+  (run_thread) >"$logs/thread" 2>&1 &
+  thread=$!
+  (run_fuzz 5) >"$logs/fuzz" 2>&1 &
+  fuzz=$!
   run_and_note run_address short
-  run_and_note run_thread
-  run_and_note run_fuzz 5
+  wait $thread || failed="$failed run_thread"
+  wait $fuzz || failed="$failed run_fuzz"
+  cat "$logs/thread" "$logs/fuzz"
+  rm -r "$logs"
   if [ -n "$failed" ]; then
     say "FAILED:$failed"
     exit 1
   fi
   ;;
 quick) run_tests ;;
-address) run_address full ;;
-thread) run_thread ;;
-fuzz) run_fuzz "$seconds" ;;
+address) build_address full; run_address full ;;
+thread) build_thread; run_thread ;;
+fuzz) build_fuzz; run_fuzz "$seconds" ;;
 benchmarks) run_benchmarks ;;
 mutants)
   say "Mutants of modules/haptics and modules/field"
