@@ -75,7 +75,7 @@ class Desk {
   // What was asked for so far is done, and its events taken.
   bool settle() {
     bool done = false;
-    edits.goTo(1000000, [&](const std::string&) { done = true; }); // nothing to redo: in its turn
+    edits.goTo(1000000, [&](const EditOutcome&) { done = true; }); // nothing to redo: in its turn
     return waitUntil([&] { return done; });
   }
   void takeEvents() {

@@ -118,7 +118,7 @@ TEST(EditThread, ValuesThatMakeNoSenseAreToldOfAndChangeNothing) {
   desk.open(oneBall());
   std::string problem;
   desk.edits.tryValues([](Scene& scene) { scene.haptics.stiffness = -1; },
-                       [&](const std::string& line) { problem = line; });
+                       [&](const EditOutcome& outcome) { problem = outcome.problem; });
   ASSERT_TRUE(desk.waitUntil([&] { return !problem.empty(); }));
   EXPECT_NE(problem.find("stiffness"), std::string::npos);
   ASSERT_TRUE(desk.settle());
@@ -157,7 +157,7 @@ TEST(EditThread, TheHistoryGoesToAnyStepAndBack) {
 TEST(EditThread, NoCallWaitsForWhatIsUnderWayAndCancelEndsIt) {
   Desk desk;
   desk.open(oneBall());
-  std::string outcome;
+  std::optional<EditOutcome> outcome;
   desk.edits.apply(
       "finer",
       [](const CompiledScene& present) {
@@ -165,18 +165,19 @@ TEST(EditThread, NoCallWaitsForWhatIsUnderWayAndCancelEndsIt) {
         scene->field.resolution = 400;
         return scene;
       },
-      false, [&](const std::string& problem) { outcome = problem; });
+      false, [&](const EditOutcome& said) { outcome = said; });
   desk.edits.beginStroke(stiffBrush());
   desk.edits.dabs(circle(5));
   desk.edits.endStroke();
   EXPECT_TRUE(desk.edits.busy());
   (void)desk.edits.take();
-  EXPECT_TRUE(outcome.empty()) << "it takes seconds, and is not done";
+  EXPECT_FALSE(outcome.has_value()) << "it takes seconds, and is not done";
   ASSERT_TRUE(desk.waitUntil([&] {
     desk.edits.cancel();
-    return !outcome.empty();
+    return outcome.has_value();
   }));
-  EXPECT_EQ(outcome, "cancelled");
+  EXPECT_TRUE(outcome->cancelled);
+  EXPECT_EQ(outcome->problem, "") << "a cancel is no problem";
   ASSERT_TRUE(desk.settle());
   EXPECT_EQ(desk.compiled->scene.field.resolution, 50);
   EXPECT_TRUE(desk.status.edits.empty()) << "the stroke was waiting, and so was cancelled too";
@@ -194,7 +195,8 @@ TEST(EditThread, SavingGivesTheSceneAFolderAndDiscardingGoesBackToIt) {
   desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
   ASSERT_TRUE(desk.waitUntil([&] { return desk.status.unsaved; }));
   bool done = false;
-  desk.edits.discard([&](const std::string& problem) { done = problem.empty(); });
+  desk.edits.discard(
+      [&](const EditOutcome& outcome) { done = outcome.problem.empty() && !outcome.cancelled; });
   ASSERT_TRUE(desk.waitUntil([&] { return done; }));
   EXPECT_FALSE(desk.status.unsaved);
   EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
@@ -206,7 +208,7 @@ TEST(EditThread, AFolderThatCannotBeMadeIsToldOfAndTheEditsStay) {
   desk.open(oneBall());
   desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
   std::string problem;
-  desk.edits.saveAs("/proc/no/ws", [&](const std::string& line) { problem = line; });
+  desk.edits.saveAs("/proc/no/ws", [&](const EditOutcome& outcome) { problem = outcome.problem; });
   ASSERT_TRUE(desk.waitUntil([&] { return !problem.empty(); }));
   EXPECT_NE(problem.find("/proc/no"), std::string::npos) << problem;
   EXPECT_EQ(desk.status.done, 1u);

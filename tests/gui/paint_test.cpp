@@ -354,7 +354,7 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
         scene->field.resolution = 300;
         return scene;
       },
-      false, [&](const std::string&) { done = true; });
+      false, [&](const EditOutcome&) { done = true; });
   clock.start();
   beat.start(5);
   ASSERT_TRUE(waitUntil([&] {

@@ -150,9 +150,10 @@ void DocumentController::take(OpenedEditor& opened) {
 void DocumentController::add(const OpenedScene& opened) {
   work_.reset();
   at_.edits.addObjects(opened.scene.objects,
-                       [this, lines = opened.warnings](const std::string& problem) {
-                         if (problem == Cancelled().what()) return emit cancelled();
-                         if (!problem.empty()) return fail(QString::fromStdString(problem));
+                       [this, lines = opened.warnings](const EditOutcome& outcome) {
+                         if (outcome.cancelled) return emit cancelled();
+                         if (!outcome.problem.empty())
+                           return fail(QString::fromStdString(outcome.problem));
                          for (const std::string& line : lines)
                            emit said({QString::fromStdString(line), true});
                        });

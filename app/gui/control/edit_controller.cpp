@@ -1,6 +1,7 @@
 #include "app/gui/control/edit_controller.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <QEventLoop>
@@ -130,9 +131,9 @@ void EditController::tryValues() {
         scene.device_model = device.model;
         scene.stabilisers = device.stabilisers;
       },
-      [this](const std::string& problem) {
+      [this](const EditOutcome& outcome) {
         values_asked_ = std::max(0, values_asked_ - 1);
-        at_.haptics.setProblem(QString::fromStdString(problem));
+        at_.haptics.setProblem(QString::fromStdString(outcome.problem));
         if (values_asked_ == 0 && !values_edited_) setUnsaved(status_.unsaved);
       });
 }
@@ -155,12 +156,11 @@ void EditController::applyObjects() {
         return sameObjects(scene->objects, now.scene.objects) ? nullptr : scene;
       },
       true,
-      [this](const std::string& problem) {
+      [this](const EditOutcome& outcome) {
         objects_asked_ = std::max(0, objects_asked_ - 1);
         if (objects_asked_ > 0) return;
         syncPanels();
-        at_.objects.setProblem(problem == Cancelled().what() ? QString()
-                                                             : QString::fromStdString(problem));
+        at_.objects.setProblem(QString::fromStdString(outcome.problem));
       });
 }
 
@@ -175,23 +175,25 @@ void EditController::addObjects(const std::vector<SceneObject>& objects, EditThr
 
 void EditController::waitFor(const std::function<void(EditThread::Done)>& ask) {
   QEventLoop loop;
-  std::string problem;
-  bool done = false;
-  ask([&](const std::string& said) {
-    problem = said;
-    done = true;
+  std::optional<EditOutcome> outcome;
+  ask([&](const EditOutcome& said) {
+    outcome = said;
     loop.quit();
   });
-  if (!done) loop.exec();
-  if (!problem.empty()) throw Error(problem);
+  if (!outcome) loop.exec();
+  if (outcome->cancelled) throw Cancelled();
+  if (!outcome->problem.empty()) throw Error(outcome->problem);
 }
 
 void EditController::settle() {
   if (!scene_ || !thread_.busy()) return;
-  waitFor([this](EditThread::Done done) {
-    thread_.apply(
-        "", [](const CompiledScene&) { return nullptr; }, false, std::move(done));
-  });
+  try {
+    waitFor([this](EditThread::Done done) {
+      thread_.apply(
+          "", [](const CompiledScene&) { return nullptr; }, false, std::move(done));
+    });
+  } catch (const Cancelled&) { // then nothing waits any more
+  }
 }
 
 } // namespace patina

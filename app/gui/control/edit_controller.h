@@ -44,7 +44,7 @@ class EditController : public QObject {
   void addObjects(const std::vector<SceneObject>& objects, EditThread::Done done);
   void setTool(const ToolChoice& choice);
   void showAgain(); // what is open, in the place of a preview
-  // Events go on until what is asked for is done; throws Error.
+  // Events go on until what is asked for is done; throws Error or Cancelled.
   void waitFor(const std::function<void(EditThread::Done)>& ask);
   void settle(); // waits for all that was asked for
 

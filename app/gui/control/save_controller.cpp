@@ -25,6 +25,8 @@ bool SaveController::trySaving(const std::function<void()>& save, const QString&
     save();
     emit said({tr("Saved %1").arg(where)});
     return true;
+  } catch (const Cancelled&) {
+    return false;
   } catch (const std::exception& error) {
     showProblem(&window_, tr("The workspace cannot be saved"), QString::fromStdString(error.what()),
                 advice);
@@ -142,6 +144,7 @@ void SaveController::discard() {
   if (!edits_.status().folder) return;
   try {
     edits_.waitFor([this](EditThread::Done done) { edits_.thread().discard(std::move(done)); });
+  } catch (const Cancelled&) { // they stay, as was asked for
   } catch (const std::exception& error) {
     showProblem(&window_, tr("The edits stay in the workspace"),
                 QString::fromStdString(error.what()), tr("They can be undone later."));

@@ -65,7 +65,7 @@ struct EditThread::Impl {
   template <typename Meant> void drop(Meant meant) {
     for (Task& task : queue)
       if (meant(task) && task.done)
-        events.addDone([done = std::move(task.done)] { done(Cancelled().what()); });
+        events.addDone([done = std::move(task.done)] { done({.problem = {}, .cancelled = true}); });
     std::erase_if(queue, meant);
   }
 
@@ -102,7 +102,7 @@ struct EditThread::Impl {
   }
 
   void perform(Task& task) {
-    std::string problem;
+    EditOutcome outcome;
     try {
       if (!task.of_stroke) worker.endStroke();
       if (!task.of_values && !task.of_stroke) worker.settleValues(*progress);
@@ -110,18 +110,20 @@ struct EditThread::Impl {
         task.work(worker, *progress);
       else
         worker.dabs(thinned(std::move(task.samples), off));
+    } catch (const Cancelled&) {
+      outcome.cancelled = true;
     } catch (const std::bad_alloc&) {
-      problem = "there is not enough memory";
+      outcome.problem = "there is not enough memory";
     } catch (const std::exception& error) {
-      problem = error.what();
+      outcome.problem = error.what();
     }
     if (task.of_values && worker.hasValues()) rests_at = std::chrono::steady_clock::now() + kRest;
     if (task.work) worker.report();
     events.setProgress(std::nullopt);
     if (task.done)
-      events.addDone([done = std::move(task.done), problem] { done(problem); });
-    else if (!problem.empty() && problem != Cancelled().what())
-      events.addProblem(problem);
+      events.addDone([done = std::move(task.done), outcome] { done(outcome); });
+    else if (!outcome.problem.empty())
+      events.addProblem(outcome.problem);
   }
 
   EditEventBuffer events;
@@ -222,15 +224,15 @@ void EditThread::apply(const std::string& what, Change change, bool replaces, Do
 }
 
 void EditThread::edit(const std::string& what, std::function<Scene(const Scene&)> change,
-                      Done failed) {
+                      std::function<void(const std::string&)> failed) {
   apply(
       what,
       [change = std::move(change)](const CompiledScene& now) {
         return std::make_shared<const Scene>(change(now.scene));
       },
       false,
-      [failed = std::move(failed)](const std::string& problem) {
-        if (!problem.empty() && problem != Cancelled().what()) failed(problem);
+      [failed = std::move(failed)](const EditOutcome& outcome) {
+        if (!outcome.problem.empty()) failed(outcome.problem);
       });
 }
 

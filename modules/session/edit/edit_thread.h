@@ -13,6 +13,12 @@
 
 namespace patina {
 
+// How what was asked for came out; neither: it was done.
+struct EditOutcome {
+  std::string problem; // one line, why it could not be
+  bool cancelled = false;
+};
+
 // All calls come from one thread, the window's, and none waits but the destructor.
 class EditThread {
  public:
@@ -43,7 +49,7 @@ class EditThread {
   void endStroke();
   void cancelStroke(); // nothing of it stays, and it is no edit
 
-  using Done = std::function<void(const std::string& problem)>; // empty: it was done
+  using Done = std::function<void(const EditOutcome& outcome)>;
 
   // Felt at once, and one edit as soon as they rest or something else is asked for: so that a
   // slider that is dragged is one step of the history.
@@ -55,7 +61,8 @@ class EditThread {
   using Change = std::function<std::shared_ptr<const Scene>(const CompiledScene& present)>;
   void apply(const std::string& what, Change change, bool replaces = false, Done done = {});
   // The same of the scene's own values; `failed` hears why it could not be, and of no cancel.
-  void edit(const std::string& what, std::function<Scene(const Scene&)> change, Done failed);
+  void edit(const std::string& what, std::function<Scene(const Scene&)> change,
+            std::function<void(const std::string& problem)> failed);
   void goTo(std::size_t position, Done done = {}); // undo or redo until so many edits are done
   void undo(Done done = {});
   void redo(Done done = {});
