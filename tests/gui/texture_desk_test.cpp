@@ -64,6 +64,16 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   EXPECT_EQ(choice->currentIndex(), 1);
   EXPECT_NE(plot->grab().toImage(), before);
   keepPicture("texture_weave");
+  // The wheel zooms the graph under the pointer, a drag shifts it, a double click shows all.
+  const QImage whole = plot->grab().toImage();
+  const QPoint in_first = plot->mapToGlobal({plot->width() / 6, plot->height() / 2});
+  wheelAt(in_first, 4);
+  const QImage nearer = plot->grab().toImage();
+  EXPECT_NE(nearer, whole);
+  drag(in_first, in_first + QPoint(30, 0));
+  EXPECT_NE(plot->grab().toImage(), nearer);
+  doubleClickAt(in_first);
+  EXPECT_EQ(plot->grab().toImage(), whole);
   // What was made opens, and is felt.
   clickOn("feel_demo");
   ASSERT_TRUE(waitUntil([&] {

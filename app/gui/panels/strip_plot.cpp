@@ -4,17 +4,30 @@
 #include <cmath>
 #include <utility>
 
-#include <QLayout>
+#include <QMouseEvent>
 #include <QPainter>
+#include <QVBoxLayout>
+#include <QWheelEvent>
 
+#include "app/gui/widgets/drawn_icon.h"
+#include "app/gui/widgets/graph.h"
 #include "app/gui/window/theme.h"
 
 namespace patina {
 namespace {
 
-constexpr double kSpan = 5;       // [s]
-constexpr double kEvery = 0.004;  // [s]: 250 points a second are more than pixels
-constexpr float kNothing = 1e-6F; // in the unit of the plot
+constexpr double kSpan = 5;         // [s]
+constexpr double kStripKept = 60;   // [s], to be looked at when it is held
+constexpr double kLeastSpan = 0.05; // [s]
+constexpr double kEvery = 0.004;    // [s]: 250 points a second are more than pixels
+constexpr float kNothing = 1e-6F;   // in the unit of the plot
+
+QIcon pauseIcon() {
+  return drawnIcon([](QPainter& painter) {
+    painter.drawLine(QPointF(7, 5), QPointF(7, 15));
+    painter.drawLine(QPointF(13, 5), QPointF(13, 15));
+  });
+}
 
 QString withMinus(QString words) {
   return words.replace('-', QStringLiteral("−"));
@@ -25,19 +38,116 @@ QString withMinus(QString words) {
 StripPlot::StripPlot(const QString& unit, std::vector<StripCurve> curves, double least_top,
                      QWidget* parent)
     : QWidget(parent), unit_(unit), curves_(std::move(curves)), least_top_(least_top),
-      top_(least_top) {
+      corner_(new QHBoxLayout), holds_(new QToolButton(this)), top_(least_top) {
   setMinimumHeight(110);
   setAttribute(Qt::WA_OpaquePaintEvent);
+  setFocusPolicy(Qt::StrongFocus);
+  holds_->setObjectName(QStringLiteral("hold"));
+  holds_->setIcon(pauseIcon());
+  holds_->setCheckable(true);
+  holds_->setToolTip(
+      tr("<b>Hold</b> (Space)<br>What comes meanwhile is kept and recorded. The wheel "
+         "zooms, a drag shifts, a double click follows again."));
+  connect(holds_, &QToolButton::toggled, this, &StripPlot::hold);
+  corner_->addStretch(1);
+  corner_->addWidget(holds_);
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 1, 12, 0);
+  column->addLayout(corner_);
+  column->addStretch(1);
+  column->setSizeConstraint(QLayout::SetNoConstraint);
+}
+
+void StripPlot::addToCorner(QWidget* widget) {
+  corner_->insertWidget(corner_->count() - 1, widget);
+}
+
+void StripPlot::hold(bool holds) {
+  holds_->setChecked(holds);
+  if (holds == held_.has_value()) return;
+  held_now_ = latest_;
+  held_ = holds ? std::optional(points_) : std::nullopt;
+  seen_.reset();
+  dirty_ = true;
+  quiet_ = false;
+}
+
+AxisSpan StripPlot::seen() const {
+  return seen_.value_or(AxisSpan{now() - kSpan, now()});
+}
+
+AxisSpan StripPlot::whole() const {
+  const double first = shown().empty() ? now() : shown().front().t;
+  return {std::min(first, now() - kSpan), now()};
+}
+
+QRectF StripPlot::area() const {
+  const int line = QFontMetrics(font()).height();
+  return {58., line + 10., width() - 74., height() - 2. * line - 20};
+}
+
+bool StripPlot::wheel(const QWheelEvent& event) {
+  hold(true);
+  const QRectF place = area();
+  const double part = std::clamp((event.position().x() - place.left()) / place.width(), 0., 1.);
+  const AxisSpan now = seen();
+  seen_ = zoomed(whole(), now, now.from + part * now.length(), event.angleDelta().y() / 120.,
+                 kLeastSpan);
+  update();
+  return true;
+}
+
+bool StripPlot::drag(const QMouseEvent& event) {
+  const int by = event.x() - *dragged_from_;
+  if (by == 0) return true;
+  hold(true);
+  seen_ = shifted(whole(), seen(), -by * seen().length() / area().width());
+  dragged_from_ = event.x();
+  update();
+  return true;
+}
+
+bool StripPlot::event(QEvent* event) {
+  switch (event->type()) {
+  case QEvent::Wheel:
+    event->accept();
+    return wheel(*static_cast<QWheelEvent*>(event));
+  case QEvent::MouseButtonPress:
+    if (static_cast<QMouseEvent*>(event)->button() != Qt::LeftButton) break;
+    dragged_from_ = static_cast<QMouseEvent*>(event)->x();
+    return true;
+  case QEvent::MouseMove:
+    if (!dragged_from_) break;
+    return drag(*static_cast<QMouseEvent*>(event));
+  case QEvent::MouseButtonRelease:
+    dragged_from_.reset();
+    return true;
+  case QEvent::MouseButtonDblClick:
+    hold(false);
+    return true;
+  case QEvent::ShortcutOverride: // it is the camera's elsewhere
+    if (static_cast<QKeyEvent*>(event)->key() != Qt::Key_Space) break;
+    event->accept();
+    return true;
+  case QEvent::KeyPress:
+    if (static_cast<QKeyEvent*>(event)->key() != Qt::Key_Space) break;
+    hold(!held_);
+    return true;
+  default:
+    break;
+  }
+  return QWidget::event(event);
 }
 
 void StripPlot::clear() {
+  hold(false);
   points_.clear();
   dirty_ = true;
 }
 
 void StripPlot::add(double t, const Values& values) {
   latest_ = t;
-  dirty_ = true;
+  dirty_ = dirty_ || !held_;
   if (points_.empty() || t >= points_.back().t + kEvery) {
     points_.push_back({t, values});
   } else {
@@ -45,7 +155,7 @@ void StripPlot::add(double t, const Values& values) {
       if (curves_[c].keeps_peak)
         points_.back().value[c] = std::max(points_.back().value[c], values[c]);
   }
-  while (points_.front().t < latest_ - kSpan) points_.pop_front();
+  while (points_.front().t < latest_ - kStripKept) points_.pop_front();
 }
 
 float StripPlot::size(const Point& point) const {
@@ -58,10 +168,13 @@ float StripPlot::size(const Point& point) const {
 void StripPlot::refresh() {
   if (!dirty_) return;
   dirty_ = false;
+  if (held_) return update();
   // Once a line without news goes from edge to edge.
-  const bool full = !points_.empty() && points_.front().t < latest_ - kSpan + 2 * kEvery;
-  const bool quiet = full && std::all_of(points_.begin(), points_.end(),
-                                         [this](const Point& p) { return size(p) < kNothing; });
+  const double from = latest_ - kSpan;
+  const bool full = !points_.empty() && points_.front().t < from + 2 * kEvery;
+  const bool quiet = full && std::all_of(points_.rbegin(), points_.rend(), [&](const Point& p) {
+                       return p.t < from || size(p) < kNothing;
+                     });
   if (quiet && quiet_) return;
   quiet_ = quiet;
   update();
@@ -70,7 +183,10 @@ void StripPlot::refresh() {
 // Steps of 1, 2, 5, held until the plot would be less than a quarter full.
 double StripPlot::top() const {
   double highest = 0;
-  for (const Point& point : points_) highest = std::max(highest, static_cast<double>(size(point)));
+  const AxisSpan span = seen();
+  for (const Point& point : shown())
+    if (point.t >= span.from && point.t <= span.to)
+      highest = std::max(highest, static_cast<double>(size(point)));
   double step = least_top_;
   while (step < 1.05 * highest) {
     const double digit = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
@@ -80,7 +196,8 @@ double StripPlot::top() const {
 }
 
 double StripPlot::toX(const QRectF& area, double t) const {
-  return area.right() + (t - latest_) / kSpan * area.width();
+  const AxisSpan span = seen();
+  return area.left() + (t - span.from) / span.length() * area.width();
 }
 
 double StripPlot::toY(const QRectF& area, double value) const {
@@ -99,13 +216,17 @@ void StripPlot::paintAxes(QPainter& painter, const QRectF& area) const {
     painter.drawText(QRectF(14, y - 8, 38, 16), Qt::AlignRight | Qt::AlignVCenter,
                      withMinus(QString::number(value, 'g', 3)));
   }
-  for (int back = 0; back <= static_cast<int>(kSpan); ++back) {
-    const double x = toX(area, latest_ - back);
+  const AxisSpan span = seen();
+  const double step = stepFor(span.length(), 6);
+  for (double back = std::ceil((now() - span.to) / step - 1e-9) * step;
+       back <= now() - span.from + 1e-9 * step; back += step) {
+    const double x = toX(area, now() - back);
     painter.setPen(ink("line"));
     painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
     painter.setPen(ink("quiet"));
-    painter.drawText(QRectF(x - 30, area.bottom() + 3, 60, line), Qt::AlignCenter,
-                     back == 0 ? tr("now") : QStringLiteral("−%1 s").arg(back));
+    const QString words = back < 1e-9 ? (held_ ? tr("held") : tr("now"))
+                                      : QStringLiteral("−%1 s").arg(back, 0, 'g', 4);
+    painter.drawText(QRectF(x - 36, area.bottom() + 3, 72, line), Qt::AlignCenter, words);
   }
 }
 
@@ -126,7 +247,7 @@ void StripPlot::paintLegend(QPainter& painter, const QRectF& area) const {
   const double middle = 4 + metrics.height() / 2.0;
   double x = area.left();
   for (std::size_t c = 0; c < curves_.size(); ++c) {
-    const double value = points_.empty() ? 0 : static_cast<double>(points_.back().value[c]);
+    const double value = shown().empty() ? 0 : static_cast<double>(shown().back().value[c]);
     const QString words =
         withMinus(QStringLiteral("%1 %2 %3").arg(curves_[c].name).arg(value, 0, 'f', 2).arg(unit_));
     painter.setPen(QPen(ink(curves_[c].ink), 3));
@@ -141,23 +262,24 @@ void StripPlot::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), ink("card"));
   top_ = top();
-  const int line = QFontMetrics(font()).height();
-  const QRectF area(58, line + 10, width() - 74, height() - 2 * line - 20);
-  paintAxes(painter, area);
+  const QRectF place = area();
+  paintAxes(painter, place);
 
-  painter.setClipRect(area.adjusted(0, -1, 0, 1));
+  painter.setClipRect(place.adjusted(0, -1, 0, 1));
   painter.setRenderHint(QPainter::Antialiasing);
+  const AxisSpan span = seen();
+  const double beside = 20 * kEvery; // the curve goes on to the edge
   // The first curve is the one that matters: it is drawn last.
   for (std::size_t c = curves_.size(); c-- > 0;) {
     QPolygonF curve;
-    curve.reserve(static_cast<int>(points_.size()));
-    for (const Point& point : points_)
-      curve << QPointF(toX(area, point.t), toY(area, point.value[c]));
+    for (const Point& point : shown())
+      if (point.t > span.from - beside && point.t < span.to + beside)
+        curve << QPointF(toX(place, point.t), toY(place, point.value[c]));
     painter.setPen(QPen(ink(curves_[c].ink), curves_[c].width));
     painter.drawPolyline(curve);
   }
   painter.setClipping(false);
-  paintLegend(painter, area);
+  paintLegend(painter, place);
 }
 
 } // namespace patina

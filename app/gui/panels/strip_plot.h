@@ -1,12 +1,19 @@
-// Curves of the last five seconds, with the newest values as the legend.
+// Curves of the last seconds, with the newest values as the legend. Space or its button holds the
+// picture while what comes is kept all the same; the wheel zooms the time under the pointer and a
+// drag shifts it, both of a picture that is held; a double click follows again.
 #pragma once
 
 #include <array>
 #include <deque>
+#include <optional>
 #include <vector>
 
+#include <QHBoxLayout>
 #include <QString>
+#include <QToolButton>
 #include <QWidget>
+
+#include "app/gui/widgets/axis_zoom.h"
 
 namespace patina {
 
@@ -35,6 +42,8 @@ class StripPlot : public QWidget {
   QSize minimumSizeHint() const override; // with its legend
 
  protected:
+  void addToCorner(QWidget* widget); // beside the button
+  bool event(QEvent* event) override;
   void paintEvent(QPaintEvent* event) override;
 
  private:
@@ -43,6 +52,16 @@ class StripPlot : public QWidget {
     Values value;
   };
   float size(const Point& point) const; // of its largest value
+  void hold(bool holds);
+  const std::deque<Point>& shown() const { return held_ ? *held_ : points_; }
+  double now() const {
+    return held_ ? held_now_ : latest_;
+  }                      // of the right end, if it is not shifted
+  AxisSpan seen() const; // [s]
+  AxisSpan whole() const;
+  QRectF area() const;
+  bool wheel(const QWheelEvent& event);
+  bool drag(const QMouseEvent& event);
   double top() const;
   void paintAxes(QPainter& painter, const QRectF& area) const;
   int legendWidth(std::size_t curve) const;
@@ -53,8 +72,13 @@ class StripPlot : public QWidget {
   QString unit_;
   std::vector<StripCurve> curves_;
   double least_top_;
+  QHBoxLayout* corner_;
+  QToolButton* holds_;
   std::deque<Point> points_;
-  double latest_ = 0;
+  std::optional<std::deque<Point>> held_; // as it was when it was held
+  std::optional<AxisSpan> seen_;          // absent: the last five seconds
+  double latest_ = 0, held_now_ = 0;      // [s]
+  std::optional<int> dragged_from_;       // [pixel]
   double top_;
   bool dirty_ = true;
   bool quiet_ = false; // all that is shown is zero, and has been drawn

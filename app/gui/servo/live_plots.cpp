@@ -1,8 +1,5 @@
 #include "app/gui/servo/live_plots.h"
 
-#include <QHBoxLayout>
-#include <QVBoxLayout>
-
 namespace patina {
 
 ForcePlot::ForcePlot(QWidget* parent)
@@ -37,15 +34,8 @@ EnergyPlot::EnergyPlot(QWidget* parent)
   zero->setText(tr("Zero"));
   zero->setToolTip(tr("Count from now"));
   connect(zero, &QToolButton::clicked, this, [this] { meter_.ledger = {}; });
-  auto* corner = new QHBoxLayout;
-  corner->addStretch(1);
-  corner->addWidget(each);
-  corner->addWidget(zero);
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 1, 12, 0);
-  column->addLayout(corner);
-  column->addStretch(1);
-  column->setSizeConstraint(QLayout::SetNoConstraint);
+  addToCorner(each);
+  addToCorner(zero);
 }
 
 void EnergyPlot::addSamples(const std::vector<ToolSample>& samples, std::size_t dropped) {

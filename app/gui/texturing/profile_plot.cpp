@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <QMouseEvent>
 #include <QPainter>
+#include <QWheelEvent>
 
 #include "app/gui/window/theme.h"
 
@@ -29,10 +31,80 @@ Graph spectrumOf(const FourierSeries& series, double period) {
   return spectrum;
 }
 
+// In which a step of the picture is the same step everywhere.
+AxisSpan even(const Graph& graph, const AxisSpan& span) {
+  return graph.logarithmic ? AxisSpan{std::log(span.from), std::log(span.to)} : span;
+}
+
+void see(Graph& graph, const AxisSpan& span) {
+  graph.seen = graph.logarithmic ? AxisSpan{std::exp(span.from), std::exp(span.to)} : span;
+}
+
 } // namespace
+
+// Its place among the graphs is that of x among as many equal parts.
+Graph* ProfilePlot::graphAt(double x) {
+  if (graphs_.empty()) return nullptr;
+  const auto count = static_cast<double>(graphs_.size());
+  const double part = std::clamp(x / std::max(1, width()) * count, 0., count - 1e-9);
+  return &graphs_[static_cast<std::size_t>(part)];
+}
+
+void ProfilePlot::zoom(const QPointF& at, double notches) {
+  Graph* graph = graphAt(at.x());
+  if (graph == nullptr || areas_.size() != graphs_.size()) return;
+  const QRectF& area = areas_[static_cast<std::size_t>(graph - graphs_.data())];
+  if (area.isEmpty()) return;
+  const AxisSpan whole = even(*graph, wholeOf(*graph));
+  const AxisSpan seen = even(*graph, graph->seen.value_or(wholeOf(*graph)));
+  const double part = std::clamp((at.x() - area.left()) / area.width(), 0., 1.);
+  see(*graph,
+      zoomed(whole, seen, seen.from + part * seen.length(), notches, 1e-3 * whole.length()));
+  update();
+}
+
+void ProfilePlot::shift(double pixels) {
+  const QRectF& area = areas_[static_cast<std::size_t>(dragged_ - graphs_.data())];
+  if (!dragged_->seen || area.isEmpty()) return;
+  const AxisSpan seen = even(*dragged_, *dragged_->seen);
+  see(*dragged_,
+      shifted(even(*dragged_, wholeOf(*dragged_)), seen, -pixels * seen.length() / area.width()));
+  update();
+}
+
+bool ProfilePlot::event(QEvent* event) {
+  switch (event->type()) {
+  case QEvent::Wheel: {
+    const auto& wheel = *static_cast<QWheelEvent*>(event);
+    event->accept();
+    zoom(wheel.position(), wheel.angleDelta().y() / 120.);
+    return true;
+  }
+  case QEvent::MouseButtonPress:
+    last_ = static_cast<QMouseEvent*>(event)->x();
+    dragged_ = areas_.size() == graphs_.size() ? graphAt(last_) : nullptr;
+    return true;
+  case QEvent::MouseMove:
+    if (dragged_ == nullptr) break;
+    shift(static_cast<QMouseEvent*>(event)->x() - last_);
+    last_ = static_cast<QMouseEvent*>(event)->x();
+    return true;
+  case QEvent::MouseButtonRelease:
+    dragged_ = nullptr;
+    return true;
+  case QEvent::MouseButtonDblClick:
+    if (Graph* graph = graphAt(static_cast<QMouseEvent*>(event)->x())) graph->seen.reset();
+    update();
+    return true;
+  default:
+    break;
+  }
+  return QWidget::event(event);
+}
 
 void ProfilePlot::setTexture(const FourierTexture* texture) {
   graphs_.clear();
+  dragged_ = nullptr;
   if (texture != nullptr) {
     Graph heights{tr("mm"), tr("µm"), false, false, {{tr("height over a period"), "accent", {}}}};
     const int steps = std::clamp(8 * harmonics(*texture), 64, 2000);
@@ -49,6 +121,7 @@ void ProfilePlot::setTexture(const FourierTexture* texture) {
 
 void ProfilePlot::setTexture(const DemoTexture* texture) {
   graphs_.clear();
+  dragged_ = nullptr;
   if (texture != nullptr) {
     const FittedTexture& fitted = texture->scanned.fitted;
     Graph heights{tr("mm"),
@@ -87,8 +160,10 @@ void ProfilePlot::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), ink("card"));
   const double wide = width() / std::max<double>(1, static_cast<double>(graphs_.size()));
+  areas_.clear();
   for (std::size_t i = 0; i < graphs_.size(); ++i)
-    paintGraph(painter, QRectF(wide * static_cast<double>(i), 0, wide, height()), graphs_[i]);
+    areas_.push_back(
+        paintGraph(painter, QRectF(wide * static_cast<double>(i), 0, wide, height()), graphs_[i]));
 }
 
 } // namespace patina

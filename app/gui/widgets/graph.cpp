@@ -15,12 +15,18 @@ double stepFor(double range, int count) {
   return least;
 }
 
-void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
+AxisSpan wholeOf(const Graph& graph) {
+  QRectF box;
+  for (const GraphCurve& curve : graph.curves) box = box.united(curve.points.boundingRect());
+  return {box.left(), box.right()};
+}
+
+QRectF paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
   const QFontMetrics letters = painter.fontMetrics();
   const int line = letters.height();
   QRectF box;
   for (const GraphCurve& curve : graph.curves) box = box.united(curve.points.boundingRect());
-  if (!(box.width() > 0) || whole.width() < 96) return;
+  if (!(box.width() > 0) || whole.width() < 96) return {};
   double low = box.top(), high = box.bottom();
   if (!(high > low)) high = low + std::max(1e-9, std::abs(low));
   if (graph.logarithmic) {
@@ -41,10 +47,10 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
   }
   const double margin = std::max(42, widest + 4);
   const QRectF area = whole.adjusted(margin + 4, line + 6, -10, -line - 6);
+  const AxisSpan seen = graph.seen.value_or(AxisSpan{box.left(), box.right()});
   const auto xAt = [&](double x) {
-    const double part = graph.logarithmic
-                            ? std::log(x / box.left()) / std::log(box.right() / box.left())
-                            : (x - box.left()) / box.width();
+    const double part = graph.logarithmic ? std::log(x / seen.from) / std::log(seen.to / seen.from)
+                                          : (x - seen.from) / seen.length();
     return area.left() + part * area.width();
   };
   const auto yAt = [&](double y) {
@@ -63,15 +69,15 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
                    graph.y_unit);
   std::vector<double> marks;
   const double across =
-      std::max(stepFor(box.width(), std::clamp(static_cast<int>(area.width() / 60), 2, 8)),
+      std::max(stepFor(seen.length(), std::clamp(static_cast<int>(area.width() / 60), 2, 8)),
                graph.counted ? 1. : 0.);
-  if (graph.logarithmic)
-    marks = {0.2, 0.5, 1, 2, 5, 10};
+  if (graph.logarithmic && seen.to > 3 * seen.from)
+    marks = {0.1, 0.2, 0.5, 1, 2, 5, 10};
   else
-    for (double x = std::ceil(box.left() / across) * across; x <= box.right(); x += across)
+    for (double x = std::ceil(seen.from / across) * across; x <= seen.to; x += across)
       marks.push_back(std::abs(x) < 1e-9 * across ? 0 : x);
+  std::erase_if(marks, [&](double x) { return x < seen.from || x > seen.to; });
   for (const double x : marks) {
-    if (x < box.left() || x > box.right()) continue;
     painter.setPen(ink("quiet"));
     const QString words = QString::number(x) + (x == marks.back() ? ' ' + graph.x_unit : QString());
     const double wide = painter.fontMetrics().horizontalAdvance(words) + 2;
@@ -87,6 +93,7 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
             (&curve == &graph.curves.front() ? 0 : letters.horizontalAdvance(curve.name));
   for (const GraphCurve& curve : graph.curves) {
     painter.setPen(QPen(ink(curve.ink), graph.bars ? 2 : 1.4));
+    painter.setClipRect(area.adjusted(-1, -2, 1, 1));
     QPolygonF drawn;
     for (const QPointF& point : curve.points) {
       const QPointF at(xAt(point.x()), yAt(point.y()));
@@ -94,6 +101,7 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
       drawn << at;
     }
     if (!graph.bars) painter.drawPolyline(drawn);
+    painter.setClipping(false);
     painter.setPen(QPen(ink(curve.ink), 3));
     painter.drawLine(QPointF(legend, whole.top() + line / 2. + 3),
                      QPointF(legend + kMark, whole.top() + line / 2. + 3));
@@ -105,6 +113,7 @@ void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
     painter.drawText(QPointF(legend + kMark + kGap, whole.top() + letters.ascent() + 3), words);
     legend += kMark + kGap + kApart + letters.horizontalAdvance(words);
   }
+  return area;
 }
 
 } // namespace patina

@@ -1,11 +1,14 @@
 // A small graph: curves or bars over an axis, with grid, numbers and a legend.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <QPainter>
 #include <QPolygonF>
 #include <QString>
+
+#include "app/gui/widgets/axis_zoom.h"
 
 namespace patina {
 
@@ -18,10 +21,14 @@ struct Graph {
   QString x_unit, y_unit;
   bool bars = false, logarithmic = false;
   std::vector<GraphCurve> curves;
-  bool counted = false; // along x are whole numbers
+  bool counted = false;              // along x are whole numbers
+  std::optional<AxisSpan> seen = {}; // along x; absent: all
 };
-// Nothing where its curves have no width or there is no room.
-void paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph);
+// Along x.
+AxisSpan wholeOf(const Graph& graph);
+// Where the curves are. Nothing, and a null rectangle, where they have no width or there is no
+// room.
+QRectF paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph);
 
 // Steps of 1, 2, 5 so that at most `count` of them fit into a range.
 double stepFor(double range, int count);
