@@ -5,6 +5,7 @@
 #include <QFileDialog>
 
 #include "app/gui/loading/load_dialogs.h"
+#include "visualization/view/camera.h"
 
 namespace patina {
 
@@ -15,6 +16,9 @@ ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(pa
   connect(&at_.display, &DisplayPanel::sliceMoved, this,
           [this](const SlicePlace& place) { view().setSlice(place); });
   connect(&at_.display, &DisplayPanel::isoMoved, this, [this](double iso) { view().setIso(iso); });
+  connect(&at_.display.clip(), &QCheckBox::toggled, this, &ViewController::clip);
+  connect(&at_.display, &DisplayPanel::clipTurned, this, &ViewController::turnClip);
+  connect(&at_.view, &SceneWidget::clipMoved, this, &ViewController::setClip);
   connect(&at_.paint, &PaintDisplay::showAsked, this,
           [this](std::optional<PaintQuantity> quantity) {
             for (std::size_t i = 0; i < kPaintQuantities; ++i)
@@ -25,6 +29,40 @@ ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(pa
           [this](PaintQuantity quantity, std::optional<ValueRange> range) {
             view().lockPaintRange(quantity, range);
           });
+}
+
+// Through the middle, across the axis that is most towards the viewer.
+void ViewController::clip(bool on) {
+  if (!on) return setClip(std::nullopt);
+  clip_ = ClipPlane{view().extent().center(), Vec3::UnitZ()};
+  int axis = 0;
+  viewDirection(*view().renderer().GetActiveCamera()).cwiseAbs().maxCoeff(&axis);
+  turnClip(static_cast<ClipTurn>(axis));
+}
+
+void ViewController::turnClip(ClipTurn turn) {
+  ClipPlane plane = *clip_;
+  const Vec3 back = -viewDirection(*view().renderer().GetActiveCamera());
+  switch (turn) {
+  case ClipTurn::x:
+  case ClipTurn::y:
+  case ClipTurn::z: {
+    const int axis = static_cast<int>(turn);
+    plane.normal = back[axis] < 0 ? Vec3(-Vec3::Unit(axis)) : Vec3::Unit(axis);
+    break;
+  }
+  case ClipTurn::viewer:
+    plane.normal = back;
+    break;
+  case ClipTurn::flip:
+    plane.normal = -plane.normal;
+  }
+  setClip(plane);
+}
+
+void ViewController::setClip(const std::optional<ClipPlane>& plane) {
+  clip_ = plane;
+  at_.view.setClip(plane);
 }
 
 void ViewController::clear() {
@@ -68,6 +106,7 @@ void ViewController::showScene(const SceneChange& change) {
   }
   // The camera of another scene, or of a preview, says nothing of this one.
   if (!edited) view().setView(ViewPreset::iso);
+  if (!edited && clip_) clip(true); // nor does its clip plane
   content_ = Content::scene;
 }
 

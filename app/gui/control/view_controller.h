@@ -45,10 +45,14 @@ class ViewController : public QObject {
  private:
   void showMesh(std::shared_ptr<const TriangleMesh> mesh);
   void showPaint(const Scene& scene);
+  void clip(bool on);
+  void turnClip(ClipTurn turn);
+  void setClip(const std::optional<ClipPlane>& plane);
 
   Parts at_;
   Content content_ = Content::nothing;
   bool has_paint_ = false;
+  std::optional<ClipPlane> clip_;
   std::unique_ptr<CameraHand> hand_;
   std::string hand_problem_; // that was said
 };

@@ -1,37 +1,16 @@
 #include "app/gui/painting/brush_panel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include <QColorDialog>
-#include <QHBoxLayout>
 #include <QMenu>
 #include <QToolButton>
 
+#include "app/gui/painting/color_choice.h"
 #include "app/gui/painting/tool_choice.h"
-#include "app/gui/window/theme.h"
 
 namespace patina {
 namespace {
-
-constexpr std::array<std::array<double, 3>, 8> kSwatches{{{0.80, 0.22, 0.16},
-                                                          {0.93, 0.55, 0.13},
-                                                          {0.95, 0.83, 0.30},
-                                                          {0.29, 0.58, 0.28},
-                                                          {0.16, 0.52, 0.65},
-                                                          {0.20, 0.29, 0.62},
-                                                          {0.96, 0.96, 0.94},
-                                                          {0.14, 0.15, 0.18}}};
-
-QColor qColor(const std::array<double, 3>& color) {
-  return QColor::fromRgbF(color[0], color[1], color[2]);
-}
-
-void dressAsSwatch(QToolButton& button, const std::array<double, 3>& color, const char* border) {
-  dress(button, QStringLiteral("QToolButton { background: %1; border: %2; border-radius: 3px; }")
-                    .arg(qColor(color).name(), QString::fromUtf8(border)));
-}
 
 QString wordsOf(std::string_view utf8) {
   return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
@@ -76,39 +55,12 @@ void BrushPanel::rebuild(const BrushPresets& presets) {
 }
 
 void BrushPanel::addColor() {
-  auto* line = new QHBoxLayout;
-  line->setSpacing(3);
-  const auto swatch = [&](int wide) {
-    auto* button = new QToolButton(form_);
-    button->setFixedSize(wide, 22);
-    line->addWidget(button);
-    return button;
-  };
-  QToolButton* now = swatch(40);
-  now->setObjectName(QStringLiteral("brush_color"));
-  now->setToolTip(tr("What is painted with; choose another colour…"));
-  const auto take = [this, now](const std::array<double, 3>& color) {
+  auto* choice = new ColorChoice(brush_.color, form_);
+  connect(choice, &ColorChoice::chosen, this, [this](const ColorChoice::Color& color) {
     brush_.color = color;
-    dressAsSwatch(*now, color, "2px solid @accent");
-  };
-  take(brush_.color);
-  connect(now, &QToolButton::clicked, this, [this, take] {
-    const QColor color = QColorDialog::getColor(qColor(brush_.color), this, tr("Brush colour"));
-    if (!color.isValid()) return;
-    take({color.redF(), color.greenF(), color.blueF()});
     change();
   });
-  for (const auto& color : kSwatches) {
-    QToolButton* button = swatch(21);
-    dressAsSwatch(*button, color, "1px solid @faint");
-    button->setToolTip(tr("Paint with %1").arg(qColor(color).name()));
-    connect(button, &QToolButton::clicked, this, [this, color, take] {
-      take(color);
-      change();
-    });
-  }
-  line->addStretch(1);
-  form_->addLine(line);
+  form_->addWidget(choice);
 }
 
 void BrushPanel::addValue(double extent) {

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "app/gui/control/touching.h"
+#include "app/gui/painting/mirror_plane.h"
+#include "app/gui/painting/recent_colors.h"
 #include "authoring/brush/painter.h"
 #include "core/numbers.h"
 #include "haptics/devices/device_catalog.h"
@@ -70,6 +72,7 @@ void PaintController::setScene(std::shared_ptr<const CompiledScene> scene, bool 
   if (!anew || !scene_) return;
   down_ = lingers_ = false;
   tracker_ = {};
+  mirrored_ = 0;
   const Box3 box = bounds(*scene_->mesh);
   presets_.suit(box.isEmpty() ? 0.1 : box.sizes().maxCoeff(), scene_->scene.haptics);
   at_.panel.show(brush(), presets_);
@@ -230,8 +233,20 @@ void PaintController::refresh() {
     aim_ = *surface;
     leapTip(lifted());
   }
+  if (paints && surface && brush().symmetry != Symmetry::none)
+    if (const auto joint = surfacePointAt(*scene_->built.field, *scene_->mesh, *surface))
+      if (const auto own = objectPointOf(scene_->scene, *joint)) mirrored_ = own->object;
+  showMirror(paints);
   showCursor(!paints ? std::nullopt : tracker_.painting() ? std::optional(last_.surface) : surface);
   if (refreshes_++ % 3 == 0) emit underPointer(surface ? wordsFor(*surface) : QString());
+}
+
+void PaintController::showMirror(bool paints) {
+  const Symmetry symmetry = paints ? brush().symmetry : Symmetry::none;
+  if (symmetry == Symmetry::none || mirrored_ >= scene_->scene.objects.size())
+    return at_.view.view().setMirror(std::nullopt);
+  const SceneObject& object = scene_->scene.objects[mirrored_];
+  at_.view.view().setMirror(mirrorPlane(object, symmetry));
 }
 
 void PaintController::showCursor(const std::optional<Vec3>& surface) {
@@ -246,7 +261,12 @@ void PaintController::showCursor(const std::optional<Vec3>& surface) {
 
 void PaintController::pickAt(const Vec3& surface) {
   if (!scene_) return;
-  if (const auto values = valuesAt(surface)) setBrush(picked(brush(), *values));
+  if (const auto values = valuesAt(surface)) {
+    const Brush taken = picked(brush(), *values);
+    if (taken.tool == Tool::color)
+      rememberColor(QColor::fromRgbF(taken.color[0], taken.color[1], taken.color[2]));
+    setBrush(taken);
+  }
   // The eyedropper is used once: what was picked is painted with next.
   if (at_.bar.choice().handling == Handling::pick) at_.bar.choose({Handling::paint, tool_});
 }

@@ -60,6 +60,7 @@ class PaintController : public QObject {
   std::optional<SurfaceValues> valuesAt(const Vec3& surface, QString* object = nullptr) const;
   bool arrived(const std::vector<ToolSample>& ticks) const;
   void send(const std::vector<StrokePiece>& pieces);
+  void showMirror(bool paints);
   void showCursor(const std::optional<Vec3>& surface);
   QString wordsFor(const Vec3& surface) const;
 
@@ -77,6 +78,7 @@ class PaintController : public QObject {
   QElapsedTimer released_;
   std::size_t lingered_ = 0; // ticks since then
   ToolSample last_;
+  std::size_t mirrored_ = 0; // the object that was pointed at last
   int refreshes_ = 0;
 };
 

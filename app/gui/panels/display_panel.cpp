@@ -1,7 +1,11 @@
 #include "app/gui/panels/display_panel.h"
 
+#include <tuple>
+
 #include <QGridLayout>
+#include <QHBoxLayout>
 #include <QLabel>
+#include <QToolButton>
 #include <QVBoxLayout>
 
 namespace patina {
@@ -35,7 +39,8 @@ constexpr Box kBoxes[] = {
 } // namespace
 
 DisplayPanel::DisplayPanel(QWidget* parent)
-    : QGroupBox(tr("Show"), parent), slice_card_(new QWidget(this)),
+    : QGroupBox(tr("Show"), parent), clip_(new QCheckBox(tr("Clip plane"), this)),
+      clip_card_(new QWidget(this)), slice_card_(new QWidget(this)),
       axis_(new QComboBox(slice_card_)),
       position_(
           new ValueRow(tr("Slice position"), QStringLiteral("%"), {0, 100, 1, 1}, slice_card_)),
@@ -62,6 +67,9 @@ DisplayPanel::DisplayPanel(QWidget* parent)
     boxes_[layer] = box;
     ++index;
   }
+
+  grid->addWidget(clip_, index / 2, index % 2);
+  addClip(*column);
 
   stability_note_->setObjectName(QStringLiteral("stability_words"));
   stability_note_->setProperty("quiet", true);
@@ -96,6 +104,36 @@ DisplayPanel::DisplayPanel(QWidget* parent)
   setField(nullptr);
 }
 
+void DisplayPanel::addClip(QLayout& column) {
+  clip_->setObjectName(QStringLiteral("clip"));
+  clip_->setToolTip(
+      tr("<b>Clip plane</b> (Shift + S)<br>Cuts away what lies ahead of a plane at any "
+         "angle. Its ball shifts it, the arrow's head tilts it."));
+  connect(clip_, &QCheckBox::toggled, this, &DisplayPanel::arrange);
+  auto* line = new QHBoxLayout(clip_card_);
+  line->setContentsMargins(0, 4, 0, 0);
+  line->setSpacing(4);
+  auto* label = new QLabel(tr("Clip across"), clip_card_);
+  label->setProperty("quiet", true);
+  line->addWidget(label);
+  const std::tuple<ClipTurn, const char*, QString, QString> turns[] = {
+      {ClipTurn::x, "clip_x", tr("x"), tr("Across the x axis, from the viewer's side")},
+      {ClipTurn::y, "clip_y", tr("y"), tr("Across the y axis, from the viewer's side")},
+      {ClipTurn::z, "clip_z", tr("z"), tr("Across the z axis, from the viewer's side")},
+      {ClipTurn::viewer, "clip_viewer", tr("View"), tr("Facing you")},
+      {ClipTurn::flip, "clip_flip", tr("Flip"), tr("The other half is cut away")}};
+  for (const auto& [turn, name, words, tip] : turns) {
+    auto* button = new QToolButton(clip_card_);
+    button->setObjectName(QString::fromUtf8(name));
+    button->setText(words);
+    button->setToolTip(tip);
+    connect(button, &QToolButton::clicked, this, [this, turn = turn] { emit clipTurned(turn); });
+    line->addWidget(button);
+  }
+  line->addStretch(1);
+  column.addWidget(clip_card_);
+}
+
 void DisplayPanel::setField(const SurfaceField* field) {
   has_field_ = field != nullptr;
   const double kept = iso_ != nullptr ? iso_->value() : 0;
@@ -118,6 +156,7 @@ void DisplayPanel::arrange() {
   for (const Box& box : kBoxes)
     boxes_[box.layer]->setVisible((has_field_ || !box.needs_field) &&
                                   (has_band_ || box.layer != Layer::band));
+  clip_card_->setVisible(clip_->isChecked());
   slice_card_->setVisible(has_field_ && shown(Layer::slice));
   iso_card_->setVisible(has_field_ && shown(Layer::iso));
 }

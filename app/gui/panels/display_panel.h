@@ -13,6 +13,9 @@
 
 namespace patina {
 
+// How the clip plane is to lie: across an axis, facing the viewer, or the other way round.
+enum class ClipTurn { x, y, z, viewer, flip };
+
 class DisplayPanel : public QGroupBox {
   Q_OBJECT
  public:
@@ -24,17 +27,22 @@ class DisplayPanel : public QGroupBox {
   void setStabilityNote(const QString& words);
   void setShown(Layer layer, bool on); // sends layerToggled if it changes
   bool shown(Layer layer) const;
-  QString caption(Layer layer) const; // of its box; must have one
+  QCheckBox& clip() { return *clip_; } // on: there is a clip plane
+  QString caption(Layer layer) const;  // of its box; must have one
 
  signals:
   void layerToggled(patina::Layer layer, bool on);
   void sliceMoved(const patina::SlicePlace& place);
   void isoMoved(double iso); // [m]
+  void clipTurned(patina::ClipTurn turn);
 
  private:
   void arrange();
+  void addClip(QLayout& column);
 
   std::map<Layer, QCheckBox*> boxes_;
+  QCheckBox* clip_;
+  QWidget* clip_card_;
   QWidget* slice_card_;
   QComboBox* axis_;
   ValueRow* position_;

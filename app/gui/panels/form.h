@@ -31,7 +31,6 @@ class Form : public QWidget {
   void addChoice(const char* name, const QString& caption, const QStringList& words, int now,
                  std::function<void(int)> set, const QString& tip = {});
   void addWidget(QWidget* widget) { grid_->addWidget(widget, grid_->rowCount(), 0, 1, 2); }
-  void addLine(QLayout* line) { grid_->addLayout(line, grid_->rowCount(), 0, 1, 2); }
 
  signals:
   void edited(); // after a value was set

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <QCoreApplication>
+#include <QApplication>
 #include <QMouseEvent>
 #include <QTabletEvent>
 #include <QWheelEvent>
@@ -17,6 +17,8 @@
 namespace patina {
 namespace {
 
+constexpr double kCubeTurn = 3; // a drag on the small cube turns more than one in the picture
+
 // A pixel in fractions of the picture's height, from its centre, right and up.
 Vec2 fractionOf(const QWidget& widget, const QPoint& pixel) {
   const double high = std::max(1, widget.height());
@@ -25,11 +27,13 @@ Vec2 fractionOf(const QWidget& widget, const QPoint& pixel) {
 
 } // namespace
 
-SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent), frames_(view_, *this) {
+SceneWidget::SceneWidget(QWidget* parent)
+    : QVTKOpenGLNativeWidget(parent), frames_(view_, *this), turn_(view_, frames_) {
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
   setRenderWindow(window);
   view_.setGround(pictureGround());
+  view_.showCube(true);
   view_.attachTo(*window);
   setEnableHiDPI(true);
   setMinimumSize(480,
@@ -42,8 +46,61 @@ SceneWidget::SceneWidget(QWidget* parent) : QVTKOpenGLNativeWidget(parent), fram
 
 void SceneWidget::setHandling(Handling handling) {
   handling_ = handling;
-  setCursor(feels() || paints() || handling_ == Handling::pick ? Qt::CrossCursor
-                                                               : Qt::OpenHandCursor);
+  showPointer();
+}
+
+void SceneWidget::showPointer() {
+  setCursor(cube_side_                                           ? Qt::PointingHandCursor
+            : clip_part_                                         ? Qt::SizeAllCursor
+            : feels() || paints() || handling_ == Handling::pick ? Qt::CrossCursor
+                                                                 : Qt::OpenHandCursor);
+}
+
+std::optional<Vec3> SceneWidget::cubeSideAt(const QPoint& pixel) {
+  return view_.cubeSideAt((pixel.x() + 0.5) / std::max(1, width()),
+                          1 - (pixel.y() + 0.5) / std::max(1, height()));
+}
+
+Ray SceneWidget::sightAt(const QPoint& pixel) {
+  const Vec2 at = fractionOf(*this, pixel);
+  return rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
+}
+
+std::optional<ClipPart> SceneWidget::clipPartAt(const QPoint& pixel) {
+  return clip_ ? patina::clipPartAt(*clip_, view_.clipLength(), sightAt(pixel)) : std::nullopt;
+}
+
+void SceneWidget::setClip(const std::optional<ClipPlane>& plane) {
+  clip_ = plane;
+  if (!plane) clip_part_.reset();
+  view_.setClip(plane);
+  frames_.cameraMoved(); // is seen as soon as a camera that moves
+}
+
+void SceneWidget::hover() {
+  cube_side_ = pointer_ ? cubeSideAt(*pointer_) : std::nullopt;
+  const auto part = pointer_ && !cube_side_ ? clipPartAt(*pointer_) : std::nullopt;
+  view_.setCubeHot(cube_side_);
+  if (part != clip_part_) view_.setClipHot(part);
+  clip_part_ = part;
+  showPointer();
+}
+
+bool SceneWidget::hold(const QPoint& pixel) {
+  pointer_ = pixel;
+  hover();
+  if (!cube_side_ && !clip_part_) return false;
+  drag_ = cube_side_ ? Drag::cube : Drag::clip;
+  held_from_ = pixel;
+  cube_moved_ = false;
+  return true;
+}
+
+void SceneWidget::dragClip(const QPoint& from, const QPoint& to) {
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  emit clipMoved(*clip_part_ == ClipPart::tilt
+                     ? clipTilted(*clip_, view_.clipLength(), sightAt(to))
+                     : clipShifted(*clip_, sightAt(from), sightAt(to), Vec3(camera.GetViewUp())));
 }
 
 void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
@@ -64,14 +121,19 @@ Vec3 SceneWidget::restingPlace() {
 
 std::optional<Vec3> SceneWidget::surfaceAt(const QPoint& pixel) {
   if (!field_) return std::nullopt;
-  const Vec2 at = fractionOf(*this, pixel);
-  const Ray ray = rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
-  return firstSurfaceAlong(*field_, ray.origin, ray.direction);
+  const Ray sight = sightAt(pixel);
+  const auto rest = clip_ ? behind(*clip_, sight) : std::optional(sight);
+  if (!rest) return std::nullopt;
+  const auto hit = firstSurfaceAlong(*field_, rest->origin, rest->direction);
+  // A sight that begins within the body meets no surface where it begins.
+  const bool within = hit && rest->origin != sight.origin &&
+                      (*hit - rest->origin).norm() < 0.5 * field_->grid.voxel;
+  return within ? std::nullopt : hit;
 }
 
 std::optional<Vec3> SceneWidget::underPointer() {
   const bool looks = drag_ == Drag::none || drag_ == Drag::brush;
-  return pointer_ && looks ? surfaceAt(*pointer_) : std::nullopt;
+  return pointer_ && looks && !cube_side_ && !clip_part_ ? surfaceAt(*pointer_) : std::nullopt;
 }
 
 void SceneWidget::brush(const QPoint& pixel, bool down, double pressure, const QInputEvent& event) {
@@ -102,12 +164,15 @@ bool SceneWidget::pen(QTabletEvent& event) {
 
 void SceneWidget::release(const QMouseEvent& event) {
   if (drag_ == Drag::brush) brush(last_, false, 1, event);
+  if (drag_ == Drag::cube && !cube_moved_) turn_.begin(*cube_side_);
   drag_ = Drag::none;
 }
 
 void SceneWidget::press(QMouseEvent& event) {
   last_ = event.pos();
   pointer_ = last_;
+  turn_.stop();
+  if (event.button() == Qt::LeftButton && hold(last_)) return;
   if (pick(event)) return;
   const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
   switch (event.button()) {
@@ -132,7 +197,8 @@ void SceneWidget::press(QMouseEvent& event) {
 void SceneWidget::drag(QMouseEvent& event) {
   vtkCamera& camera = *view_.renderer().GetActiveCamera();
   const Vec2 now = fractionOf(*this, event.pos());
-  const Vec2 moved = now - fractionOf(*this, last_);
+  const QPoint from = last_;
+  const Vec2 moved = now - fractionOf(*this, from);
   last_ = event.pos();
   pointer_ = last_;
   switch (drag_) {
@@ -152,7 +218,16 @@ void SceneWidget::drag(QMouseEvent& event) {
   case Drag::zoom:
     zoom(camera, std::exp(3 * moved[1]));
     return frames_.cameraMoved();
+  case Drag::cube:
+    cube_moved_ =
+        cube_moved_ || (last_ - held_from_).manhattanLength() >= QApplication::startDragDistance();
+    if (!cube_moved_) break;
+    orbit(camera, kCubeTurn * moved[0], kCubeTurn * moved[1]);
+    return frames_.cameraMoved();
+  case Drag::clip:
+    return dragClip(from, last_);
   case Drag::none:
+    hover();
     break;
   }
 }
@@ -197,6 +272,7 @@ bool SceneWidget::event(QEvent* event) {
     return pen(*static_cast<QTabletEvent*>(event));
   case QEvent::Leave:
     pointer_.reset();
+    if (drag_ == Drag::none) hover();
     return true;
   case QEvent::Wheel:
     wheel(*static_cast<QWheelEvent*>(event));

@@ -7,6 +7,7 @@
 #include <QInputEvent>
 #include <QPoint>
 
+#include "app/gui/widgets/camera_turn.h"
 #include "app/gui/widgets/frame_pacer.h"
 #include "app/gui/window/handling.h"
 #include "core/types.h"
@@ -27,7 +28,7 @@ struct Pointed {
 // wheel move the camera. Navigating, the left button and the wheel move the camera too. Painting,
 // the left button, or a pen, is on the surface under it, and the wheel zooms; pressing is the same,
 // and the wheel is the force's; picking, and with Alt when feeling or painting, it asks what is
-// there.
+// there. On the cube in the corner a click looks from the side that was clicked, a drag turns.
 class SceneWidget : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
@@ -41,6 +42,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   void setTarget(const Vec3& target) { target_ = target; }
   const Vec3& target() const { return target_; }
 
+  // Surfaces are seen and picked behind it only; nullopt: whole.
+  void setClip(const std::optional<ClipPlane>& plane);
   // The surface under the pointer, while it is over the view and moves no camera.
   std::optional<Vec3> underPointer();
 
@@ -51,7 +54,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   void tipMoved(const patina::Vec3& target);
   void placeAsked(const patina::Vec3& surface);
   void forceTurned(double notches);
-  void escaped(); // while something was painted
+  void clipMoved(const patina::ClipPlane& plane); // by its handle
+  void escaped();                                 // while something was painted
   // When painting or pressing, while the button is down and when it goes.
   void pointed(const patina::Pointed& where);
   void pickAsked(const patina::Vec3& surface);
@@ -73,7 +77,16 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   void drag(QMouseEvent& event);
   void wheel(QWheelEvent& event);
 
-  enum class Drag { none, tip, orbit, pan, zoom, brush };
+  std::optional<Vec3> cubeSideAt(const QPoint& pixel);
+  void showPointer(); // as what is under it asks for
+
+  Ray sightAt(const QPoint& pixel);
+  std::optional<ClipPart> clipPartAt(const QPoint& pixel);
+  void hover();                   // over cube and handle
+  bool hold(const QPoint& pixel); // one of them; false: neither is there
+  void dragClip(const QPoint& from, const QPoint& to);
+
+  enum class Drag { none, tip, orbit, pan, zoom, brush, cube, clip };
   SceneView view_;
   std::shared_ptr<const SurfaceField> field_;
   Handling handling_ = Handling::feel;
@@ -82,6 +95,12 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   std::optional<QPoint> pointer_; // over the view
   Vec3 target_ = Vec3::Zero();
   FramePacer frames_;
+  CameraTurn turn_;
+  std::optional<ClipPlane> clip_;
+  std::optional<ClipPart> clip_part_; // under the pointer, or held
+  std::optional<Vec3> cube_side_;     // under the pointer, or pressed
+  QPoint held_from_;                  // where it was pressed
+  bool cube_moved_ = false;           // since then
 };
 
 } // namespace patina

@@ -3,7 +3,6 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QToolBar>
-#include <QToolButton>
 
 #include "app/gui/control/desk_controller.h"
 #include "app/gui/control/document_controller.h"
@@ -35,6 +34,8 @@ QString shortcutsText() {
       "<tr><td><b>Q</b></td><td>press on the surface under the pointer; the wheel sets the "
       "force</td></tr>"
       "<tr><td><b>Shift + left drag</b></td><td>turn the camera</td></tr>"
+      "<tr><td><b>The cube in the corner</b></td><td>a click looks from that side, a drag "
+      "turns</td></tr>"
       "<tr><td><b>Middle drag</b></td><td>shift the camera</td></tr>"
       "<tr><td><b>Right drag, Ctrl + wheel</b></td><td>zoom</td></tr>"
       "<tr><td><b>Space</b></td><td>navigate with the left button, and back to the tool</td></tr>"
@@ -43,6 +44,7 @@ QString shortcutsText() {
       "<tr><td><b>O</b></td><td>without perspective, and with it</td></tr>"
       "<tr><td><b>M T S I W N B E K</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
       "band, field extent, stability</td></tr>"
+      "<tr><td><b>Shift + S</b></td><td>clip plane: cuts away what lies ahead of it</td></tr>"
       "<tr><td><b>V A P H D G J U X</b></td><td>feel, navigate, paint, relief, stiffness, "
       "friction, "
       "damping, roughness, erase</td></tr>"
@@ -204,6 +206,15 @@ void addLayers(QMenu& menu, DisplayPanel* display) {
   }
 }
 
+void addClip(QMenu& menu, QCheckBox& box) {
+  QAction* clip = menu.addAction(QMainWindow::tr("Show clip plane"));
+  clip->setObjectName(QStringLiteral("show_clip"));
+  clip->setCheckable(true);
+  clip->setShortcut(QKeySequence("Shift+S"));
+  QObject::connect(clip, &QAction::toggled, &box, &QCheckBox::setChecked);
+  QObject::connect(&box, &QCheckBox::toggled, clip, &QAction::setChecked);
+}
+
 void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
   QMenu* menu = window.menuBar()->addMenu(tr("&View"));
   menu->addAction(tr("Navigate, or back to the tool"), parts.tools, &ToolBar::toggleNavigation,
@@ -220,8 +231,11 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   QMenu* camera = menu->addMenu(tr("&Camera"));
   int digit = Qt::Key_1;
   for (const ViewPreset preset : allViews())
-    camera->addAction(
-        signed_(preset), view, [=] { view->view().setView(preset); }, digit++);
+    camera
+        ->addAction(
+            signed_(preset), view, [=] { view->view().setView(preset); }, digit++)
+        ->setObjectName(QStringLiteral("view_") +
+                        QString::fromStdString(std::string(name(preset))));
 #ifdef PATINA_HAS_ACQUISITION
   for (const ViewPreset preset : allViews())
     QObject::connect(camera->actions()[static_cast<int>(preset)], &QAction::triggered, parts.scan,
@@ -247,11 +261,9 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
     view->setCameraHand(on ? std::make_unique<CameraHand>() : nullptr);
   });
   camera->menuAction()->setToolTip(tr("Look from a side: keys 1 to 7"));
-  bar.addAction(camera->menuAction());
-  auto* from = qobject_cast<QToolButton*>(bar.widgetForAction(camera->menuAction()));
-  from->setPopupMode(QToolButton::InstantPopup);
   menu->addSeparator();
   addLayers(*menu, parts.display);
+  addClip(*menu, parts.display->clip());
   menu->addSeparator();
   menu->addActions(at.desks.actions());
 #ifdef PATINA_HAS_ACQUISITION

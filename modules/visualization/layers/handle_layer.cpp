@@ -13,6 +13,7 @@
 #include "visualization/surfaces/surface_data.h"
 #include "visualization/values/palette.h"
 #include "visualization/view/camera.h"
+#include "visualization/view/scene_furniture.h"
 
 namespace patina {
 namespace {
@@ -21,7 +22,6 @@ constexpr double kArrow = 1.45, kBall = 0.12;  // of the rings' radius
 constexpr double kReach = 0.14;                // from a line that is held
 constexpr double kShare = 0.34;                // radius, of half the picture's height
 constexpr double kEdgeOn = 0.7, kHidden = 0.9; // cosines between axis and line of sight
-constexpr palette::Color kAxes[] = {{0.76, 0.23, 0.20}, {0.25, 0.56, 0.27}, {0.20, 0.38, 0.72}};
 
 bool turns(HandlePart part) {
   return part >= HandlePart::turn_x;
@@ -120,7 +120,7 @@ HandleLayer::HandleLayer(vtkRenderer& overlay) : overlay_(overlay) {
     arrow->SetShaftRadius(0.018);
     arrow->SetTipRadius(0.06);
     arrow->SetTipLength(0.2);
-    auto shift = partActor(*arrow, kAxes[i]);
+    auto shift = partActor(*arrow, kAxisColors[i]);
     if (i == 1) shift->RotateZ(90);
     if (i == 2) shift->RotateY(-90);
     const vtkNew<vtkRegularPolygonSource> ring;
@@ -128,7 +128,7 @@ HandleLayer::HandleLayer(vtkRenderer& overlay) : overlay_(overlay) {
     ring->SetRadius(1);
     ring->SetNormal(Vec3::Unit(i).eval().data());
     ring->GeneratePolygonOff();
-    auto turn = partActor(*ring, kAxes[i]);
+    auto turn = partActor(*ring, kAxisColors[i]);
     turn->GetProperty()->LightingOff();
     parts_[static_cast<std::size_t>(1 + i)] = shift;
     parts_[static_cast<std::size_t>(4 + i)] = turn;
@@ -145,7 +145,7 @@ void HandleLayer::setPlace(const std::optional<Vec3>& middle) {
 void HandleLayer::setHot(std::optional<HandlePart> part) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const bool hot = part && static_cast<std::size_t>(*part) == i;
-    const palette::Color& plain = i == 0 ? palette::kToolShaft : kAxes[(i - 1) % 3];
+    const palette::Color& plain = i == 0 ? palette::kToolShaft : kAxisColors[(i - 1) % 3];
     parts_[i]->GetProperty()->SetColor(palette::forVtk(hot ? palette::kTool : plain));
     parts_[i]->GetProperty()->SetLineWidth(hot ? 5 : 3);
   }

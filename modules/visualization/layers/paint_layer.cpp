@@ -42,7 +42,7 @@ struct PaintLayer::Impl {
   vtkSmartPointer<vtkLookupTable> colors;
   std::optional<PaintQuantity> colors_of;
   bool visible = false, wireframe = false;
-  vtkPlane* clip = nullptr;
+  vtkSmartPointer<vtkPlaneCollection> cuts;
 
   static std::size_t at(PaintQuantity q) { return static_cast<std::size_t>(q); }
   bool draws(const Drawn& drawn) const { return quantity && hasPaint(drawn.object, *quantity); }
@@ -55,7 +55,7 @@ struct PaintLayer::Impl {
   }
   void add(vtkActor& actor) {
     scene->AddActor(&actor);
-    if (clip != nullptr) actor.GetMapper()->AddClippingPlane(clip);
+    actor.GetMapper()->SetClippingPlanes(cuts);
   }
 
   ValueRange prepareValues(Drawn& drawn);
@@ -210,16 +210,13 @@ void PaintLayer::setWireframe(bool on) {
   impl_->showWhatIsDrawn();
 }
 
-void PaintLayer::setClippingPlane(vtkPlane* plane) {
+void PaintLayer::setCuts(vtkPlaneCollection* planes) {
   Impl& my = *impl_;
-  my.clip = plane;
+  my.cuts = planes;
   for (Impl::Drawn& drawn : my.objects)
     for (vtkActor* actor : {drawn.image ? &drawn.image->actor() : nullptr,
                             drawn.material ? &drawn.material->actor() : nullptr})
-      if (actor != nullptr) {
-        actor->GetMapper()->RemoveAllClippingPlanes();
-        if (plane != nullptr) actor->GetMapper()->AddClippingPlane(plane);
-      }
+      if (actor != nullptr) actor->GetMapper()->SetClippingPlanes(planes);
 }
 
 vtkScalarBarActor& PaintLayer::bar() {

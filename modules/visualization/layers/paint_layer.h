@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include <vtkPlane.h>
+#include <vtkPlaneCollection.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
 
@@ -48,7 +48,7 @@ class PaintLayer {
   // Brings textures and values up to date with what was given. Before a render.
   void prepare();
   void setWireframe(bool on);
-  void setClippingPlane(vtkPlane* plane); // nullptr: none
+  void setCuts(vtkPlaneCollection* planes); // of its surfaces; nullptr: none
   vtkScalarBarActor& bar();
 
  private:

@@ -85,6 +85,27 @@ void turnCamera(vtkCamera& camera, ViewPreset view) {
   look(camera, centre + back, centre, up);
 }
 
+Eigen::Quaterniond turnOf(vtkCamera& camera) {
+  const Frame frame = frameOf(camera);
+  Eigen::Matrix3d axes;
+  axes << frame.right, frame.up, frame.back;
+  return Eigen::Quaterniond(axes);
+}
+
+void setTurn(vtkCamera& camera, const Eigen::Quaterniond& turn) {
+  const Vec3 centre(camera.GetFocalPoint());
+  look(camera, centre + turn * Vec3(0, 0, camera.GetDistance()), centre, turn * Vec3::UnitY());
+}
+
+Eigen::Quaterniond turnFrom(const Vec3& direction) {
+  const Vec3 back = direction.normalized();
+  const bool steep = back.head<2>().norm() < 1e-6;
+  const Vec3 right = (steep ? Vec3::UnitY() : Vec3::UnitZ()).cross(back).normalized();
+  Eigen::Matrix3d axes;
+  axes << right, back.cross(right), back;
+  return Eigen::Quaterniond(axes);
+}
+
 void orbit(vtkCamera& camera, double dx, double dy) {
   camera.Azimuth(-180 * dx);
   camera.Elevation(-180 * dy);

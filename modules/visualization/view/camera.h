@@ -13,6 +13,12 @@ namespace patina {
 
 // Looks at what it looked at before, from a preset side.
 void turnCamera(vtkCamera& camera, ViewPreset view);
+// How it is turned: its right, up and back in the world.
+Eigen::Quaterniond turnOf(vtkCamera& camera);
+// Turned like that about what it looks at, which stays as far away.
+void setTurn(vtkCamera& camera, const Eigen::Quaterniond& turn);
+// Looking from that direction, not zero, with z up; straight from above or below, y.
+Eigen::Quaterniond turnFrom(const Vec3& direction);
 // Looks at `centre` from the present direction, as near as all points allow. aspect = width /
 // height.
 void fitCamera(vtkCamera& camera, const Vec3& centre, const std::vector<Vec3>& points,

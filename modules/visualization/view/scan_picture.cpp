@@ -136,8 +136,7 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   ball->SetPhiResolution(16);
   ball->Update();
   setData(*my.ball, ball->GetOutput());
-  const palette::Color colors[] = {{0.76, 0.23, 0.20}, {0.25, 0.56, 0.27}, {0.20, 0.38, 0.72}};
-  for (std::size_t i = 0; i < 3; ++i) my.axes[i] = lineActor(colors[i], 3);
+  for (std::size_t i = 0; i < 3; ++i) my.axes[i] = lineActor(kAxisColors[i], 3);
   // What presses lies a little below the surface, and is seen all the same.
   auto* mapper = my.mesh->GetMapper();
   mapper->SetResolveCoincidentTopologyToPolygonOffset();

@@ -12,7 +12,6 @@
 
 namespace patina {
 namespace {
-constexpr palette::Color kAxes[] = {{0.76, 0.23, 0.20}, {0.25, 0.56, 0.27}, {0.20, 0.38, 0.72}};
 
 std::array<vtkCaptionActor2D*, 3> captionsOf(vtkAxesActor& axes) {
   return {axes.GetXAxisCaptionActor2D(), axes.GetYAxisCaptionActor2D(),
@@ -81,8 +80,8 @@ vtkSmartPointer<vtkAxesActor> axesActor() {
   const auto captions = captionsOf(*axes);
   const char* letters[] = {"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i) {
-    shafts[i]->SetColor(palette::forVtk(kAxes[i]));
-    tips[i]->SetColor(palette::forVtk(kAxes[i]));
+    shafts[i]->SetColor(palette::forVtk(kAxisColors[i]));
+    tips[i]->SetColor(palette::forVtk(kAxisColors[i]));
     captions[i]->SetCaption(letters[i]);
     captions[i]->GetTextActor()->SetTextScaleModeToNone();
     vtkTextProperty* text = captions[i]->GetCaptionTextProperty();
@@ -96,7 +95,7 @@ vtkSmartPointer<vtkAxesActor> axesActor() {
 void setLettering(vtkAxesActor& axes, const Lettering& letters) {
   const auto captions = captionsOf(axes);
   for (std::size_t i = 0; i < 3; ++i)
-    write(*captions[i]->GetCaptionTextProperty(), letters, kAxes[i], false);
+    write(*captions[i]->GetCaptionTextProperty(), letters, kAxisColors[i], false);
 }
 
 void setBackground(vtkRenderer& renderer, const palette::Ground& ground) {

@@ -11,6 +11,10 @@
 
 namespace patina {
 
+// Of x, y and z, wherever they are drawn.
+inline constexpr palette::Color kAxisColors[] = {
+    {0.76, 0.23, 0.20}, {0.25, 0.56, 0.27}, {0.20, 0.38, 0.72}};
+
 // An actor with an empty mapper and the matt material of all surfaces.
 vtkSmartPointer<vtkActor> surfaceActor(const palette::Color& color);
 // Of objects that are drawn in their own frame.

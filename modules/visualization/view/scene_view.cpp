@@ -112,6 +112,14 @@ void SceneView::setBrush(const std::optional<BrushPlace>& place) {
   impl_->brush_stale = impl_->dirty = true;
 }
 
+void SceneView::setMirror(const std::optional<MirrorPlace>& place) {
+  Impl& my = *impl_;
+  if (place == my.mirror_place) return;
+  my.mirror_place = place;
+  place ? void(my.mirror.emplace(*my.scene, *place)) : my.mirror.reset();
+  my.dirty = true;
+}
+
 void SceneView::setField(std::shared_ptr<const SurfaceField> field) {
   Impl& my = *impl_;
   my.field = std::move(field);
@@ -135,6 +143,27 @@ void SceneView::setIso(double iso) {
 void SceneView::setSlice(const SlicePlace& place) {
   impl_->place = place;
   impl_->slice_stale = impl_->dirty = true;
+}
+
+void SceneView::setClip(const std::optional<ClipPlane>& plane) {
+  Impl& my = *impl_;
+  if (!plane)
+    my.clip.reset();
+  else if (my.clip)
+    my.clip->set(*plane);
+  else
+    my.clip.emplace(*my.scene, *my.overlay, *plane);
+  my.dirty = true;
+}
+
+double SceneView::clipLength() const {
+  return impl_->clip ? impl_->clip->length() : 0;
+}
+
+void SceneView::setClipHot(const std::optional<ClipPart>& part) {
+  if (!impl_->clip) return;
+  impl_->clip->setHot(part);
+  impl_->dirty = true;
 }
 
 void SceneView::setBand(const std::optional<TouchBand>& band) {
@@ -198,6 +227,29 @@ bool SceneView::shown(Layer layer) const {
 void SceneView::setGround(const palette::Ground& ground) {
   impl_->ground = ground;
   setBackground(*impl_->scene, ground);
+  impl_->dirty = true;
+}
+
+void SceneView::showCube(bool on) {
+  Impl& my = *impl_;
+  my.axes->SetVisibility(!on);
+  on ? void(my.cube.emplace(*my.corner)) : my.cube.reset();
+  my.corner->SetUseFXAA(on); // of so few pixels, at no cost
+  my.dirty = true;
+}
+
+std::optional<Vec3> SceneView::cubeSideAt(double x, double y) const {
+  const Impl& my = *impl_;
+  const double* port = my.corner->GetViewport(); // of the last picture
+  if (!my.cube || x > port[2] || y > port[3]) return std::nullopt;
+  return patina::cubeSideAt(
+      rayThrough(*my.corner->GetActiveCamera(), x / port[2] - 0.5, y / port[3] - 0.5));
+}
+
+void SceneView::setCubeHot(const std::optional<Vec3>& side) {
+  if (!impl_->cube || side == impl_->hot_side) return;
+  impl_->hot_side = side;
+  impl_->cube->setHot(side);
   impl_->dirty = true;
 }
 
@@ -273,10 +325,13 @@ bool SceneView::prepare() {
     my.nodes_stale = false;
   }
   my.cutAt();
+  if (my.mirror) my.mirror->setGround(my.ground);
+  if (my.clip) my.clip->prepare(my.box(), my.ground);
   const Lettering letters = my.letters();
   my.band_layer.setLettering(letters);
   my.tool.setLettering(letters);
   setLettering(*my.axes, letters);
+  if (my.cube) my.cube->setGround(my.ground);
   vtkCamera* camera = my.scene->GetActiveCamera();
   my.tool.faceCamera(*camera);
   my.scale.update(*camera, my.size()[1], letters);

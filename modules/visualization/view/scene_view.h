@@ -15,6 +15,8 @@
 #include "scene/scene.h"
 #include "scene/tool_sample.h"
 #include "visualization/layers/brush_cursor.h"
+#include "visualization/layers/clip_layer.h"
+#include "visualization/layers/mirror_layer.h"
 #include "visualization/layers/paint_layer.h"
 #include "visualization/values/touch_band.h"
 #include "visualization/view/view_options.h"
@@ -43,6 +45,11 @@ class SceneView {
   void setField(std::shared_ptr<const SurfaceField> field); // nullptr = none
   void setIso(double iso);                                  // [m]
   void setSlice(const SlicePlace& place);
+  // Surfaces are drawn behind the plane only, which has a handle; nullopt: whole.
+  void setClip(const std::optional<ClipPlane>& plane);
+  // Of the plane that there is: the length of its handle [m].
+  double clipLength() const;
+  void setClipHot(const std::optional<ClipPart>& part);
   // Of the layer band; nullopt = the surface is felt where it is.
   void setBand(const std::optional<TouchBand>& band);
   // Of the layer stability, which takes the mesh's place: a surface and one K*/K a vertex. nullptr
@@ -58,13 +65,20 @@ class SceneView {
   void lockPaintRange(PaintQuantity quantity, std::optional<ValueRange> range);
   ValueRange paintRange(PaintQuantity quantity) const; // as shown
   bool hasPaint(PaintQuantity quantity) const;
-  void setBrush(const std::optional<BrushPlace>& place); // nullopt: no cursor
+  void setBrush(const std::optional<BrushPlace>& place);   // nullopt: no cursor
+  void setMirror(const std::optional<MirrorPlace>& place); // of strokes; nullopt: none
   void setTipRadius(double radius); // [m]; 0 = a point, drawn as a small sphere
   void setTool(const ToolSample& sample);
 
   void show(Layer layer, bool on);
   void showOnly(const std::set<Layer>& layers);
   bool shown(Layer layer) const;
+
+  // A cube in the corner in place of the axes. Its side that is at a place of the picture, 0 .. 1
+  // from the lower left; see ViewCube.
+  void showCube(bool on);
+  std::optional<Vec3> cubeSideAt(double x, double y) const;
+  void setCubeHot(const std::optional<Vec3>& side);
 
   void setGround(const palette::Ground& ground); // light, unless said
   void setView(ViewPreset view);                 // and fit

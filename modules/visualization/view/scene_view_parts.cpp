@@ -112,30 +112,35 @@ void SceneView::Impl::applyVisibility() {
   iso_actor->GetProperty()->SetBackfaceCulling(shell);
 }
 
-// Surfaces in front of the slice would hide it: the half towards the camera is cut away.
+// Surfaces in front of the slice would hide it: the half towards the camera is cut away. So is what
+// lies ahead of the clip plane.
 void SceneView::Impl::cutAt() {
-  vtkPlane& plane = slice.plane();
-  const bool wanted = on(Layer::slice) && field != nullptr;
-  const Vec3 eye(scene->GetActiveCamera()->GetPosition());
-  const Vec3 normal = Vec3::Unit(place.axis);
-  const bool keeps_positive = (eye - Vec3(plane.GetOrigin())).dot(normal) < 0;
-  if (wanted) {
+  std::vector<vtkPlane*> planes;
+  if (on(Layer::slice) && field != nullptr) {
+    vtkPlane& plane = slice.plane();
+    const Vec3 eye(scene->GetActiveCamera()->GetPosition());
+    const Vec3 normal = Vec3::Unit(place.axis);
+    const bool keeps_positive = (eye - Vec3(plane.GetOrigin())).dot(normal) < 0;
     Vec3 inward = keeps_positive ? normal : Vec3(-normal);
     plane.SetNormal(inward.data());
     // A hair behind the slice: the rims of what is cut would shine through its lines.
     Vec3 origin(plane.GetOrigin());
     origin[place.axis] = slice.position() + (keeps_positive ? 1 : -1) * 0.35 * field->grid.voxel;
     plane.SetOrigin(origin.data());
+    dirty = dirty || keeps_positive != cut_keeps_positive;
+    cut_keeps_positive = keeps_positive;
+    planes.push_back(&plane);
   }
-  if (wanted == cut_on && keeps_positive == cut_keeps_positive) return;
-  cut_on = wanted;
-  cut_keeps_positive = keeps_positive;
+  if (clip) planes.push_back(&clip->cut());
+  if (planes == cut_by) return;
+  cut_by = planes;
+  vtkSmartPointer<vtkPlaneCollection> cuts;
+  if (!planes.empty()) cuts = vtkSmartPointer<vtkPlaneCollection>::New();
+  for (vtkPlane* plane : planes) cuts->AddItem(plane);
   for (vtkActor* actor : {mesh_actor.Get(), coarse_actor.Get(), iso_actor.Get(),
-                          &band_layer.shell(), &stability.surface()}) {
-    actor->GetMapper()->RemoveAllClippingPlanes();
-    if (wanted) actor->GetMapper()->AddClippingPlane(&plane);
-  }
-  paint.setClippingPlane(wanted ? &plane : nullptr);
+                          &band_layer.shell(), &stability.surface()})
+    actor->GetMapper()->SetClippingPlanes(cuts);
+  paint.setCuts(cuts);
   dirty = true;
 }
 
@@ -171,7 +176,8 @@ void SceneView::Impl::aimTool() {
 
 void SceneView::Impl::syncCorner() {
   vtkCamera* camera = scene->GetActiveCamera();
-  Vec3 back = (Vec3(camera->GetPosition()) - Vec3(camera->GetFocalPoint())).normalized() * 5.2;
+  const double away = cube ? ViewCube::kDistance : 5.2;
+  Vec3 back = (Vec3(camera->GetPosition()) - Vec3(camera->GetFocalPoint())).normalized() * away;
   vtkCamera* small = corner->GetActiveCamera();
   small->SetPosition(back.data());
   small->SetFocalPoint(0, 0, 0);

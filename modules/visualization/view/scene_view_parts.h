@@ -7,6 +7,7 @@
 
 #include <vtkActor.h>
 #include <vtkOutlineSource.h>
+#include <vtkPlaneCollection.h>
 
 #include "visualization/layers/band_layer.h"
 #include "visualization/layers/brush_cursor.h"
@@ -16,6 +17,7 @@
 #include "visualization/layers/slice_layer.h"
 #include "visualization/layers/stability_layer.h"
 #include "visualization/layers/tool_layer.h"
+#include "visualization/layers/view_cube.h"
 #include "visualization/values/palette.h"
 #include "visualization/view/camera.h"
 #include "visualization/view/half_size_pass.h"
@@ -27,6 +29,8 @@ namespace patina {
 struct SceneView::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
   vtkSmartPointer<vtkAxesActor> axes = axesActor();
+  std::optional<ViewCube> cube; // in their place
+  std::optional<Vec3> hot_side;
   palette::Ground ground = palette::kLight;
   vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> iso_actor = surfaceActor(palette::kIso);
@@ -44,6 +48,9 @@ struct SceneView::Impl {
   PaintLayer paint{*scene, *overlay};
   BrushCursor brush{*overlay};
   ScaleLayer scale{*overlay};
+  std::optional<ClipLayer> clip;
+  std::optional<MirrorLayer> mirror;
+  std::optional<MirrorPlace> mirror_place;
 
   std::shared_ptr<const TriangleMesh> mesh;
   Scene painted; // no objects where nothing is painted or the mesh is not theirs
@@ -61,7 +68,8 @@ struct SceneView::Impl {
   bool iso_stale = false, slice_stale = false, band_stale = false, nodes_stale = false;
   bool paint_stale = false, brush_stale = false;
   bool dirty = true, has_stability = false;
-  bool cut_keeps_positive = true, cut_on = false;
+  bool cut_keeps_positive = true;
+  std::vector<vtkPlane*> cut_by; // the surfaces are
   CameraPlace drawn_from{};
   std::array<int, 2> drawn_size{}; // bars and axes are placed by it
 

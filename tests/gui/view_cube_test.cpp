@@ -1,0 +1,86 @@
+// The cube in the corner of the 3D view, by the pointer.
+#include "app/gui/control/view_controller.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "visualization/view/camera.h"
+
+namespace patina {
+namespace {
+
+class ViewCubeTest : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.03, 12), "ball.obj")));
+  }
+  vtkCamera& camera() { return *view().view().renderer().GetActiveCamera(); }
+  Vec3 from() { return -viewDirection(camera()); }
+  // Of the screen, in the middle of what of that side is seen; none: it is not.
+  std::optional<QPoint> placeOf(const Vec3& side) {
+    QPoint sum;
+    int count = 0;
+    for (int y = view().height() - 150; y < view().height(); ++y)
+      for (int x = 0; x < 150; ++x)
+        if (view().view().cubeSideAt((x + 0.5) / view().width(), 1 - (y + 0.5) / view().height()) ==
+            side)
+          sum += QPoint(x, y), ++count;
+    if (count == 0) return std::nullopt;
+    return view().mapToGlobal(sum / count);
+  }
+  bool looksFrom(const Vec3& side) { return (from() - side.normalized()).norm() < 1e-9; }
+};
+
+TEST_F(ViewCubeTest, AClickLooksFromTheSideThatWasClickedBySmallTurns) {
+  if (IsSkipped()) return;
+  for (const Vec3& side : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(1, -1, 1)}) {
+    trigger("view_iso");
+    wait(150); // the cube goes with the picture
+    const double distance = camera().GetDistance();
+    const Vec3 centre(camera().GetFocalPoint()), begun = from();
+    const auto place = placeOf(side);
+    ASSERT_TRUE(place.has_value()) << side.transpose();
+    pointAt(*place);
+    EXPECT_EQ(view().cursor().shape(), Qt::PointingHandCursor);
+    press(), release();
+    EXPECT_FALSE(looksFrom(side)) << "it is on its way";
+    double longest = 0;
+    Vec3 last = from();
+    ASSERT_TRUE(waitUntil(
+        [&] {
+          longest = std::max(longest, (from() - last).norm());
+          last = from();
+          return looksFrom(side);
+        },
+        5000))
+        << side.transpose() << " " << from().transpose();
+    EXPECT_LT(longest, (begun - side.normalized()).norm()) << "not in one step";
+    EXPECT_LT((Vec3(camera().GetFocalPoint()) - centre).norm(), 1e-9);
+    EXPECT_NEAR(camera().GetDistance(), distance, 1e-9);
+  }
+}
+
+TEST_F(ViewCubeTest, ADragTurnsAndIsNoClick) {
+  if (IsSkipped()) return;
+  const auto place = placeOf(Vec3(0, -1, 0));
+  ASSERT_TRUE(place.has_value());
+  const Vec3 before = from();
+  const Vec3 target = view().target();
+  drag(*place, *place + QPoint(60, 0));
+  const Vec3 turned = from();
+  EXPECT_GT((turned - before).norm(), 0.2);
+  EXPECT_EQ(view().target(), target) << "the tip stays";
+  wait(400);
+  EXPECT_EQ(from(), turned);
+}
+
+TEST_F(ViewCubeTest, BesideItTheLeftButtonIsTheTools) {
+  if (IsSkipped()) return;
+  const Vec3 before = from(), target = view().target();
+  drag(inView({0, 0}), inView({30, 0}));
+  EXPECT_EQ(from(), before);
+  EXPECT_NE(view().target(), target);
+}
+
+} // namespace
+} // namespace patina
