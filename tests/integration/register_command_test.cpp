@@ -71,6 +71,24 @@ TEST_F(RegisteredScans, ThatAreShortAreWarnedOfOtherPlaces) {
   EXPECT_EQ(alone.find("unique"), nullptr);
 }
 
+// With a tip that is 4.7 mm off the path fits nowhere; mended, its place is found and is the only
+// one.
+TEST_F(RegisteredScans, WhoseTipIsOffAreUniqueOnceItIsMended) {
+  scan("dinosaur", "+z", "20", "1");
+  std::string rig = readFile(scanned + "/rig.json");
+  const std::string tip = "\"tip\": [0.0, 0.0, -0.12]";
+  ASSERT_NE(rig.find(tip), std::string::npos);
+  rig.replace(rig.find(tip), tip.size(), "\"tip\": [0.004, 0.0025, -0.12]");
+  writeFileAtomically(scanned + "/rig.json", rig);
+  ASSERT_EQ(run({"filter", scanned, "-o", path}).exit, 0);
+  const Json report =
+      runJson({"register", mesh, path, "-o", out, "--refine", "--truth", scanned + "/truth.json"});
+  EXPECT_TRUE(report.at("unique").asBool());
+  EXPECT_TRUE(report.at("converged").asBool());
+  EXPECT_LT(report.at("rms").asNumber(), 0.2e-3);
+  EXPECT_LT(report.at("error").asNumber(), 2e-3);
+}
+
 // The body's shape is the mesh's: what is left is as low as the roughness that was laid on.
 TEST_F(RegisteredScans, GiveHeightsOverTheirMesh) {
   scan("dinosaur", "-y");

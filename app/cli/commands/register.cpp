@@ -294,9 +294,8 @@ int runRegister(RegisterOptions options, Console& console) {
   std::optional<JointFit> joint;
   if (options.refine) {
     JointOptions joining;
-    joining.noise = *options.noise;
     joining.compliance = options.compliance.value_or(found.compliance);
-    joint = refine(target, joining, path, found);
+    joint = refine(target, joining, fitting, path, found, console.progress());
   }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   console.progress().throwIfCancelled();

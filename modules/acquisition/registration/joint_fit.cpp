@@ -7,61 +7,16 @@
 #include <stdexcept>
 
 #include "acquisition/registration/free_motions.h"
-#include "core/percentiles.h"
+#include "acquisition/registration/path_course.h"
 
 namespace patina {
 namespace {
 
-constexpr std::size_t kJointWindow = 20, kJointLeast = 10; // samples to either side of a parabola
-constexpr double kJointPause = 5; // median steps of time: beyond it another stretch begins
-constexpr double kJointFar = 10;  // times the noise: as far as a direction must be told
-constexpr int kJointMostSteps = 30, kJointRecounts = 5;
-constexpr double kJointSettled = 1e-3; // of the deviation: less is no step
-constexpr double kJointClear = 10; // times what the speed's own error says of the clock: it is told
-constexpr double kJointNamed = 0.15; // of a frozen direction's square: less is not named
-
-// How the path moves about a sample.
-struct Course {
-  Vec3 speed = Vec3::Zero(), bend = Vec3::Zero(); // [m/s], [m/s^2]
-  Vec3 spin = Vec3::Zero();                       // [rad/s], in the path's frame
-  double blur = 0; // of the speed, squared, where the places' deviation is 1 m [1/s^2]
-};
-
-std::vector<Course> coursesOf(const std::vector<PathSample>& path) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < path.size(); ++i) steps.push_back(path[i].t - path[i - 1].t);
-  const double pause = steps.empty() ? 0 : kJointPause * percentiles(steps).p50;
-  std::vector<Course> courses(path.size());
-  std::size_t begin = 0;
-  for (std::size_t i = 1; i <= path.size(); ++i) {
-    const double step = i < path.size() ? path[i].t - path[i - 1].t : -1;
-    if (step > 0 && step <= pause) continue;
-    const std::size_t least = std::min(kJointLeast, (i - begin - 1) / 2);
-    for (std::size_t k = begin; k < i && least > 1; ++k) {
-      // Of as many samples towards either end, that the middle's error does not lean; what is too
-      // near an end for that goes as the nearest parabola does.
-      const std::size_t middle = std::clamp(k, begin + least, i - 1 - least);
-      const std::size_t half = std::min({middle - begin, i - 1 - middle, kJointWindow});
-      const std::size_t low = middle - half, high = middle + half;
-      Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
-      const double scale = path[high].t - path[low].t;
-      for (std::size_t j = low; j <= high; ++j) {
-        const double u = (path[j].t - path[k].t) / scale;
-        const Vec3 terms(1, u, u * u);
-        normal += terms * terms.transpose();
-        right += terms * (path[j].position - path[k].position).transpose();
-      }
-      const Eigen::Matrix3d parabola = normal.ldlt().solve(right);
-      courses[k].blur = normal.inverse()(1, 1) / (scale * scale);
-      courses[k].speed = parabola.row(1).transpose() / scale;
-      courses[k].bend = 2 * parabola.row(2).transpose() / (scale * scale);
-      const Eigen::AngleAxisd turn(path[high].orientation * path[low].orientation.conjugate());
-      courses[k].spin = turn.angle() / scale * turn.axis();
-    }
-    begin = i;
-  }
-  return courses;
-}
+constexpr double kJointFar = 10; // times the noise: as far as a direction must be told
+constexpr int kJointMostSteps = 30, kJointRecounts = 5, kJointPlaces = 3;
+constexpr double kJointSettled = 1e-2; // of the deviation: less is no step
+constexpr double kJointClear = 10;     // times what the force's noise says of the clock: it is told
+constexpr double kJointNamed = 0.15;   // of a frozen direction's square: less is not named
 
 struct Values {
   Pose pose;
@@ -77,20 +32,29 @@ struct Joint {
   std::vector<Course> courses;
   double speed = 0; // [m/s], that makes a length of the clock
 
-  Eigen::Quaterniond orientation(std::size_t i, double clock) const {
-    const Vec3 turn = clock * courses[i].spin;
-    const double angle = turn.norm();
-    if (!(angle > 0)) return path[i].orientation;
-    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * path[i].orientation;
-  }
-  Vec3 place(std::size_t i, const Values& at) const {
+  // Where the probe was when it felt what it felt at the sample's time.
+  PathSample felt(std::size_t i, const Values& at) const {
     const Course& course = courses[i];
-    return path[i].position + at.clock * (course.speed + 0.5 * at.clock * course.bend) +
-           orientation(i, at.clock) * at.tip;
+    PathSample sample = path[i];
+    const Vec3 turn = at.clock * course.spin;
+    if (const double angle = turn.norm(); angle > 0)
+      sample.orientation = Eigen::AngleAxisd(angle, turn / angle) * sample.orientation;
+    sample.position +=
+        at.clock * (course.speed + 0.5 * at.clock * course.bend) + sample.orientation * at.tip;
+    return sample;
+  }
+  // The places stay as they were measured, and what was felt there is looked up at its own time:
+  // the surface tells nothing of the clock but by how far it yields, and a force is less noisy than
+  // the path's speed.
+  Vec3 place(std::size_t i, const Values& at) const {
+    return path[i].position + path[i].orientation * at.tip;
+  }
+  double pressed(std::size_t i, const Values& at) const {
+    return compliance > 0 ? compliance * forceBefore(path, courses, i, at.clock).force : 0;
   }
   double missAt(std::size_t i, const Values& at, Miss& miss) const {
     miss = target.miss(at.pose * place(i, at), miss.foot.face);
-    return miss.distance + compliance * path[i].force;
+    return miss.distance + pressed(i, at);
   }
   double squares(const Values& at, std::vector<Miss>& misses) const {
     double sum = 0;
@@ -103,13 +67,11 @@ struct Joint {
   }
   JointVector gradient(std::size_t i, const Values& at, const Miss& miss,
                        const MotionScale& scale) const {
-    const Course& course = courses[i];
     const Vec3 along = at.pose.linear().transpose() * miss.direction; // in the path's frame
-    const Eigen::Quaterniond turned = orientation(i, at.clock);
-    const Vec3 moves = course.speed + at.clock * course.bend + course.spin.cross(turned * at.tip);
     JointVector g;
-    g << scale.gradient(at.pose * place(i, at), miss.direction), turned.conjugate() * along,
-        along.dot(moves) / speed;
+    g << scale.gradient(at.pose * place(i, at), miss.direction),
+        path[i].orientation.conjugate() * along,
+        compliance > 0 ? -compliance * forceBefore(path, courses, i, at.clock).rise / speed : 0;
     return g;
   }
   Values moved(const Values& at, const JointVector& step, const MotionScale& scale) const {
@@ -153,13 +115,14 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
   Joint joint{target, path, counts, options.compliance, coursesOf(path)};
   std::vector<Vec3> points; // that count
   std::vector<double> pressed;
-  double speeds = 0, blurs = 0;
+  double speeds = 0, blurs = 0, roughness = 0;
   for (std::size_t i = 0; i < path.size(); ++i)
     if (counts[i]) {
       points.push_back(path[i].position);
       pressed.push_back(options.compliance * path[i].force);
       speeds += joint.courses[i].speed.squaredNorm();
       blurs += joint.courses[i].blur;
+      roughness += std::pow(path[i].force - joint.courses[i].force, 2) / static_cast<double>(n);
     }
   joint.speed = std::sqrt(speeds / static_cast<double>(n));
 
@@ -184,6 +147,9 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
   Values at{mesh_from_path};
   std::vector<Miss> misses(path.size());
   double sum = joint.squares(at, misses), damping = 0;
+  // What slopes of the force would say of the clock if it were all noise.
+  const double blur =
+      kJointClear * blurs * roughness * std::pow(options.compliance / joint.speed, 2);
   // A tip that is off would pass for noise in which the clock is lost.
   bool clock_waits = options.tip && options.clock;
   while (fit.iterations < kJointMostSteps && !fit.converged) {
@@ -199,7 +165,7 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
       JointVector g = joint.gradient(i, at, misses[i], scale);
       if (clock_waits) g[9] = 0;
       for (const JointVector& each : shut) g -= each * each.dot(g);
-      const double r = misses[i].distance + options.compliance * path[i].force;
+      const double r = misses[i].distance + joint.pressed(i, at);
       normal += g * g.transpose();
       right -= r * g;
     }
@@ -209,21 +175,20 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
     // Its deviation, noise sqrt(worth / value), against kJointFar times the noise.
     const double least = std::max(worth / (kJointFar * kJointFar), 1e-9 * largest);
     const double noise = std::sqrt(sum / std::max(static_cast<double>(n) - kJointValues, 1.0));
-    const double blur = kJointClear * blurs * noise * noise / (joint.speed * joint.speed);
     const auto told = [&](int k) {
       const double of_clock = eigen.eigenvectors()(9, k);
       return eigen.eigenvalues()[k] > std::max(least, blur * of_clock * of_clock);
     };
     for (;;) {
       JointVector step = JointVector::Zero();
-      double deviations = 0; // of the step, in those of the fit
+      double deviations = 0; // of the step, in those that are stated
       for (int k = 0; k < kJointValues; ++k) {
         const double value = eigen.eigenvalues()[k];
         if (!told(k)) continue;
         const double along = eigen.eigenvectors().col(k).dot(right) / (value + damping * largest);
         step += along * eigen.eigenvectors().col(k);
-        deviations =
-            std::max(deviations, std::abs(along) * std::sqrt(value) / std::max(noise, 1e-12));
+        deviations = std::max(deviations,
+                              std::abs(along) * std::sqrt(value / worth) / std::max(noise, 1e-12));
       }
       const Values next = joint.moved(at, step, scale);
       std::vector<Miss> there = misses;
@@ -272,16 +237,15 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
   fit.tip = at.tip;
   fit.clock = at.clock;
   fit.rms = std::sqrt(sum / static_cast<double>(n));
-  fit.path = path;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    fit.path[i].position = joint.place(i, at);
-    fit.path[i].orientation = joint.orientation(i, at.clock);
-  }
+  for (std::size_t i = 0; i < path.size(); ++i) fit.path.push_back(joint.felt(i, at));
   return fit;
 }
 
-JointFit refine(const SurfaceTarget& target, JointOptions options, std::vector<PathSample>& path,
-                Registration& found) {
+namespace {
+
+// From one place; `found` gets what the fit says but for its rivals.
+JointFit refineHere(const SurfaceTarget& target, JointOptions options, double noise,
+                    const std::vector<PathSample>& path, Registration& found) {
   options.together = 1; // what it seems with a wrong calibration is another thing
   const Pose start = found.mesh_from_path;
   JointFit joint;
@@ -302,16 +266,15 @@ JointFit refine(const SurfaceTarget& target, JointOptions options, std::vector<P
       fit.weights[i] = found.counts[i] ? 1 : 0;
       sizes.push_back(std::abs(fit.misses[i].distance));
     }
-    const double most = reachOfCounting(sizes, leastNoise(points, options.noise));
+    const double most = reachOfCounting(sizes, leastNoise(points, noise));
     std::vector<bool> counts;
     for (const double size : sizes) counts.push_back(size <= most);
     if (round + 1 == kJointRecounts) break;
-    const double together = errorLaw(points, fit, options.noise).together;
+    const double together = errorLaw(points, fit, noise).together;
     if (counts == found.counts && std::abs(std::log(together / options.together)) < 0.1) break;
     found.counts = std::move(counts);
     options.together = together;
   }
-  path = joint.path;
   found.mesh_from_path = joint.mesh_from_path;
   found.covariance = joint.covariance.topLeftCorner<6, 6>();
   found.middle = joint.middle;
@@ -324,11 +287,43 @@ JointFit refine(const SurfaceTarget& target, JointOptions options, std::vector<P
     ++count;
   }
   found.mean_distance = sum / count;
-  found.noise = std::max(joint.rms, leastNoise(points, options.noise));
+  found.noise = std::max(joint.rms, leastNoise(points, noise));
   found.converged =
-      joint.converged && isExplained(joint.rms, count / static_cast<double>(path.size()),
-                                     options.noise, leastNoise(points, options.noise));
+      joint.converged && isExplained(joint.rms, count / static_cast<double>(path.size()), noise,
+                                     leastNoise(points, noise));
   found.misses = std::move(fit.misses);
+  return joint;
+}
+
+} // namespace
+
+JointFit refine(const SurfaceTarget& target, const JointOptions& options,
+                RegistrationOptions registering, std::vector<PathSample>& path, Registration& found,
+                Progress& progress) {
+  registering.force.clear();
+  registering.search = false;
+  JointFit joint;
+  for (int round = 0;; ++round) {
+    joint = refineHere(target, options, registering.noise, path, found);
+    if (!registering.rivals) break;
+    // Where else the path lies as well, now that its tip and clock are mended.
+    std::vector<Vec3> points;
+    registering.pressed.clear();
+    for (const PathSample& sample : joint.path) {
+      points.push_back(sample.position);
+      registering.pressed.push_back(options.compliance * sample.force);
+    }
+    Registration judged = registerPath(target, points, joint.mesh_from_path, registering, progress);
+    found.rivals = std::move(judged.rivals);
+    if (isOnePlace(joint.mesh_from_path, judged.mesh_from_path, points)) break;
+    if (round == kJointPlaces) { // each leads to the other
+      found.converged = false;
+      break;
+    }
+    found.mesh_from_path = judged.mesh_from_path; // lies better, perhaps with another tip
+    found.counts = std::move(judged.counts);
+  }
+  path = joint.path;
   return joint;
 }
 

@@ -14,7 +14,6 @@ struct JointOptions {
   bool tip = true, clock = true; // refined beside the pose
   double compliance = 0;         // how far the surface yields to a newton [m/N]
   double together = 1;           // so many samples in a row are worth one (ErrorLaw)
-  double noise = 0;              // deviation of the samples, for refine(); 0: unknown [m]
 };
 
 constexpr int kJointValues = 10;
@@ -40,18 +39,22 @@ struct JointFit {
   bool converged = false;
 };
 
-// From a registration of the samples, of which `counts` says what counts. The path's speed is that
-// of parabolas through some forty samples, so that a clock may be off by half as many. A
-// direction is frozen where its predicted deviation, as a length over the path's extent, is above
-// ten times that of the samples; so is what the surface does not see of the pose (freeMotions).
-// Throws std::invalid_argument where the numbers of samples and counts differ, or none counts.
+// From a registration of the samples, of which `counts` says what counts. Of the clock the surface
+// tells only by how far it yields: the force's rise is that of parabolas through some forty
+// samples. A direction is frozen where its predicted deviation, as a length over the path's extent,
+// is above ten times that of the samples; so is what the surface does not see of the pose
+// (freeMotions). Throws std::invalid_argument where the numbers of samples and counts differ, or
+// none counts.
 JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& path,
                     const std::vector<bool>& counts, const Pose& mesh_from_path,
                     const JointOptions& options = {});
 
 // The same from a registration of the path, which with its samples becomes what the joint fit says:
-// what counts is chosen anew, and whether it converged is judged by the distances that are left.
-JointFit refine(const SurfaceTarget& target, JointOptions options, std::vector<PathSample>& path,
-                Registration& found);
+// what counts is chosen anew, whether it converged is judged by the distances that are left, and
+// where `registering` asks for other places, they are those of the path that was found. Throws
+// Cancelled.
+JointFit refine(const SurfaceTarget& target, const JointOptions& options,
+                RegistrationOptions registering, std::vector<PathSample>& path, Registration& found,
+                Progress& progress);
 
 } // namespace patina

@@ -115,6 +115,11 @@ double costOf(const std::vector<Miss>& misses, const ErrorLaw& law) {
   return sum / law.together;
 }
 
+bool isOnePlace(const Pose& mesh_from_path, const Pose& other, const std::vector<Vec3>& points) {
+  return between(mesh_from_path, other, points) <
+         kOnePlace * scaleOf(points, mesh_from_path).radius;
+}
+
 std::vector<Pose> placesAllOver(const SurfaceTarget& target, const std::vector<Vec3>& points,
                                 const Pose& pose, const FitOptions& fitting, Progress& progress) {
   const MotionScale scale = scaleOf(points, pose);

@@ -27,6 +27,9 @@ double costOf(const std::vector<Miss>& misses, const ErrorLaw& law);
 // the six freedoms of a pose, which bounds twice the difference of their log likelihoods.
 constexpr double kToldApart = 16.81;
 
+// Whether the points lie nearly as at the other pose, to a twentieth of the path's radius.
+bool isOnePlace(const Pose& mesh_from_path, const Pose& other, const std::vector<Vec3>& points);
+
 // Poses all over the mesh at which a part of the path fits best nearby; the same ones each time.
 // Throws Cancelled.
 std::vector<Pose> placesAllOver(const SurfaceTarget& target, const std::vector<Vec3>& points,
