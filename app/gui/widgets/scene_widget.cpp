@@ -17,8 +17,6 @@
 namespace patina {
 namespace {
 
-constexpr double kCubeTurn = 3; // a drag on the small cube turns more than one in the picture
-
 // A pixel in fractions of the picture's height, from its centre, right and up.
 Vec2 fractionOf(const QWidget& widget, const QPoint& pixel) {
   const double high = std::max(1, widget.height());
@@ -28,7 +26,7 @@ Vec2 fractionOf(const QWidget& widget, const QPoint& pixel) {
 } // namespace
 
 SceneWidget::SceneWidget(QWidget* parent)
-    : QVTKOpenGLNativeWidget(parent), frames_(view_, *this), turn_(view_, frames_) {
+    : QVTKOpenGLNativeWidget(parent), frames_(view_, *this), handles_(*this, view_, frames_) {
   const vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->SetMultiSamples(0); // three times slower with 8 samples when OpenGL is software
   setRenderWindow(window);
@@ -50,57 +48,14 @@ void SceneWidget::setHandling(Handling handling) {
 }
 
 void SceneWidget::showPointer() {
-  setCursor(cube_side_                                           ? Qt::PointingHandCursor
-            : clip_part_                                         ? Qt::SizeAllCursor
+  setCursor(handles_.hot().cube_side                             ? Qt::PointingHandCursor
+            : handles_.hot().clip                                ? Qt::SizeAllCursor
             : feels() || paints() || handling_ == Handling::pick ? Qt::CrossCursor
                                                                  : Qt::OpenHandCursor);
 }
 
-std::optional<Vec3> SceneWidget::cubeSideAt(const QPoint& pixel) {
-  return view_.cubeSideAt((pixel.x() + 0.5) / std::max(1, width()),
-                          1 - (pixel.y() + 0.5) / std::max(1, height()));
-}
-
-Ray SceneWidget::sightAt(const QPoint& pixel) {
-  const Vec2 at = fractionOf(*this, pixel);
-  return rayThrough(*view_.renderer().GetActiveCamera(), at[0], at[1]);
-}
-
-std::optional<ClipPart> SceneWidget::clipPartAt(const QPoint& pixel) {
-  return clip_ ? patina::clipPartAt(*clip_, view_.clipLength(), sightAt(pixel)) : std::nullopt;
-}
-
 void SceneWidget::setClip(const std::optional<ClipPlane>& plane) {
-  clip_ = plane;
-  if (!plane) clip_part_.reset();
-  view_.setClip(plane);
-  frames_.cameraMoved(); // is seen as soon as a camera that moves
-}
-
-void SceneWidget::hover() {
-  cube_side_ = pointer_ ? cubeSideAt(*pointer_) : std::nullopt;
-  const auto part = pointer_ && !cube_side_ ? clipPartAt(*pointer_) : std::nullopt;
-  view_.setCubeHot(cube_side_);
-  if (part != clip_part_) view_.setClipHot(part);
-  clip_part_ = part;
-  showPointer();
-}
-
-bool SceneWidget::hold(const QPoint& pixel) {
-  pointer_ = pixel;
-  hover();
-  if (!cube_side_ && !clip_part_) return false;
-  drag_ = cube_side_ ? Drag::cube : Drag::clip;
-  held_from_ = pixel;
-  cube_moved_ = false;
-  return true;
-}
-
-void SceneWidget::dragClip(const QPoint& from, const QPoint& to) {
-  vtkCamera& camera = *view_.renderer().GetActiveCamera();
-  emit clipMoved(*clip_part_ == ClipPart::tilt
-                     ? clipTilted(*clip_, view_.clipLength(), sightAt(to))
-                     : clipShifted(*clip_, sightAt(from), sightAt(to), Vec3(camera.GetViewUp())));
+  handles_.setClip(plane);
 }
 
 void SceneWidget::setField(std::shared_ptr<const SurfaceField> field) {
@@ -121,8 +76,9 @@ Vec3 SceneWidget::restingPlace() {
 
 std::optional<Vec3> SceneWidget::surfaceAt(const QPoint& pixel) {
   if (!field_) return std::nullopt;
-  const Ray sight = sightAt(pixel);
-  const auto rest = clip_ ? behind(*clip_, sight) : std::optional(sight);
+  const Ray sight = sightAt(*this, view_, pixel);
+  const auto& clip = handles_.clip();
+  const auto rest = clip ? behind(*clip, sight) : std::optional(sight);
   if (!rest) return std::nullopt;
   const auto hit = firstSurfaceAlong(*field_, rest->origin, rest->direction);
   // A sight that begins within the body meets no surface where it begins.
@@ -133,7 +89,7 @@ std::optional<Vec3> SceneWidget::surfaceAt(const QPoint& pixel) {
 
 std::optional<Vec3> SceneWidget::underPointer() {
   const bool looks = drag_ == Drag::none || drag_ == Drag::brush;
-  return pointer_ && looks && !cube_side_ && !clip_part_ ? surfaceAt(*pointer_) : std::nullopt;
+  return pointer_ && looks && !handles_.any() ? surfaceAt(*pointer_) : std::nullopt;
 }
 
 void SceneWidget::brush(const QPoint& pixel, bool down, double pressure, const QInputEvent& event) {
@@ -164,15 +120,17 @@ bool SceneWidget::pen(QTabletEvent& event) {
 
 void SceneWidget::release(const QMouseEvent& event) {
   if (drag_ == Drag::brush) brush(last_, false, 1, event);
-  if (drag_ == Drag::cube && !cube_moved_) turn_.begin(*cube_side_);
+  if (drag_ == Drag::handle) handles_.release();
   drag_ = Drag::none;
 }
 
 void SceneWidget::press(QMouseEvent& event) {
   last_ = event.pos();
   pointer_ = last_;
-  turn_.stop();
-  if (event.button() == Qt::LeftButton && hold(last_)) return;
+  if (event.button() == Qt::LeftButton && handles_.hold(last_)) {
+    drag_ = Drag::handle;
+    return showPointer();
+  }
   if (pick(event)) return;
   const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
   switch (event.button()) {
@@ -218,16 +176,12 @@ void SceneWidget::drag(QMouseEvent& event) {
   case Drag::zoom:
     zoom(camera, std::exp(3 * moved[1]));
     return frames_.cameraMoved();
-  case Drag::cube:
-    cube_moved_ =
-        cube_moved_ || (last_ - held_from_).manhattanLength() >= QApplication::startDragDistance();
-    if (!cube_moved_) break;
-    orbit(camera, kCubeTurn * moved[0], kCubeTurn * moved[1]);
-    return frames_.cameraMoved();
-  case Drag::clip:
-    return dragClip(from, last_);
+  case Drag::handle:
+    if (const auto plane = handles_.drag(from, last_)) emit clipMoved(*plane);
+    break;
   case Drag::none:
-    hover();
+    handles_.hover(pointer_);
+    showPointer();
     break;
   }
 }
@@ -272,7 +226,7 @@ bool SceneWidget::event(QEvent* event) {
     return pen(*static_cast<QTabletEvent*>(event));
   case QEvent::Leave:
     pointer_.reset();
-    if (drag_ == Drag::none) hover();
+    if (drag_ == Drag::none) handles_.hover(pointer_);
     return true;
   case QEvent::Wheel:
     wheel(*static_cast<QWheelEvent*>(event));

@@ -7,8 +7,7 @@
 #include <QInputEvent>
 #include <QPoint>
 
-#include "app/gui/widgets/camera_turn.h"
-#include "app/gui/widgets/frame_pacer.h"
+#include "app/gui/widgets/view_handles.h"
 #include "app/gui/window/handling.h"
 #include "core/types.h"
 #include "visualization/view/scene_view.h"
@@ -77,16 +76,9 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   void drag(QMouseEvent& event);
   void wheel(QWheelEvent& event);
 
-  std::optional<Vec3> cubeSideAt(const QPoint& pixel);
   void showPointer(); // as what is under it asks for
 
-  Ray sightAt(const QPoint& pixel);
-  std::optional<ClipPart> clipPartAt(const QPoint& pixel);
-  void hover();                   // over cube and handle
-  bool hold(const QPoint& pixel); // one of them; false: neither is there
-  void dragClip(const QPoint& from, const QPoint& to);
-
-  enum class Drag { none, tip, orbit, pan, zoom, brush, cube, clip };
+  enum class Drag { none, tip, orbit, pan, zoom, brush, handle };
   SceneView view_;
   std::shared_ptr<const SurfaceField> field_;
   Handling handling_ = Handling::feel;
@@ -95,12 +87,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   std::optional<QPoint> pointer_; // over the view
   Vec3 target_ = Vec3::Zero();
   FramePacer frames_;
-  CameraTurn turn_;
-  std::optional<ClipPlane> clip_;
-  std::optional<ClipPart> clip_part_; // under the pointer, or held
-  std::optional<Vec3> cube_side_;     // under the pointer, or pressed
-  QPoint held_from_;                  // where it was pressed
-  bool cube_moved_ = false;           // since then
+  ViewHandles handles_;
 };
 
 } // namespace patina

@@ -67,7 +67,7 @@ ViewCube::ViewCube(vtkRenderer& corner)
   cube_->SetYMinusFaceText("-y");
   cube_->SetZPlusFaceText("+z");
   cube_->SetZMinusFaceText("-z");
-  cube_->SetZFaceTextRotation(-90); // upright, as turnFrom() looks at it
+  cube_->SetZFaceTextRotation(90); // upright, as turnFrom() looks at it
   cube_->SetFaceTextScale(0.5);
   cube_->SetTextEdgesVisibility(0);
   cube_->GetCubeProperty()->EdgeVisibilityOn();

@@ -160,12 +160,6 @@ double SceneView::clipLength() const {
   return impl_->clip ? impl_->clip->length() : 0;
 }
 
-void SceneView::setClipHot(const std::optional<ClipPart>& part) {
-  if (!impl_->clip) return;
-  impl_->clip->setHot(part);
-  impl_->dirty = true;
-}
-
 void SceneView::setBand(const std::optional<TouchBand>& band) {
   Impl& my = *impl_;
   if (band == my.band) return;
@@ -246,11 +240,13 @@ std::optional<Vec3> SceneView::cubeSideAt(double x, double y) const {
       rayThrough(*my.corner->GetActiveCamera(), x / port[2] - 0.5, y / port[3] - 0.5));
 }
 
-void SceneView::setCubeHot(const std::optional<Vec3>& side) {
-  if (!impl_->cube || side == impl_->hot_side) return;
-  impl_->hot_side = side;
-  impl_->cube->setHot(side);
-  impl_->dirty = true;
+void SceneView::setHot(const HotPart& hot) {
+  Impl& my = *impl_;
+  if (hot == my.hot) return;
+  my.hot = hot;
+  if (my.cube) my.cube->setHot(hot.cube_side);
+  if (my.clip) my.clip->setHot(hot.clip);
+  my.dirty = true;
 }
 
 void SceneView::setView(ViewPreset view) {

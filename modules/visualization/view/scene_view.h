@@ -29,6 +29,13 @@ struct SlicePlace {
   double position = 0.5; // 0 .. 1
 };
 
+// What of the cube in the corner, or of the clip plane's handle, is pointed at.
+struct HotPart {
+  std::optional<Vec3> cube_side;
+  std::optional<ClipPart> clip;
+  bool operator==(const HotPart&) const = default;
+};
+
 class SceneView {
  public:
   SceneView();
@@ -49,7 +56,6 @@ class SceneView {
   void setClip(const std::optional<ClipPlane>& plane);
   // Of the plane that there is: the length of its handle [m].
   double clipLength() const;
-  void setClipHot(const std::optional<ClipPart>& part);
   // Of the layer band; nullopt = the surface is felt where it is.
   void setBand(const std::optional<TouchBand>& band);
   // Of the layer stability, which takes the mesh's place: a surface and one K*/K a vertex. nullptr
@@ -78,7 +84,7 @@ class SceneView {
   // from the lower left; see ViewCube.
   void showCube(bool on);
   std::optional<Vec3> cubeSideAt(double x, double y) const;
-  void setCubeHot(const std::optional<Vec3>& side);
+  void setHot(const HotPart& hot); // of cube and handle; is drawn brighter
 
   void setGround(const palette::Ground& ground); // light, unless said
   void setView(ViewPreset view);                 // and fit

@@ -30,7 +30,7 @@ struct SceneView::Impl {
   vtkNew<vtkRenderer> scene, overlay, corner;
   vtkSmartPointer<vtkAxesActor> axes = axesActor();
   std::optional<ViewCube> cube; // in their place
-  std::optional<Vec3> hot_side;
+  HotPart hot;
   palette::Ground ground = palette::kLight;
   vtkSmartPointer<vtkActor> mesh_actor = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> iso_actor = surfaceActor(palette::kIso);
