@@ -18,10 +18,8 @@ QString sizeInMillimetres(const TriangleMesh& mesh) {
   const Box3 box = bounds(mesh);
   if (box.isEmpty()) return QStringLiteral("–");
   const Vec3 mm = 1000 * box.sizes();
-  return QStringLiteral("%1 × %2 × %3 mm")
-      .arg(mm[0], 0, 'f', 1)
-      .arg(mm[1], 0, 'f', 1)
-      .arg(mm[2], 0, 'f', 1);
+  const auto number = [](double side) { return QString::number(side, 'f', side < 100 ? 1 : 0); };
+  return QStringLiteral("%1 × %2 × %3 mm").arg(number(mm[0]), number(mm[1]), number(mm[2]));
 }
 
 QString layerMeaning(const std::string& name) {

@@ -29,6 +29,7 @@ vtkSmartPointer<vtkScalarBarActor> scalarBar(const std::string& title) {
   bar->SetBarRatio(0.22);
   // Its own plate: what lies behind never mixes with the colours that are read.
   bar->DrawBackgroundOn();
+  bar->DrawFrameOn(); // seen where the ground is as light as the plate
   bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   return bar;
 }
@@ -47,12 +48,14 @@ void placeScalarBar(vtkScalarBarActor& bar, int place, const Lettering& letters,
   bar.SetHeight(height);
   bar.SetPosition(1 - share * (place + 1), 0.52 - height / 2);
   // As many numbers as stand apart.
-  bar.SetNumberOfLabels(std::clamp(static_cast<int>((height / line - 4.5) / 1.8), 2, 5));
-  bar.SetTextPad(letters.pixels / 2);
+  bar.SetNumberOfLabels(std::clamp(static_cast<int>((height / line - 5) / 1.8), 2, 5));
+  // Half of the first and of the last number is beyond the colours: it stays on the plate.
+  bar.SetTextPad(letters.pixels);
   for (vtkTextProperty* text : {bar.GetTitleTextProperty(), bar.GetLabelTextProperty()})
     write(*text, letters, letters.ground.text, false);
   write(*bar.GetAnnotationTextProperty(), letters, letters.ground.text, true);
   bar.GetBackgroundProperty()->SetColor(palette::forVtk(letters.ground.plate));
+  bar.GetFrameProperty()->SetColor(palette::forVtk(palette::kQuiet));
 }
 
 } // namespace patina
