@@ -29,7 +29,8 @@ namespace {
 constexpr const char* kHelp =
     "Usage: patina-gui [FILE] [options]\n\n"
     "Opens a mesh (.obj .ply .stl), a volume (.vti), a workspace folder or a scan folder in a\n"
-    "window; surfaces are felt with the mouse. Without FILE: the toy dinosaur.\n\n"
+    "window; surfaces are felt with the mouse. Without FILE: a page to begin\n"
+    "from; with --tour, --log or --first-picture-time the toy dinosaur.\n\n"
     "  --unit UNIT               of a mesh: mm (default), cm, m, in, or fit (longest side 100 mm)\n"
     "  --up AXIS                 of a mesh file: z (default), or y, which is turned to z\n"
     "  --iso VALUE               of a volume from elsewhere: where its surface is\n"
@@ -131,7 +132,8 @@ int run(const Arguments& arguments, int argc, char** argv) {
   window.controllers().recovery.begin();
   patina::LoadRequest request = arguments.request;
   if (!arguments.up && documents.asks()) request.options.up = patina::rememberedUp();
-  documents.open(request);
+  // Where nobody sees the page, or nobody asks for it, the first preset is open.
+  if (!request.path.empty() || !documents.asks() || arguments.demo) documents.open(request);
   if (arguments.demo) window.controllers().desks.choose(patina::Desk::texture);
   if (arguments.log) feel.startLog();
   // Ctrl-C, kill and a lost terminal are ways to close the window: the log is still written.

@@ -59,10 +59,11 @@ Command guiCommand() {
           "without one: xvfb-run -a patina gui --tour FOLDER.",
       .examples = {"patina gui bunny.ply --unit cm", "patina gui workspace --log session.csv"},
       .keys = {},
-      .arguments = {input("INPUT",
-                          "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, the toy "
-                          "dinosaur.",
-                          into(options->input), Times::at_most_once),
+      .arguments = {input(
+                        "INPUT",
+                        "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, a page to "
+                        "begin from, or with --tour or --log the toy dinosaur.",
+                        into(options->input), Times::at_most_once),
                     {"--unit", "mm|cm|m|in|fit", "", "mm", "Unit of a mesh file.",
                      pass("--unit", parseMeshUnit)},
                     {"--up", "z|y", "", "", "Axis of a mesh file that points upwards.",

@@ -5,6 +5,7 @@
 #include "app/gui/loading/file_drop.h"
 #include "app/gui/loading/file_question.h"
 #include "app/gui/loading/load_dialogs.h"
+#include "app/gui/loading/presets.h"
 #include "app/gui/loading/up_choice.h"
 #include "core/error.h"
 #include "workspace/workspace.h"
@@ -18,7 +19,7 @@ QString fileNameOf(const std::filesystem::path& path) {
 
 QString wordsFor(const LoadRequest& request) {
   return !request.place.empty() ? DocumentController::tr("the recovered scene")
-         : request.path.empty() ? DocumentController::tr("the toy dinosaur")
+         : request.path.empty() ? presetOf(request).words
                                 : fileNameOf(request.path);
 }
 
@@ -43,11 +44,14 @@ DocumentController::DocumentController(const Parts& parts, QObject* parent)
       recent_(parts.recent, this) {
   connect(this, &DocumentController::abandoned, this, [this] { work_.reset(); });
   connectLoader();
-  connect(&recent_, &RecentFiles::chosen, this,
-          [this](const QString& path) { openAsked(requestFor(path)); });
+  connect(&recent_, &RecentFiles::chosen, this, [this](const QString& path) { openFile(path); });
   connect(&at_.saving, &SaveController::saved, &recent_, &RecentFiles::add);
   connect(new FileDrop(at_.window), &FileDrop::dropped, this,
-          [this](const QString& path) { openAsked(requestFor(path)); });
+          [this](const QString& path) { openFile(path); });
+}
+
+void DocumentController::openFile(const QString& path) {
+  openAsked(requestFor(path));
 }
 
 void DocumentController::connectLoader() {
@@ -95,7 +99,7 @@ void DocumentController::connectLoader() {
 QString DocumentController::nameUnderWay() const {
   const LoadRequest& request = loader_.request();
   return !request.place.empty() ? tr("Recovered scene")
-         : request.path.empty() ? tr("Toy dinosaur")
+         : request.path.empty() ? presetOf(request).words
                                 : fileNameOf(request.path);
 }
 

@@ -35,7 +35,9 @@ class DocumentController : public QObject {
   void cancel(); // what is loaded, else what is edited
   bool close();  // false: a file is still being read, and rested() follows
 
-  QString nameUnderWay() const; // of what is being opened
+  QString nameUnderWay() const;
+  QStringList recent() const { return recent_.paths(); } // the newest first
+  void openFile(const QString& path); // asks for what is not saved // of what is being opened
   const std::optional<Work>& work() const { return work_; }
 
  signals:

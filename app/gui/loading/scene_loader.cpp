@@ -5,8 +5,8 @@
 
 #include <QMetaObject>
 
+#include "app/gui/loading/presets.h"
 #include "core/error.h"
-#include "field/surface/models.h"
 #include "session/build/compile_warnings.h"
 #include "visualization/export/field_io.h"
 #include "workspace/workspace.h"
@@ -26,6 +26,10 @@ QStringList lines(const std::vector<std::string>& warnings) {
 }
 
 } // namespace
+
+const Preset& presetOf(const LoadRequest& request) {
+  return request.preset.empty() ? presets().front() : presetNamed(request.preset);
+}
 
 SceneLoader::SceneLoader(Editor::Listener listener, QObject* parent)
     : QObject(parent), listener_(std::move(listener)) {
@@ -54,7 +58,7 @@ void SceneLoader::start(const LoadRequest& request) {
 bool SceneLoader::readFile(const LoadRequest& request, const Background::Deliver& deliver,
                            OpenedScene& opened) {
   if (request.path.empty()) {
-    opened.scene = sceneOf(dinosaur(), "dinosaur");
+    opened.scene = presetScene(presetOf(request).name);
     return true;
   }
   const bool volume = isVolumeFile(request.path);
@@ -140,7 +144,7 @@ void SceneLoader::run(const LoadRequest& asked, Progress& progress,
     }
     if (!opened.scene.objects.empty()) {
       const QString name = request.path.empty()
-                               ? QStringLiteral("dinosaur")
+                               ? QString::fromStdString(presetOf(request).name)
                                : QString::fromStdString(request.path.filename().string());
       const auto mesh = std::make_shared<const TriangleMesh>(worldMesh(opened.scene));
       deliver(false, [this, mesh, name] { emit meshReady(mesh, name); });

@@ -15,7 +15,8 @@
 namespace patina {
 
 struct LoadRequest {
-  std::filesystem::path path; // empty: the toy dinosaur
+  std::filesystem::path path; // empty: a preset
+  std::string preset{};       // of presets(); empty: the first
   OpenOptions options;
   bool unit_chosen = false; // by a person: no question about the size
   bool adds = false;        // its objects come to those that are open
@@ -24,6 +25,9 @@ struct LoadRequest {
   std::filesystem::path
       place{}; // of a scene that a crash left behind, see autosave.h; no path then
 };
+
+struct Preset;
+const Preset& presetOf(const LoadRequest& request); // that has no path
 
 // What was opened, ready to be edited.
 struct OpenedEditor {

@@ -69,6 +69,7 @@ MainWindow::MainWindow(QWidget* parent)
       desks_({*parts_.tools, *parts_.across, *parts_.down, *parts_.column, *parts_.drawer}, this) {
   addMenus(*this, parts_, controllers());
   connectFiles();
+  connectWelcome();
   connectScene();
   connectTools();
 #ifdef PATINA_HAS_ACQUISITION
@@ -100,6 +101,24 @@ void MainWindow::connectFiles() {
   connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
   connect(parts_.objects, &ObjectList::addAsked, &documents_,
           [this] { documents_.openDialog(true); });
+}
+
+void MainWindow::connectWelcome() {
+  WelcomePage* page = parts_.welcome;
+  page->setRecent(documents_.recent());
+  connect(page, &WelcomePage::openAsked, &documents_, [this] { documents_.openDialog(false); });
+  connect(page, &WelcomePage::recentChosen, &documents_, &DocumentController::openFile);
+  connect(page, &WelcomePage::presetChosen, &documents_, [this](const QString& name) {
+    LoadRequest request;
+    request.preset = name.toStdString();
+    documents_.openAsked(request);
+  });
+  connect(page, &WelcomePage::guideAsked, &desks_, [this] {
+    parts_.guide->setOpen(true);
+    desks_.choose(Desk::scan);
+  });
+  connect(&documents_, &DocumentController::changed, page,
+          [this, page] { page->setRecent(documents_.recent()); });
 }
 
 void MainWindow::connectScene() {

@@ -37,6 +37,7 @@ class MainWindow : public QMainWindow {
 
  private:
   void connectFiles();
+  void connectWelcome();
   void connectScene();
   void connectTools();
   void connectScan(); // where it is built

@@ -28,6 +28,7 @@
 #include "app/gui/widgets/status_line.h"
 #include "app/gui/window/guide_strip.h"
 #include "app/gui/window/tool_bar.h"
+#include "app/gui/window/welcome_page.h"
 #include "app/gui/window/window_state.h"
 
 class QStackedWidget;
@@ -41,6 +42,7 @@ class AlignDesk;
 // All belong to the window that they are laid out in.
 struct WindowParts {
   SceneWidget* view = new SceneWidget;
+  WelcomePage* welcome = new WelcomePage(*view);
   QStackedWidget* cells = nullptr; // the view, and what other desks have in its place
   ScanDesk* scan = nullptr;        // where they are built
   TextureDesk* texture = nullptr;

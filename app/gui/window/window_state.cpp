@@ -15,6 +15,10 @@ template <typename Value> Value orFirst(const Value& wanted, const std::vector<V
 
 } // namespace
 
+bool isWelcome(const WindowState& state) {
+  return state.content == Content::nothing && !state.open && !state.work;
+}
+
 bool isThere(Panel panel, const WindowState& state) {
   if (panel == Panel::recovery) return state.left_behind.has_value();
   if (!has(rowOf(state.desk).panels, panel)) return false;

@@ -42,6 +42,7 @@ struct WindowState {
   std::optional<std::filesystem::path> left_behind; // by a crash, and offered
 };
 
+bool isWelcome(const WindowState& state);            // nothing is open, nor about to be
 bool isThere(Panel panel, const WindowState& state); // the desk has it, and a use for it
 bool isShown(Panel panel, const WindowState& state); // it is in front as well
 Tab tabInFront(const WindowState& state);

@@ -1,0 +1,156 @@
+#include "app/gui/window/welcome_page.h"
+
+#include <QEvent>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QPushButton>
+
+#include "app/gui/loading/presets.h"
+#include "app/gui/panels/value_row.h"
+#include "app/gui/window/desk.h"
+#include "app/gui/window/theme.h"
+
+namespace patina {
+namespace {
+
+constexpr int kRecentShown = 5;
+constexpr QSize kPicture{144, 108};
+
+QLabel* heading(const QString& words, const char* name) {
+  auto* label = new QLabel(words);
+  label->setObjectName(QString::fromUtf8(name));
+  return label;
+}
+
+} // namespace
+
+WelcomePage::WelcomePage(QWidget& over)
+    : QWidget(&over), over_(over), recent_column_(new QVBoxLayout) {
+  hide();
+  setObjectName(QStringLiteral("welcome"));
+  setAttribute(Qt::WA_StyledBackground);
+  setCursor(Qt::ArrowCursor);
+  dress(*this,
+        QStringLiteral(
+            "QWidget#welcome { background: @window; }"
+            "QLabel#welcome_title { color: @text; font-size: 15pt; font-weight: bold; }"
+            "QLabel#welcome_words { color: @quiet; }"
+            "QLabel#welcome_recent, QLabel#welcome_try { color: @text; font-weight: bold; }"
+            "QToolButton { background: @card; color: @text; border: 1px solid @line;"
+            " border-radius: 6px; padding: 6px; }"
+            "QToolButton:hover { background: @hover; }"
+            "QToolButton:focus { border: 2px solid @accent; padding: 5px; }"
+            "QPushButton[recent=\"true\"] { border: 1px solid transparent; border-radius: 4px;"
+            " color: @link; background: transparent; text-align: left; padding: 3px 4px; }"
+            "QPushButton[recent=\"true\"]:hover { background: @hover; }"
+            "QPushButton[recent=\"true\"]:focus { border-color: @accent; }"));
+  auto* column = new QVBoxLayout;
+  column->setSpacing(8);
+  column->addWidget(heading(tr("Surfaces to see, shape and feel"), "welcome_title"));
+  column->addWidget(heading(tr("Open a mesh, a volume, a workspace or a scan, or drop it here."),
+                            "welcome_words"));
+  auto* line = new QHBoxLayout;
+  auto* open = new QPushButton(tr("Open…"));
+  open->setObjectName(QStringLiteral("welcome_open"));
+  open->setToolTip(tr("A mesh, a volume, a workspace or a scan folder"));
+  connect(open, &QPushButton::clicked, this, &WelcomePage::openAsked);
+  line->addWidget(open);
+  if (isBuilt(Desk::texture)) {
+    auto* guide = new QPushButton(tr("From a scan to a feel…"));
+    guide->setObjectName(QStringLiteral("welcome_guide"));
+    guide->setToolTip(tr("The desks Scan, Align and Texture, step by step"));
+    connect(guide, &QPushButton::clicked, this, &WelcomePage::guideAsked);
+    line->addWidget(guide);
+  }
+  line->addStretch(1);
+  column->addLayout(line);
+  column->addSpacing(10);
+  addPresets(*column);
+  column->addSpacing(10);
+  column->addLayout(recent_column_);
+  auto* across = new QHBoxLayout;
+  across->addStretch(1);
+  across->addLayout(column);
+  across->addStretch(1);
+  auto* whole = new QVBoxLayout(this);
+  whole->addStretch(1);
+  whole->addLayout(across);
+  whole->addStretch(2);
+  over_.installEventFilter(this);
+  setGeometry(over_.rect());
+}
+
+void WelcomePage::addPresets(QVBoxLayout& column) {
+  column.addWidget(heading(tr("Try one"), "welcome_try"));
+  auto* grid = new QGridLayout;
+  grid->setSpacing(8);
+  int index = 0;
+  for (const Preset& preset : presets()) {
+    const QString name = QString::fromStdString(preset.name);
+    auto* button = new QToolButton;
+    button->setObjectName(QStringLiteral("preset_") + name);
+    button->setIcon(QIcon(pictureOf(preset)));
+    button->setIconSize(kPicture);
+    button->setText(preset.words);
+    button->setToolTip(preset.tip);
+    button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
+    button->setFocusPolicy(Qt::StrongFocus);
+    button->setFixedWidth(kPicture.width() + 22);
+    connect(button, &QToolButton::clicked, this, [this, name] { emit presetChosen(name); });
+    grid->addWidget(button, index / 2, index % 2);
+    if (first_ == nullptr) first_ = button;
+    ++index;
+  }
+  grid->setColumnStretch(2, 1);
+  column.addLayout(grid);
+}
+
+void WelcomePage::setRecent(const QStringList& paths) {
+  if (paths == recent_paths_) return;
+  recent_paths_ = paths;
+  takeAway(recent_);
+  recent_ = nullptr;
+  if (paths.isEmpty()) return;
+  recent_ = new QWidget(this);
+  auto* column = new QVBoxLayout(recent_);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(2);
+  column->addWidget(heading(tr("Open again"), "welcome_recent"));
+  for (const QString& path : paths.mid(0, kRecentShown)) {
+    const QFileInfo file(path);
+    auto* button = new QPushButton(
+        fontMetrics().elidedText(QStringLiteral("%1   %2").arg(file.fileName(), file.path()),
+                                 Qt::ElideMiddle, 2 * kPicture.width() + 40));
+    button->setProperty("recent", true);
+    button->setToolTip(path);
+    button->setCursor(Qt::PointingHandCursor);
+    connect(button, &QPushButton::clicked, this, [this, path] { emit recentChosen(path); });
+    column->addWidget(button);
+  }
+  recent_column_->addWidget(recent_);
+}
+
+void WelcomePage::setShown(bool on) {
+  if (isHidden() != on) return;
+  setVisible(on);
+  if (!on) return over_.setFocus();
+  raise();
+  first_->setFocus();
+}
+
+// Enter is as good as Space on what has the keys.
+void WelcomePage::keyPressEvent(QKeyEvent* event) {
+  auto* button = qobject_cast<QAbstractButton*>(focusWidget());
+  if (button == nullptr || (event->key() != Qt::Key_Return && event->key() != Qt::Key_Enter))
+    return QWidget::keyPressEvent(event);
+  button->click();
+}
+
+bool WelcomePage::eventFilter(QObject* receiver, QEvent* event) {
+  if (receiver == &over_ && event->type() == QEvent::Resize) setGeometry(over_.rect());
+  return false;
+}
+
+} // namespace patina

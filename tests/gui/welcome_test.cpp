@@ -1,0 +1,91 @@
+// The page that stands where nothing is open, by pointer and keys.
+#include "app/gui/window/welcome_page.h"
+
+#include "app/gui/control/desk_controller.h"
+#include "app/gui/loading/presets.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "scene/scene.h"
+
+namespace patina {
+namespace {
+
+class WelcomeTest : public DrivenWindow {
+ protected:
+  WelcomePage& page() { return *find<WelcomePage>(); }
+  bool isOpen(const std::string& name) {
+    return waitUntil(
+        [&] { return edits().scene() && edits().scene()->scene.objects[0].name == name; }, 30000);
+  }
+  void restart() {
+    window_ = std::make_unique<MainWindow>();
+    window_->show();
+    takeSize(1280, 800);
+  }
+};
+
+TEST_F(WelcomeTest, APresetOpensByAClickAndThePageGoes) {
+  if (IsSkipped()) return;
+  ASSERT_TRUE(page().isVisible());
+  clickOn("preset_ball");
+  ASSERT_TRUE(isOpen("ball"));
+  EXPECT_FALSE(page().isVisible());
+  EXPECT_TRUE(view().hasFocus()) << "keys are the view's";
+}
+
+TEST_F(WelcomeTest, TheFirstPresetOpensByEnterAndTabGoesToTheOthers) {
+  if (IsSkipped()) return;
+  ASSERT_TRUE(waitUntil([&] { return find<QToolButton>("preset_dinosaur")->hasFocus(); }, 2000));
+  type(kTab);
+  EXPECT_TRUE(find<QToolButton>("preset_pottery")->hasFocus());
+  type(kEnter);
+  ASSERT_TRUE(isOpen("pottery"));
+}
+
+TEST_F(WelcomeTest, WhatWasOpenedBeforeIsOfferedAtTheNextStart) {
+  if (IsSkipped()) return;
+  ASSERT_TRUE(open(saved(icosphere(30, 12), "round.obj"), MeshUnit::mm));
+  restart();
+  ASSERT_TRUE(page().isVisible());
+  for (QPushButton* button : page().findChildren<QPushButton*>())
+    if (button->toolTip().endsWith("round.obj")) {
+      click(*button);
+      ASSERT_TRUE(isOpen("round"));
+      return;
+    }
+  FAIL() << "round.obj is not there";
+}
+
+TEST_F(WelcomeTest, ALoadThatComesToNothingBringsThePageBack) {
+  if (IsSkipped()) return;
+  documents().setAsks(false);
+  bool failed = false;
+  QObject::connect(&documents(), &DocumentController::failed, [&] { failed = true; });
+  whenThere([] { return QApplication::activeModalWidget(); }, [this](QWidget&) { type(kEscape); });
+  documents().open(requestFor(folder_ / "none.obj"));
+  EXPECT_FALSE(page().isVisible());
+  ASSERT_TRUE(waitUntil([&] { return failed; }, 5000));
+  EXPECT_TRUE(waitUntil([&] { return page().isVisible(); }, 2000));
+}
+
+TEST_F(WelcomeTest, TheGuideLeadsToTheScan) {
+  if (IsSkipped()) return;
+  if (find<QPushButton>("welcome_guide") == nullptr) GTEST_SKIP() << "built without scans";
+  clickOn("welcome_guide");
+  EXPECT_EQ(window_->controllers().desks.desk(), Desk::scan);
+  EXPECT_TRUE(find<GuideStrip>()->isVisible());
+}
+
+TEST(Presets, EachIsASceneOfOneObjectWithAPicture) {
+  application();
+  for (const Preset& preset : presets()) {
+    const Scene scene = presetScene(preset.name);
+    ASSERT_EQ(scene.objects.size(), 1u);
+    EXPECT_EQ(scene.objects[0].name, preset.name);
+    EXPECT_GT(scene.objects[0].mesh->triangles.size(), 1000u);
+    EXPECT_FALSE(pictureOf(preset).isNull());
+  }
+}
+
+} // namespace
+} // namespace patina
