@@ -50,7 +50,7 @@ TEST(RegistrationRates, WrongPlacesAreWarnedOfAndWhatTellsIsNot) {
   const Rates stone = ratesOf(bodies[2], seeds);
   EXPECT_EQ(stone.silent, 0);
   EXPECT_LE(dinosaur.warned, 16); // 14 of 18
-  EXPECT_LE(stone.warned, 6);     // 5 of 20
+  EXPECT_LE(stone.warned, 6);     // 4 of 20
 }
 
 } // namespace
