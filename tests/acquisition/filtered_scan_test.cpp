@@ -99,6 +99,19 @@ TEST(FilteredScan, TellsItsGapsAndEndsWithThePoses) {
     }
 }
 
+TEST(FilteredScan, AProbesClockThatJumpsFarAwayCostsOnlyWhatLiesThere) {
+  for (const double jump : {1e3, 1e9}) {
+    Scan scan = scanOf(4);
+    for (ProbeSample& sample : scan.samples) sample.t += sample.t > 8 ? jump : 0;
+    ScanFilter filter;
+    filter.heights = true;
+    const FilteredScan found = filtered(scan, filter);
+    ASSERT_FALSE(found.path.empty());
+    EXPECT_LE(found.path.back().t, 8);
+    EXPECT_GT(found.path.back().t, 6) << jump;
+  }
+}
+
 TEST(FilteredScan, RefusesStreamsWithoutATimeInCommon) {
   Scan scan = scanOf(5);
   for (CameraPose& pose : scan.poses) pose.t += 1000;

@@ -228,6 +228,38 @@ TEST(FusedPath, KnowsItsErrorForFiveMinutesOfOutliers) {
   EXPECT_LT(judged(scan, fused.path).tip, 0.06 * rawError(scan));
 }
 
+// A recording that was paused: both streams go on later, the hand where it was.
+TEST(FusedPath, KnowsItsErrorAfterAPauseHoweverLong) {
+  for (const double pause : {0.9, 2., 6., 200., 1e4, 1e8}) {
+    const FusedScan scan = scanOf(1, false);
+    FusedScan paused = scan;
+    for (CameraPose& pose : paused.poses) pose.t += pose.t > 8 ? pause : 0;
+    for (ProbeSample& sample : paused.samples) sample.t += sample.t > 8 ? pause : 0;
+    FusedPath fused = fusePath(paused.poses, paused.samples, paused.probe);
+    ASSERT_EQ(fused.path.size(), scan.samples.size());
+    for (PathSample& sample : fused.path) sample.t -= sample.t > 8 ? pause : 0;
+    const Judged ours = judged(scan, fused.path);
+    std::printf("pause of %.0f s: %.3f of the raw error, nees %.2f\n", pause,
+                ours.tip / rawError(scan), ours.nees);
+    EXPECT_LE(ours.tip / rawError(scan), 0.40) << pause;
+    EXPECT_NEAR(ours.nees, 1, 0.5) << pause;
+    for (const PathSample& sample : fused.path) ASSERT_GT(sample.sigma, 1e-5) << sample.t;
+  }
+}
+
+TEST(FusedPath, ComesBackWhereTheCameraWasAwayForMinutes) {
+  FusedScan scan;
+  scan.hand = strokes(10, 300);
+  scan.poses = simulateCamera(scan.hand, scan.probe, {}, 10);
+  std::erase_if(scan.poses, [](const CameraPose& pose) { return pose.t > 20 && pose.t < 270; });
+  scan.samples = simulateProbe(scan.hand, scan.probe, {}, 110);
+  std::vector<PathSample> path = fusePath(scan.poses, scan.samples, scan.probe).path;
+  for (const PathSample& sample : path) ASSERT_TRUE(std::isfinite(sample.sigma)) << sample.t;
+  std::erase_if(path, [](const PathSample& sample) { return sample.t > 19 && sample.t < 271; });
+  EXPECT_LE(judged(scan, path).tip, 0.4 * rawError(scan));
+  EXPECT_NEAR(judged(scan, path).nees, 1, 0.5);
+}
+
 TEST(FusedPath, FindsTheBiasesOfTheAccelerometers) {
   const FusedScan scan = scanOf(4, false);
   const FusedPath fused = fusePath(scan.poses, scan.samples, scan.probe);

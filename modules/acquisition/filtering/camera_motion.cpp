@@ -42,7 +42,10 @@ TipMotion motionIn(const std::vector<Node<N>>& nodes, const CameraTrackOptions& 
   const double tip_noise = *options.position_noise, turn_noise = *options.angle_noise / 2;
   const auto after = std::upper_bound(nodes.begin(), nodes.end(), t,
                                       [](double time, const Node<N>& n) { return time < n.t; });
-  const Node<N>& node = after == nodes.begin() ? nodes.front() : *(after - 1);
+  // Where the track begins anew nothing leads over; what is nearer tells more.
+  const bool of_next = after == nodes.begin() ||
+                       (after != nodes.end() && after->starts && after->t - t < t - (after - 1)->t);
+  const Node<N>& node = of_next ? *after : *(after - 1);
   const double since = t - node.t;
   const bool inside = after != nodes.begin() && after != nodes.end() && !after->starts;
   TipMotion motion;

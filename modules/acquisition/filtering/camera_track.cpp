@@ -86,7 +86,8 @@ void gate(const std::vector<Measured>& measured, const CameraTrackOptions& optio
   std::vector<std::size_t> of_track, of_other;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (choice.verdicts[i] != PoseVerdict::used) continue;
-    if (!track) {
+    if (!track || measured[i].t - track->t > kUnseen) {
+      other.reset();
       track.emplace(measured[i]);
       of_track = {i};
       choice.starts[i] = true;

@@ -10,6 +10,10 @@
 
 namespace patina {
 
+// A track that sees nothing for longer begins anew [s]: errors that grow as t^5 leave no digits of
+// what the next pose says.
+inline constexpr double kUnseen = 5;
+
 struct CameraTrackOptions {
   bool acceleration = true; // constant acceleration; else constant velocity
   bool smooth = true;       // RTS; else what was known at the time

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "acquisition/filtering/contact.h"
+#include "core/error.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -20,6 +21,26 @@ std::vector<double> timesOfUsed(const std::vector<CameraPose>& poses, const Came
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (track.verdicts[i] == PoseVerdict::used) times.push_back(poses[i].t);
   return times;
+}
+
+// Without what lies outside the time that the camera saw; a clock that jumped may be hours away.
+template <class Sample>
+void eraseUnseen(std::vector<Sample>& samples, const std::vector<CameraPose>& poses,
+                 const CameraTrack& track) {
+  const std::vector<double> seen = timesOfUsed(poses, track);
+  const double longest = track.options.longest_gap;
+  std::erase_if(samples, [&](const Sample& sample) {
+    return seen.empty() ||
+           !(sample.t >= seen.front() - longest && sample.t <= seen.back() + longest);
+  });
+}
+
+Error apart(const std::vector<CameraPose>& poses, const CameraTrack& track,
+            const std::vector<ProbeSample>& samples) {
+  const std::vector<double> seen = timesOfUsed(poses, track);
+  return Error("poses and probe have no time in common: from " + formatNumber(seen.front()) +
+               " to " + formatNumber(seen.back()) + " s and from " +
+               formatNumber(samples.front().t) + " to " + formatNumber(samples.back().t) + " s");
 }
 
 std::vector<PathSample> pathWithForce(const CameraTrack& track,
@@ -47,12 +68,14 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
       corrected = samples;
       for (ProbeSample& sample : corrected) sample.t = scan.clock->onCamera(sample.t);
     }
-    FusedPath fused = fuseWith(std::move(track), poses, corrected.empty() ? samples : corrected,
-                               probe, options, progress);
+    if (corrected.empty()) corrected = samples;
+    eraseUnseen(corrected, poses, track);
+    if (corrected.empty() && !samples.empty() && !track.empty()) throw apart(poses, track, samples);
+    FusedPath fused = fuseWith(std::move(track), poses, corrected, probe, options, progress);
     if (filter.heights) {
       markContact(fused.path);
-      scan.heights = scanHeights(fused, poses, corrected.empty() ? samples : corrected, probe,
-                                 filter.gravity, filter.normal, filter.compliance);
+      scan.heights = scanHeights(fused, poses, corrected, probe, filter.gravity, filter.normal,
+                                 filter.compliance);
     }
     scan.path = std::move(fused.path);
     scan.track = std::move(fused.track);
@@ -72,13 +95,8 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
     scan.path = pathAt(scan.track, seen);
     return scan;
   }
-  std::erase_if(scan.path, [&](const PathSample& sample) {
-    return sample.t < seen.front() - longest || sample.t > seen.back() + longest;
-  });
-  if (scan.path.empty())
-    throw Error("poses and probe have no time in common: from " + formatNumber(seen.front()) +
-                " to " + formatNumber(seen.back()) + " s and from " +
-                formatNumber(samples.front().t) + " to " + formatNumber(samples.back().t) + " s");
+  eraseUnseen(scan.path, poses, scan.track);
+  if (scan.path.empty()) throw apart(poses, scan.track, samples);
   std::vector<double> sampled;
   for (const PathSample& sample : scan.path) {
     sampled.push_back(sample.t);

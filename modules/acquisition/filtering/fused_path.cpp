@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "acquisition/filtering/error_state.h"
+#include "core/error.h"
+#include "core/numbers.h"
 
 namespace patina {
 namespace {
@@ -73,6 +76,10 @@ std::vector<Vec3> unrest(const std::vector<const ProbeSample*>& samples, const P
   return jerks;
 }
 
+// A motion of which neither camera nor probe has told for longer is begun anew [s], as one that the
+// camera has not seen for kUnseen.
+constexpr double kUnheard = 1;
+
 std::vector<Event> eventsOf(const std::vector<CameraPose>& poses, const CameraTrack& track,
                             const std::vector<const ProbeSample*>& samples,
                             const ProbeModel& probe) {
@@ -82,13 +89,18 @@ std::vector<Event> eventsOf(const std::vector<CameraPose>& poses, const CameraTr
   events.reserve(samples.size() + poses.size());
   std::size_t next = 0, node = 0;
   const auto addSample = [&](std::size_t i) {
-    events.push_back({motionAt(track, samples[i]->t), samples[i]->t, jerks[i], samples[i], nullptr,
-                      events.empty()});
+    const bool starts = events.empty() || samples[i]->t - events.back().t > kUnheard;
+    events.push_back(
+        {motionAt(track, samples[i]->t), samples[i]->t, jerks[i], samples[i], nullptr, starts});
   };
+  std::optional<double> seen; // [s], the last pose
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (track.verdicts[i] != PoseVerdict::used) continue;
     for (; next < samples.size() && samples[next]->t < poses[i].t; ++next) addSample(next);
-    const bool starts = events.empty() || (node > 0 && track.fast[node].starts);
+    const bool starts = events.empty() || (node > 0 && track.fast[node].starts) ||
+                        (seen && poses[i].t - *seen > kUnseen) ||
+                        poses[i].t - events.back().t > kUnheard;
+    seen = poses[i].t;
     const Vec3 jerk =
         samples.empty() ? Vec3::Constant(camera_jerk) : jerks[std::min(next, samples.size() - 1)];
     events.push_back({motionAt(track, poses[i].t), poses[i].t, jerk, nullptr, &poses[i], starts});
@@ -298,6 +310,10 @@ FusedPath fuseWith(CameraTrack track, const std::vector<CameraPose>& poses,
     }
   }
   std::reverse(fused.path.begin(), fused.path.end());
+  for (const PathSample& sample : fused.path)
+    if (!sample.position.allFinite() || !(sample.sigma >= 0) || !std::isfinite(sample.sigma))
+      throw Error("the filter knows nothing at " + formatNumber(sample.t) +
+                  " s: poses and probe are too far apart in time or place");
   return fused;
 }
 

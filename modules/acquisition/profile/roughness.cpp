@@ -7,11 +7,13 @@ namespace {
 
 constexpr std::size_t kPlacesAcross = 25; // places a cutoff
 constexpr std::size_t kFewestLengths = 4;
+constexpr double kMostPlaces = 1e7;
 
 // Evenly, what lies between two points on the line between them.
 std::vector<double> evenPlaces(const std::vector<ProfilePoint>& points, double step) {
   std::vector<double> heights;
   std::size_t next = 1;
+  if (!(points.back().along - points.front().along < kMostPlaces * step)) return {};
   for (double at = points.front().along; at <= points.back().along; at += step) {
     while (next + 1 < points.size() && points[next].along < at) ++next;
     const ProfilePoint &a = points[next - 1], &b = points[next];
