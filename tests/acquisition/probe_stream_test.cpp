@@ -171,6 +171,25 @@ TEST(ProbeStream, GoesOnInTimeWhereTheProbeStartsAnew) {
     EXPECT_NEAR(stream.samples[i].t - stream.samples[i - 1].t, 1e-3, 1e-9) << i;
 }
 
+TEST(ProbeStream, StartsAnewAlsoWhereItsFirstPacketsAreLost) {
+  Numbered stream;
+  for (std::uint32_t i = 0; i < 250; ++i) stream.send(i, 2 + i);
+  for (std::uint32_t i = 1; i < 200; ++i) stream.send(i, 2 + i); // all of them were there
+  EXPECT_EQ(stream.decoder.health().restarts, 1u);
+  EXPECT_EQ(stream.decoder.health().repeated, 0u);
+  ASSERT_EQ(stream.samples.size(), 449u);
+  for (std::size_t i = 1; i < 449; ++i) EXPECT_GT(stream.samples[i].t, stream.samples[i - 1].t);
+}
+
+TEST(ProbeStream, AFewThatAreSentAgainAreNoNewStart) {
+  Numbered stream;
+  for (std::uint32_t i = 0; i < 50; ++i) stream.send(i, 2 + i);
+  for (std::uint32_t i = 43; i < 60; ++i) stream.send(i, 2 + i);
+  EXPECT_EQ(stream.decoder.health().restarts, 0u);
+  EXPECT_EQ(stream.decoder.health().repeated, 7u);
+  EXPECT_EQ(stream.samples.size(), 60u);
+}
+
 TEST(ProbeStream, ThatIsNeverDescribedSaysSo) {
   ProbeDecoder decoder;
   EmulatedProbe probe({.rate = 4000, .samples_per_packet = 1, .describe_every = 0});

@@ -1,6 +1,7 @@
 #include "acquisition/sources/probe_decoder.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.h"
 
@@ -8,6 +9,7 @@ namespace patina {
 namespace {
 
 constexpr std::int32_t kLate = 1024;       // packets: a number further back is a new start
+constexpr std::size_t kAgain = 8;          // packets in a row that were there: a new start, too
 constexpr std::size_t kMostWaiting = 8192; // packets without a description: two seconds at least
 
 } // namespace
@@ -17,10 +19,10 @@ void ProbeDecoder::take(ProbePacket packet, double arrival, std::vector<ProbeSam
   if (const auto* part = std::get_if<ProbePart>(&content)) {
     described_ = parts_.take(*part) || described_;
   } else if (const auto* samples = std::get_if<ProbeSamples>(&content)) {
-    const auto t = timeOf(*samples, arrival);
-    if (!t) return;
-    ++health_.packets;
-    waiting_.push_back({*samples, *t, arrival});
+    for (const Arrived& each : inOrder(*samples, arrival)) {
+      ++health_.packets;
+      waiting_.push_back({each.samples, timeOf(each), each.arrival});
+    }
     if (waiting_.size() > kMostWaiting)
       throw Error("the probe sends samples and never says what they mean: its firmware must send a "
                   "part of its description every 100 ms (docs/usb_protocol.md)");
@@ -32,30 +34,46 @@ void ProbeDecoder::take(ProbePacket packet, double arrival, std::vector<ProbeSam
   waiting_.clear();
 }
 
-// Of its first sample; nothing of a packet that is to be left out. Counts what lies before it.
-std::optional<double> ProbeDecoder::timeOf(const ProbeSamples& samples, double arrival) {
-  const Last now{samples.packet, samples.first + static_cast<std::uint32_t>(samples.count),
-                 samples.time_ns, arrival};
-  if (!last_) {
-    begin_ns_ = samples.time_ns;
-    last_ = now;
-    return begin_;
-  }
+// The packets that go on with this one. One whose number was there is left out; several such in a
+// row are no repeats but a probe that has begun anew, whose first packets may be lost.
+std::vector<ProbeDecoder::Arrived> ProbeDecoder::inOrder(const ProbeSamples& samples,
+                                                         double arrival) {
+  const Arrived now{samples, arrival};
+  if (!last_) return {now};
   const auto ahead = static_cast<std::int32_t>(samples.packet - last_->packet - 1);
-  const bool restarted =
+  const bool goes_on = ahead >= 0 && samples.time_ns > last_->time_ns;
+  const bool begins =
       ahead < -kLate || (samples.packet == 0 && ahead < 0 && samples.time_ns < last_->time_ns &&
                          samples.time_ns != begin_ns_);
-  if (restarted) {
+  if (goes_on || begins) {
+    earlier_.clear();
+    if (begins) last_begins_ = true;
+    return {now};
+  }
+  ++health_.repeated;
+  if (!earlier_.empty() && samples.packet != earlier_.back().samples.packet + 1) earlier_.clear();
+  earlier_.push_back(now);
+  if (earlier_.size() < kAgain) return {};
+  health_.repeated -= earlier_.size();
+  last_begins_ = true;
+  return std::exchange(earlier_, {});
+}
+
+// Of its first sample. Counts what lies before it.
+double ProbeDecoder::timeOf(const Arrived& packet) {
+  const ProbeSamples& samples = packet.samples;
+  const Last now{samples.packet, samples.first + static_cast<std::uint32_t>(samples.count),
+                 samples.time_ns, packet.arrival};
+  if (!last_) {
+    begin_ns_ = samples.time_ns;
+  } else if (std::exchange(last_begins_, false)) {
     ++health_.restarts;
     begin_ += 1e-9 * static_cast<double>(last_->time_ns - begin_ns_) +
-              std::max(arrival - last_->arrival, 1e-4 * samples.count);
+              std::max(packet.arrival - last_->arrival, 1e-4 * samples.count);
     begin_ns_ = samples.time_ns;
     skew_ = {};
-  } else if (ahead < 0 || samples.time_ns <= last_->time_ns) {
-    ++health_.repeated;
-    return std::nullopt;
   } else {
-    const auto missing = static_cast<std::size_t>(ahead);
+    const auto missing = static_cast<std::size_t>(samples.packet - last_->packet - 1);
     health_.lost_packets += missing;
     health_.lost_samples += std::min<std::size_t>(samples.first - last_->next_sample, 4 * missing);
   }

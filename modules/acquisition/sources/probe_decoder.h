@@ -28,14 +28,21 @@ class ProbeDecoder {
     ProbeSamples samples;
     double t, arrival;
   };
-  std::optional<double> timeOf(const ProbeSamples& samples, double arrival);
+  struct Arrived {
+    ProbeSamples samples;
+    double arrival;
+  };
+  std::vector<Arrived> inOrder(const ProbeSamples& samples, double arrival);
+  double timeOf(const Arrived& packet);
   void give(const Waiting& packet, std::vector<ProbeSample>& into);
 
   ProbeParts parts_;
   bool described_ = false;
   std::vector<Waiting> waiting_;
   std::optional<Last> last_;
-  std::uint64_t begin_ns_ = 0; // where the probe's clock says begin_
+  bool last_begins_ = false;     // the packet that comes next is the first of a new start
+  std::vector<Arrived> earlier_; // numbers that were there, one after the other
+  std::uint64_t begin_ns_ = 0;   // where the probe's clock says begin_
   double begin_ = 0;
   ProbeHealth health_;
   ClockSkew skew_;
