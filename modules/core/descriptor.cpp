@@ -134,6 +134,8 @@ std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t 
   }
 }
 
+constexpr std::size_t kMostOfADevice = std::size_t{64} << 20;
+
 std::string readAll(int fd, const std::string& name) {
   struct stat info {};
   if (::fstat(fd, &info) != 0) throw DiskError(name, "cannot be read: " + reason(errno));
@@ -142,7 +144,9 @@ std::string readAll(int fd, const std::string& name) {
   // One byte more than the size, so that the end is seen without another growth.
   std::size_t room = info.st_size > 0 ? static_cast<std::size_t>(info.st_size) + 1 : 65536;
   std::size_t used = 0;
+  const bool is_device = S_ISCHR(info.st_mode);
   for (;;) {
+    if (is_device && used > kMostOfADevice) throw FileError(name, 0, "does not end");
     bytes.resize(used + room);
     const std::size_t got = readSome(fd, name, bytes.data() + used, room);
     used += got;

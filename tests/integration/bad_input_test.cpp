@@ -92,6 +92,26 @@ TEST_F(BadInput, OutputsThatCannotBeWrittenAreNamed) {
   expectOneLineError(run({"man", "-o", box}), {"box.obj"});
 }
 
+TEST_F(BadInput, AWorkspacesOwnFilesAreNoOutputs) {
+  const std::string scene = folder / "scene";
+  ASSERT_EQ(run({"scene", "-o", scene, "--add", box}).exit, 0);
+  const std::string heights = folder.write("heights.csv", [] {
+    std::string text = "along [m],height [m]\n";
+    for (int i = 0; i < 200; ++i)
+      text += std::to_string(1e-4 * i) + "," + (i % 20 < 10 ? "1e-5" : "-1e-5") + "\n";
+    return text;
+  }());
+  ASSERT_EQ(run({"fit-texture", heights, "-o", folder / "wave.json"}).exit, 0);
+  expectOneLineError(run({"fit-texture", heights, "-o", scene + "/workspace.json"}),
+                     {"workspace.json", "belongs to the workspace"});
+  EXPECT_EQ(run({"info", scene}).exit, 0);
+}
+
+TEST_F(BadInput, ADeviceWithoutAnEndIsNotReadUntilMemoryEnds) {
+  std::filesystem::create_symlink("/dev/zero", folder / "zero.ply");
+  expectOneLineError(run({"info", folder / "zero.ply"}), {"zero.ply", "does not end"});
+}
+
 TEST_F(BadInput, OptionsWithoutEffectAreWarnedOf) {
   const auto warned = [&](const std::vector<std::string>& more, const std::string& part) {
     std::vector<std::string> words = {"feel", box, "--path", path, "-o", folder / "f.csv"};

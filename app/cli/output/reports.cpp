@@ -6,6 +6,7 @@
 #include "core/numbers.h"
 #include "core/output_target.h"
 #include "scene/scene_values.h"
+#include "workspace/workspace.h"
 
 namespace patina::cli {
 
@@ -134,6 +135,19 @@ Json jsonOf(const std::vector<std::string>& words) {
   return list;
 }
 
+// The workspace whose own file it is, not one that somebody has put beside them; empty: of none.
+static std::filesystem::path workspaceOf(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(file)) return {};
+  const fs::path folder = fs::absolute(file).parent_path();
+  const std::string name = file.filename().string();
+  if ((name == "workspace.json" || name.starts_with("journal-")) && isWorkspace(folder))
+    return folder;
+  for (const char* part : {"meshes", "paint", "states"})
+    if (folder.filename() == part && isWorkspace(folder.parent_path())) return folder.parent_path();
+  return {};
+}
+
 void requireWritable(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& inputs,
                      std::optional<FileKind> kind) {
@@ -150,6 +164,9 @@ void requireWritable(const std::filesystem::path& path,
     throw FileError(path.string(), 0, "cannot be written: there is no folder " + folder.string());
   if (access(folder.c_str(), W_OK) != 0)
     throw FileError(path.string(), 0, "cannot be written: no permission in " + folder.string());
+  if (const std::filesystem::path owner = workspaceOf(end); !owner.empty())
+    throw FileError(path.string(), 0,
+                    "cannot be written: it belongs to the workspace " + owner.string());
   if (kind) requireSameKind(end, *kind);
 }
 
