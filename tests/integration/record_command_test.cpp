@@ -48,6 +48,13 @@ TEST_F(RecordedScans, AreReadByTrackAndFilter) {
   EXPECT_EQ(run({"filter", made, "-o", path}).exit, 0);
 }
 
+TEST_F(RecordedScans, OfAProbeThatSendsNothingEndWithOneAndSaySo) {
+  simulate({"--seconds", "1", "--frames"});
+  const Outcome outcome = run({"record", source, "--probe", "stream:/dev/null", "-o", made});
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_NE(outcome.err.find("the probe sent nothing"), std::string::npos) << outcome.err;
+}
+
 TEST_F(RecordedScans, EndWellWithCtrlCAndAfterTheirSeconds) {
   simulate({"--seconds", "2", "--frames"});
   Running record({"record", source, "--json", "-o", made}, programPath());

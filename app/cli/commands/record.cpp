@@ -76,7 +76,9 @@ int runRecord(RecordOptions options, Console& console) {
   if (now.probe) setHealth(*now.probe, report);
   if (now.frames == 0)
     console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
-  return console.report(report, now.frames > 0 ? kDone : kNotSolved);
+  const bool silent = !options.probe.empty() && now.samples == 0;
+  if (silent) console.warn(options.probe + ": the probe sent nothing");
+  return console.report(report, now.frames > 0 && !silent ? kDone : kNotSolved);
 }
 
 } // namespace
