@@ -54,8 +54,10 @@ class FeltSphere {
  public:
   explicit FeltSphere(const fs::path& folder) : folder_(folder) {
     bench_.on_frame = [this](double t, const std::array<int, 3>&) {
-      const double angle = 2 * t;
-      const Vec3 out = Vec3(0.3 * std::cos(angle), 0.3 * std::sin(angle), 1).normalized();
+      // A spiral, so that no lap covers what another one has lost.
+      if (presses && !(since_ >= 0)) since_ = t;
+      const double angle = 2 * t, wide = 0.1 + 0.02 * std::min(t - std::max(since_, 0.0), 60.0);
+      const Vec3 out = Vec3(wide * std::cos(angle), wide * std::sin(angle), 1).normalized();
       bench_.rest = presses ? Vec3((kSphere - 3e-3) * out - centre) : Vec3(Vec3::Zero());
       bench_.buttons = presses ? 1 : 0;
       if (const WireFault fault = next_.exchange(WireFault::none); fault != WireFault::none) {
@@ -100,6 +102,7 @@ class FeltSphere {
 
  private:
   fs::path folder_;
+  double since_ = -1; // [s], when it was first pressed
   FalconBench bench_{{.body = {.mass = 0.25, .damping = 12, .spring = 300, .friction = 0}},
                      systemClock()};
   std::optional<EmulatedPlug> plug_;

@@ -31,11 +31,13 @@ void FeelController::place(const Scene& scene, const Vec3& start) {
       entry.takes_numbers ? scene.device_model.value_or(entry.model) : entry.model;
   const DeviceSetup setup{.name = scene.device, .target = target, .model = model};
   notes_ = entry.linked ? setup.notes : nullptr;
+  held_back_.clear(); // what was said of another device
   setNeedsButton(needs_button_);
   look();
   try {
     servo_.open(openDevice(entry, setup, mountAt(entry, start), controls_), target, model.rate);
   } catch (const DeviceError& error) {
+    notes_ = nullptr;
     emit failed(QString::fromUtf8(error.what()));
   }
 }
