@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,6 +41,27 @@ class Links : public testing::Test {
   const fs::path folder = root / "ball";
   Progress progress;
 };
+
+// Its history begins with the first edit, and one program alone begins it.
+TEST_F(Links, AWorkspaceWithoutHistoryIsLeftAloneUntilItIsEdited) {
+  const auto contents = [&] {
+    std::map<std::string, std::string> files;
+    for (const auto& file : fs::recursive_directory_iterator(folder))
+      files[file.path()] = file.is_regular_file() ? readFile(file.path()) : "";
+    return files;
+  };
+  const auto before = contents();
+  auto one = open();
+  const auto other = open();
+  EXPECT_EQ(contents(), before);
+  one->apply(ValueEdit{{{"stiffness", "640"}}}, progress);
+  EXPECT_NE(contents(), before);
+  EXPECT_THROW(other->apply(ValueEdit{{{"stiffness", "650"}}}, progress), FileError);
+  EXPECT_THROW(other->save(), FileError);
+  const Scene last = one->scene();
+  one.reset();
+  EXPECT_TRUE(same(read(folder), last));
+}
 
 TEST_F(Links, EditsAreThereWithoutASave) {
   Scene last;

@@ -97,8 +97,9 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
     opened.notes.push_back(folder.string() + ": stays as it is; save the scene to another folder");
     return opened;
   }
-  if (found.states.empty()) { // of a version without history: it begins here
-    opened.link = create(folder, *opened.history);
+  if (found.states.empty()) { // of a version without history, which begins with the first edit
+    opened.link.reset(new WorkspaceLink(folder));
+    opened.link->without_history_ = opened.history.get();
     return opened;
   }
   auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
@@ -164,7 +165,16 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::write(const std::filesystem::path&
   return link;
 }
 
+void WorkspaceLink::beginHistory() {
+  if (journal_) return;
+  const FolderLock alone(folder_);
+  if (!openWorkspace(folder_).states.empty())
+    throw FileError(folder_.string(), 0, "another program has begun to edit it: open it again");
+  *this = std::move(*write(folder_, *without_history_));
+}
+
 void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after, std::int64_t time) {
+  beginHistory();
   // What is on disk must be known here: no memory is taken after that.
   if (event_of_.capacity() <= position_after) event_of_.reserve(2 * position_after + 1);
   const auto append = [&](JournalEvent event) {
@@ -192,6 +202,7 @@ void WorkspaceLink::recordRedo(std::size_t steps) {
 }
 
 void WorkspaceLink::save(EditHistory& history) {
+  beginHistory();
   std::vector<StoredState> states;
   if (!states_.empty() && states_.front().event == 0) states.push_back(states_.front());
   for (const std::size_t position : history.landmarks(kLandmarkCost)) {

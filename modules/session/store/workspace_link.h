@@ -40,6 +40,7 @@ class WorkspaceLink {
                                                    EditHistory& history);
 
   const std::filesystem::path& folder() const { return folder_; }
+  // A workspace of a version without history stays as it is until the first of these.
   void recordEdit(const Edit& edit, std::size_t position_after, std::int64_t time);
   void recordUndo(std::size_t steps);
   void recordRedo(std::size_t steps);
@@ -50,11 +51,13 @@ class WorkspaceLink {
   // The folder is there and locked.
   static std::unique_ptr<WorkspaceLink> write(const std::filesystem::path& folder,
                                               EditHistory& history);
+  void beginHistory();
   EditHistory::Load loader(const std::string& state) const;
   void tieStates(EditHistory& history) const;
 
   std::filesystem::path folder_;
-  std::unique_ptr<JournalWriter> journal_;
+  std::unique_ptr<JournalWriter> journal_; // null while there is no history on disk
+  EditHistory* without_history_ = nullptr; // whose beginning that will be
   std::vector<std::uint64_t> event_of_; // by position: the event after which the scene is that one
   std::vector<StoredState> states_;     // on disk
 };
