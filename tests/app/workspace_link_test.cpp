@@ -15,6 +15,7 @@
 #include "session/edit/editor.h"
 #include "session/store/journal_fold.h"
 #include "session/store/replay.h"
+#include "support/places.h"
 
 namespace patina {
 namespace {
@@ -44,6 +45,8 @@ class Links : public testing::Test {
 
 // Its history begins with the first edit, and one program alone begins it.
 TEST_F(Links, AWorkspaceWithoutHistoryIsLeftAloneUntilItIsEdited) {
+  fs::remove_all(folder);
+  fs::copy(sourceFolder() / "data" / "scenes" / "pottery", folder, fs::copy_options::recursive);
   const auto contents = [&] {
     std::map<std::string, std::string> files;
     for (const auto& file : fs::recursive_directory_iterator(folder))
