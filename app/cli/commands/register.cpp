@@ -313,6 +313,9 @@ int runRegister(RegisterOptions options, Console& console) {
   if (!found.converged)
     console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
                                          "noise lets expect");
+  for (const FreeMotion& motion : found.free)
+    console.warn(options.path.string() + ": " + inWords(motion) +
+                 ": the mesh does not say where along that it lies");
   if (found.rivals && !found.rivals->empty())
     console.warn(options.path.string() + ": its place is not unique: " + inWords(*found.rivals) +
                  "; scan more of the body, add a scan (--also), or, where you know about where it "
