@@ -77,6 +77,7 @@ TEST_F(WelcomeTest, TheGuideLeadsToTheScan) {
 }
 
 TEST(Presets, EachIsASceneOfOneObjectWithAPicture) {
+  if (!test::hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
   application();
   for (const Preset& preset : presets()) {
     const Scene scene = presetScene(preset.name);

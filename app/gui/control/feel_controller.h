@@ -42,6 +42,7 @@ class FeelController : public QObject {
   void open(const Scene& scene, const Vec3& start);
   void place(const Scene& scene, const Vec3& tip); // there, as if it had never been elsewhere
   void close();                                    // and nothing that the servo said is lost
+  void look();    // at the device, which gives no force to one that nobody watches
   void collect(); // what it has said since the last time; of every window tick
 
   bool recording() const { return recording_.on(); }
@@ -58,7 +59,6 @@ class FeelController : public QObject {
   void said(const patina::Message& message);
 
  private:
-  void look();          // at the device, which gives no force to one that nobody watches
   bool saveRecording(); // false: not written, the samples are kept
 
   Parts at_;

@@ -259,6 +259,8 @@ void MainWindow::tick() {
   if (feel_.servo().running()) view_.view().setTool(feel_.sample());
   if (feel_.servo().running()) felt_ = std::max(felt_, feel_.sample().force.norm());
   view_.refresh();
+  feel_.look(); // what has come while the picture was drawn does not wait for the next tick
+  parts_.status->showHeldBack(feel_.heldBack());
   parts_.force->refresh();
   parts_.energy->refresh();
   parts_.status->showFault(feel_.servo().running() && feel_.sample().fault);
