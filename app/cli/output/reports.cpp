@@ -6,6 +6,7 @@
 #include "core/numbers.h"
 #include "core/output_target.h"
 #include "scene/scene_values.h"
+#include "workspace/manifest.h"
 #include "workspace/workspace.h"
 
 namespace patina::cli {
@@ -141,8 +142,7 @@ static std::filesystem::path workspaceOf(const std::filesystem::path& file) {
   if (!fs::exists(file)) return {};
   const fs::path folder = fs::absolute(file).parent_path();
   const std::string name = file.filename().string();
-  if ((name == "workspace.json" || name.starts_with("journal-")) && isWorkspace(folder))
-    return folder;
+  if ((name == kManifestName || name.starts_with("journal-")) && isWorkspace(folder)) return folder;
   for (const char* part : {"meshes", "paint", "states"})
     if (folder.filename() == part && isWorkspace(folder.parent_path())) return folder.parent_path();
   return {};

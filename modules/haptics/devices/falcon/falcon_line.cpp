@@ -21,8 +21,8 @@ enum Request : std::uint8_t {
   kLatency = 9
 };
 
-// The nearest whole ones: a clock that has gone on by a microsecond costs no wait half its time, and
-// what is left of one that has begun is none.
+// The nearest whole ones: a clock that has gone on by a microsecond costs no wait half its time,
+// and what is left of one that has begun is none.
 unsigned milliseconds(double seconds) {
   return static_cast<unsigned>(std::clamp(std::round(1e3 * seconds), 0.0, 1000.0));
 }
