@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "core/decompose.h"
 #include "core/error.h"
 #include "field/surface/models.h"
 #include "geometry/tree/triangle_tree.h"
@@ -139,8 +140,7 @@ DemoObject demoObject() {
   DemoObject object;
   object.mesh = dinosaur();
   for (Vec3& p : object.mesh.positions) p *= 2;
-  object.plane_from_object.linear() =
-      Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitY(), Vec3::UnitZ()).toRotationMatrix();
+  object.plane_from_object.linear() = turnFromTo(-Vec3::UnitY(), Vec3::UnitZ()).toRotationMatrix();
   object.materials = {ribs(), weave(), grain()};
   const TriangleMesh turned =
       transformed(object.mesh, Eigen::Affine3d(object.plane_from_object.matrix()));

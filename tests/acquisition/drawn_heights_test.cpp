@@ -12,6 +12,7 @@
 #include "acquisition/simulation/simulated_surface.h"
 #include "acquisition/texture/fit_texture.h"
 #include "acquisition/texture/mesh_heights.h"
+#include "core/decompose.h"
 #include "core/error.h"
 #include "field/surface/models.h"
 #include "geometry/mesh/shapes.h"
@@ -121,7 +122,7 @@ void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
 TEST(ScanTexture, IsAsTrueWhereTheTipLandsTurnsAndLiftsAsBetween) {
   TriangleMesh toy = dinosaur();
   for (Vec3& p : toy.positions) p *= 2;
-  const Pose side(Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitY(), Vec3::UnitZ()));
+  const Pose side(turnFromTo(-Vec3::UnitY(), Vec3::UnitZ()));
   toy = transformed(toy, Eigen::Affine3d(side.matrix()));
   for (const TriangleMesh& mesh : {toy, icosphere(0.04, 60)}) {
     Parts parts;

@@ -9,6 +9,7 @@
 
 #include "acquisition/profile/rough_process.h"
 #include "acquisition/simulation/simulated_surface.h"
+#include "core/decompose.h"
 #include "support/constants.h"
 #include "support/shared_data.h"
 
@@ -97,7 +98,7 @@ std::pair<double, double> waveIn(const std::vector<ProfilePoint>& points, double
     A.row(i) << std::cos(angle), std::sin(angle), 1, point.along;
     b[i] = point.height;
   }
-  const Eigen::VectorXd x = (A.transpose() * A).ldlt().solve(A.transpose() * b);
+  const Eigen::VectorXd x = SymmetricSolver(A.transpose() * A).solve(A.transpose() * b);
   return {std::hypot(x[0], x[1]), (A * x - b).squaredNorm()};
 }
 

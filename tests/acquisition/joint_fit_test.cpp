@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "acquisition/registration_shapes.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -116,7 +117,7 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
     JointVector error;
     error << turn.angle() * turn.axis(), off * fit.middle - fit.middle, fit.tip - scan.tip,
         fit.clock - scan.clock;
-    nees += error.dot(fit.covariance.ldlt().solve(error)) / kJointValues / rounds;
+    nees += error.dot(SymmetricSolver(fit.covariance).solve(error)) / kJointValues / rounds;
     joint += bodyMissOf(fit.mesh_from_path, scan) / rounds;
     apart += bodyMissOf(before, scan) / rounds;
     tip += (fit.tip - scan.tip).norm() / rounds;

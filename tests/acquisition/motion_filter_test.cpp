@@ -1,4 +1,5 @@
 #include "acquisition/filtering/motion_filter.h"
+#include "core/decompose.h"
 
 #include <gtest/gtest.h>
 
@@ -174,8 +175,8 @@ TEST(MotionFilter, SmootherAgreesWithBatchLeastSquares) {
     link << -step.F, Eigen::Matrix3d::Identity();
     normal.block<6, 6>(3 * (i - 1), 3 * (i - 1)) += link.transpose() * step.Q.inverse() * link;
   }
-  const Eigen::VectorXd x = normal.ldlt().solve(right);
-  const Eigen::MatrixXd P = normal.inverse();
+  const Eigen::VectorXd x = SymmetricSolver(normal).solve(right);
+  const Eigen::MatrixXd P = SymmetricSolver(normal).inverse();
   const Smoother s = smoothedOver(times, values, variances, sigma, begin);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& state = s.smooth[static_cast<std::size_t>(i)];

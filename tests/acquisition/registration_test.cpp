@@ -7,6 +7,7 @@
 
 #include "acquisition/registration/closest_point_loop.h"
 #include "acquisition/registration_shapes.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -298,7 +299,7 @@ TEST(Registration, ErrorBarsAreThoseOfTheErrors) {
     const Eigen::AngleAxisd turn(fit.mesh_from_path.linear());
     Vec6 error;
     error << turn.angle() * turn.axis(), fit.mesh_from_path * fit.middle - fit.middle;
-    squares += error.dot(fit.covariance.ldlt().solve(error)) / rounds;
+    squares += error.dot(SymmetricSolver(fit.covariance).solve(error)) / rounds;
   }
   std::printf("mean squared error in deviations: %.2f of 6\n", squares);
   EXPECT_NEAR(squares, 6, 1); // of 200 draws, two deviations are .49

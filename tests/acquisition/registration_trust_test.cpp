@@ -6,6 +6,7 @@
 
 #include "acquisition/registration/register_path.h"
 #include "acquisition/registration_shapes.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -126,7 +127,7 @@ TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
       const Eigen::AngleAxisd turn(fit.mesh_from_path.linear());
       Vec6 error;
       error << turn.angle() * turn.axis(), fit.mesh_from_path * fit.middle - fit.middle;
-      squares += error.dot(fit.covariance.ldlt().solve(error)) / 6 / rounds;
+      squares += error.dot(SymmetricSolver(fit.covariance).solve(error)) / 6 / rounds;
       together += fit.together / rounds;
       alone += fit.rms / rounds;
     }
@@ -183,7 +184,7 @@ TEST(ErrorLaw, StatedVarianceIsThatOfErrorsHoweverBlocksCutThem) {
               fit.misses[at].direction.transpose();
         }
         const Mat6 normal = design.transpose() * design;
-        const Vec6 off = normal.ldlt().solve(design.transpose() * errors);
+        const Vec6 off = SymmetricSolver(normal).solve(design.transpose() * errors);
         errors -= design * off;
         for (int i = 0; i < n; ++i) fit.misses[static_cast<std::size_t>(i)].distance = errors[i];
         fit.rms = std::sqrt(errors.squaredNorm() / n);

@@ -7,6 +7,7 @@
 
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/track_frames.h"
+#include "core/decompose.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "support/rendered_rig.h"
@@ -47,7 +48,7 @@ TEST(RigPose, FindsTheTipAndSaysHowWell) {
       ++poses;
       squares += (seen.camera_from_probe * kTip - known * kTip).squaredNorm();
       const Vec6 error = poseError(seen.camera_from_probe, known);
-      nees += error.dot(seen.covariance.ldlt().solve(error)) / 6;
+      nees += error.dot(SymmetricSolver(seen.covariance).solve(error)) / 6;
     }
     std::printf("%s: tip %.3f mm, NEES %.2f of %d poses\n", s.family,
                 1e3 * std::sqrt(squares / poses), nees / poses, poses);
@@ -87,7 +88,7 @@ TEST(RigPose, KnowsWhatBlurTakesFromIt) {
         const SeenRig seen = rig.track(rig.renderer.render({known}, look, i));
         if (seen.verdict != RigVerdict::seen) continue;
         const Vec6 error = poseError(seen.camera_from_probe, known);
-        nees += error.dot(seen.covariance.ldlt().solve(error)) / 6;
+        nees += error.dot(SymmetricSolver(seen.covariance).solve(error)) / 6;
         poses += 1;
       }
       std::printf("%s, blur %.1f: NEES %.2f of %.0f poses\n", s.family, blur, nees / poses, poses);

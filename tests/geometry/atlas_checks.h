@@ -78,7 +78,10 @@ inline void expectAtlas(const TriangleMesh& mesh, const TextureLayout& layout, i
     Eigen::Matrix2d plane, image;
     plane << x.dot(e1), x.dot(e2), y.dot(e1), y.dot(e2);
     image << uvs[f][1] - uvs[f][0], uvs[f][2] - uvs[f][0];
-    const Vec2 values = (image * plane.inverse()).jacobiSvd().singularValues();
+    const Eigen::Matrix2d m = image * plane.inverse();
+    const double a = std::hypot(m(0, 0) + m(1, 1), m(1, 0) - m(0, 1)),
+                 b = std::hypot(m(0, 0) - m(1, 1), m(1, 0) + m(0, 1));
+    const Vec2 values(0.5 * (a + b), 0.5 * std::abs(a - b)); // its singular values
     stretches.push_back({values[0], values[1]});
     largest = std::max(largest, values[0]);
   }

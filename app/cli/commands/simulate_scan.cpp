@@ -8,6 +8,7 @@
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/mesh_output.h"
 #include "app/cli/output/reports.h"
+#include "core/decompose.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
@@ -92,7 +93,7 @@ int runSimulateScan(ScanOptions options, Console& console) {
   ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
   const TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
-  const Pose hand_from_mesh(Eigen::Quaterniond::FromTwoVectors(options.from, Vec3::UnitZ()));
+  const Pose hand_from_mesh(turnFromTo(options.from, Vec3::UnitZ()));
   const TriangleMesh turned = transformed(mesh, Eigen::Affine3d(hand_from_mesh.matrix()));
   const SimulatedHand hand = handOver(turned, options);
   Rig rig;

@@ -1,6 +1,5 @@
 #include "app/studies/acquisition/registration_trust.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +7,7 @@
 #include "acquisition/registration/scan_options.h"
 #include "app/studies/acquisition/registration_cases.h"
 #include "app/studies/query_timing.h"
+#include "core/decompose.h"
 #include "core/percentiles.h"
 #include "field/surface/models.h"
 #include "geometry/mesh/mesh_report.h"
@@ -30,7 +30,7 @@ TriangleMesh stone() {
 
 std::vector<TrustBody> trustBodies(std::size_t count) {
   std::vector<TrustBody> bodies = {{"dinosaur", dinosaur()}};
-  const Pose side(Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitY(), Vec3::UnitZ()));
+  const Pose side(turnFromTo(-Vec3::UnitY(), Vec3::UnitZ()));
   if (count > 1)
     bodies.push_back({"its side", transformed(bodies[0].mesh, Eigen::Affine3d(side.matrix()))});
   if (count > 2) bodies.push_back({"stone", stone()});
@@ -61,13 +61,13 @@ TrustTrial trustTrial(const SurfaceTarget& target, double seconds, unsigned seed
   Mat6 covariance = found.covariance;
   covariance.topRows<3>() *= radius;
   covariance.leftCols<3>() *= radius;
-  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(covariance);
+  const SymmetricEigen eigen(covariance);
   double squares = 0, freedoms = 0;
   for (int k = 0; k < 6; ++k) {
-    if (eigen.eigenvalues()[k] < 1e-9 * eigen.eigenvalues()[5]) continue; // free
-    const double along = eigen.eigenvectors().col(k).dot(error);
+    if (eigen.values[k] < 1e-9 * eigen.values[5]) continue; // free
+    const double along = eigen.vectors.col(k).dot(error);
     squares += along * along;
-    trial.nees += along * along / eigen.eigenvalues()[k];
+    trial.nees += along * along / eigen.values[k];
     ++freedoms;
   }
   trial.nees /= freedoms;

@@ -14,6 +14,7 @@
 #include "acquisition/vision/vision.h"
 #include "acquisition/vision_library.h"
 #include "app/studies/query_timing.h"
+#include "core/decompose.h"
 #include "core/error.h"
 
 namespace patina {
@@ -114,7 +115,7 @@ WorkPrecisionRow measured(const Setting& setting, int frames) {
     const Eigen::AngleAxisd turn(seen.camera_from_probe.linear() * known.linear().transpose());
     Vec6 off;
     off << seen.camera_from_probe.translation() - known.translation(), turn.angle() * turn.axis();
-    nees += off.dot(seen.covariance.ldlt().solve(off)) / 6;
+    nees += off.dot(SymmetricSolver(seen.covariance).solve(off)) / 6;
   }
   WorkPrecisionRow row;
   row.error = 1e3 * std::sqrt(squares / std::max(poses, 1.));
@@ -210,7 +211,7 @@ WorkPrecisionTable tips(const StudyOptions& options) {
       if (!fit) continue;
       const Vec3 off = fit->tip - pivot.tip;
       errors.push_back(1e3 * off.norm());
-      stated += off.dot(fit->covariance.ldlt().solve(off)) / 3 / seeds;
+      stated += off.dot(SymmetricSolver(fit->covariance).solve(off)) / 3 / seeds;
     }
     if (errors.empty()) continue;
     std::sort(errors.begin(), errors.end());

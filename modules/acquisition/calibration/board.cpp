@@ -1,10 +1,10 @@
 #include "acquisition/calibration/board.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "acquisition/vision_library.h"
+#include "core/decompose.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
@@ -49,7 +49,7 @@ Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec
       right += p[k] * row;
     }
   }
-  const Eigen::Matrix<double, 8, 1> h = squares.ldlt().solve(right);
+  const Eigen::Matrix<double, 8, 1> h = SymmetricSolver(squares).solve(right);
   Eigen::Matrix3d m;
   m << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1;
   return to.inverse() * m * from;

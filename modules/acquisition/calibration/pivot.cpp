@@ -1,8 +1,9 @@
 #include "acquisition/calibration/pivot.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -44,8 +45,8 @@ std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses) {
       normal += J.transpose() * information * J;
       right -= J.transpose() * information * poses[i].position;
     }
-    const Eigen::LDLT<Mat6> solver(normal);
-    if (!(solver.vectorD().minCoeff() > kOpen * solver.vectorD().maxCoeff())) return std::nullopt;
+    const SymmetricSolver solver(normal);
+    if (!(solver.evenness() > kOpen)) return std::nullopt;
     const Vec6 next = solver.solve(right);
     const double step = (next.head<3>() - fit.tip).norm();
     fit.tip = next.head<3>();
@@ -74,7 +75,7 @@ std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses) {
     used += 1;
   }
   fit.rms = std::sqrt(squares / used);
-  fit.covariance = scale * scale * normal.inverse().topLeftCorner<3, 3>();
+  fit.covariance = scale * scale * SymmetricSolver(normal).inverse().topLeftCorner<3, 3>();
   return fit;
 }
 

@@ -1,8 +1,9 @@
 #include "acquisition/calibration/still_probe.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -69,10 +70,6 @@ struct Affine {
   }
 };
 
-template <class Pivots> bool told(const Pivots& pivots) {
-  return pivots.minCoeff() > kAlike * pivots.maxCoeff();
-}
-
 } // namespace
 
 std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
@@ -109,17 +106,17 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
         right -= (a.reading[k] - reading) * row;
       }
     }
-    const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
-    if (!told(solver.vectorD())) return std::nullopt;
-    fit.gravity = kGravityLength * solver.solve(right).normalized();
+    const SymmetricSolver solver(normal);
+    if (!(solver.evenness() > kAlike)) return std::nullopt;
+    fit.gravity = kGravityLength * Vec3(solver.solve(right)).normalized();
     double change = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       axes[k] = Affine();
       for (const Attitude& a : attitudes)
         axes[k].add(-(a.camera_from_probe.transpose() * fit.gravity) / kGravityLength,
                     a.reading[k] / kGravityLength);
-      const Eigen::LDLT<Eigen::Matrix4d> axis(axes[k].normal);
-      if (!told(axis.vectorD())) return std::nullopt;
+      const SymmetricSolver axis(axes[k].normal);
+      if (!(axis.evenness() > kAlike)) return std::nullopt;
       const Eigen::Vector4d solved = axis.solve(axes[k].right);
       const Vec3 direction = solved.head<3>().normalized();
       change = std::max(change, (direction - fit.directions[k]).norm());
@@ -141,8 +138,9 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
   const double freedom = std::max(1., 4. * static_cast<double>(attitudes.size()) - 14);
   fit.rms = std::sqrt(squares / freedom);
   for (std::size_t k = 0; k < 4; ++k)
-    fit.deviation[k] = fit.rms / kGravityLength *
-                       std::sqrt(axes[k].normal.inverse().topLeftCorner<3, 3>().trace() / 3);
+    fit.deviation[k] =
+        fit.rms / kGravityLength *
+        std::sqrt(SymmetricSolver(axes[k].normal).inverse().topLeftCorner<3, 3>().trace() / 3);
   return fit;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -128,12 +128,11 @@ std::optional<ProbeClock> fitClock(const CameraTrack& track,
         count += 1;
       }
     }
-    const Eigen::LDLT<Square> solver(normal);
-    if (count < 100 || solver.info() != Eigen::Success || !(solver.rcond() > 1e-12))
-      return std::nullopt;
+    const SymmetricSolver solver(normal);
+    if (count < 100 || !(solver.evenness() > 1e-12)) return std::nullopt;
     const Vector change = solver.solve(right);
     x += change;
-    const Square P = squares / (count - 6) * solver.solve(Square::Identity());
+    const Square P = squares / (count - 6) * solver.inverse();
     clock.offset = x[0];
     clock.skew = x[1];
     clock.offset_deviation = std::sqrt(P(0, 0));

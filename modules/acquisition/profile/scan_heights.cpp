@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
+#include "core/decompose.h"
 #include "core/error.h"
 
 namespace patina {
@@ -42,10 +41,10 @@ Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip) {
   for (const PathSample& sample : path)
     if (sample.touching)
       spread += (sample.position - mean) * (sample.position - mean).transpose() / count;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-  if (!(axes.eigenvalues()[0] < kFlat * kFlat * axes.eigenvalues()[1]))
+  const SymmetricEigen axes(spread);
+  if (!(axes.values[0] < kFlat * kFlat * axes.values[1]))
     throw Error("where the tip touched is no plane, so that its normal must be told");
-  const Vec3 normal = axes.eigenvectors().col(0);
+  const Vec3 normal = axes.vectors.col(0);
   return {normal.dot(shaft) < 0 ? Vec3(-normal) : normal, mean};
 }
 

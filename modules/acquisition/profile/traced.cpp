@@ -2,10 +2,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "acquisition/profile/height_profile.h"
+#include "core/decompose.h"
 #include "core/error.h"
 
 namespace patina {
@@ -30,7 +30,8 @@ std::vector<double> forceAccelerations(const std::vector<PathSample>& path,
       sums += path[k].force * row;
     }
     const bool enough = end - begin >= 3;
-    found.push_back(enough ? 2 / (kForceReach * kForceReach) * squares.ldlt().solve(sums).z() : 0);
+    found.push_back(
+        enough ? 2 / (kForceReach * kForceReach) * SymmetricSolver(squares).solve(sums)[2] : 0);
   }
   return found;
 }

@@ -1,12 +1,12 @@
 #include "acquisition/registration/coarse_search.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "acquisition/registration/path_fit.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -137,7 +137,7 @@ void improve(Tried& tried, const DistanceGrid& grid, const std::vector<Vec3>& po
     tried.cost /= static_cast<double>(points.size());
     if (round == rounds) return;
     normal.diagonal().array() += 1e-2 * normal.diagonal().maxCoeff();
-    Vec6 step = Mat6(normal.selfadjointView<Eigen::Lower>()).ldlt().solve(right);
+    Vec6 step = SymmetricSolver(normal).solve(right);
     limit(step, scale, grid.extent());
     tried.pose = scale.motion(step) * tried.pose;
   }

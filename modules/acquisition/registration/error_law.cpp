@@ -1,12 +1,10 @@
 #include "acquisition/registration/error_law.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "acquisition/registration/yielding_fit.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -17,8 +15,8 @@ constexpr double kFewest = 16;       // points: fewer tell nothing of how they g
 struct Blocks {
   double size = 1;   // points in one
   double within = 0; // mean square of points' misses off their block's [m^2]
-  Eigen::MatrixXd gradients;
-  Eigen::VectorXd misses;
+  MatX gradients;
+  VecX misses;
 };
 
 Blocks blocksOf(const std::vector<Vec3>& points, const PathFit& fit,
@@ -30,8 +28,8 @@ Blocks blocksOf(const std::vector<Vec3>& points, const PathFit& fit,
     if (fit.weights[i] > 0) counting.push_back(i);
   const std::size_t size = counting.size() / kBlocks + 1;
   const auto count = static_cast<Eigen::Index>((counting.size() + size - 1) / size);
-  Blocks blocks{static_cast<double>(size), 0, Eigen::MatrixXd::Zero(count, force.empty() ? 6 : 7),
-                Eigen::VectorXd::Zero(count)};
+  Blocks blocks{static_cast<double>(size), 0, MatX::Zero(count, force.empty() ? 6 : 7),
+                VecX::Zero(count)};
   for (std::size_t k = 0; k < counting.size(); ++k) {
     const std::size_t i = counting[k], first = k / size * size;
     const double share = 1. / static_cast<double>(std::min(size, counting.size() - first));
@@ -60,32 +58,31 @@ struct TriedLaw {
   double reach = 1, alone = 1; // [blocks], of 1
   double weight = 0;           // logarithm of the restricted likelihood, and what it was beforehand
   double variance = 0;         // of a block's miss [m^2]
-  Eigen::MatrixXd scatter = {};
+  MatX scatter = {};
 };
 
-void judgeLaw(TriedLaw& tried, const Blocks& blocks, const Eigen::MatrixXd& design) {
+void judgeLaw(TriedLaw& tried, const Blocks& blocks, const MatX& design) {
   const Eigen::Index n = blocks.misses.size(), seen = design.cols();
-  Eigen::MatrixXd law(n, n);
-  Eigen::VectorXd by_lag(n);
+  MatX law(n, n);
+  VecX by_lag(n);
   for (Eigen::Index lag = 0; lag < n; ++lag)
     by_lag[lag] = (1 - tried.alone) * likeness(static_cast<double>(lag), tried.reach);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) law(i, j) = law(j, i) = by_lag[i - j];
   law.diagonal().array() += tried.alone;
-  const Eigen::LLT<Eigen::MatrixXd> root(law);
-  Eigen::MatrixXd whole(n, seen + 1);
+  const SymmetricSolver root(law);
+  MatX whole(n, seen + 1);
   whole << design, blocks.misses;
-  const Eigen::MatrixXd white = root.matrixL().solve(whole);
-  const Eigen::LLT<Eigen::MatrixXd> normal(white.leftCols(seen).transpose() * white.leftCols(seen));
-  const Eigen::VectorXd right = white.leftCols(seen).transpose() * white.col(seen);
-  const double left = white.col(seen).squaredNorm() - right.dot(normal.solve(right));
-  const auto logOf = [](const Eigen::LLT<Eigen::MatrixXd>& llt) {
-    return 2 * Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
-  };
+  const MatX squares = product(whole.transpose(), root.solveColumns(whole));
+  const SymmetricSolver normal(squares.topLeftCorner(seen, seen));
+  const VecX right = squares.col(seen).head(seen);
+  const double left = squares(seen, seen) - right.dot(normal.solve(right));
   const auto freedom = static_cast<double>(n - seen);
   tried.variance = std::max(left, 1e-300) / (freedom - 2);
-  tried.weight = -0.5 * (logOf(root) + logOf(normal) + freedom * std::log(tried.variance));
-  tried.scatter = tried.variance * blocks.gradients.transpose() * law * blocks.gradients;
+  tried.weight =
+      -0.5 * (root.logDeterminant() + normal.logDeterminant() + freedom * std::log(tried.variance));
+  tried.scatter =
+      tried.variance * product(blocks.gradients.transpose(), product(law, blocks.gradients));
 }
 
 // A surface that gives way by so much as kYields is nothing out of the ordinary: that keeps a force
@@ -104,17 +101,17 @@ ErrorLaw withPrior(ErrorLaw law, double block, double force) {
 Mat6 ErrorLaw::covariance(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free) const {
   const Eigen::Index count = 6 - free.cols();
   if (count == 0) return Mat6::Zero();
-  Mat6 turn = Mat6::Identity();
-  if (free.cols() > 0) turn = Eigen::HouseholderQR<Eigen::MatrixXd>(free).householderQ();
   const Eigen::Index more = normal.cols() - 6;
-  Eigen::MatrixXd seen = Eigen::MatrixXd::Identity(normal.cols(), count + more);
-  seen.topLeftCorner(6, count) = turn.rightCols(count);
+  MatX seen = MatX::Identity(normal.cols(), count + more);
+  // What is free has the value 1 here, and what is seen 0.
+  seen.topLeftCorner(6, count) =
+      SymmetricEigen(product(free, free.transpose())).vectors.leftCols(count);
   seen.block(0, count, 6, more).setZero();
   if (more > 0) seen.row(6).setZero(), seen(6, count) = 1;
-  const Eigen::LDLT<Eigen::MatrixXd> ours(seen.transpose() * normal * seen);
-  const Eigen::MatrixXd whole =
-      seen * ours.solve(ours.solve(seen.transpose() * scatter * seen).transpose()) *
-      seen.transpose();
+  const MatX turned = seen.transpose();
+  const SymmetricSolver ours(product(turned, product(normal, seen)));
+  const MatX half = ours.solveColumns(product(turned, product(scatter, seen)));
+  const MatX whole = product(seen, product(ours.solveColumns(half.transpose()), turned));
   return whole.topLeftCorner<6, 6>();
 }
 
@@ -122,19 +119,19 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
                   const std::vector<double>& force) {
   const Blocks blocks = blocksOf(points, fit, force);
   ErrorLaw law;
-  law.normal = blocks.gradients.transpose() * blocks.gradients;
+  law.normal = product(blocks.gradients.transpose(), blocks.gradients);
   const auto count = static_cast<double>(blocks.misses.size());
-  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(law.normal.topLeftCorner<6, 6>());
+  const SymmetricEigen eigen(law.normal.topLeftCorner<6, 6>());
   Eigen::Index seen = 0;
-  while (seen < 6 && eigen.eigenvalues()[5 - seen] > kBlind * eigen.eigenvalues()[5]) ++seen;
+  while (seen < 6 && eigen.values[5 - seen] > kBlind * eigen.values[5]) ++seen;
   if (count < kFewest) {
     law.deviation = std::max(
         noise, fit.rms * std::sqrt(count / std::max(count - static_cast<double>(seen), 1.0)));
     law.scatter = law.deviation * law.deviation * law.normal;
     return withPrior(std::move(law), 1, usualForce(force));
   }
-  Eigen::MatrixXd design(blocks.gradients.rows(), seen + (force.empty() ? 0 : 1));
-  design.leftCols(seen) = blocks.gradients.leftCols<6>() * eigen.eigenvectors().rightCols(seen);
+  MatX design(blocks.gradients.rows(), seen + (force.empty() ? 0 : 1));
+  design.leftCols(seen) = product(blocks.gradients.leftCols(6), eigen.vectors.rightCols(seen));
   if (!force.empty()) design.col(seen) = blocks.gradients.col(6);
   std::vector<TriedLaw> all;
   for (const double alone : {1e-3, 0.03, 0.2, 0.6})
@@ -153,7 +150,7 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
       })->weight;
   // Of a block: its variance, and that times the blocks that are worth one.
   double sum = 0, variance = 0, shared = 0;
-  Eigen::MatrixXd scatter = 0 * law.normal;
+  MatX scatter = 0 * law.normal;
   for (const TriedLaw& tried : all) {
     const double weight = std::exp(tried.weight - most);
     sum += weight;

@@ -1,9 +1,9 @@
 #include "acquisition/registration/free_motions.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 #include <cstdio>
+
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -53,12 +53,11 @@ struct Trial {
         ++n;
       }
       square /= n;
-      const Eigen::SelfAdjointEigenSolver<Mat6> eigen(normal);
+      const SymmetricEigen eigen(normal);
       Vec6 step = Vec6::Zero();
       for (int k = 0; k < 6; ++k)
-        if (eigen.eigenvalues()[k] > 1e-4 * eigen.eigenvalues()[5])
-          step += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).dot(right) /
-                  eigen.eigenvalues()[k];
+        if (eigen.values[k] > 1e-4 * eigen.values[5])
+          step += eigen.vectors.col(k) * eigen.vectors.col(k).dot(right) / eigen.values[k];
       if (round < 2) moved = scale.motion(step) * moved;
     }
     return square;
@@ -79,12 +78,11 @@ struct Trial {
 // Slides first, then turns about axes at right angles, each through the point of its axis nearest
 // to the path and without the shift that a slide accounts for.
 std::vector<FreeMotion> named(const Eigen::MatrixXd& basis, const MotionScale& scale) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(basis.topRows(3),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd(basis.topRows(3));
   std::vector<FreeMotion> slides, turns;
   for (Eigen::Index k = basis.cols() - 1; k >= 0; --k) {
-    const double turn = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
-    const Vec6 motion = basis * svd.matrixV().col(k);
+    const double turn = k < svd.values.size() ? svd.values[k] : 0;
+    const Vec6 motion = basis * svd.v.col(k);
     const Vec3 angle = motion.head<3>() / scale.radius;
     Vec3 shift = motion.tail<3>();
     if (turn < 0.05) { // hardly any
@@ -127,11 +125,11 @@ FreeMotions freeMotions(const SurfaceTarget& target, const std::vector<Vec3>& po
                         const std::vector<double>& pressed) {
   const Trial trial{
       target, points, fit, noise, together, pressed, scaleOf(points, fit.mesh_from_path)};
-  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(fit.normal);
+  const SymmetricEigen eigen(fit.normal);
   FreeMotions free;
   for (int k = 0; k < 6; ++k) {
-    const Vec6 direction = eigen.eigenvectors().col(k);
-    const double share = eigen.eigenvalues()[k] / eigen.eigenvalues()[5];
+    const Vec6 direction = eigen.vectors.col(k);
+    const double share = eigen.values[k] / eigen.values[5];
     if (share > kWeak || (share > kBlind && !trial.unseen(direction))) continue;
     free.basis.conservativeResize(6, free.basis.cols() + 1);
     free.basis.rightCols(1) = direction;

@@ -1,6 +1,5 @@
 #include "acquisition/registration/joint_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +7,7 @@
 
 #include "acquisition/registration/free_motions.h"
 #include "acquisition/registration/path_course.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -170,23 +170,23 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
       right -= r * g;
     }
     const double worth = options.together;
-    const Eigen::SelfAdjointEigenSolver<JointMatrix> eigen(normal);
-    const double largest = std::max(eigen.eigenvalues()[kJointValues - 1], 1e-300);
+    const SymmetricEigen eigen(normal);
+    const double largest = std::max(eigen.values[kJointValues - 1], 1e-300);
     // Its deviation, noise sqrt(worth / value), against kJointFar times the noise.
     const double least = std::max(worth / (kJointFar * kJointFar), 1e-9 * largest);
     const double noise = std::sqrt(sum / std::max(static_cast<double>(n) - kJointValues, 1.0));
     const auto told = [&](int k) {
-      const double of_clock = eigen.eigenvectors()(9, k);
-      return eigen.eigenvalues()[k] > std::max(least, blur * of_clock * of_clock);
+      const double of_clock = eigen.vectors(9, k);
+      return eigen.values[k] > std::max(least, blur * of_clock * of_clock);
     };
     for (;;) {
       JointVector step = JointVector::Zero();
       double deviations = 0; // of the step, in those that are stated
       for (int k = 0; k < kJointValues; ++k) {
-        const double value = eigen.eigenvalues()[k];
+        const double value = eigen.values[k];
         if (!told(k)) continue;
-        const double along = eigen.eigenvectors().col(k).dot(right) / (value + damping * largest);
-        step += along * eigen.eigenvectors().col(k);
+        const double along = eigen.vectors.col(k).dot(right) / (value + damping * largest);
+        step += along * eigen.vectors.col(k);
         deviations = std::max(deviations,
                               std::abs(along) * std::sqrt(value / worth) / std::max(noise, 1e-12));
       }
@@ -216,10 +216,10 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
     JointVector units;
     units << Vec3::Constant(1 / scale.radius), Vec3::Ones(), Vec3::Ones(), 1 / joint.speed;
     for (int k = 0; k < kJointValues; ++k) {
-      const JointVector direction = eigen.eigenvectors().col(k);
+      const JointVector direction = eigen.vectors.col(k);
       if (told(k)) {
         const JointVector unit = units.cwiseProduct(direction);
-        fit.covariance += noise * noise * worth / eigen.eigenvalues()[k] * unit * unit.transpose();
+        fit.covariance += noise * noise * worth / eigen.values[k] * unit * unit.transpose();
         continue;
       }
       tip_frozen += direction.segment<3>(6).squaredNorm();

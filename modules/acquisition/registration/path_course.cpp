@@ -1,9 +1,9 @@
 #include "acquisition/registration/path_course.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "core/decompose.h"
 #include "core/percentiles.h"
 
 namespace patina {
@@ -45,8 +45,9 @@ std::vector<Course> coursesOf(const std::vector<PathSample>& path) {
         normal += terms * terms.transpose();
         right += terms * values;
       }
-      const Eigen::Matrix<double, 3, 4> parabola = normal.ldlt().solve(right);
-      courses[k].blur = normal.inverse()(1, 1) / (scale * scale);
+      const Eigen::Matrix3d inverse = SymmetricSolver(normal).inverse();
+      const Eigen::Matrix<double, 3, 4> parabola = inverse * right;
+      courses[k].blur = inverse(1, 1) / (scale * scale);
       courses[k].speed = parabola.row(1).head<3>().transpose() / scale;
       courses[k].bend = 2 * parabola.row(2).head<3>().transpose() / (scale * scale);
       courses[k].force = parabola(0, 3);

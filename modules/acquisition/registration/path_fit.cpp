@@ -1,9 +1,10 @@
 #include "acquisition/registration/path_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -75,8 +76,8 @@ struct Working {
       const bool free = reweigh(); // costs of other weights say nothing of each other
       const MotionScale scale = scaleOf(points, fit.mesh_from_path);
       const Vec6 right = normalEquations(scale);
-      const Eigen::SelfAdjointEigenSolver<Mat6> eigen(fit.normal);
-      const double largest = std::max(eigen.eigenvalues()[5], 1e-300);
+      const SymmetricEigen eigen(fit.normal);
+      const double largest = std::max(eigen.values[5], 1e-300);
       const double before = cost(fit.misses);
       const double enough =
           std::max(tiny, kSettled * std::sqrt(before) / std::max(counting(), 1.0));
@@ -84,9 +85,9 @@ struct Working {
       for (;;) {
         Vec6 step = Vec6::Zero();
         for (int k = 0; k < 6; ++k)
-          if (eigen.eigenvalues()[k] > kBlind * largest)
-            step += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).dot(right) /
-                    (eigen.eigenvalues()[k] + damping * largest);
+          if (eigen.values[k] > kBlind * largest)
+            step += eigen.vectors.col(k) * eigen.vectors.col(k).dot(right) /
+                    (eigen.values[k] + damping * largest);
         limit(step, scale, extent);
         const Pose next = scale.motion(step) * fit.mesh_from_path;
         std::vector<Miss> misses = fit.misses;

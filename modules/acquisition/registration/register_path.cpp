@@ -1,6 +1,5 @@
 #include "acquisition/registration/register_path.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

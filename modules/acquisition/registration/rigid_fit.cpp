@@ -1,7 +1,8 @@
 #include "acquisition/registration/rigid_fit.h"
 
-#include <Eigen/SVD>
 #include <stdexcept>
+
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -21,12 +22,11 @@ void requirePairs(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
 
 // The turn nearest to a matrix.
 Eigen::Matrix3d nearestTurn(const Eigen::Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
-  if (turn.determinant() > 0) return turn;
-  Eigen::Matrix3d u = svd.matrixU();
-  u.col(2) *= -1;
-  return u * svd.matrixV().transpose();
+  const Svd svd(matrix);
+  Eigen::Matrix3d u = svd.u;
+  const Eigen::Matrix3d v = svd.v;
+  if (u.determinant() * v.determinant() < 0) u.col(2) *= -1;
+  return u * v.transpose();
 }
 
 } // namespace
@@ -50,8 +50,8 @@ std::optional<Pose> fitAffineThenRigid(const std::vector<Vec3>& from, const std:
     cross += (to[i] - b) * (from[i] - a).transpose();
     own += (from[i] - a) * (from[i] - a).transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(own, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(svd.singularValues()[2] > kPlanar * kPlanar * svd.singularValues()[0])) return std::nullopt;
+  const VecX spread = SymmetricEigen(own).values;
+  if (!(spread[0] > kPlanar * kPlanar * spread[2])) return std::nullopt;
   Pose pose = Pose::Identity();
   pose.linear() = nearestTurn(cross * own.inverse());
   pose.translation() = b - pose.linear() * a;

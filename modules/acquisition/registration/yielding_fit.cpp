@@ -1,8 +1,9 @@
 #include "acquisition/registration/yielding_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -44,12 +45,11 @@ YieldingFit fitYielding(const SurfaceTarget& target, const std::vector<Vec3>& po
     const double weight = found.fit.rms * found.fit.rms * together / (known * known);
     normal(6, 6) += weight;
     right[6] -= weight * depth;
-    const Eigen::SelfAdjointEigenSolver<Mat7> eigen(normal); // reads the lower half
+    const SymmetricEigen eigen(normal); // reads the lower half
     Vec7 step = Vec7::Zero();
     for (int k = 0; k < 7; ++k)
-      if (eigen.eigenvalues()[k] > kBlind * eigen.eigenvalues()[6])
-        step += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).dot(right) /
-                eigen.eigenvalues()[k];
+      if (eigen.values[k] > kBlind * eigen.values[6])
+        step += eigen.vectors.col(k) * eigen.vectors.col(k).dot(right) / eigen.values[k];
     const double before = depth;
     depth = std::max(0., depth + step[6]);
     Vec6 motion = step.head<6>();

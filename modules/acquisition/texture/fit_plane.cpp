@@ -1,11 +1,11 @@
 #include "acquisition/texture/fit_plane.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "acquisition/texture/fit_texture.h"
+#include "core/decompose.h"
 #include "core/error.h"
 
 namespace patina {
@@ -115,9 +115,9 @@ FittedPlane fitPlane(const Picture& picture, const PlaneFitOptions& options, Pro
   } else {
     texture.kind = TextureKind::products;
     progress.report(0.6, "products");
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Svd svd(weighted);
     progress.throwIfCancelled();
-    const Eigen::VectorXd& values = svd.singularValues();
+    const VecX& values = svd.values;
     const auto lackingAfter = [&](Eigen::Index rank) {
       return values.tail(values.size() - rank).norm() / whole;
     };
@@ -126,9 +126,8 @@ FittedPlane fitPlane(const Picture& picture, const PlaneFitOptions& options, Pro
       for (rank = 1; rank < values.size() && lackingAfter(rank) > options.lacks;) ++rank;
     for (Eigen::Index k = 0; k < rank; ++k) {
       const double root = std::sqrt(values[k]);
-      texture.products.push_back(
-          {seriesOfTerms(root * svd.matrixV().col(k).cwiseQuotient(weights)),
-           seriesOfTerms(root * svd.matrixU().col(k).cwiseQuotient(weights))});
+      texture.products.push_back({seriesOfTerms(root * svd.v.col(k).cwiseQuotient(weights)),
+                                  seriesOfTerms(root * svd.u.col(k).cwiseQuotient(weights))});
     }
     fitted.rank = static_cast<int>(rank);
     fitted.lacking = lackingAfter(rank);

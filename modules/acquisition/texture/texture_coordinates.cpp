@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/SVD>
-
 #include "core/error.h"
 
 namespace patina {
@@ -168,6 +166,12 @@ struct Judged {
   double stretch = 0; // along x
 };
 
+// The larger of a matrix's two singular values.
+double mostStretchOf(const Eigen::Matrix2d& m) {
+  return 0.5 * (std::hypot(m(0, 0) + m(1, 1), m(1, 0) - m(0, 1)) +
+                std::hypot(m(0, 0) - m(1, 1), m(1, 0) + m(0, 1)));
+}
+
 Judged judge(const PathGround& ground, std::int32_t f, const Polyline& path, double nearest,
              double most_stretch) {
   Judged judged;
@@ -205,7 +209,7 @@ Judged judge(const PathGround& ground, std::int32_t f, const Polyline& path, dou
   judged.stretch = map.row(0).norm();
   if (!(map.determinant() > kFlat))
     judged.verdict = Verdict::folded;
-  else if (Eigen::JacobiSVD<Eigen::Matrix2d>(map).singularValues()[0] > most_stretch)
+  else if (mostStretchOf(map) > most_stretch)
     judged.verdict = Verdict::stretched;
   return judged;
 }

@@ -7,6 +7,7 @@
 
 #include "acquisition/tracking/edge_fit.h"
 #include "acquisition/vision_library.h"
+#include "core/decompose.h"
 #include "core/error.h"
 
 namespace patina {
@@ -53,7 +54,7 @@ struct Shade {
   }
   bool solve() {
     if (squares(2, 2) < 4) return false;
-    plane = squares.ldlt().solve(sums);
+    plane = SymmetricSolver(squares).solve(sums);
     return plane.allFinite();
   }
   double at(double x, double y) const { return plane.dot(Vec3(x, y, 1)); }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "acquisition/tracking/face_likeness.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -94,7 +95,7 @@ Fit refined(const std::vector<Sight>& sights, const Camera& camera, const Pose& 
   for (int i = 0; i < 40 && damping < 1e8; ++i) {
     Mat6 damped = fit.normal;
     damped.diagonal() *= 1 + damping;
-    const Vec6 step = -damped.ldlt().solve(gradient);
+    const Vec6 step = -SymmetricSolver(damped).solve(gradient);
     const Fit next = linearised(sights, camera, moved(fit.pose, step), next_gradient);
     if (!(next.cost < fit.cost)) {
       damping *= 10;
@@ -131,8 +132,7 @@ std::array<Pose, 2> guesses(const Sight& sight, const Camera& camera) {
   const Vec3 sight_line = one.translation().normalized(), normal = one.linear().col(2);
   const Vec3 mirrored = 2 * sight_line.dot(normal) * sight_line - normal;
   Pose other = one;
-  other.linear() =
-      Eigen::Quaterniond::FromTwoVectors(normal, mirrored).toRotationMatrix() * one.linear();
+  other.linear() = turnFromTo(normal, mirrored).toRotationMatrix() * one.linear();
   const Pose marker_from_probe = sight.marker->probe_from_marker.inverse();
   return {one * marker_from_probe, other * marker_from_probe};
 }
@@ -272,7 +272,7 @@ SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>
     result.verdict = RigVerdict::misfit;
     return result;
   }
-  result.covariance = unit(choice.best) * choice.best.normal.inverse();
+  result.covariance = unit(choice.best) * SymmetricSolver(choice.best.normal).inverse();
   result.verdict = RigVerdict::seen;
   return result;
 }

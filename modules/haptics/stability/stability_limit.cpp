@@ -1,11 +1,11 @@
 #include "haptics/stability/stability_limit.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
+#include "core/decompose.h"
 #include "haptics/devices/exact_step.h"
 
 namespace patina {
@@ -95,7 +95,7 @@ double spectralRadius(const SampledLoop& loop, double stiffness) {
   const bool drifts = stiffness == 0 && loop.hand_stiffness == 0;
   const Eigen::Index first = drifts ? 1 : 0;
   const Eigen::Index size = whole.rows() - first;
-  return whole.block(first, first, size, size).eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvaluesOf(whole.block(first, first, size, size)).cwiseAbs().maxCoeff();
 }
 
 double stiffnessLimit(const SampledLoop& loop) {

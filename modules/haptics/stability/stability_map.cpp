@@ -5,8 +5,7 @@
 #include <complex>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
+#include "core/decompose.h"
 #include "haptics/stability/painted_range.h"
 #include "haptics/stability/stabilisers.h"
 #include "haptics/stages/coupling_stage.h"
@@ -44,9 +43,7 @@ double borneAlong(const LocalStiffness& at, const LoopLimits& limits) {
   if (!(spring > 0)) return limits.plain;
   const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - at.normal * at.normal.transpose();
   const Eigen::Matrix3d along = flat * at.matrix * flat;
-  const double stiffest = softening * Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
-                                          0.5 * (along + along.transpose()), Eigen::EigenvaluesOnly)
-                                          .eigenvalues()[2];
+  const double stiffest = softening * SymmetricEigen(0.5 * (along + along.transpose())).values[2];
   const double share = std::clamp(stiffest / spring, 0.0, 1.0);
   return limits.plain + (limits.tied - limits.plain) * share * share;
 }
@@ -58,9 +55,9 @@ double wallLoad(const LocalStiffness& at, const LoopLimits& limits) {
   const double along = 1 / std::sqrt(std::max(limits.damped, least));
   const Eigen::Matrix3d normal = at.normal * at.normal.transpose();
   const Eigen::Matrix3d scale = across * (Eigen::Matrix3d::Identity() - normal) + along * normal;
-  const Eigen::EigenSolver<Eigen::Matrix3d> solver(scale * at.matrix * scale, false);
+  const Eigen::VectorXcd eigenvalues = eigenvaluesOf(scale * at.matrix * scale);
   double load = 0;
-  for (const std::complex<double>& eigenvalue : solver.eigenvalues())
+  for (const std::complex<double>& eigenvalue : eigenvalues)
     load = std::max(load, loadOf(eigenvalue, limits.whirl));
   return load;
 }

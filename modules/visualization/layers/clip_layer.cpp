@@ -11,6 +11,7 @@
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 
+#include "core/decompose.h"
 #include "visualization/view/scene_furniture.h"
 
 namespace patina {
@@ -181,8 +182,7 @@ void ClipLayer::setHot(const std::optional<ClipPart>& part) {
 void ClipLayer::prepare(const Box3& box, const palette::Ground& ground) {
   const double size = length();
   Pose handle = Pose::Identity();
-  handle.linear() =
-      size * Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), plane_.normal).toRotationMatrix();
+  handle.linear() = size * turnFromTo(Vec3::UnitY(), plane_.normal).toRotationMatrix();
   handle.translation() = plane_.origin;
   for (const auto& actor : {ball_, shaft_, head_}) place(*actor, handle);
   const vtkNew<vtkPoints> points;

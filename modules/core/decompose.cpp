@@ -1,0 +1,55 @@
+#include "core/decompose.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+namespace patina {
+
+SymmetricEigen::SymmetricEigen(const MatrixView& matrix) {
+  const Eigen::SelfAdjointEigenSolver<MatX> solver(matrix);
+  values = solver.eigenvalues();
+  vectors = solver.eigenvectors();
+}
+
+SymmetricSolver::SymmetricSolver(const MatrixView& matrix) : ldlt_(matrix) {}
+
+VecX SymmetricSolver::solve(const VectorView& right) const {
+  return ldlt_.solve(right);
+}
+
+MatX SymmetricSolver::solveColumns(const MatrixView& right) const {
+  return ldlt_.solve(right);
+}
+
+MatX SymmetricSolver::inverse() const {
+  return ldlt_.solve(MatX::Identity(ldlt_.rows(), ldlt_.cols()));
+}
+
+double SymmetricSolver::evenness() const {
+  return ldlt_.vectorD().minCoeff() / ldlt_.vectorD().maxCoeff();
+}
+
+double SymmetricSolver::logDeterminant() const {
+  return ldlt_.vectorD().array().log().sum();
+}
+
+Eigen::VectorXcd eigenvaluesOf(const MatrixView& matrix) {
+  return Eigen::EigenSolver<MatX>(matrix, false).eigenvalues();
+}
+
+MatX product(const MatrixView& a, const MatrixView& b) {
+  return a * b;
+}
+
+Svd::Svd(const MatrixView& matrix) {
+  const Eigen::BDCSVD<MatX> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  u = svd.matrixU();
+  v = svd.matrixV();
+  values = svd.singularValues();
+}
+
+Eigen::Quaterniond turnFromTo(const Vec3& from, const Vec3& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
+} // namespace patina
