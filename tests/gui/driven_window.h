@@ -6,14 +6,30 @@
 #include <thread>
 
 #include <QAbstractButton>
+#include <QAbstractNativeEventFilter>
 #include <QFileDialog>
 #include <QToolBar>
 #include <QWindow>
+
+#include <xcb/xcb.h>
 
 #include "gui/window_fixture.h"
 #include "gui/x_hand.h"
 
 namespace patina {
+
+// Which mark of the hand has come to this program last.
+class MarkSeen : public QAbstractNativeEventFilter {
+ public:
+  bool nativeEventFilter(const QByteArray&, void* message, long*) override {
+    const auto* event = static_cast<const xcb_client_message_event_t*>(message);
+    if ((event->response_type & 0x7f) != XCB_CLIENT_MESSAGE || event->type != test::XHand::kMark)
+      return false;
+    number = event->data.data32[0];
+    return true;
+  }
+  std::uint32_t number = 0;
+};
 
 class DrivenWindow : public WindowTest {
  protected:
@@ -25,9 +41,11 @@ class DrivenWindow : public WindowTest {
     if (IsSkipped()) return;
     hand_ = std::make_unique<test::XHand>();
     ASSERT_TRUE(hand_->works()) << "the X server has no XTEST";
+    application().installNativeEventFilter(&seen_);
     takeSize(1280, 800);
   }
   void TearDown() override {
+    if (hand_ != nullptr) application().removeNativeEventFilter(&seen_);
     hand_.reset();
     WindowTest::TearDown();
   }
@@ -44,13 +62,21 @@ class DrivenWindow : public WindowTest {
     wait(100);
   }
 
+  // Until all that the hand did has come to the window, however busy the machine is.
+  void settle() {
+    const std::uint32_t number = ++marks_;
+    hand_->mark(static_cast<std::uint32_t>(window_->winId()), number);
+    EXPECT_TRUE(waitUntil([&] { return seen_.number >= number; }));
+    QApplication::processEvents(); // what came with it
+  }
   void pointAt(const QPoint& screen) {
     const double scale = window_->devicePixelRatioF();
     hand_->moveTo(qRound(scale * screen.x()), qRound(scale * screen.y()));
-    wait(10);
+    wait(10); // a hand has a pace
+    settle();
   }
-  void press(int button = 1) { hand_->button(button, true), wait(10); }
-  void release(int button = 1) { hand_->button(button, false), wait(10); }
+  void press(int button = 1) { hand_->button(button, true), wait(10), settle(); }
+  void release(int button = 1) { hand_->button(button, false), wait(10), settle(); }
   void click(QWidget& widget) {
     ASSERT_TRUE(widget.isVisible()) << widget.objectName().toStdString();
     const bool box = qobject_cast<QCheckBox*>(&widget) != nullptr; // it is its mark and words
@@ -130,7 +156,7 @@ class DrivenWindow : public WindowTest {
     hand_->key(keysym, true);
     hand_->key(keysym, false);
     if (with != 0) hand_->key(with, false);
-    wait(30);
+    settle();
   }
   template <typename Dialog> void whenAsked(std::function<void(Dialog&)> act) {
     whenThere([] { return qobject_cast<Dialog*>(QApplication::activeModalWidget()); },
@@ -147,6 +173,10 @@ class DrivenWindow : public WindowTest {
   }
 
   std::unique_ptr<test::XHand> hand_;
+
+ private:
+  MarkSeen seen_;
+  std::uint32_t marks_ = 0;
 };
 
 } // namespace patina

@@ -85,6 +85,17 @@ void XHand::key(std::uint32_t keysym, bool down) {
   fake(down ? XCB_KEY_PRESS : XCB_KEY_RELEASE, codeOf(of(connection_), keysym), 0, 0);
 }
 
+void XHand::mark(std::uint32_t window, std::uint32_t number) {
+  xcb_client_message_event_t message = {};
+  message.response_type = XCB_CLIENT_MESSAGE;
+  message.format = 32;
+  message.window = window;
+  message.type = kMark;
+  message.data.data32[0] = number;
+  xcb_send_event(of(connection_), 0, window, 0, reinterpret_cast<const char*>(&message));
+  xcb_flush(of(connection_));
+}
+
 bool hasWindowManager() {
   static const bool has = [] {
     auto* to = xcb_connect(nullptr, nullptr);

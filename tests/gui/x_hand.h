@@ -18,6 +18,9 @@ class XHand {
   void moveTo(int x, int y);
   void button(int number, bool down); // 1 left, 2 middle, 3 right, 4 and 5 the wheel
   void key(std::uint32_t keysym, bool down);
+  // Sends a window a message of the type kMark, which comes to it after all that the hand has done.
+  void mark(std::uint32_t window, std::uint32_t number);
+  static constexpr std::uint32_t kMark = 0x7fffff01; // no atom of a server's
 
  private:
   void fake(std::uint8_t type, std::uint8_t detail, int x, int y);
