@@ -45,8 +45,9 @@ Vec2 rayOf(const Camera& camera, const Vec2& pixel, Vec2 ray) {
 // A printed face at one moment, ready to be met by rays.
 struct Face {
   const PrintedMarker* marker;
-  Vec3 x, y, normal, middle; // in the camera's frame, unit
-  double light;
+  Vec3 x, y, normal; // in the camera's frame, unit
+  double u, v, far;  // of its middle along these
+  double reach, light;
 };
 
 // From its middle to the end of its margin [m].
@@ -57,14 +58,9 @@ double reachOf(const PrintedMarker& marker) {
 struct Scene {
   std::vector<std::vector<Face>> moments;
   int left, right, top, bottom; // pixels outside show the ground only
-
-  bool near(int x, int y) const { return x >= left && x <= right && y >= top && y <= bottom; }
 };
 
-// The albedo that a ray meets: -1 for the ground.
-struct Hit {
-  double albedo = -1, light = 1;
-};
+constexpr double kGround = -1; // in place of the grey that a ray meets
 
 double printAt(const PrintedMarker& marker, double u, double v, const FrameLook& look) {
   const double cell = marker.place.size / (marker.side + 2), half = marker.place.size / 2;
@@ -79,37 +75,28 @@ double printAt(const PrintedMarker& marker, double u, double v, const FrameLook&
   return (marker.code >> bit & 1) ? look.white : look.black;
 }
 
-Hit trace(const std::vector<Face>& faces, const Vec2& ray, const FrameLook& look) {
-  Hit hit;
-  double nearest = INFINITY;
+double trace(const std::vector<Face>& faces, const Vec2& ray, const FrameLook& look) {
+  double grey = kGround, nearest = INFINITY;
   const Vec3 direction(ray.x(), ray.y(), 1);
   for (const Face& face : faces) {
     const double slope = face.normal.dot(direction);
     if (slope >= 0) continue; // seen from behind
-    const double far = face.normal.dot(face.middle) / slope;
+    const double far = face.far / slope;
     if (!(far > 0 && far < nearest)) continue;
-    const Vec3 at = far * direction - face.middle;
-    const double u = face.x.dot(at), v = face.y.dot(at);
-    const double reach = reachOf(*face.marker);
-    if (std::abs(u) > reach || std::abs(v) > reach) continue;
+    const double u = far * face.x.dot(direction) - face.u, v = far * face.y.dot(direction) - face.v;
+    if (std::abs(u) > face.reach || std::abs(v) > face.reach) continue;
     nearest = far;
-    hit = {printAt(*face.marker, u, v, look), face.light};
+    grey = printAt(*face.marker, u, v, look) * face.light;
   }
-  return hit;
+  return grey;
 }
 
-void blurLine(const float* from, float* to, int count, std::ptrdiff_t stride,
-              const std::vector<float>& half) {
-  const int reach = static_cast<int>(half.size()) - 1;
-  for (int i = 0; i < count; ++i) {
-    float sum = half[0] * from[i * stride];
-    for (int k = 1; k <= reach; ++k)
-      sum += half[static_cast<std::size_t>(k)] *
-             (from[std::max(i - k, 0) * stride] + from[std::min(i + k, count - 1) * stride]);
-    to[i * stride] = sum;
-  }
+// Adds the neighbours at both sides, which lie `stride` apart.
+void addPairs(const float* low, const float* high, float weight, float* to, int count) {
+  for (int i = 0; i < count; ++i) to[i] += weight * (low[i] + high[i]);
 }
 
+// Along rows and then along columns; the picture goes on as it ends.
 void blur(std::vector<float>& grey, int width, int height, double sigma) {
   if (!(sigma > 0)) return;
   std::vector<float> half;
@@ -119,19 +106,26 @@ void blur(std::vector<float>& grey, int width, int height, double sigma) {
     all += (k ? 2 : 1) * static_cast<double>(half.back());
   }
   for (float& weight : half) weight /= static_cast<float>(all);
-  std::vector<float> other(grey.size());
-  for (int y = 0; y < height; ++y)
-    blurLine(grey.data() + std::ptrdiff_t{y} * width, other.data() + std::ptrdiff_t{y} * width,
-             width, 1, half);
-  for (int x = 0; x < width; ++x) blurLine(other.data() + x, grey.data() + x, height, width, half);
-}
-
-// Whether a pixel's corners look like its middle, all through the exposure.
-template <class GreyOf> bool even(double middle, std::size_t moments, const GreyOf& greyOf) {
-  for (std::size_t moment = 0; moment < moments; ++moment)
-    for (const Vec2& corner : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1)})
-      if (std::abs(greyOf(corner.x(), corner.y(), moment) - middle) > 1e-3) return false;
-  return true;
+  const int reach = static_cast<int>(half.size()) - 1;
+  std::vector<float> other(grey.size()), line(index(width + 2 * reach));
+  for (int y = 0; y < height; ++y) {
+    const float* from = grey.data() + std::ptrdiff_t{y} * width;
+    float* to = other.data() + std::ptrdiff_t{y} * width;
+    std::fill_n(line.begin(), reach, from[0]);
+    std::copy_n(from, width, line.begin() + reach);
+    std::fill_n(line.end() - reach, reach, from[width - 1]);
+    for (int i = 0; i < width; ++i) to[i] = half[0] * from[i];
+    for (int k = 1; k <= reach; ++k)
+      addPairs(line.data() + reach - k, line.data() + reach + k, half[index(k)], to, width);
+  }
+  const auto row = [&](int y) {
+    return other.data() + std::ptrdiff_t{std::clamp(y, 0, height - 1)} * width;
+  };
+  for (int y = 0; y < height; ++y) {
+    float* to = grey.data() + std::ptrdiff_t{y} * width;
+    for (int i = 0; i < width; ++i) to[i] = half[0] * row(y)[i];
+    for (int k = 1; k <= reach; ++k) addPairs(row(y - k), row(y + k), half[index(k)], to, width);
+  }
 }
 
 Scene sceneOf(const Camera& camera, const std::vector<PrintedMarker>& markers,
@@ -143,17 +137,20 @@ Scene sceneOf(const Camera& camera, const std::vector<PrintedMarker>& markers,
       const Pose face = pose * marker.place.probe_from_marker;
       const double cosine = -face.translation().normalized().dot(face.linear().col(2));
       if (face.translation().z() <= 0 || cosine <= 0) continue;
-      scene.moments.back().push_back({&marker, face.linear().col(0), face.linear().col(1),
-                                      face.linear().col(2), face.translation(),
-                                      1 - look.slope_shade * (1 - cosine)});
       const double reach = reachOf(marker);
+      const Vec3 x = face.linear().col(0), y = face.linear().col(1), normal = face.linear().col(2),
+                 middle = face.translation();
+      scene.moments.back().push_back({&marker, x, y, normal, x.dot(middle), y.dot(middle),
+                                      normal.dot(middle), reach,
+                                      1 - look.slope_shade * (1 - cosine)});
       for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1)}) {
         const Vec3 p = face * Vec3(reach * corner.x(), reach * corner.y(), 0);
         const Vec2 pixel = throughLens(camera, p.hnormalized()).pixel;
-        const int x = static_cast<int>(std::clamp(pixel.x(), -1e6, 1e6)),
-                  y = static_cast<int>(std::clamp(pixel.y(), -1e6, 1e6));
-        scene.left = std::min(scene.left, x - 8), scene.right = std::max(scene.right, x + 8);
-        scene.top = std::min(scene.top, y - 8), scene.bottom = std::max(scene.bottom, y + 8);
+        const int column = static_cast<int>(std::clamp(pixel.x(), -1e6, 1e6)),
+                  row = static_cast<int>(std::clamp(pixel.y(), -1e6, 1e6));
+        scene.left = std::min(scene.left, column - 8);
+        scene.right = std::max(scene.right, column + 8);
+        scene.top = std::min(scene.top, row - 8), scene.bottom = std::max(scene.bottom, row + 8);
       }
     }
   }
@@ -173,6 +170,8 @@ FrameRenderer::FrameRenderer(const Camera& camera, std::vector<PrintedMarker> ma
       ray = rayOf(camera, Vec2(x - 0.5, y - 0.5), ray);
       if (x == 0) row_start = ray;
       rays_.push_back(ray);
+      if (x < camera.width && y < camera.height)
+        ripples_.push_back(std::sin(40 * ray.x()) * std::sin(55 * ray.y()));
     }
   }
 }
@@ -185,42 +184,65 @@ GreyFrame FrameRenderer::render(const std::vector<Pose>& camera_from_probe, cons
                                 std::uint32_t seed) const {
   if (camera_from_probe.empty()) throw std::invalid_argument("a frame without a pose");
   const int width = camera_.width, height = camera_.height;
-  const Scene scene = sceneOf(camera_, markers_, camera_from_probe, look);
+  Scene scene = sceneOf(camera_, markers_, camera_from_probe, look);
+  if (!look.occluders.empty())
+    scene.left = scene.top = 0, scene.right = width, scene.bottom = height;
+  scene.left = std::max(scene.left, 0), scene.right = std::min(scene.right, width - 1);
+  const std::size_t moments = scene.moments.size();
+  const auto greyAt = [&](const Vec2& pixel, const Vec2& ray, std::size_t moment) {
+    for (const Occluder& disc : look.occluders)
+      if ((pixel - disc.middle).squaredNorm() < disc.radius * disc.radius) return disc.grey;
+    return trace(scene.moments[moment], ray, look);
+  };
+  // At the corners of a row of pixels: each serves four of them.
+  std::vector<double> above(moments * index(width + 1)), below(above.size());
+  const auto look_along = [&](int y, std::vector<double>& corners) {
+    for (int x = scene.left; x <= scene.right + 1; ++x)
+      for (std::size_t k = 0; k < moments; ++k)
+        corners[index(x) * moments + k] =
+            greyAt({x - 0.5, y - 0.5}, rays_[index(y) * index(width + 1) + index(x)], k);
+  };
   const Vec2 fall(std::cos(look.shade_angle) / width, std::sin(look.shade_angle) / height);
   std::vector<float> grey;
   grey.reserve(index(width) * index(height));
-  for (int y = 0; y < height; ++y)
+  for (int y = 0; y < height; ++y) {
+    const bool near = y >= scene.top && y <= scene.bottom;
+    if (near && (y == 0 || y == scene.top)) look_along(y, above);
+    if (near) look_along(y + 1, below);
     for (int x = 0; x < width; ++x) {
-      const Vec2* corner = rays_.data() + std::ptrdiff_t{y} * (width + 1) + x;
-      const auto rayAt = [&](double a, double b) -> Vec2 {
-        return (1 - b) * ((1 - a) * corner[0] + a * corner[1]) +
-               b * ((1 - a) * corner[width + 1] + a * corner[width + 2]);
-      };
-      const double ground =
-          look.ground * (1 + look.waves * std::sin(40 * corner->x()) * std::sin(55 * corner->y()));
-      const auto greyOf = [&](double a, double b, std::size_t moment) {
-        const Vec2 at(x - 0.5 + a, y - 0.5 + b);
-        for (const Occluder& disc : look.occluders)
-          if ((at - disc.middle).squaredNorm() < disc.radius * disc.radius) return disc.grey;
-        const Hit hit = trace(scene.moments[moment], rayAt(a, b), look);
-        return hit.albedo >= 0 ? hit.albedo * hit.light : ground;
-      };
+      const double ground = look.ground * (1 + look.waves * ripples_[grey.size()]);
       double mean = ground;
-      if (!look.occluders.empty() || scene.near(x, y)) {
+      if (near && x >= scene.left && x <= scene.right) {
+        const Vec2* corner = rays_.data() + std::ptrdiff_t{y} * (width + 1) + x;
+        const auto greyOf = [&](double a, double b, std::size_t moment) {
+          const Vec2 ray = (1 - b) * ((1 - a) * corner[0] + a * corner[1]) +
+                           b * ((1 - a) * corner[width + 1] + a * corner[width + 2]);
+          const double seen = greyAt({x - 0.5 + a, y - 0.5 + b}, ray, moment);
+          return seen == kGround ? ground : seen;
+        };
         mean = greyOf(0.5, 0.5, 0);
-        if (!even(mean, scene.moments.size(), greyOf)) {
+        // Its corners look like its middle, all through the exposure.
+        const auto like = [&](double seen) {
+          return std::abs((seen == kGround ? ground : seen) - mean) <= 1e-3;
+        };
+        const auto first = std::ptrdiff_t{x} * static_cast<std::ptrdiff_t>(moments);
+        const auto ends = first + 2 * static_cast<std::ptrdiff_t>(moments);
+        if (!std::all_of(above.begin() + first, above.begin() + ends, like) ||
+            !std::all_of(below.begin() + first, below.begin() + ends, like)) {
           mean = 0;
           // Their shadows on rows and on columns are evenly spaced, each moment on a diagonal.
           for (int i = 0; i < kRays; ++i)
             for (int j = 0; j < kRays; ++j)
               mean += greyOf((i + (j + 0.5) / kRays) / kRays, (j + (i + 0.5) / kRays) / kRays,
-                             index(i + j) % scene.moments.size());
+                             index(i + j) % moments);
           mean /= kRays * kRays;
         }
       }
       const double light = 1 - look.shade * (fall.dot(Vec2(x - width / 2., y - height / 2.)) + 0.5);
       grey.push_back(static_cast<float>(255 * light * mean));
     }
+    if (near) std::swap(above, below);
+  }
   blur(grey, width, height, look.blur);
   GreyFrame image{width, height, {}};
   image.pixel.reserve(grey.size());
@@ -228,7 +250,7 @@ GreyFrame FrameRenderer::render(const std::vector<Pose>& camera_from_probe, cons
   std::normal_distribution<float> normal(0, static_cast<float>(look.noise));
   for (const float value : grey) {
     const float noisy = look.noise > 0 ? value + normal(random) : value;
-    image.pixel.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(noisy, 0.f, 255.f))));
+    image.pixel.push_back(static_cast<std::uint8_t>(double{std::clamp(noisy, 0.f, 255.f)} + 0.5));
   }
   return image;
 }

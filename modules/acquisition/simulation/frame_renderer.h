@@ -50,7 +50,8 @@ class FrameRenderer {
  private:
   Camera camera_;
   std::vector<PrintedMarker> markers_;
-  std::vector<Vec2> rays_; // through the corners of pixels, on the plane z = 1
+  std::vector<Vec2> rays_;      // through the corners of pixels, on the plane z = 1
+  std::vector<double> ripples_; // of the ground, of each pixel
 };
 
 } // namespace patina
