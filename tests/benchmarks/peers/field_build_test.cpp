@@ -47,7 +47,7 @@ double openVdbSeconds(const TriangleMesh& mesh, double voxel, double band) {
 
 void expectRatio(const std::string& name, const TriangleMesh& mesh, int resolution, double most) {
   openvdb::initialize();
-  constexpr int kRuns = 2, kDisturbed = 9; // others on the machine cost cache, and so CPU time
+  constexpr int kRuns = 1, kDisturbed = 9; // others on the machine cost cache, and so CPU time
   FieldSpec spec;
   spec.resolution = resolution;
   double ours = std::numeric_limits<double>::infinity(), theirs = ours;
