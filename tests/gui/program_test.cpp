@@ -1,7 +1,11 @@
 // The program as a script meets it.
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
+#include <thread>
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -9,6 +13,7 @@
 #include "core/csv.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
+#include "integration/program.h"
 #include "support/least_time.h"
 #include "support/places.h"
 
@@ -98,13 +103,22 @@ TEST_F(Program, ATourOfAMissingFileFailsInOneLine) {
 TEST_F(Program, CtrlCAndKillAndALostTerminalWriteTheLog) {
   if (!test::hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
   writeMesh(folder_ / "sphere.obj", icosphere(30, 8));
-  for (const std::string signal : {"INT", "TERM", "HUP"}) {
-    const fs::path log = folder_ / (signal + ".csv");
-    const Outcome outcome = run("--log" + quoted(log) + quoted(folder_ / "sphere.obj"),
-                                "timeout --preserve-status -s " + signal + " 10");
-    EXPECT_EQ(outcome.code, 0) << signal << ": " << outcome.err;
-    ASSERT_TRUE(fs::exists(log)) << signal;
-    EXPECT_GT(readCsv(log, {"t [s]", "x [m]"}).rows.size(), 100U) << signal;
+  const std::vector<std::pair<std::string, int>> ends = {
+      {"INT", SIGINT}, {"TERM", SIGTERM}, {"HUP", SIGHUP}};
+  const auto logOf = [&](const std::string& name) { return (folder_ / (name + ".csv")).string(); };
+  std::vector<std::unique_ptr<test::Running>> windows; // they feel side by side
+  for (const auto& [name, number] : ends)
+    windows.push_back(std::make_unique<test::Running>(
+        std::vector<std::string>{"--log", logOf(name), (folder_ / "sphere.obj").string()},
+        program_));
+  std::this_thread::sleep_for(std::chrono::seconds(10));
+  for (std::size_t i = 0; i < ends.size(); ++i) windows[i]->signal(ends[i].second);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto& name = ends[i].first;
+    const test::Outcome outcome = windows[i]->wait();
+    EXPECT_EQ(outcome.exit, 0) << name << ": " << outcome.err;
+    ASSERT_TRUE(fs::exists(logOf(name))) << name;
+    EXPECT_GT(readCsv(logOf(name), {"t [s]", "x [m]"}).rows.size(), 100U) << name;
   }
 }
 
