@@ -119,6 +119,8 @@ TEST_F(ScanFiles, TablesThatAreNoneAreRefusedWithTheirLine) {
   EXPECT_EQ(refusal(read, head), "file: there is no sample in it");
   EXPECT_TRUE(refusal(read, head + "0,0,0,1,0,2,0,3,0,4,0,5\n").starts_with("file:2: decimal"));
   EXPECT_EQ(refusal(read, head + "0,nan,1,2,3,4\n"), "file:2: force [N] is not a finite number");
+  EXPECT_EQ(refusal(read, head + "0,-1e300,1,2,3,4\n"),
+            "file:2: force [N] is -1e+300, which nothing measures");
   EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n0.5,0,1,2,3,4\n"), "file:3: time runs backwards");
   EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n1,0,1,2,3,4\n"), "file:3: time repeats");
 }

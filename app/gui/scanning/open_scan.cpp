@@ -85,7 +85,7 @@ void OpenScan::run(const Read& read, Progress& progress, const Background::Deliv
   deliver(false, [this, files] { take(files); });
   const auto filter = [&](const std::vector<CameraPose>& poses, const Seen& seen) {
     Progress part(progress, [&](double, std::string_view) { progress.report(0.99, "filter"); });
-    const auto path = std::make_shared<const ScanPath>(pathOf(*files, poses, seen, part));
+    const auto path = std::make_shared<ScanPath>(pathOf(*files, poses, seen, part));
     deliver(false, [this, path] {
       path_ = path;
       emit pathMade();
@@ -133,17 +133,16 @@ void OpenScan::begin(ScanFiles files) {
 }
 
 void OpenScan::grow(const std::vector<CameraPose>& poses, const std::vector<ProbeSample>& samples) {
-  auto path = std::make_shared<ScanPath>(path_ ? *path_ : ScanPath());
+  if (!path_) path_ = std::make_shared<ScanPath>();
   for (ProbeSample sample : samples) {
     if (files_->rig) sample.force = forceOf(*files_->rig, sample.force);
-    path->probe.push_back(sample);
+    path_->probe.push_back(sample);
   }
   for (const CameraPose& pose : poses) {
-    path->poses.push_back(pose);
-    path->path.push_back(sampleOf(pose, files_->tip()));
-    if (!path->probe.empty()) path->path.back().force = path->probe.back().force;
+    path_->poses.push_back(pose);
+    path_->path.push_back(sampleOf(pose, files_->tip()));
+    if (!path_->probe.empty()) path_->path.back().force = path_->probe.back().force;
   }
-  path_ = path;
   emit pathMade();
   if (!poses.empty()) setCursor(poses.back().t);
 }

@@ -69,7 +69,7 @@ class OpenScan : public QObject {
   Background job_;
   std::shared_ptr<const ScanFiles> files_;
   std::vector<SeenFrame> seen_;
-  std::shared_ptr<const ScanPath> path_;
+  std::shared_ptr<ScanPath> path_; // no other holds it
   double cursor_ = 0;
   bool grows_ = false;
 };

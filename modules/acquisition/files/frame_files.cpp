@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "acquisition/files/measured.h"
 #include "core/csv_rows.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -202,7 +203,7 @@ std::vector<FrameRow> parseFrameList(const std::string& text, const std::string&
   for (std::vector<double> row; reader.next(row);) {
     if (!(row[0] >= 0 && row[0] < 1e9 && row[0] == std::floor(row[0])))
       throw FileError(name, reader.line(), "a frame's number must be whole and not negative");
-    if (!std::isfinite(row[1])) throw FileError(name, reader.line(), "t [s] is not finite");
+    requireMeasured(row[1], "t [s]", name, reader.line());
     if (!rows.empty() && !(row[1] > rows.back().t))
       throw FileError(name, reader.line(),
                       row[1] == rows.back().t ? "time repeats" : "time runs backwards");

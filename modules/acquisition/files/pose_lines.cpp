@@ -1,6 +1,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "acquisition/files/measured.h"
 #include "acquisition/files/scan_files.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -15,8 +16,9 @@ double finiteIn(const std::string& word, const std::string& name, std::size_t li
   if (word.find(',') != std::string::npos)
     throw FileError(name, line, "decimal commas: write numbers with a point, spaces between them");
   const std::optional<double> value = parseNumber(word);
-  if (!value || !std::isfinite(*value))
-    throw FileError(name, line, "'" + word.substr(0, 40) + "' is not a finite number");
+  const std::string shown = "'" + word.substr(0, 40) + "'";
+  if (!value) throw FileError(name, line, shown + " is not a finite number");
+  requireMeasured(*value, shown, name, line);
   return *value;
 }
 

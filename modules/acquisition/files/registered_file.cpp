@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "acquisition/files/measured.h"
 #include "core/csv.h"
 #include "core/csv_rows.h"
 #include "core/error.h"
@@ -74,7 +75,8 @@ std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
   for (std::vector<double> row; reader.next(row);) {
     const std::size_t first = timed ? 1 : 0;
     const Vec3 p(row[first], row[first + 1], row[first + 2]);
-    if (!p.allFinite()) throw FileError(path.string(), reader.line(), "a point that is not finite");
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      requireMeasured(row[i], expected[i], path.string(), reader.line());
     if (timed) {
       if (!times.empty() && !(row[0] > times.back()))
         throw FileError(path.string(), reader.line(), "time does not increase");

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "acquisition/files/measured.h"
 #include "acquisition/files/scan_files.h"
 #include "core/csv_rows.h"
 #include "core/error.h"
@@ -19,8 +20,7 @@ const std::vector<std::string> kHeightColumns = {"t [s]",     "along [m]", "heig
 // Finite numbers, the first of them a time after `last`.
 void requireTimed(const std::vector<double>& row, const std::vector<std::string>& columns,
                   const std::string& name, std::size_t line, std::optional<double>& last) {
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    if (!std::isfinite(row[i])) throw FileError(name, line, columns[i] + " is not a finite number");
+  for (std::size_t i = 0; i < columns.size(); ++i) requireMeasured(row[i], columns[i], name, line);
   if (last && !(row[0] > *last))
     throw FileError(name, line, row[0] == *last ? "time repeats" : "time runs backwards");
   last = row[0];
