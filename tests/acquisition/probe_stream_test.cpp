@@ -237,6 +237,26 @@ TEST(UsbProbe, SaysInOneLineWhatIsWrong) {
   EXPECT_LT(mute.bus.now, 2.5);
 }
 
+TEST(UsbProbe, GoesOnAfterAStall) {
+  OnBus on({}, {.stall_from = 1, .stall_to = 1.5});
+  const auto source = on.open();
+  std::vector<ProbeSample> samples;
+  EXPECT_EQ(causeOf([&] {
+              while (on.bus.now < 3 && source->read(samples)) {
+              }
+            }),
+            "nothing");
+  ASSERT_GT(samples.size(), 1000u);
+  EXPECT_GT(samples.back().t - samples.front().t, 2.9);
+  for (std::size_t i = 1; i < samples.size(); ++i) ASSERT_GT(samples[i].t, samples[i - 1].t) << i;
+  on.bus.stall_from = on.bus.now, on.bus.stall_to = 1e300; // and for good
+  EXPECT_EQ(causeOf([&] {
+              while (source->read(samples)) {
+              }
+            }),
+            "the probe P-1 cannot be read: plug it in again, without a hub");
+}
+
 TEST(UsbProbe, StartsAndStopsTheStreamAndEndsWhenTold) {
   OnBus on({});
   {

@@ -12,8 +12,9 @@ namespace patina::test {
 
 // What happens beside the packets.
 struct ProbeBus {
-  double now = 0;         // [s], true time
-  double gone_at = 1e300; // [s]
+  double now = 0;                              // [s], true time
+  double gone_at = 1e300;                      // [s]
+  double stall_from = 1e300, stall_to = 1e300; // reads are refused between [s]
   double late = 125e-6,
          jitter = 0; // least delay of a packet, and the mean of what comes on top [s]
   UsbResult claim = UsbResult::ok, read = UsbResult::ok, describe = UsbResult::ok;
@@ -54,7 +55,11 @@ class EmulatedProbeUsb final : public UsbTransport {
   UsbCount read(std::uint8_t endpoint, std::span<std::byte> data,
                 unsigned timeout_ms) noexcept override {
     if (endpoint != 0x81) return {UsbResult::stall, 0};
-    if (bus_.read != UsbResult::ok) return {bus_.read, 0};
+    const bool stalls = bus_.now >= bus_.stall_from && bus_.now < bus_.stall_to;
+    if (stalls || bus_.read != UsbResult::ok) {
+      bus_.now += 1e-3;
+      return {stalls ? UsbResult::stall : bus_.read, 0};
+    }
     const double until = bus_.now + 1e-3 * timeout_ms;
     std::size_t filled = 0;
     while (filled < data.size()) {

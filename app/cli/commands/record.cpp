@@ -67,7 +67,8 @@ int runRecord(RecordOptions options, Console& console) {
                                   " poses, " + formatCount(now.samples) + " samples");
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  if (!now.error.empty()) throw Error(now.error);
+  const bool empty = now.frames == 0 && now.samples == 0;
+  if (!now.error.empty() && empty) throw Error(now.error);
   Report report(kRecordKeys);
   report.set("seconds", now.seconds).set("frames", now.frames);
   report.set("frames_with_pose", now.poses).set("skipped", now.skipped);
@@ -76,9 +77,10 @@ int runRecord(RecordOptions options, Console& console) {
   if (now.probe) setHealth(*now.probe, report);
   if (now.frames == 0)
     console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
+  if (!now.error.empty()) console.warn(now.error + "; what came before is kept");
   const bool silent = !options.probe.empty() && now.samples == 0;
   if (silent) console.warn(options.probe + ": the probe sent nothing");
-  return console.report(report, now.frames > 0 && !silent ? kDone : kNotSolved);
+  return console.report(report, now.frames > 0 && !silent && now.error.empty() ? kDone : kNotSolved);
 }
 
 } // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "acquisition/sources/probe_decoder.h"
 #include "core/error.h"
@@ -75,9 +77,12 @@ class UsbProbe final : public ProbeSource {
       if (into.size() > before) return true; // what came before a fault is given first
       if (got.result == UsbResult::gone)
         fail(name_, "is gone: it was pulled out, or its hub lost power");
-      if (got.result != UsbResult::ok && got.result != UsbResult::timeout)
-        fail(name_, "cannot be read: plug it in again, without a hub");
-      if (now - heard_ > kSilence) fail(name_, "has sent nothing for 2 s: plug it in again");
+      const bool refused = got.result != UsbResult::ok && got.result != UsbResult::timeout;
+      if (now - heard_ > kSilence)
+        fail(name_, refused ? "cannot be read: plug it in again, without a hub"
+                            : "has sent nothing for 2 s: plug it in again");
+      // An endpoint that stalled is mended by then; what is lost meanwhile is missed by its number.
+      if (refused) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return true;
   }
