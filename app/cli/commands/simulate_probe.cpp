@@ -74,7 +74,7 @@ void simulateProbe(const EmulatedProbeSpec& spec, const std::filesystem::path& l
   Port port;
   EmulatedProbe probe(spec);
   const Link link(link_at, port.path);
-  console.warn("a probe on " + port.path + "; record it with --probe serial:" + port.path);
+  console.say("a probe on " + port.path + "; record it with --probe serial:" + port.path);
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   std::size_t unread = 0;

@@ -83,8 +83,8 @@ void simulateUsb(const SimulatedUsbSpec& spec, const std::optional<double>& seco
     return bench.plug();
   };
   requestRealtime(); // which the plug's thread has from this one
-  console.warn("it is seen by what runs with PATINA_USBFS=" + bus.folder.string() +
-               " and LD_PRELOAD=usbfs_shim.so, which the tests' build puts beside this program");
+  console.say("it is seen by what runs with PATINA_USBFS=" + bus.folder.string() +
+              " and LD_PRELOAD=usbfs_shim.so, which the tests' build puts beside this program");
   std::size_t claims = 0;
   int unpluggings = 0;
   const double begin = clock->now();
