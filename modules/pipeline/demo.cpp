@@ -243,7 +243,7 @@ std::vector<Stroke> paintStrokes(const Demo& demo) {
 void paint(Demo& demo, Progress& progress) {
   std::vector<ScannedTexture> textures;
   for (const DemoTexture& texture : demo.textures) textures.push_back(texture.scanned);
-  Editor editor(texturedScene(demo.object.mesh, "dinosaur", textures), progress);
+  Editor editor(texturedScene(demo.object.mesh, demo.object.name, textures), progress);
   for (const Stroke& stroke : paintStrokes(demo)) editor.apply(stroke, progress);
   editor.saveAs(demo.folder / "workspace");
   demo.compiled = editor.compiled();
@@ -326,8 +326,9 @@ void feelAll(Demo& demo, Progress& progress) {
 
 } // namespace
 
-Demo::Demo(std::filesystem::path where, std::uint32_t chosen)
-    : folder(std::move(where)), seed(chosen), object(demoObject()), target(object.mesh, 0, true) {}
+Demo::Demo(std::filesystem::path where, std::uint32_t chosen, DemoObject scanned)
+    : folder(std::move(where)), seed(chosen), object(std::move(scanned)),
+      target(object.mesh, 0, true) {}
 
 const std::vector<DemoStep>& demoSteps() {
   static const std::vector<DemoStep> kSteps = {

@@ -36,7 +36,7 @@ struct DemoTexture {
 };
 
 struct Demo {
-  Demo(std::filesystem::path folder, std::uint32_t seed);
+  Demo(std::filesystem::path folder, std::uint32_t seed, DemoObject object = demoObject());
 
   std::filesystem::path folder;
   std::uint32_t seed;

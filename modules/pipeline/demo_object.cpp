@@ -22,9 +22,8 @@ Vec2 along(const DemoMaterial& material) {
 }
 
 // Rounded ridges across the stroke.
-DemoMaterial ribs() {
-  DemoMaterial ribs{"ribs",           {},   3000,   {-0.078, -0.037},
-                    {-0.030, -0.022}, 5e-3, 120e-6, {0.83, 0.42, 0.27}};
+DemoMaterial ribs(const DemoWay& way) {
+  DemoMaterial ribs{"ribs", {}, 3000, way.from, way.to, 5e-3, 120e-6, {0.83, 0.42, 0.27}};
   ribs.height = [middle = ribs.from, heading = along(ribs)](const Vec2& place) {
     const double x = kTwoPi * heading.dot(place - middle) / 5e-3;
     return 120e-6 * std::cos(x) + 40e-6 * std::cos(2 * x + 1);
@@ -33,9 +32,8 @@ DemoMaterial ribs() {
 }
 
 // Threads along and across.
-DemoMaterial weave() {
-  DemoMaterial weave{"weave",        {},   2000,  {0.036, -0.049},
-                     {0.039, 0.002}, 3e-3, 80e-6, {0.36, 0.56, 0.71}};
+DemoMaterial weave(const DemoWay& way) {
+  DemoMaterial weave{"weave", {}, 2000, way.from, way.to, 3e-3, 80e-6, {0.36, 0.56, 0.71}};
   weave.height = [middle = weave.from, heading = along(weave)](const Vec2& place) {
     const Vec2 at = place - middle;
     const double x = heading.dot(at), y = heading.x() * at.y() - heading.y() * at.x();
@@ -46,9 +44,8 @@ DemoMaterial weave() {
 }
 
 // Waves of many lengths, more or less across the stroke.
-DemoMaterial grain() {
-  DemoMaterial grain{"grain",        {},   2500,  {0.051, 0.011},
-                     {0.075, 0.047}, 4e-3, 80e-6, {0.55, 0.62, 0.34}};
+DemoMaterial grain(const DemoWay& way) {
+  DemoMaterial grain{"grain", {}, 2500, way.from, way.to, 4e-3, 80e-6, {0.55, 0.62, 0.34}};
   grain.height = [middle = grain.from, heading = along(grain)](const Vec2& place) {
     struct Wave {
       double length, turned, height, phase;
@@ -66,11 +63,6 @@ DemoMaterial grain() {
   };
   return grain;
 }
-
-// [m]
-const Vec2 kSurvey[] = {{-0.005, -0.046}, {-0.004, -0.008}, {0.008, 0.003},  {0.012, -0.015},
-                        {0.032, -0.006},  {0.038, -0.040},  {0.040, -0.006}, {0.050, 0.010},
-                        {0.064, 0.038},   {0.086, 0.043},   {0.070, 0.047}};
 
 // A toy is smooth between the corners of its mesh: heights of the mesh on a grid, through a cubic
 // B-spline, which moves them by some micrometres.
@@ -137,19 +129,36 @@ void press(SimulatedHand& hand, const Vec2& place) {
 } // namespace
 
 DemoObject demoObject() {
+  TriangleMesh mesh = dinosaur();
+  for (Vec3& p : mesh.positions) p *= 2;
+  const Pose side(turnFromTo(-Vec3::UnitY(), Vec3::UnitZ()));
+  DemoWays ways; // [m]
+  ways.ribs = {{-0.078, -0.037}, {-0.030, -0.022}};
+  ways.weave = {{0.036, -0.049}, {0.039, 0.002}};
+  ways.grain = {{0.051, 0.011}, {0.075, 0.047}};
+  ways.grip = {{-0.006, -0.010}, {0.020, -0.006}};
+  ways.survey = {{-0.005, -0.046}, {-0.004, -0.008}, {0.008, 0.003},  {0.012, -0.015},
+                 {0.032, -0.006},  {0.038, -0.040},  {0.040, -0.006}, {0.050, 0.010},
+                 {0.064, 0.038},   {0.086, 0.043},   {0.070, 0.047}};
+  return demoObjectOf("dinosaur", std::move(mesh), side, ways);
+}
+
+DemoObject demoObjectOf(const std::string& name, TriangleMesh mesh, const Pose& plane_from_object,
+                        const DemoWays& ways) {
   DemoObject object;
-  object.mesh = dinosaur();
-  for (Vec3& p : object.mesh.positions) p *= 2;
-  object.plane_from_object.linear() = turnFromTo(-Vec3::UnitY(), Vec3::UnitZ()).toRotationMatrix();
-  object.materials = {ribs(), weave(), grain()};
+  object.name = name;
+  object.mesh = std::move(mesh);
+  object.plane_from_object = plane_from_object;
+  object.materials = {ribs(ways.ribs), weave(ways.weave), grain(ways.grain)};
+  object.survey = ways.survey;
   const TriangleMesh turned =
       transformed(object.mesh, Eigen::Affine3d(object.plane_from_object.matrix()));
   object.ground = [heights = std::make_shared<const SmoothHeights>(turned)](const Vec2& place) {
     return heights->at(place);
   };
   object.normal = normalOf(object.ground);
-  object.grip = [ground = object.ground](double part) {
-    const Vec2 place = (1 - part) * Vec2(-0.006, -0.010) + part * Vec2(0.020, -0.006);
+  object.grip = [ground = object.ground, way = ways.grip](double part) {
+    const Vec2 place = (1 - part) * way.from + part * way.to;
     return Vec3(place.x(), place.y(), ground(place));
   };
   return object;
@@ -181,12 +190,12 @@ SimulatedHand surveyOf(const DemoObject& object, std::uint32_t seed) {
   hand.seed = seed;
   hand.relief = object.ground;
   hand.normal = object.normal;
-  hand.from = kSurvey[0];
+  hand.from = object.survey.at(0);
   hand.air = hand.relief(hand.from) + 10e-3;
   hand.compliance = 1. / 5000;
   hand.moves.push_back({hand.from, 0.5, 0, 0, 0});
   Vec2 place = hand.from;
-  for (const Vec2& to : kSurvey) {
+  for (const Vec2& to : object.survey) {
     hand.moves.push_back({to, 0.2 + (to - place).norm() / kSpeed, 0, 1.0, 0});
     place = to;
   }

@@ -21,7 +21,8 @@ struct DemoMaterial {
 };
 
 struct DemoObject {
-  TriangleMesh mesh;                         // the dinosaur, twice as large, object frame [m]
+  std::string name;
+  TriangleMesh mesh;                         // object frame [m]
   Pose plane_from_object = Pose::Identity(); // the scanned side looks up
   std::vector<DemoMaterial> materials;
   // The true toy without materials, over the plane: smooth between the corners of its mesh. Both
@@ -29,9 +30,22 @@ struct DemoObject {
   std::function<double(const Vec2&)> ground; // height [m]
   std::function<Vec3(const Vec2&)> normal;   // outwards, unit
   std::function<Vec3(double)> grip;          // a way over a place without material, from 0 to 1 [m]
+  std::vector<Vec2> survey;                  // where a hand goes over the bare mesh [m]
 };
 
-DemoObject demoObject();
+// Where over the plane its materials are stroked, and what else is gone over [m].
+struct DemoWay {
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
+};
+struct DemoWays {
+  DemoWay ribs, weave, grain, grip;
+  std::vector<Vec2> survey;
+};
+
+DemoObject demoObject(); // the dinosaur, twice as large
+// The three materials on any body [m]. Throws Error where a way leaves it.
+DemoObject demoObjectOf(const std::string& name, TriangleMesh mesh, const Pose& plane_from_object,
+                        const DemoWays& ways);
 
 // A hand that presses the material where its stroke begins, eight times, and strokes it once.
 SimulatedHand handOver(const DemoObject& object, const DemoMaterial& material, std::uint32_t seed);

@@ -109,6 +109,17 @@ TEST(Architecture, EveryModuleHeaderBeginsWithItsIdea) {
   }
 }
 
+// Each of Eigen's is compiled anew in every file that names it.
+TEST(Architecture, MatricesAreDecomposedInOnePlace) {
+  for (const SourceFile& file : filesUnder({"app", "modules"}, isCode)) {
+    if (file.path.starts_with("modules/core/decompose.")) continue;
+    for (const char* name : {"EigenSolver", "LDLT<", "LLT<", "SVD<", "QR<", ".ldlt(", ".llt(",
+                             ".jacobiSvd(", "FromTwoVectors"})
+      EXPECT_EQ(file.text.find(name), std::string::npos)
+          << file.path << " names " << name << ": use core/decompose.h";
+  }
+}
+
 TEST(Architecture, TheTopLevelTellsTheStory) {
   const std::set<std::string> allowed{
       "CMakeLists.txt", "README.md", "LICENSE", "CITATION.cff",  "app",         "modules",   "data",

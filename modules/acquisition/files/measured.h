@@ -1,3 +1,4 @@
+// What a number in a table of measurements may be.
 #pragma once
 
 #include <cmath>

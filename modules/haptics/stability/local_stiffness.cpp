@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
+#include "core/decompose.h"
 #include "haptics/stages/coupling_stage.h"
 
 namespace patina {
@@ -121,9 +120,7 @@ std::optional<LocalStiffness> StiffnessProbe::at(const Vec3& point,
   // those of facets, whose edges are no matter of the step's square.
   if (raised_ > 0) result.matrix += 4.0 / 3 * change;
   if (!result.matrix.allFinite()) return std::nullopt;
-  const Vec3 values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
-                          0.5 * (result.matrix + result.matrix.transpose()), Eigen::EigenvaluesOnly)
-                          .eigenvalues();
+  const Vec3 values = SymmetricEigen(0.5 * (result.matrix + result.matrix.transpose())).values;
   result.lambda_min = values[0];
   result.lambda_max = values[2];
   return result;

@@ -1,0 +1,82 @@
+// The whole chain on other bodies and by other hands.
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "geometry/mesh/shapes.h"
+#include "pipeline/demo_report.h"
+#include "support/longer.h"
+
+namespace patina {
+namespace {
+
+// A ball with bumps as long as a hand is wide, 180 mm across; `flat` of its height is left.
+DemoObject lumpOf(const std::string& name, double flat) {
+  TriangleMesh mesh = icosphere(1, 100);
+  for (Vec3& p : mesh.positions) {
+    p *= 0.07 + 0.012 * p.x() * p.y() + 0.010 * std::sin(3 * p.z() + p.x()) +
+         0.006 * std::cos(5 * p.y() - 2 * p.z()) + 0.008 * p.x();
+    p.x() *= 1.3;
+    p.z() *= flat;
+  }
+  DemoWays ways;                                   // [m]
+  ways.ribs = {{-0.035, -0.030}, {0.010, -0.034}}; // where the slope along it hardly changes
+  ways.weave = {{0.018, -0.035}, {0.022, 0.015}};
+  ways.grain = {{-0.022, 0.008}, {0.013, 0.040}};
+  ways.grip = {{-0.030, 0.030}, {-0.045, 0.015}};
+  ways.survey = {{-0.060, 0.000}, {-0.045, 0.028},  {-0.020, 0.042}, {0.010, 0.045},
+                 {0.040, 0.035},  {0.062, 0.015},   {0.062, -0.012}, {0.045, -0.034},
+                 {0.015, -0.046}, {-0.020, -0.044}, {-0.050, -0.028}};
+  return demoObjectOf(name, std::move(mesh), Pose::Identity(), ways);
+}
+
+struct DemoCase {
+  const char* body;
+  unsigned seed;
+};
+
+DemoObject objectOf(const std::string& name) {
+  if (name == "dinosaur") return demoObject();
+  return lumpOf(name, name == "stone" ? 1 : 0.45);
+}
+
+std::vector<DemoCase> demoCases() {
+  if (test::longer(1) == 1) return {{"stone", 2}, {"loaf", 3}};
+  std::vector<DemoCase> cases;
+  for (const char* body : {"dinosaur", "stone", "loaf"})
+    for (const unsigned seed : {1, 2, 3, 4, 5, 6}) cases.push_back({body, seed});
+  return cases;
+}
+
+class DemoOnBodies : public testing::TestWithParam<DemoCase> {};
+
+TEST_P(DemoOnBodies, HoldsWhateverTheBodyAndTheHand) {
+  const auto& [body, seed] = GetParam();
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) /
+      ("patina_demo_" + std::string(body) + std::to_string(seed) + "_" + std::to_string(getpid()));
+  Demo demo(folder, seed, objectOf(body));
+  Progress progress;
+  while (!isDone(demo)) runNext(demo, progress);
+  double seconds = 0;
+  for (const double step : demo.seconds) seconds += step;
+  std::printf("%s, seed %u, %.1f s\n", body, seed, seconds);
+  for (const DemoFigure& figure : demoFigures(demo)) {
+    std::printf("  %s %s: %s of %s%s\n", figure.what.c_str(), figure.of.c_str(),
+                figureText(figure.value, figure.unit).c_str(),
+                figureText(figure.most, figure.unit).c_str(), figure.holds() ? "" : " MISSED");
+    EXPECT_TRUE(figure.holds()) << figure.what << " " << figure.of;
+  }
+  std::filesystem::remove_all(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, DemoOnBodies, testing::ValuesIn(demoCases()),
+                         [](const testing::TestParamInfo<DemoCase>& named) {
+                           return std::string(named.param.body) + std::to_string(named.param.seed);
+                         });
+
+} // namespace
+} // namespace patina
