@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/edit_desk.h"
+#include "session/edit/editor.h"
 #include "session/edit/value_edit.h"
 #include "support/sanitized.h"
 #include "workspace/workspace.h"
@@ -201,6 +202,32 @@ TEST(EditThread, SavingGivesTheSceneAFolderAndDiscardingGoesBackToIt) {
   EXPECT_FALSE(desk.status.unsaved);
   EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
   EXPECT_EQ(loadWorkspace(folder.path() / "ws").objects[0].name, "a");
+}
+
+TEST(EditThread, NothingIsUnsavedOnceAllIsTakenBack) {
+  const Folder folder;
+  {
+    Desk desk(folder.path() / "state");
+    desk.open(oneBall());
+    desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
+    desk.edits.saveAs(folder.path() / "ws");
+    ASSERT_TRUE(desk.waitUntil([&] { return desk.status.folder.has_value(); }));
+    desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+    ASSERT_TRUE(desk.waitUntil([&] { return desk.status.unsaved; }));
+    desk.edits.goTo(1);
+    ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 1; }));
+    EXPECT_FALSE(desk.status.unsaved);
+    desk.edits.goTo(0); // before what was saved
+    ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 0; }));
+    EXPECT_TRUE(desk.status.unsaved);
+    desk.edits.goTo(1);
+    ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 1; }));
+  }
+  Progress progress;
+  const auto again = Editor::open(folder.path() / "ws", {}, progress, {});
+  EXPECT_FALSE(again->unsaved());
+  EXPECT_EQ(again->scene().objects[0].name, "a");
+  EXPECT_EQ(again->history().redoable(), 1u) << "and can still be done again";
 }
 
 TEST(EditThread, AFolderThatCannotBeMadeIsToldOfAndTheEditsStay) {

@@ -160,8 +160,7 @@ void EditWorker::report() {
     if (history.undoable() > 0) keep();
     status.edits = history.descriptions();
     status.done = history.undoable();
-    status.unsaved =
-        tried_ || (ownsFolder() ? editor_->unsaved() : recovered_ || saved_at_ != status.done);
+    status.unsaved = tried_ || (!ownsFolder() && recovered_) || saved_at_ != status.done;
     if (ownsFolder()) status.folder = editor_->folder();
   }
   if (status == told_) return;

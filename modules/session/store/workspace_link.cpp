@@ -88,8 +88,10 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   // The saved scene, where the history still has it; what the journal says beyond is replayed.
   const std::uint64_t saved_event = std::min<std::uint64_t>(found.event, found.journal.size());
   const std::size_t saved = fold.position_at[saved_event];
-  if (stillThere(fold, saved_event, saved)) opened.history->place(saved, found.scene);
-  opened.unsaved = saved_event < found.journal.size();
+  const bool kept = stillThere(fold, saved_event, saved);
+  if (kept) opened.history->place(saved, found.scene);
+  // All edits since may have been taken back.
+  opened.unsaved = saved_event < found.journal.size() && !(kept && fold.position == saved);
   if (opened.unsaved || opened.history->undoable() != fold.position)
     opened.history->place(fold.position, opened.history->sceneAt(fold.position));
   if (!keep_journal) return opened;
