@@ -30,7 +30,9 @@ TextureDesk::TextureDesk(QWidget& window)
   auto* words = new QLabel(tr(
       "From a scan to a feel, on a toy.\n\nA hand scans three materials on a toy dinosaur. Eight "
       "steps track it, find its place on the mesh, make textures of what it went over, lay them "
-      "onto the mesh and let you feel them. Each step says how far it is from the truth."));
+      "onto the mesh and let you feel them. Each step says how far it is from the truth.\n\n"
+      "A scan of your own becomes a texture by From the scan in the card Textures, once the desk "
+      "Align has laid it onto its mesh."));
   words->setWordWrap(true);
   words->setAlignment(Qt::AlignCenter);
   column->addStretch(1);
