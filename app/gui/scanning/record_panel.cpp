@@ -102,14 +102,15 @@ void RecordPanel::suggestCalibration(const QString& folder) {
 }
 
 void RecordPanel::setState(const RecordingState* state) {
-  sources_->setVisible(state == nullptr);
-  record_->setVisible(state == nullptr);
-  for (QWidget* each :
-       {static_cast<QWidget*>(pause_), static_cast<QWidget*>(stop_), static_cast<QWidget*>(count_)})
-    each->setVisible(state != nullptr);
+  // Nothing moves: a recording may end by itself under a hand that is about to end it.
+  sources_->setEnabled(state == nullptr);
+  record_->setEnabled(state == nullptr);
+  pause_->setEnabled(state != nullptr);
+  stop_->setEnabled(state != nullptr);
+  count_->setVisible(state != nullptr);
   lost_->setVisible(false);
   if (state == nullptr) {
-    if (!pause_->isVisible() && QDir(folder_->text()).exists()) suggestFolder();
+    if (QDir(folder_->text()).exists()) suggestFolder();
     pause_->setChecked(false);
     return;
   }
