@@ -122,9 +122,13 @@ run_benchmarks() {
   fi
 }
 
-build_fuzz() {
+# In full each source by itself, so that an include that is missing is found, too.
+build_fuzz() { # short or full
   say "Building the fuzzers"
-  configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
+  local unity=ON
+  [ "$1" = short ] || unity=OFF
+  configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_UNITY_BUILD=$unity \
+    -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
   build build-fuzz
 }
 
@@ -201,7 +205,7 @@ all)
   run_and_note run_tests
   run_and_note build_address short
   run_and_note build_thread
-  run_and_note build_fuzz
+  run_and_note build_fuzz short
   # All at once, for each takes one processor; what they print follows one after the other.
   logs=$(mktemp -d)
   (run_thread) >"$logs/thread" 2>&1 &
@@ -221,7 +225,7 @@ all)
 quick) run_tests ;;
 address) build_address full; run_address full ;;
 thread) build_thread; run_thread ;;
-fuzz) build_fuzz; run_fuzz "$seconds" ;;
+fuzz) build_fuzz full; run_fuzz "$seconds" ;;
 benchmarks) run_benchmarks ;;
 mutants)
   say "Mutants of modules/haptics and modules/field"
