@@ -8,9 +8,9 @@
 namespace patina {
 namespace {
 
-constexpr double kLeast = 1e-9;      // [m], of what is divided by
-constexpr double kSingular = 1e-3;   // volume of the three shanks' directions, unit vectors
-constexpr double kLongestStep = 0.1; // [m], of Newton
+constexpr double kLeast = 1e-9;            // [m], of what is divided by
+constexpr double kSingular = 1e-3;         // volume of the three shanks' directions, unit vectors
+constexpr double kLongestNewtonStep = 0.1; // [m], of Newton
 
 // The handle seen from a leg: u away from the base's axis, v aside, w along it.
 struct Leg {
@@ -125,7 +125,7 @@ FalconPose falconPose(const FalconShape& shape, const Angles& angles,
     if (pose.singular || gaps.lpNorm<Eigen::Infinity>() < 1e-15) break;
     Vec3 step = slope.inverse() * gaps;
     const double length = step.norm();
-    if (length > kLongestStep) step *= kLongestStep / length;
+    if (length > kLongestNewtonStep) step *= kLongestNewtonStep / length;
     pose.handle -= step;
     if (length < 1e-13) break;
   }

@@ -7,7 +7,7 @@
 namespace patina {
 namespace {
 
-constexpr std::uint8_t kOut = 0x02, kIn = 0x81;
+constexpr std::uint8_t kWritePipe = 0x02, kReadPipe = 0x81;
 constexpr std::size_t kPacket = 64, kStatus = 2;
 constexpr unsigned kWait = 100; // [ms], for what the bridge itself answers
 constexpr unsigned kWriteWait = 1;
@@ -62,7 +62,7 @@ UsbResult FalconLine::toRunning() noexcept {
 }
 
 UsbResult FalconLine::send(std::span<const std::byte> bytes) noexcept {
-  const UsbCount sent = usb_->write(kOut, bytes, kWriteWait);
+  const UsbCount sent = usb_->write(kWritePipe, bytes, kWriteWait);
   if (sent.result != UsbResult::ok) return sent.result;
   return sent.bytes == bytes.size() ? UsbResult::ok : UsbResult::failed;
 }
@@ -75,7 +75,7 @@ LineRead FalconLine::receive(std::span<std::byte> into, double seconds) noexcept
     const unsigned left = milliseconds(until - clock_->now());
     if (left == 0) break;
     std::array<std::byte, kPacket> packet;
-    const UsbCount got = usb_->read(kIn, packet, left);
+    const UsbCount got = usb_->read(kReadPipe, packet, left);
     if (got.result == UsbResult::timeout) continue; // what is left decides
     if (got.result != UsbResult::ok) {
       read.result = got.result;
@@ -103,7 +103,7 @@ LineRead FalconLine::listen(double seconds) noexcept {
       return read;
     }
     std::array<std::byte, kPacket> packet;
-    const UsbCount got = usb_->read(kIn, packet, left);
+    const UsbCount got = usb_->read(kReadPipe, packet, left);
     if (got.result != UsbResult::ok && got.result != UsbResult::timeout) {
       read.result = got.result;
       return read;

@@ -10,10 +10,10 @@
 namespace patina {
 namespace {
 
-constexpr std::uint8_t kIn = 0x81;
-constexpr double kMost = 500;         // counts; more is clipped
-constexpr double kReleased = 60e-3;   // [s] without a report
-constexpr double kLongestStep = 0.02; // [s], of the tip's way
+constexpr std::uint8_t kReportPipe = 0x81;
+constexpr double kMost = 500;           // counts; more is clipped
+constexpr double kReleased = 60e-3;     // [s] without a report
+constexpr double kLongestPeriod = 0.02; // [s], of the tip's way
 
 double count(std::span<const std::byte> report, std::size_t at) {
   const unsigned value =
@@ -58,7 +58,7 @@ class SpaceMouseLink final : public DeviceLink {
     failed.status = DeviceStatus::gone;
     if (!usb_) return failed;
     std::array<std::byte, 64> report;
-    const UsbCount got = usb_->read(kIn, report, 1);
+    const UsbCount got = usb_->read(kReportPipe, report, 1);
     if (got.result != UsbResult::ok && got.result != UsbResult::timeout) {
       if (got.result != UsbResult::gone) failed.status = DeviceStatus::garbled;
       return failed;
@@ -68,7 +68,7 @@ class SpaceMouseLink final : public DeviceLink {
     if (got.result == UsbResult::ok && takeReport(std::span(report).first(size), cap_))
       heard_at_ = now;
     if (now - heard_at_ > kReleased) cap_.shift = cap_.turn = Vec3::Zero();
-    move(std::clamp(now - at_, 0.0, kLongestStep));
+    move(std::clamp(now - at_, 0.0, kLongestPeriod));
     at_ = now;
     return state_;
   }
