@@ -39,24 +39,46 @@ constexpr Ink kInks[] = {
     {"series_x", "#d55e00", "#f08030"},  {"series_y", "#009e73", "#20c090"},
     {"series_z", "#0072b2", "#56b4e9"},  {"series_e", "#1f5ca8", "#7fb2f0"}};
 
-// Fusion frames a box in its ground made darker, which nobody sees where the ground is dark.
-class FramedBoxes final : public QProxyStyle {
+// Fusion frames a box in its ground made darker, which nobody sees where the ground is dark, and
+// shades a button, so that its words have another contrast at their top than at their foot.
+class FlatControls final : public QProxyStyle {
  public:
-  FramedBoxes() : QProxyStyle(QStyleFactory::create(QStringLiteral("Fusion"))) {}
+  FlatControls() : QProxyStyle(QStyleFactory::create(QStringLiteral("Fusion"))) {}
   void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                      const QWidget* widget) const override {
-    QProxyStyle::drawPrimitive(element, option, painter, widget);
-    if (element != PE_IndicatorCheckBox && element != PE_IndicatorRadioButton) return;
-    const QRectF frame = QRectF(option->rect).adjusted(0.5, 0.5, -0.5, -0.5);
     painter->save();
-    painter->setRenderHint(QPainter::Antialiasing, element == PE_IndicatorRadioButton);
-    painter->setBrush(Qt::NoBrush);
-    painter->setPen(ink(option->state & State_Enabled ? "quiet" : "grip"));
-    if (element == PE_IndicatorCheckBox)
-      painter->drawRect(frame);
-    else
-      painter->drawEllipse(frame);
+    if (element == PE_PanelButtonCommand) {
+      drawButton(*option, *painter);
+    } else {
+      QProxyStyle::drawPrimitive(element, option, painter, widget);
+      if (element == PE_IndicatorCheckBox || element == PE_IndicatorRadioButton)
+        drawFrame(*option, *painter, element == PE_IndicatorRadioButton);
+    }
     painter->restore();
+  }
+
+ private:
+  static QRectF frameOf(const QStyleOption& option) {
+    return QRectF(option.rect).adjusted(0.5, 0.5, -0.5, -0.5);
+  }
+  static void drawButton(const QStyleOption& option, QPainter& painter) {
+    const auto is = [&](State state) { return (option.state & state) != 0; };
+    const bool enabled = is(State_Enabled);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setBrush(ink(is(State_Sunken | State_On)      ? "chosen"
+                         : enabled && is(State_MouseOver) ? "hover"
+                                                          : "button"));
+    painter.setPen(ink(enabled && is(State_HasFocus) ? "accent" : enabled ? "grip" : "line"));
+    painter.drawRoundedRect(frameOf(option), 3, 3);
+  }
+  static void drawFrame(const QStyleOption& option, QPainter& painter, bool round) {
+    painter.setRenderHint(QPainter::Antialiasing, round);
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(ink(option.state & State_Enabled ? "quiet" : "grip"));
+    if (round)
+      painter.drawEllipse(frameOf(option));
+    else
+      painter.drawRect(frameOf(option));
   }
 };
 
@@ -113,7 +135,7 @@ void dressAsCards(QWidget& widget) {
 }
 
 void applyStyle(QApplication& application, Theme theme) {
-  application.setStyle(new FramedBoxes);
+  application.setStyle(new FlatControls);
   QPalette palette(QColor(QLatin1String(theme == Theme::dark ? kInks[0].dark : kInks[0].light)));
   application.setPalette(palette); // which says what ink() is
   const std::pair<QPalette::ColorRole, const char*> roles[] = {{QPalette::Window, "window"},
