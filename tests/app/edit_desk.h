@@ -62,6 +62,13 @@ class Desk {
     waitUntil([this] { return compiled != nullptr; });
   }
 
+  // The workspace, as its own.
+  void openFolder(const std::filesystem::path& folder) {
+    Progress progress;
+    edits.adopt(Editor::open(folder, {}, progress, edits.listener()));
+    waitUntil([this] { return compiled != nullptr; });
+  }
+
   // Takes events until it is so; false after 20 s.
   bool waitUntil(const std::function<bool()>& so) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);

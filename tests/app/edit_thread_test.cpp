@@ -230,6 +230,61 @@ TEST(EditThread, NothingIsUnsavedOnceAllIsTakenBack) {
   EXPECT_EQ(again->history().redoable(), 1u) << "and can still be done again";
 }
 
+TEST(EditThread, EditsOfACrashAreUnsavedUntilTheyAreTakenBackAndCanBeDiscarded) {
+  const Folder folder;
+  {
+    Desk desk(folder.path() / "state");
+    desk.open(oneBall());
+    desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
+    desk.edits.saveAs(folder.path() / "ws");
+    desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+    ASSERT_TRUE(desk.settle());
+  }
+  for (const bool discards : {false, true}) {
+    Desk desk;
+    desk.openFolder(folder.path() / "ws");
+    ASSERT_TRUE(desk.settle());
+    EXPECT_TRUE(desk.status.unsaved);
+    desk.edits.goTo(1);
+    ASSERT_TRUE(desk.settle()); // which does all of it again
+    EXPECT_TRUE(desk.status.unsaved);
+    if (!discards) {
+      bool saved = false;
+      desk.edits.goTo(1, [&](const EditOutcome&) { saved = true; });
+      ASSERT_TRUE(desk.waitUntil([&] { return saved; }));
+      EXPECT_FALSE(desk.status.unsaved);
+      ASSERT_TRUE(desk.settle());
+      continue;
+    }
+    bool done = false;
+    desk.edits.discard([&](const EditOutcome& outcome) { done = outcome.problem.empty(); });
+    ASSERT_TRUE(desk.waitUntil([&] { return done; }));
+    EXPECT_FALSE(desk.status.unsaved);
+  }
+  Progress progress;
+  const auto again = Editor::open(folder.path() / "ws", {}, progress, {});
+  EXPECT_FALSE(again->unsaved());
+  EXPECT_EQ(again->scene().objects[0].name, "a");
+}
+
+TEST(EditThread, WhatWasSavedComesBackThoughTheHistoryHasLeftIt) {
+  const Folder folder;
+  Desk desk(folder.path() / "state");
+  desk.open(oneBall());
+  desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
+  desk.edits.saveAs(folder.path() / "ws");
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.folder.has_value(); }));
+  desk.edits.goTo(0);
+  desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+  ASSERT_TRUE(desk.settle());
+  bool done = false;
+  desk.edits.discard([&](const EditOutcome& outcome) { done = outcome.problem.empty(); });
+  ASSERT_TRUE(desk.waitUntil([&] { return done; }));
+  EXPECT_FALSE(desk.status.unsaved);
+  EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
+  EXPECT_EQ(loadWorkspace(folder.path() / "ws").objects[0].name, "a");
+}
+
 TEST(EditThread, AFolderThatCannotBeMadeIsToldOfAndTheEditsStay) {
   Desk desk;
   desk.open(oneBall());

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "session/edit/value_edit.h"
+#include "workspace/workspace.h"
 
 namespace patina {
 namespace {
@@ -49,7 +50,7 @@ void EditWorker::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave>
   saved_at_.reset();
   if (!editor_) return;
   // What has no folder of ours is as it was saved until it is edited.
-  if (!editor_->unsaved() || !ownsFolder()) saved_at_ = editor_->history().undoable();
+  saved_at_ = ownsFolder() ? editor_->openedAt() : std::optional(editor_->history().undoable());
   show(editor_->compiled(), true);
 }
 
@@ -148,8 +149,13 @@ void EditWorker::saveAs(const std::filesystem::path& folder) {
 }
 
 void EditWorker::discard(Progress& progress) {
-  if (!editor_ || !ownsFolder() || !editor_->unsaved() || !saved_at_) return;
-  goTo(*saved_at_, progress);
+  if (!editor_ || !ownsFolder() || !editor_->unsaved()) return;
+  if (saved_at_) {
+    goTo(*saved_at_, progress);
+  } else { // undone, and something else was done: as an edit it is there again
+    auto saved = std::make_shared<Scene>(loadWorkspace(*editor_->folder()));
+    editor_->apply(SceneEdit{"go back to what was saved", std::move(saved)}, progress);
+  }
   save();
 }
 

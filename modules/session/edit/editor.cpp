@@ -45,6 +45,7 @@ struct Editor::Impl {
   std::unique_ptr<WorkspaceLink> link; // null while the scene has no folder
   std::vector<std::string> notes;
   bool unsaved = false;
+  std::optional<std::size_t> opened_at;
   Replayer replayer;
 
   std::shared_ptr<const PaintSurface> surface; // of compiled; null until something is painted
@@ -116,6 +117,7 @@ std::unique_ptr<Editor> Editor::open(const std::filesystem::path& folder, const 
   impl->link = std::move(opened.link);
   impl->notes = std::move(opened.notes);
   impl->unsaved = opened.unsaved;
+  impl->opened_at = opened.saved_at;
   impl->compiled = compile(impl->history->scene(), progress);
   return std::unique_ptr<Editor>(new Editor(std::move(impl)));
 }
@@ -134,6 +136,9 @@ const std::vector<std::string>& Editor::notes() const {
 }
 bool Editor::unsaved() const {
   return impl_->unsaved;
+}
+std::optional<std::size_t> Editor::openedAt() const {
+  return impl_->opened_at;
 }
 bool Editor::inStroke() const {
   return impl_->painter != nullptr;

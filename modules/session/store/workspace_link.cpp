@@ -89,7 +89,7 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   const std::uint64_t saved_event = std::min<std::uint64_t>(found.event, found.journal.size());
   const std::size_t saved = fold.position_at[saved_event];
   const bool kept = stillThere(fold, saved_event, saved);
-  if (kept) opened.history->place(saved, found.scene);
+  if (kept) opened.history->place(saved, found.scene), opened.saved_at = saved;
   // All edits since may have been taken back.
   opened.unsaved = saved_event < found.journal.size() && !(kept && fold.position == saved);
   if (opened.unsaved || opened.history->undoable() != fold.position)

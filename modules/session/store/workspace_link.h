@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ class WorkspaceLink {
     std::unique_ptr<EditHistory> history;
     std::unique_ptr<WorkspaceLink> link; // null unless keep_journal
     std::vector<std::string> notes;
-    std::uint64_t events = 0; // of the journal, undos too: they only ever become more
-    bool unsaved = false;     // the journal holds more than the saved scene
+    std::uint64_t events = 0;            // of the journal, undos too: they only ever become more
+    bool unsaved = false;                // the journal holds more than the saved scene
+    std::optional<std::size_t> saved_at; // position of the saved scene; absent: not in the history
   };
   static Opened open(const std::filesystem::path& folder, EditHistory::Replay replay,
                      std::size_t budget, bool keep_journal, bool recover);
