@@ -73,6 +73,14 @@ void Running::signal(int number) const {
   if (!reaped_) kill(pid_, number);
 }
 
+bool Running::catches(int number) const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("SigCgt:"))
+      return std::stoull(line.substr(7), nullptr, 16) >> (number - 1) & 1;
+  return false;
+}
+
 bool Running::finished() {
   if (!reaped_ && waitpid(pid_, &status_, WNOHANG) == pid_) reaped_ = true;
   return reaped_;

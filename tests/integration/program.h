@@ -28,7 +28,8 @@ class Running {
   Running& operator=(const Running&) = delete;
 
   void signal(int number) const;
-  bool finished(); // without waiting
+  bool catches(int number) const; // by a handler of its own
+  bool finished();                // without waiting
   Outcome wait();
 
  private:

@@ -180,7 +180,8 @@ void StripPlot::refresh() {
   update();
 }
 
-// Steps of 1, 2, 5, held until the plot would be less than a quarter full.
+// Steps of 1, 2, 5, held until the plot would be less than a quarter full while it follows: what a
+// person looks up has one scale, however it was come to.
 double StripPlot::top() const {
   double highest = 0;
   const AxisSpan span = seen();
@@ -192,7 +193,7 @@ double StripPlot::top() const {
     const double digit = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
     step *= digit > 1.9 && digit < 2.1 ? 2.5 : 2;
   }
-  return step < top_ && highest > 0.25 * top_ ? top_ : step;
+  return !seen_ && step < top_ && highest > 0.25 * top_ ? top_ : step;
 }
 
 double StripPlot::toX(const QRectF& area, double t) const {
