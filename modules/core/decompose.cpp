@@ -26,7 +26,8 @@ MatX SymmetricSolver::inverse() const {
 }
 
 double SymmetricSolver::evenness() const {
-  return ldlt_.vectorD().minCoeff() / ldlt_.vectorD().maxCoeff();
+  const double most = ldlt_.vectorD().cwiseAbs().maxCoeff();
+  return most > 0 ? ldlt_.vectorD().minCoeff() / most : 0;
 }
 
 double SymmetricSolver::logDeterminant() const {

@@ -27,8 +27,10 @@ class SymmetricSolver {
   explicit SymmetricSolver(const MatrixView& matrix);
   VecX solve(const VectorView& right) const;
   MatX solveColumns(const MatrixView& right) const;
-  MatX inverse() const;
-  double evenness() const; // the least pivot over the largest: 0 where A is singular
+  MatX inverse() const; // of no use where A is singular: see evenness()
+  // The least pivot over the largest size of one: 0 where A is singular or nothing, negative where
+  // it is not positive.
+  double evenness() const;
   double logDeterminant() const;
 
  private:

@@ -104,6 +104,23 @@ TEST(Rivals, ASampleThatIsLeftOutCostsAsMuchAsOneOnTheVerge) {
   EXPECT_NEAR(costOf(misses, law), 18 * 9 / 10., 1e-9);
 }
 
+// On a plate a force that never changes is what a shift along its normal would do.
+TEST(ErrorLaw, AForceThatNeverChangesLeavesErrorBarsFinite) {
+  const SurfaceTarget target(sheet(0.1, 0.08, 20), 0);
+  Draw draw(27);
+  const auto truth = draw.pathOn(target, 400);
+  auto path = truth;
+  for (Vec3& p : path) p += draw.normal(kTrustNoise);
+  RegistrationOptions options;
+  options.noise = kTrustNoise;
+  options.force.assign(path.size(), 1.0);
+  Progress progress;
+  const Registration fit = registerPath(target, path, Pose::Identity(), options, progress);
+  EXPECT_TRUE(fit.covariance.allFinite());
+  EXPECT_NEAR(fit.together, 1, 0.5);
+  EXPECT_NEAR(fit.rms, kTrustNoise, 0.2 * kTrustNoise);
+}
+
 // Errors that are a mean of `width` draws in a row: their integrated autocorrelation is the width,
 // in closed form. T-A28
 TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {

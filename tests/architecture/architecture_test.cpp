@@ -113,8 +113,9 @@ TEST(Architecture, EveryModuleHeaderBeginsWithItsIdea) {
 TEST(Architecture, MatricesAreDecomposedInOnePlace) {
   for (const SourceFile& file : filesUnder({"app", "modules"}, isCode)) {
     if (file.path.starts_with("modules/core/decompose.")) continue;
-    for (const char* name : {"EigenSolver", "LDLT<", "LLT<", "SVD<", "QR<", ".ldlt(", ".llt(",
-                             ".jacobiSvd(", "FromTwoVectors"})
+    for (const char* name :
+         {"EigenSolver", "LDLT<", "LLT<", "SVD<", "QR<", ".ldlt(", ".llt(", ".jacobiSvd(",
+          ".bdcSvd(", "PivLu(", "ouseholderQr(", ".eigenvalues(", "FromTwoVectors"})
       EXPECT_EQ(file.text.find(name), std::string::npos)
           << file.path << " names " << name << ": use core/decompose.h";
   }

@@ -10,6 +10,7 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kBlocks = 128; // points are averaged down to about so many
+constexpr double kSpanned = 1e-10;   // squared: columns less apart than that are the same
 constexpr double kFewest = 16;       // points: fewer tell nothing of how they go together
 
 struct Blocks {
@@ -96,6 +97,17 @@ ErrorLaw withPrior(ErrorLaw law, double block, double force) {
   return law;
 }
 
+// Its columns' span by as many that are orthonormal: a force that never changes may lie in what the
+// motions span, and then no law would have a determinant.
+MatX spanOf(const MatX& columns) {
+  const MatX even = columns.colwise().normalized();
+  const SymmetricEigen eigen(product(even.transpose(), even));
+  Eigen::Index count = 0;
+  while (count < even.cols() && eigen.values[even.cols() - 1 - count] > kSpanned) ++count;
+  const VecX scale = eigen.values.tail(count).cwiseSqrt().cwiseInverse();
+  return product(even, product(eigen.vectors.rightCols(count), MatX(scale.asDiagonal())));
+}
+
 } // namespace
 
 Mat6 ErrorLaw::covariance(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free) const {
@@ -133,6 +145,7 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
   MatX design(blocks.gradients.rows(), seen + (force.empty() ? 0 : 1));
   design.leftCols(seen) = product(blocks.gradients.leftCols(6), eigen.vectors.rightCols(seen));
   if (!force.empty()) design.col(seen) = blocks.gradients.col(6);
+  design = spanOf(design);
   std::vector<TriedLaw> all;
   for (const double alone : {1e-3, 0.03, 0.2, 0.6})
     for (double reach = 1; reach < 0.3 * count; reach *= 2) all.push_back({reach, alone});
