@@ -5,6 +5,7 @@
 #include "acquisition/calibration/pivot.h"
 #include "acquisition/calibration/still_probe.h"
 #include "acquisition/files/frame_files.h"
+#include "acquisition/files/measured.h"
 #include "acquisition/files/scan_files.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
@@ -129,8 +130,8 @@ int calibrateForce(const CalibrateOptions& options, Console& console) {
   std::vector<KnownForce> readings;
   std::vector<std::size_t> lines;
   for (std::vector<double> row; table.next(row);) {
-    if (!std::isfinite(row[0]) || !std::isfinite(row[1]))
-      throw FileError(options.input.string(), table.line(), "is not finite");
+    requireMeasured(row[0], "force [N]", options.input.string(), table.line());
+    requireMeasured(row[1], "reading", options.input.string(), table.line());
     readings.push_back({row[0], row[1]});
     lines.push_back(table.line());
   }

@@ -148,23 +148,29 @@ PathModel chosenModel(const FilterOptions& options, const Inputs& in) {
   return model;
 }
 
-// What came after it tells where a gap is.
+// What came after it tells where a gap is. Its times are those of the scan, which a clock may have
+// made of the file's.
 template <class Value>
-std::string placeOf(const std::filesystem::path& path, const OnFile<Value>& file, const Gap& gap) {
-  const auto after = std::find_if(file.values.begin(), file.values.end(),
-                                  [&](const Value& value) { return value.t >= gap.to; });
+std::string placeOf(const std::filesystem::path& path, const OnFile<Value>& file,
+                    const ProbeClock* clock, const Gap& gap) {
+  constexpr double kRounding = 1e-9; // [s]
+  const auto after = std::find_if(file.values.begin(), file.values.end(), [&](const Value& value) {
+    return (clock ? clock->onCamera(value.t) : value.t) >= gap.to - kRounding;
+  });
+  if (after == file.values.end()) return path.string();
   return path.string() + ":" +
          std::to_string(file.lines[static_cast<std::size_t>(after - file.values.begin())]);
 }
 
 template <class Value>
 void warnOf(const std::vector<Gap>& gaps, const std::filesystem::path& path,
-            const OnFile<Value>& file, const std::string& what, Console& console) {
+            const OnFile<Value>& file, const ProbeClock* clock, const std::string& what,
+            Console& console) {
   if (gaps.empty()) return;
   const Gap& longest = *std::max_element(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) {
     return a.to - a.from < b.to - b.from;
   });
-  console.warn(placeOf(path, file, longest) + ": before this line " +
+  console.warn(placeOf(path, file, clock, longest) + ": before this line " +
                rounded(longest.to - longest.from) + " s without " + what +
                (gaps.size() > 1 ? ", the longest of " + formatCount(gaps.size()) + " gaps" : ""));
 }
@@ -309,8 +315,9 @@ int runFilter(FilterOptions options, Console& console) {
   }
   if (scan.heights) reportHeights(*scan.heights, report);
   report.set("seconds", taken.count());
-  warnOf(scan.without_pose, options.input, in.poses, "a pose", console);
-  warnOf(scan.without_sample, options.probe, in.samples, "a sample", console);
+  warnOf(scan.without_pose, options.input, in.poses, nullptr, "a pose", console);
+  warnOf(scan.without_sample, options.probe, in.samples,
+         scan.clock && scan.clock->differs ? &*scan.clock : nullptr, "a sample", console);
   return console.report(report);
 }
 

@@ -2,11 +2,13 @@
 #include <cmath>
 #include <map>
 
+#include "acquisition/files/measured.h"
 #include "acquisition/texture/fit_plane.h"
 #include "acquisition/texture/fit_texture.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
+#include "core/csv_rows.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
@@ -57,20 +59,24 @@ std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console&
   const std::size_t first = text.starts_with("t [s]") ? 1 : 0;
   std::vector<std::string> expected = {"along [m]", "height [m]"};
   if (first) expected.insert(expected.begin(), "t [s]");
-  const CsvTable table = parseCsv(text, options.profile.string(), expected);
+  CsvReader reader(sourceOfText(text), options.profile.string(), expected);
+  const std::vector<std::string>& columns = reader.columns();
   const auto column = [&](const char* name) {
-    const auto found = std::find(table.columns.begin(), table.columns.end(), name);
-    return found == table.columns.end()
+    const auto found = std::find(columns.begin(), columns.end(), name);
+    return found == columns.end()
                ? std::nullopt
-               : std::optional(static_cast<std::size_t>(found - table.columns.begin()));
+               : std::optional(static_cast<std::size_t>(found - columns.begin()));
   };
   const auto sigma = column("sigma [m]"), stretch = column("stretch"),
              speed = column("speed [m/s]");
   std::map<std::int64_t, std::vector<ProfilePoint>> stretches;
-  for (const auto& row : table.rows)
+  for (std::vector<double> row; reader.next(row);) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      requireMeasured(row[i], columns[i], options.profile.string(), reader.line());
     stretches[stretch ? std::llround(row[*stretch]) : 0].push_back(
         {row[first], row[first + 1], sigma ? row[*sigma] : 0,
          speed ? std::optional(row[*speed]) : std::nullopt});
+  }
   if (stretches.empty()) throw FileError(options.profile.string(), 0, "has no height");
   if (options.stretch) {
     const auto found = stretches.find(static_cast<std::int64_t>(*options.stretch));

@@ -77,10 +77,11 @@ int runRecord(RecordOptions options, Console& console) {
   if (now.probe) setHealth(*now.probe, report);
   if (now.frames == 0)
     console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
-  if (!now.error.empty()) console.warn(now.error + "; what came before is kept");
+  if (!now.error.empty()) console.warn(now.error + "; what had reached the disk by then is kept");
   const bool silent = !options.probe.empty() && now.samples == 0;
   if (silent) console.warn(options.probe + ": the probe sent nothing");
-  return console.report(report, now.frames > 0 && !silent && now.error.empty() ? kDone : kNotSolved);
+  return console.report(report,
+                        now.frames > 0 && !silent && now.error.empty() ? kDone : kNotSolved);
 }
 
 } // namespace
@@ -107,7 +108,8 @@ Command recordCommand() {
           "is "
           "made: a program that is killed loses less than a second. Every frame is written; "
           "where tracking cannot keep up it leaves frames out of poses.tum, counts them, and "
-          "patina track SCAN -o SCAN/poses.tum finds them later.",
+          "patina track SCAN -o SCAN/poses.tum finds them later. Where a source or the disk fails "
+          "in the middle the report is printed, and the exit code is 1.",
       .examples = {"patina record camera:0 --probe stream:/dev/ttyACM0 --camera camera.yml --rig "
                    "rig.json -o scan",
                    "patina record replay:scan --probe replay:scan --seconds 5 -o again"},

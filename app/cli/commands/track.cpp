@@ -96,10 +96,8 @@ int runTrack(TrackOptions options, Console& console) {
   report.set("seconds", taken.count());
   if (found.unreadable > 0)
     console.warn(options.frames + ": " + formatCount(found.unreadable) + " of " +
-                 formatCount(found.frames) + " frames cannot be read; the first: " +
-                 std::find_if(found.without.begin(), found.without.end(), [](const NoPose& gap) {
-                   return gap.why.find(": ") != std::string::npos;
-                 })->why);
+                 formatCount(found.frames) +
+                 " frames cannot be read; the first: " + found.first_fault);
   if (found.poses.empty())
     console.warn(options.frames + ": no frame shows a pose of the rig, so nothing is written");
   return console.report(report, found.poses.empty() ? kNotSolved : kDone);

@@ -48,10 +48,17 @@ struct Place {
 
 // By time.
 std::map<double, Place> readPlaces(const std::filesystem::path& heights) {
-  const CsvTable table =
-      readCsv(heights, {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"});
+  const std::vector<std::string> columns = {"t [s]", "along [m]", "height [m]", "sigma [m]",
+                                            "stretch"};
+  CsvReader reader(heights, columns);
   std::map<double, Place> places;
-  for (const auto& row : table.rows) places[row[0]] = {row[1], row[4]};
+  for (std::vector<double> row; reader.next(row);) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      requireMeasured(row[i], columns[i], heights.string(), reader.line());
+    if (!places.empty() && !(row[0] > places.rbegin()->first))
+      throw FileError(heights.string(), reader.line(), "time does not increase");
+    places[row[0]] = {row[1], row[4]};
+  }
   return places;
 }
 

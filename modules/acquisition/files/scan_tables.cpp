@@ -17,6 +17,8 @@ const std::vector<std::string> kPathColumns = {"t [s]", "x [m]", "y [m]", "z [m]
 const std::vector<std::string> kHeightColumns = {"t [s]",     "along [m]", "height [m]",
                                                  "sigma [m]", "stretch",   "speed [m/s]"};
 
+constexpr double kUnitQuaternion = 1e-3; // off 1
+
 // Finite numbers, the first of them a time after `last`.
 void requireTimed(const std::vector<double>& row, const std::vector<std::string>& columns,
                   const std::string& name, std::size_t line, std::optional<double>& last) {
@@ -115,16 +117,20 @@ namespace {
 
 std::vector<PathSample> pathIn(CsvReader reader, const std::string& name) {
   std::vector<PathSample> samples;
-  readTimed(std::move(reader), name, kPathColumns,
-            [&](const std::vector<double>& row, std::size_t) {
-              PathSample sample;
-              sample.t = row[0];
-              sample.position = {row[1], row[2], row[3]};
-              sample.orientation = Eigen::Quaterniond(row[7], row[4], row[5], row[6]).normalized();
-              sample.sigma = row[8];
-              sample.force = row[9];
-              samples.push_back(sample);
-            });
+  readTimed(
+      std::move(reader), name, kPathColumns, [&](const std::vector<double>& row, std::size_t line) {
+        const Eigen::Quaterniond turn(row[7], row[4], row[5], row[6]);
+        if (!(std::abs(turn.norm() - 1) < kUnitQuaternion))
+          throw FileError(name, line, "the quaternion has length " + formatNumber(turn.norm()));
+        if (row[8] < 0) throw FileError(name, line, "sigma [m] is negative");
+        PathSample sample;
+        sample.t = row[0];
+        sample.position = {row[1], row[2], row[3]};
+        sample.orientation = turn.normalized();
+        sample.sigma = row[8];
+        sample.force = row[9];
+        samples.push_back(sample);
+      });
   return samples;
 }
 

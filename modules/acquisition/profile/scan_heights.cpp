@@ -43,7 +43,8 @@ Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip) {
       spread += (sample.position - mean) * (sample.position - mean).transpose() / count;
   const SymmetricEigen axes(spread);
   if (!(axes.values[0] < kFlat * kFlat * axes.values[1]))
-    throw Error("where the tip touched is no plane: tell which way is out (--normal), or find heights over its mesh (--over)");
+    throw Error("where the tip touched is no plane: tell which way is out (--normal), or find "
+                "heights over its mesh (--over)");
   const Vec3 normal = axes.vectors.col(0);
   return {normal.dot(shaft) < 0 ? Vec3(-normal) : normal, mean};
 }

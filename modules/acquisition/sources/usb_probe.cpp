@@ -17,6 +17,7 @@ constexpr std::uint8_t kFromProbe = 0xc1, kToProbe = 0x41; // vendor, interface
 constexpr std::uint8_t kDescribe = 1, kStream = 2;
 constexpr unsigned kAnswer = 500, kWait = 100; // [ms]
 constexpr double kSilence = 2;                 // [s]
+constexpr double kMended = 7;                  // [s]: the kernel may take 5 to clear a halt
 constexpr double kTogether = 0.01;             // [s]: packets are read in lots of this length
 constexpr std::size_t kMostTogether = 16;
 
@@ -78,10 +79,10 @@ class UsbProbe final : public ProbeSource {
       if (got.result == UsbResult::gone)
         fail(name_, "is gone: it was pulled out, or its hub lost power");
       const bool refused = got.result != UsbResult::ok && got.result != UsbResult::timeout;
-      if (now - heard_ > kSilence)
+      if (now - heard_ > (refused ? kMended : kSilence))
         fail(name_, refused ? "cannot be read: plug it in again, without a hub"
                             : "has sent nothing for 2 s: plug it in again");
-      // An endpoint that stalled is mended by then; what is lost meanwhile is missed by its number.
+      // What is lost while an endpoint that stalled is mended is missed by its number.
       if (refused) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return true;

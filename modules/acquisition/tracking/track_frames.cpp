@@ -78,7 +78,7 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
     progress.report(count ? std::min(1., done / static_cast<double>(*count)) : 0, "frames");
     if (!frame->fault.empty()) {
       goWithout(frame->t, {}, frame->fault);
-      ++result.unreadable;
+      if (result.unreadable++ == 0) result.first_fault = frame->fault;
       continue;
     }
     requireSize(frame->image, camera, frame->name);

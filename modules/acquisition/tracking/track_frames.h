@@ -41,6 +41,7 @@ struct TrackedFrames {
   std::size_t unreadable = 0, ambiguous = 0, misfit = 0; // of those
   std::size_t dropped = 0;                               // markers that contradicted the others
   double rms = 0;                                        // of all corners [px]
+  std::string first_fault = {};                          // of the first that cannot be read
 };
 
 // Each frame once it was looked at, in their order; `why` says why it has no pose, if it has none.
