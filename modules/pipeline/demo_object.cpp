@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/decompose.h"
 #include "core/error.h"
@@ -145,6 +146,7 @@ DemoObject demoObject() {
 
 DemoObject demoObjectOf(const std::string& name, TriangleMesh mesh, const Pose& plane_from_object,
                         const DemoWays& ways) {
+  if (ways.survey.empty()) throw std::invalid_argument("demoObjectOf: no survey");
   DemoObject object;
   object.name = name;
   object.mesh = std::move(mesh);
@@ -156,6 +158,9 @@ DemoObject demoObjectOf(const std::string& name, TriangleMesh mesh, const Pose& 
   object.ground = [heights = std::make_shared<const SmoothHeights>(turned)](const Vec2& place) {
     return heights->at(place);
   };
+  for (const auto& way : {ways.ribs, ways.weave, ways.grain, ways.grip})
+    for (const Vec2& end : {way.from, way.to}) object.ground(end);
+  for (const Vec2& place : ways.survey) object.ground(place);
   object.normal = normalOf(object.ground);
   object.grip = [ground = object.ground, way = ways.grip](double part) {
     const Vec2 place = (1 - part) * way.from + part * way.to;

@@ -43,7 +43,8 @@ struct DemoWays {
 };
 
 DemoObject demoObject(); // the dinosaur, twice as large
-// The three materials on any body [m]. Throws Error where a way leaves it.
+// The three materials on any body [m]. Throws Error where a way leaves it, invalid_argument without
+// a survey.
 DemoObject demoObjectOf(const std::string& name, TriangleMesh mesh, const Pose& plane_from_object,
                         const DemoWays& ways);
 
