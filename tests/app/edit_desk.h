@@ -66,7 +66,7 @@ class Desk {
   void openFolder(const std::filesystem::path& folder) {
     Progress progress;
     edits.adopt(Editor::open(folder, {}, progress, edits.listener()));
-    waitUntil([this] { return compiled != nullptr; });
+    waitUntil([&] { return compiled && status.folder == folder; });
   }
 
   // Takes events until it is so; false after 20 s.

@@ -184,35 +184,58 @@ TEST(EditThread, NoCallWaitsForWhatIsUnderWayAndCancelEndsIt) {
   EXPECT_TRUE(desk.status.edits.empty()) << "the stroke was waiting, and so was cancelled too";
 }
 
-TEST(EditThread, SavingGivesTheSceneAFolderAndDiscardingGoesBackToIt) {
+// A ball, named "a" when it was saved.
+class SavedBall : public testing::Test {
+ protected:
+  std::filesystem::path workspace() const { return folder.path() / "ws"; }
+  std::filesystem::path state() const { return folder.path() / "state"; }
+  static void rename(Desk& desk, const std::string& name) {
+    desk.edits.apply(name, [name](const CompiledScene& c) { return renamed(c, name); });
+  }
+  bool save(Desk& desk) const {
+    desk.open(oneBall());
+    rename(desk, "a");
+    desk.edits.saveAs(workspace());
+    return desk.waitUntil([&] { return desk.status.folder.has_value(); });
+  }
+  static bool discard(Desk& desk) {
+    bool done = false;
+    desk.edits.discard(
+        [&](const EditOutcome& outcome) { done = outcome.problem.empty() && !outcome.cancelled; });
+    return desk.waitUntil([&] { return done; });
+  }
+  void expectA(const Desk& desk) const {
+    EXPECT_FALSE(desk.status.unsaved);
+    EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
+    EXPECT_EQ(loadWorkspace(workspace()).objects[0].name, "a");
+  }
+  std::unique_ptr<Editor> openAgain() const {
+    Progress progress;
+    auto editor = Editor::open(workspace(), {}, progress, {});
+    EXPECT_FALSE(editor->unsaved());
+    EXPECT_EQ(editor->scene().objects[0].name, "a");
+    return editor;
+  }
+
   const Folder folder;
-  Desk desk(folder.path() / "state");
-  desk.open(oneBall());
-  desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
-  desk.edits.saveAs(folder.path() / "ws");
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.folder.has_value(); }));
+};
+
+TEST_F(SavedBall, HasAFolderAndDiscardingGoesBackToIt) {
+  Desk desk(state());
+  ASSERT_TRUE(save(desk));
   EXPECT_FALSE(desk.status.unsaved);
-  EXPECT_TRUE(leftBehind(folder.path() / "state").empty());
-  desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+  EXPECT_TRUE(leftBehind(state()).empty());
+  rename(desk, "b");
   ASSERT_TRUE(desk.waitUntil([&] { return desk.status.unsaved; }));
-  bool done = false;
-  desk.edits.discard(
-      [&](const EditOutcome& outcome) { done = outcome.problem.empty() && !outcome.cancelled; });
-  ASSERT_TRUE(desk.waitUntil([&] { return done; }));
-  EXPECT_FALSE(desk.status.unsaved);
-  EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
-  EXPECT_EQ(loadWorkspace(folder.path() / "ws").objects[0].name, "a");
+  ASSERT_TRUE(discard(desk));
+  expectA(desk);
 }
 
-TEST(EditThread, NothingIsUnsavedOnceAllIsTakenBack) {
-  const Folder folder;
+TEST_F(SavedBall, IsSavedAgainOnceAllIsTakenBack) {
   {
-    Desk desk(folder.path() / "state");
-    desk.open(oneBall());
-    desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
-    desk.edits.saveAs(folder.path() / "ws");
-    ASSERT_TRUE(desk.waitUntil([&] { return desk.status.folder.has_value(); }));
-    desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+    Desk desk(state());
+    ASSERT_TRUE(save(desk));
+    rename(desk, "b");
     ASSERT_TRUE(desk.waitUntil([&] { return desk.status.unsaved; }));
     desk.edits.goTo(1);
     ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 1; }));
@@ -223,66 +246,44 @@ TEST(EditThread, NothingIsUnsavedOnceAllIsTakenBack) {
     desk.edits.goTo(1);
     ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 1; }));
   }
-  Progress progress;
-  const auto again = Editor::open(folder.path() / "ws", {}, progress, {});
-  EXPECT_FALSE(again->unsaved());
-  EXPECT_EQ(again->scene().objects[0].name, "a");
-  EXPECT_EQ(again->history().redoable(), 1u) << "and can still be done again";
+  EXPECT_EQ(openAgain()->history().redoable(), 1u) << "and can still be done again";
 }
 
-TEST(EditThread, EditsOfACrashAreUnsavedUntilTheyAreTakenBackAndCanBeDiscarded) {
-  const Folder folder;
+TEST_F(SavedBall, HasEditsOfACrashUnsavedUntilTheyAreTakenBackOrDiscarded) {
   {
-    Desk desk(folder.path() / "state");
-    desk.open(oneBall());
-    desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
-    desk.edits.saveAs(folder.path() / "ws");
-    desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+    Desk desk(state());
+    ASSERT_TRUE(save(desk));
+    rename(desk, "b");
     ASSERT_TRUE(desk.settle());
   }
   for (const bool discards : {false, true}) {
     Desk desk;
-    desk.openFolder(folder.path() / "ws");
+    desk.openFolder(workspace());
     ASSERT_TRUE(desk.settle());
     EXPECT_TRUE(desk.status.unsaved);
-    desk.edits.goTo(1);
-    ASSERT_TRUE(desk.settle()); // which does all of it again
-    EXPECT_TRUE(desk.status.unsaved);
-    if (!discards) {
-      bool saved = false;
-      desk.edits.goTo(1, [&](const EditOutcome&) { saved = true; });
-      ASSERT_TRUE(desk.waitUntil([&] { return saved; }));
+    if (discards) {
+      ASSERT_TRUE(discard(desk));
       EXPECT_FALSE(desk.status.unsaved);
-      ASSERT_TRUE(desk.settle());
       continue;
     }
-    bool done = false;
-    desk.edits.discard([&](const EditOutcome& outcome) { done = outcome.problem.empty(); });
-    ASSERT_TRUE(desk.waitUntil([&] { return done; }));
+    bool back = false;
+    desk.edits.goTo(1, [&](const EditOutcome&) { back = true; });
+    ASSERT_TRUE(desk.waitUntil([&] { return back; }));
     EXPECT_FALSE(desk.status.unsaved);
+    ASSERT_TRUE(desk.settle()); // which does all of it again
+    EXPECT_TRUE(desk.status.unsaved);
   }
-  Progress progress;
-  const auto again = Editor::open(folder.path() / "ws", {}, progress, {});
-  EXPECT_FALSE(again->unsaved());
-  EXPECT_EQ(again->scene().objects[0].name, "a");
+  openAgain();
 }
 
-TEST(EditThread, WhatWasSavedComesBackThoughTheHistoryHasLeftIt) {
-  const Folder folder;
-  Desk desk(folder.path() / "state");
-  desk.open(oneBall());
-  desk.edits.apply("a", [](const CompiledScene& c) { return renamed(c, "a"); });
-  desk.edits.saveAs(folder.path() / "ws");
-  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.folder.has_value(); }));
+TEST_F(SavedBall, ComesBackThoughTheHistoryHasLeftWhatWasSaved) {
+  Desk desk(state());
+  ASSERT_TRUE(save(desk));
   desk.edits.goTo(0);
-  desk.edits.apply("b", [](const CompiledScene& c) { return renamed(c, "b"); });
+  rename(desk, "b");
   ASSERT_TRUE(desk.settle());
-  bool done = false;
-  desk.edits.discard([&](const EditOutcome& outcome) { done = outcome.problem.empty(); });
-  ASSERT_TRUE(desk.waitUntil([&] { return done; }));
-  EXPECT_FALSE(desk.status.unsaved);
-  EXPECT_EQ(desk.compiled->scene.objects[0].name, "a");
-  EXPECT_EQ(loadWorkspace(folder.path() / "ws").objects[0].name, "a");
+  ASSERT_TRUE(discard(desk));
+  expectA(desk);
 }
 
 TEST(EditThread, AFolderThatCannotBeMadeIsToldOfAndTheEditsStay) {

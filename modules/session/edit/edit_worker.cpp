@@ -50,7 +50,7 @@ void EditWorker::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave>
   saved_at_.reset();
   if (!editor_) return;
   // What has no folder of ours is as it was saved until it is edited.
-  saved_at_ = ownsFolder() ? editor_->openedAt() : std::optional(editor_->history().undoable());
+  saved_at_ = ownsFolder() ? editor_->savedBefore() : std::optional(editor_->history().undoable());
   show(editor_->compiled(), true);
 }
 

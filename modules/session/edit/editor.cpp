@@ -137,7 +137,7 @@ const std::vector<std::string>& Editor::notes() const {
 bool Editor::unsaved() const {
   return impl_->unsaved;
 }
-std::optional<std::size_t> Editor::openedAt() const {
+std::optional<std::size_t> Editor::savedBefore() const {
   return impl_->opened_at;
 }
 bool Editor::inStroke() const {

@@ -48,7 +48,7 @@ class Editor {
   const std::vector<std::string>& notes() const; // what opening found
   bool unsaved() const;
   // Where in the history the workspace was saved when it was opened; absent: it is not there.
-  std::optional<std::size_t> openedAt() const;
+  std::optional<std::size_t> savedBefore() const;
 
   // A stroke. Between begin and end other edits throw invalid_argument. prepare() does beforehand
   // what the first stroke with a tool would have to wait for.
