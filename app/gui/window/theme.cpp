@@ -46,15 +46,10 @@ class FlatControls final : public QProxyStyle {
   FlatControls() : QProxyStyle(QStyleFactory::create(QStringLiteral("Fusion"))) {}
   void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                      const QWidget* widget) const override {
-    painter->save();
-    if (element == PE_PanelButtonCommand) {
-      drawButton(*option, *painter);
-    } else {
-      QProxyStyle::drawPrimitive(element, option, painter, widget);
-      if (element == PE_IndicatorCheckBox || element == PE_IndicatorRadioButton)
-        drawFrame(*option, *painter, element == PE_IndicatorRadioButton);
-    }
-    painter->restore();
+    if (element == PE_PanelButtonCommand) return drawButton(*option, *painter);
+    QProxyStyle::drawPrimitive(element, option, painter, widget);
+    if (element == PE_IndicatorCheckBox || element == PE_IndicatorRadioButton)
+      drawFrame(*option, *painter, element == PE_IndicatorRadioButton);
   }
 
  private:
@@ -64,14 +59,19 @@ class FlatControls final : public QProxyStyle {
   static void drawButton(const QStyleOption& option, QPainter& painter) {
     const auto is = [&](State state) { return (option.state & state) != 0; };
     const bool enabled = is(State_Enabled);
+    const auto* button = qstyleoption_cast<const QStyleOptionButton*>(&option);
+    const bool by_return = button && (button->features & QStyleOptionButton::DefaultButton);
+    painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
     painter.setBrush(ink(is(State_Sunken | State_On)      ? "chosen"
                          : enabled && is(State_MouseOver) ? "hover"
                                                           : "button"));
-    painter.setPen(ink(enabled && is(State_HasFocus) ? "accent" : enabled ? "grip" : "line"));
+    painter.setPen(ink(!enabled ? "line" : by_return || is(State_HasFocus) ? "accent" : "grip"));
     painter.drawRoundedRect(frameOf(option), 3, 3);
+    painter.restore();
   }
   static void drawFrame(const QStyleOption& option, QPainter& painter, bool round) {
+    painter.save();
     painter.setRenderHint(QPainter::Antialiasing, round);
     painter.setBrush(Qt::NoBrush);
     painter.setPen(ink(option.state & State_Enabled ? "quiet" : "grip"));
@@ -79,6 +79,7 @@ class FlatControls final : public QProxyStyle {
       painter.drawEllipse(frameOf(option));
     else
       painter.drawRect(frameOf(option));
+    painter.restore();
   }
 };
 
