@@ -173,6 +173,42 @@ TEST_F(Scans, ThatAreDamagedAreRefusedWithFileAndLine) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
+TEST_F(Scans, AGapOfTheProbeHasItsLineWhereItsClockIsBehind) {
+  simulate({"--clock-offset", "-0.3"});
+  const std::string whole = readFile(scan + "/probe.csv");
+  std::string holed;
+  std::size_t at = 0;
+  for (int line = 1; at < whole.size(); ++line) {
+    const std::size_t end = whole.find('\n', at) + 1;
+    if (line < 1000 || line >= 1250) holed += whole.substr(at, end - at);
+    at = end;
+  }
+  writeFileAtomically(scan + "/probe.csv", holed);
+  const Outcome outcome = run({"filter", scan, "-o", path});
+  EXPECT_EQ(outcome.exit, 0);
+  EXPECT_NE(outcome.err.find("probe.csv:1000: before this line 0.502"), std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(Scans, WhatNothingMeasuresIsAnErrorOfItsLine) {
+  const std::string out = folder / "out.csv";
+  const std::string head = "t [s],x [m],y [m],z [m],qx,qy,qz,qw,sigma [m],force [N]\n",
+                    good = "0,0,0,.05,0,0,0,1,1e-4,1\n";
+  for (const char* row : {"1,0,0,.05,0,0,0,2,1e-4,1\n", "1,0,0,.05,0,0,0,1,-1e-4,1\n",
+                          "1,0,0,1e300,0,0,0,1,1e-4,1\n", "1,nan,0,.05,0,0,0,1,1e-4,1\n"}) {
+    writeFileAtomically(path, head + good + row);
+    expectOneLineError(run({"register", ball, path, "-o", out}), {"path.csv:3:"});
+    EXPECT_FALSE(std::filesystem::exists(out)) << row;
+  }
+  const std::string heights = folder / "heights.csv", texture = folder / "texture.json";
+  for (const char* row : {"1,.1,nan,1e-5,0\n", "1,.1,1e300,1e-5,0\n"}) {
+    writeFileAtomically(heights, "t [s],along [m],height [m],sigma [m],stretch\n0,0,0,1e-5,0\n" +
+                                     std::string(row));
+    expectOneLineError(run({"fit-texture", heights, "-o", texture}), {"heights.csv:3:", "height"});
+    EXPECT_FALSE(std::filesystem::exists(texture)) << row;
+  }
+}
+
 TEST_F(Scans, OfNothingToScanAreRefused) {
   const std::string plate = folder.write("wall.obj", "v 0 0 0\nv 100 0 0\nv 0 0.1 100\nf 1 2 3\n");
   expectOneLineError(run({"simulate-scan", plate, "-o", scan}), {"--from"});

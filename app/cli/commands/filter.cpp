@@ -148,18 +148,15 @@ PathModel chosenModel(const FilterOptions& options, const Inputs& in) {
   return model;
 }
 
-// What came after it tells where a gap is. Its times are those of the scan, which a clock may have
-// made of the file's.
+// A gap ends at a value of the file, by the scan's time, which a clock may have made of the file's.
 template <class Value>
 std::string placeOf(const std::filesystem::path& path, const OnFile<Value>& file,
                     const ProbeClock* clock, const Gap& gap) {
-  constexpr double kRounding = 1e-9; // [s]
   const auto after = std::find_if(file.values.begin(), file.values.end(), [&](const Value& value) {
-    return (clock ? clock->onCamera(value.t) : value.t) >= gap.to - kRounding;
+    return (clock ? clock->onCamera(value.t) : value.t) >= gap.to;
   });
-  if (after == file.values.end()) return path.string();
   return path.string() + ":" +
-         std::to_string(file.lines[static_cast<std::size_t>(after - file.values.begin())]);
+         std::to_string(file.lines.at(static_cast<std::size_t>(after - file.values.begin())));
 }
 
 template <class Value>

@@ -79,7 +79,7 @@ class UsbProbe final : public ProbeSource {
       if (got.result == UsbResult::gone)
         fail(name_, "is gone: it was pulled out, or its hub lost power");
       const bool refused = got.result != UsbResult::ok && got.result != UsbResult::timeout;
-      if (now - heard_ > (refused ? kMended : kSilence))
+      if (now - heard_ > (got.result == UsbResult::stall ? kMended : kSilence))
         fail(name_, refused ? "cannot be read: plug it in again, without a hub"
                             : "has sent nothing for 2 s: plug it in again");
       // What is lost while an endpoint that stalled is mended is missed by its number.
