@@ -165,15 +165,17 @@ TEST_F(FalconWindow, DISABLED_FaultsInAStroke) {
   };
   std::size_t begun = 0;
   constexpr int kTimes = 4; // where something else has the processor
-  // 55 to 75 ms where nothing else has the machine; a picture that is being drawn, and put together
+  // 10 to 60 ms where nothing else has the machine; a picture that is being drawn, and put together
   // with the rest of the window, is waited for.
   const double frame = frameSeconds(), limit = std::max(0.1, 0.05 + 3 * frame);
   std::printf("a frame takes %.0f ms\n", 1e3 * frame);
   for (const Fault& fault : faults) {
     double shown = 10, back = 0; // [s]
     for (int time = 0; time < kTimes && (shown > limit || back > 2.3); ++time) {
-      ASSERT_TRUE(waitUntil([&] { return rate.forceIsBack(); }, 5000)) << fault.name;
-      wait(300);
+      do { // a machine that is busy gives trouble of its own
+        ASSERT_TRUE(waitUntil([&] { return rate.forceIsBack(); }, 5000)) << fault.name;
+        wait(300);
+      } while (!rate.forceIsBack());
       rate.trouble.reset();
       const Moment seen = fault.begin();
       ++begun;

@@ -51,11 +51,10 @@ void StatusLine::showPicked(const QString& words) {
   picked_->setText(words);
 }
 
-void StatusLine::showHeldBack(const QString& words) {
-  if (words == std::exchange(held_back_, words)) return;
-  if (words.isEmpty()) return;
+bool StatusLine::showHeldBack(const QString& words) {
+  if (words == std::exchange(held_back_, words) || words.isEmpty()) return false;
   rate_->setText(words);
-  rate_->repaint(); // before the picture, which may take long
+  return true;
 }
 
 void StatusLine::showTiming(const ServoTiming& timing, bool running) {

@@ -17,7 +17,8 @@ class StatusLine : public QObject {
   // held_back: why a device gives no force; empty: it does.
   void showTiming(const ServoTiming& timing, bool running);
   // Why there is no force, or not all of it, in place of the rate from now on; empty: there is.
-  void showHeldBack(const QString& words);
+  // True where it is new, and there is a reason: the label must be drawn.
+  bool showHeldBack(const QString& words);
   void showFault(bool on);               // the force jumped and was faded to zero (F13)
   void showPicked(const QString& words); // what is under the pointer; empty: nothing
 

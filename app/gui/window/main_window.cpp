@@ -254,7 +254,8 @@ void MainWindow::say(const Message& message) {
 void MainWindow::tick() {
   edits_.tryValues();
   feel_.collect();
-  parts_.status->showHeldBack(feel_.heldBack());
+  // Qt draws a label no sooner after another picture than a screen can show it: this picture waits.
+  if (parts_.status->showHeldBack(feel_.heldBack())) return;
   paint_.refresh();
   if (feel_.servo().running()) view_.view().setTool(feel_.sample());
   if (feel_.servo().running()) felt_ = std::max(felt_, feel_.sample().force.norm());
