@@ -63,6 +63,11 @@ void give(const Argument& argument, const std::string& value) {
 // An argument that was given, and with which values.
 using Given = std::map<std::string, Words>;
 
+// As of a shell's variable that is not set.
+void requireSome(const Argument& argument, const std::string& word, const std::string& see) {
+  if (word.empty()) throw Error(argument.name() + ": '' is no value; see " + see);
+}
+
 // Fills in the command's options from the words after its name.
 Given parse(const Command& command, const Words& words) {
   const std::string see = "patina " + command.name + " --help";
@@ -80,6 +85,7 @@ Given parse(const Command& command, const Words& words) {
       if (given.contains(input->name()) && !input->isRepeated())
         throw Error(command.name + ": one " + input->value + " at a time: '" + word +
                     "' is one too many; see " + see);
+      requireSome(*input, word, see);
       given[input->name()].push_back(word);
       give(*input, word);
       continue;
@@ -97,6 +103,7 @@ Given parse(const Command& command, const Words& words) {
     values.push_back(option.isFlag() ? ""
                      : carries       ? word.substr(end + (is_long ? 1 : 0))
                                      : words[++i]);
+    if (!option.isFlag()) requireSome(option, values.back(), see);
     give(option, values.back());
   }
   for (const Argument& argument : command.arguments)

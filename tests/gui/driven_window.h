@@ -133,8 +133,11 @@ class DrivenWindow : public WindowTest {
   }
   void wheelAt(const QPoint& screen, int notches) {
     pointAt(screen);
-    for (int i = 0; i < std::abs(notches); ++i)
-      press(notches > 0 ? 4 : 5), release(notches > 0 ? 4 : 5);
+    for (int i = 0; i < std::abs(notches); ++i) {
+      for (const bool down : {true, false}) hand_->button(notches > 0 ? 4 : 5, down);
+      wait(10);
+    }
+    settle();
   }
   // What opens holds up who opened it: it is answered from beside.
   template <typename Look, typename Act> void whenThere(Look look, Act act) {

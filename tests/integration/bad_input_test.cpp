@@ -194,6 +194,16 @@ TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
   expectOneLineError(run({"render", box, "-o", folder / "p.png", "--view", "-w"}), {"--view"});
 }
 
+// As of a shell's variable that is not set.
+TEST_F(BadInput, AnEmptyWordIsNoValue) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"model", "sphere", "-o", ""},
+                                             {"model", "sphere", "--output="},
+                                             {"info", box, "--unit", ""}})
+    expectOneLineError(run(words), {"'' is no value; see patina " + words.front() + " --help"});
+  expectOneLineError(run({"info", ""}), {"FILE: '' is no value"});
+}
+
 TEST_F(BadInput, MistypedWordsAreToldWhatTheyMayHaveMeant) {
   const auto line = [](const std::vector<std::string>& words) {
     const Outcome outcome = run(words);
