@@ -5,7 +5,8 @@
 
 namespace patina::test {
 
-enum class Writes { file, folder, workspace };
+// A recording is never written over: what a hand has done cannot be done again.
+enum class Writes { file, folder, workspace, recording };
 
 struct CommandLine {
   std::string name;
@@ -81,7 +82,7 @@ class EveryCommand : public Painted {
             { "record",
               {"record", film, "--probe", film, "-o", "OUT"},
               "",
-              Writes::folder }};
+              Writes::recording }};
   }
 #else
   void makeScan() const {}
