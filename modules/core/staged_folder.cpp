@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <fcntl.h>
+#include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "core/disk_error.h"
 #include "core/file.h"
 #include "core/file_kind.h"
+#include "core/numbers.h"
 
 namespace patina {
 namespace {
@@ -39,14 +42,36 @@ void flush(const fs::path& folder) {
     throw DiskError(folder.string(), "cannot be flushed to disk: " + reason(errno));
 }
 
+constexpr std::string_view kStaging = ".writing-"; // and the process's number, and one more
+
+// What runs that were killed have left.
+std::vector<fs::path> abandonedIn(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kStaging)) continue;
+    const auto number = parseNumber(
+        name.substr(kStaging.size(), name.find('-', kStaging.size()) - kStaging.size()));
+    const bool gone =
+        number && *number > 1 && ::kill(static_cast<pid_t>(*number), 0) != 0 && errno == ESRCH;
+    if (gone) found.push_back(entry.path());
+  }
+  return found;
+}
+
 } // namespace
+
+bool wasAbandoned(const fs::path& folder) {
+  return fs::is_directory(folder) && !abandonedIn(folder).empty();
+}
 
 StagedFolder::StagedFolder(const fs::path& folder, const std::string& last)
     : folder_(folder), last_(last), fresh_(folder, last) {
   makeFolder(folder_);
   // Never one that is there: a run that was killed may have left files in it.
   for (int i = 0;; ++i) {
-    staging_ = folder_ / (".writing-" + std::to_string(::getpid()) + "-" + std::to_string(i));
+    staging_ =
+        folder_ / (std::string(kStaging) + std::to_string(::getpid()) + "-" + std::to_string(i));
     if (::mkdir(staging_.c_str(), 0777) == 0) break;
     if (errno != EEXIST)
       throw DiskError(staging_.string(), "cannot be made a folder: " + reason(errno));
@@ -60,7 +85,9 @@ StagedFolder::~StagedFolder() {
 }
 
 void StagedFolder::commit() {
-  const bool ours = pathExists(folder_ / last_); // what an earlier run has made
+  const std::vector<fs::path> abandoned = abandonedIn(folder_);
+  // What an earlier run has made, or had begun to put in place when it was killed.
+  const bool ours = pathExists(folder_ / last_) || !abandoned.empty();
   std::vector<Move> moves;
   std::vector<fs::path> folders = {folder_};
   for (const fs::directory_entry& file : fs::recursive_directory_iterator(staging_)) {
@@ -93,6 +120,8 @@ void StagedFolder::commit() {
     return 0;
   });
   fresh_.keep();
+  std::error_code ignored;
+  for (const fs::path& left : abandoned) fs::remove_all(left, ignored);
 }
 
 } // namespace patina

@@ -31,4 +31,8 @@ class StagedFolder {
   Unfinished unfinished_;
 };
 
+// Whether a run was killed while it wrote into the folder. What it has put in place is no scene,
+// scan or study yet; the next commit() takes its place and removes the rest.
+bool wasAbandoned(const std::filesystem::path& folder);
+
 } // namespace patina
