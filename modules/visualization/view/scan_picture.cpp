@@ -137,7 +137,9 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   ball->Update();
   setData(*my.ball, ball->GetOutput());
   for (std::size_t i = 0; i < 3; ++i) my.axes[i] = lineActor(kAxisColors[i], 3);
-  // What presses lies a little below the surface, and is seen all the same.
+  // What presses lies a little below the surface, and is seen all the same. The offset is a share of
+  // all depth there is: were the nearest plane much nearer, front and back would be no farther apart.
+  my.scene->SetNearClippingPlaneTolerance(0.02);
   auto* mapper = my.mesh->GetMapper();
   mapper->SetResolveCoincidentTopologyToPolygonOffset();
   mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(0, 4000);
