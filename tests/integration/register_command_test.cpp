@@ -53,6 +53,29 @@ TEST_F(RegisteredScans, LandOnTheirMeshWithoutAGuess) {
   }
 }
 
+// It would say how long a turn of all the others is.
+TEST_F(RegisteredScans, LeaveOutASampleThatLiesFartherThanTheMeshIsLong) {
+  scan("dinosaur", "+x");
+  const std::vector<std::string> words = {
+      "register", mesh, path, "-o", out, "--truth", scanned + "/truth.json"};
+  const Json report = runJson(words);
+  std::string text = readFile(path);
+  std::size_t row = 0;
+  for (int line = 1; line < 50; ++line) row = text.find('\n', row) + 1;
+  const std::size_t x = text.find(',', row) + 1;
+  text.replace(x, text.find(',', x) - x, "10000");
+  writeFileAtomically(path, text);
+  const Outcome outcome = run(words);
+  EXPECT_EQ(outcome.exit, 0);
+  EXPECT_NE(outcome.err.find("path.csv: the sample at "), std::string::npos) << outcome.err;
+  const Json again = runJson(words);
+  EXPECT_EQ(again.at("samples").at("all").asInteger() + 1,
+            report.at("samples").at("all").asInteger());
+  EXPECT_NEAR(again.at("error").asNumber(), report.at("error").asNumber(), 0.02e-3);
+  EXPECT_NEAR(again.at("deviation").at("shift").asNumber(),
+              report.at("deviation").at("shift").asNumber(), 0.02e-3);
+}
+
 // Four seconds of a smooth back lie as well elsewhere, and the one fit is some millimetres off.
 TEST_F(RegisteredScans, ThatAreShortAreWarnedOfOtherPlaces) {
   scan("dinosaur", "+z", "4", "2");

@@ -237,6 +237,17 @@ Report reportOf(const Registration& found, const RegisterOptions& options, doubl
   return report.set("seconds", seconds);
 }
 
+// Of a path file, what can be registered onto a mesh of that length.
+std::vector<PathSample> readTouching(const std::filesystem::path& file, double length,
+                                     Console& console) {
+  std::vector<PathSample> path = inContact(readPath(file));
+  if (const std::vector<PathSample> far = leaveOutFar(path, 2 * length); !far.empty())
+    console.warn(file.string() + ": the sample at " + formatNumber(far.front().t) +
+                 " s lies farther from the path's middle than the mesh is long, and is left out" +
+                 (far.size() > 1 ? ", as are " + formatCount(far.size() - 1) + " more" : ""));
+  return path;
+}
+
 int runRegister(RegisterOptions options, Console& console) {
   std::vector<std::filesystem::path> inputs = {options.mesh, options.path, options.initial,
                                                options.truth};
@@ -257,10 +268,11 @@ int runRegister(RegisterOptions options, Console& console) {
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
   TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
   if (mesh.triangles.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
-  std::vector<PathSample> path = inContact(readPath(options.path));
+  const double length = bounds(mesh).diagonal().norm();
+  std::vector<PathSample> path = readTouching(options.path, length, console);
   const auto own = static_cast<std::ptrdiff_t>(path.size());
   for (const std::string& file : options.also) {
-    const std::vector<PathSample> other = inContact(readPath(file));
+    const std::vector<PathSample> other = readTouching(file, length, console);
     path.insert(path.end(), other.begin(), other.end());
   }
   if (path.size() < 3)

@@ -4,6 +4,7 @@
 
 #include "acquisition/filtering/contact.h"
 #include "acquisition/registration/path_fit.h"
+#include "core/percentiles.h"
 
 namespace patina {
 
@@ -14,6 +15,23 @@ std::vector<PathSample> inContact(std::vector<PathSample> path) {
   markContact(path);
   std::erase_if(path, [](const PathSample& sample) { return !sample.touching; });
   return path;
+}
+
+std::vector<PathSample> leaveOutFar(std::vector<PathSample>& path, double reach) {
+  if (path.empty()) return {};
+  Vec3 middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> along;
+    for (const PathSample& sample : path) along.push_back(sample.position[axis]);
+    middle[axis] = percentiles(std::move(along)).p50;
+  }
+  std::vector<PathSample> far;
+  std::erase_if(path, [&](const PathSample& sample) {
+    const bool leaves = !((sample.position - middle).norm() <= reach);
+    if (leaves) far.push_back(sample);
+    return leaves;
+  });
+  return far;
 }
 
 Pose middleOnMiddle(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
