@@ -119,6 +119,9 @@ TEST_F(Scans, GiveHeightsWhereTheyAreAskedFor) {
   refused({"--heights", heights, "--normal", "0,0,0"}, "--normal");
   refused({"--heights", heights, "--model", "acceleration"}, "--heights");
   refused({"--heights", path}, "path.csv");
+  const std::string link = folder / "link.csv";
+  std::filesystem::create_symlink("path.csv", link); // whose end is not there yet
+  refused({"--heights", link}, "is the path's file too");
 }
 
 TEST_F(Scans, WithFaultsTellThem) {
@@ -167,6 +170,14 @@ TEST_F(Scans, ThatAreDamagedAreRefusedWithFileAndLine) {
   refused("probe.csv", head + "0,1;0;0;0;0;0\n", {"probe.csv:2:", "decimal commas"});
   refused("rig.json", "{", {"rig.json"});
   refused("rig.json", "{\"tip\": 3}", {"rig.json", "tip"});
+  refused("rig.json", "{\"tip\": [0, 0, -1e9]}", {"rig.json", "'tip' is more than 10 m away"});
+  const std::string rig = readFile(scan + "/rig.json");
+  const std::size_t gravity = rig.find("\"gravity\"");
+  ASSERT_NE(gravity, std::string::npos);
+  refused("rig.json",
+          rig.substr(0, gravity) + "\"gravity\": [0, 0, -1]" +
+              rig.substr(rig.find(']', gravity) + 1),
+          {"rig.json", "'gravity' has length 1 m/s^2"});
   std::filesystem::remove(scan + "/poses.tum");
   expectOneLineError(run({"filter", scan, "-o", path}), {"poses.tum"});
   expectOneLineError(run({"filter", folder / "none.tum", "-o", path}), {"none.tum"});
@@ -207,6 +218,21 @@ TEST_F(Scans, WhatNothingMeasuresIsAnErrorOfItsLine) {
     expectOneLineError(run({"fit-texture", heights, "-o", texture}), {"heights.csv:3:", "height"});
     EXPECT_FALSE(std::filesystem::exists(texture)) << row;
   }
+}
+
+TEST_F(Scans, AreMixedWithNoOther) {
+  const auto again = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"simulate-scan", ball, "-o", scan, "--seconds", "1"});
+    return run(more);
+  };
+  simulate();
+  EXPECT_EQ(again({"--seed", "3"}).exit, 0) << "one of the same files takes its place";
+  const std::string kept = readFile(scan + "/rig.json");
+  expectOneLineError(again({"--frames"}), {scan, "holds a scan already: name another folder"});
+  std::filesystem::remove(scan + "/truth.json"); // as one that was recorded
+  expectOneLineError(again({}), {scan, "holds a scan already"});
+  EXPECT_EQ(readFile(scan + "/rig.json"), kept);
+  expectOneLineError(run({"simulate-scan", ball, "-o", "-"}), {"a scan is a folder"});
 }
 
 TEST_F(Scans, OfNothingToScanAreRefused) {

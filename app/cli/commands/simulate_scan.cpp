@@ -87,8 +87,20 @@ std::string truthText(const ScanOptions& options, const Pose& camera_from_mesh) 
   return json.dump() + "\n";
 }
 
+// A simulated scan of poses may take another one's place, for it has the same files. Whatever else
+// is a scan would be mixed with it; what a run that was killed has left is none.
+void requireNoOther(const std::filesystem::path& folder, bool frames) {
+  if (wasAbandoned(folder)) return;
+  const auto has = [&](const char* name) { return pathExists(folder / name); };
+  const bool filmed = has("frames") || has("frames.csv");
+  if (filmed || ((has("poses.tum") || has("probe.csv")) && (frames || !has("truth.json"))))
+    throw FileError(folder.string(), 0, "holds a scan already: name another folder");
+}
+
 int runSimulateScan(ScanOptions options, Console& console) {
   const std::filesystem::path& folder = options.output;
+  if (isStandardStream(folder)) throw Error("--output: a scan is a folder, not a stream");
+  requireNoOther(folder, options.frames);
   if (std::filesystem::is_directory(folder)) requireWritable(folder / "mesh.obj", {options.mesh});
   ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);

@@ -173,8 +173,10 @@ void requireWritable(const std::filesystem::path& path,
 bool areOne(const std::filesystem::path& a, const std::filesystem::path& b) {
   namespace fs = std::filesystem;
   std::error_code unknown;
-  return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b)) ||
-         fs::equivalent(a, b, unknown);
+  const auto end = [](const fs::path& path) { // also of a link whose end is not there yet
+    return fs::weakly_canonical(fs::absolute(outputTarget(path).path));
+  };
+  return end(a) == end(b) || fs::equivalent(a, b, unknown);
 }
 
 } // namespace patina::cli

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json.h"
+#include "core/numbers.h"
 #include "geometry/io/pose_file.h"
 
 namespace patina {
@@ -29,10 +30,17 @@ Vec3 vectorIn(const Json& json, const std::string& key) {
   return v;
 }
 
+// Of something that a hand holds [m].
+Vec3 placeIn(const Json& json, const std::string& key) {
+  const Vec3 place = vectorIn(json, key);
+  if (!(place.norm() < 10)) throw Error("'" + key + "' is more than 10 m away");
+  return place;
+}
+
 AccelerometerAxis axisIn(const Json& json) {
   const Vec3 direction = vectorIn(json, "direction");
   if (!(std::abs(direction.norm() - 1) < 0.01)) throw Error("a 'direction' must have length 1");
-  return {vectorIn(json, "position"), direction.normalized()};
+  return {placeIn(json, "position"), direction.normalized()};
 }
 
 void setNumber(const Json& json, const std::string& key, double& number) {
@@ -44,7 +52,7 @@ void setNumber(const Json& json, const std::string& key, double& number) {
 
 Rig rigIn(const Json& json) {
   Rig rig;
-  rig.probe.tip = vectorIn(json, "tip");
+  rig.probe.tip = placeIn(json, "tip");
   setNumber(json, "acceleration_step", rig.probe.acceleration_step);
   setNumber(json, "acceleration_noise", rig.probe.acceleration_noise);
   setNumber(json, "force_step", rig.probe.force_step);
@@ -61,6 +69,9 @@ Rig rigIn(const Json& json) {
   if (!(rig.probe.accelerationVariance() > 0))
     throw Error("'acceleration_step' and 'acceleration_noise' cannot both be 0");
   rig.gravity = vectorIn(json, "gravity");
+  if (!(std::abs(rig.gravity.norm() - 9.8) < 1))
+    throw Error("'gravity' has length " + formatNumber(rig.gravity.norm()) +
+                " m/s^2, on the ground it is 9.8");
   rig.accelerometers = true;
   return rig;
 }
