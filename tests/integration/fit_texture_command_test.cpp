@@ -97,6 +97,8 @@ TEST_F(FittedTextures, AreRefusedWithTheFileThatIsWrong) {
   expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv"});
   writeFileAtomically(bad, "t [s],along [m],height [m]\n0,0,0\n1,1e-3,x\n");
   expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv:3", "x"});
+  writeFileAtomically(bad, "along [m],height [m]\n0,0\n0.2,0\n0.1,0\n0.3,0\n");
+  expectOneLineError(run({"fit-texture", bad, "-o", out}), {"bad.csv:4", "runs backwards"});
   expectOneLineError(run({"fit-texture", profile, "-o", out, "--step", "0.00001mm"}),
                      {"profile.csv", "longer step"});
   expectOneLineError(run({"fit-texture", profile, "-o", profile}), {"profile.csv"});

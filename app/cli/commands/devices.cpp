@@ -178,8 +178,8 @@ void addUsb(bool diagnose, Json& list, Report& report) {
     entry.set("advice", advice);
     std::string text = device.name;
     if (haptic) text += " (" + device.haptic + "; " + driverText(device, entry) + ")";
-    text += "; " + stateText(check);
-    if (!advice.empty()) text += ": " + advice;
+    const bool says_all = !advice.empty() && check.holder.empty(); // the state, too
+    text += "; " + (says_all ? advice : stateText(check) + (advice.empty() ? "" : ": " + advice));
     if (diagnose) {
       text += "; release " + firmwareText(device.release);
       if (device.megabits > 0) text += "; " + rounded(device.megabits) + " Mbit/s";

@@ -73,9 +73,11 @@ std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console&
   for (std::vector<double> row; reader.next(row);) {
     for (std::size_t i = 0; i < row.size(); ++i)
       requireMeasured(row[i], columns[i], options.profile.string(), reader.line());
-    stretches[stretch ? std::llround(row[*stretch]) : 0].push_back(
-        {row[first], row[first + 1], sigma ? row[*sigma] : 0,
-         speed ? std::optional(row[*speed]) : std::nullopt});
+    std::vector<ProfilePoint>& points = stretches[stretch ? std::llround(row[*stretch]) : 0];
+    if (!points.empty() && row[first] < points.back().along)
+      throw FileError(options.profile.string(), reader.line(), "along [m] runs backwards");
+    points.push_back({row[first], row[first + 1], sigma ? row[*sigma] : 0,
+                      speed ? std::optional(row[*speed]) : std::nullopt});
   }
   if (stretches.empty()) throw FileError(options.profile.string(), 0, "has no height");
   if (options.stretch) {

@@ -110,7 +110,7 @@ Command recordCommand() {
           "where tracking cannot keep up it leaves frames out of poses.tum, counts them, and "
           "patina track SCAN -o SCAN/poses.tum finds them later. Where a source or the disk fails "
           "in the middle the report is printed, and the exit code is 1.",
-      .examples = {"patina record camera:0 --probe stream:/dev/ttyACM0 --camera camera.yml --rig "
+      .examples = {"patina record camera:0 --probe serial:/dev/ttyACM0 --camera camera.yml --rig "
                    "rig.json -o scan",
                    "patina record replay:scan --probe replay:scan --seconds 5 -o again"},
       .keys = kRecordKeys,
