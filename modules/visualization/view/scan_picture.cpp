@@ -104,6 +104,7 @@ struct ScanPicture::Impl {
     return points;
   }
   void fit(bool with_camera);
+  void sinkMesh();
   void sizeBall() {
     if (!probe) return;
     vtkCamera& eye = *scene->GetActiveCamera();
@@ -137,16 +138,6 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   ball->Update();
   setData(*my.ball, ball->GetOutput());
   for (std::size_t i = 0; i < 3; ++i) my.axes[i] = lineActor(kAxisColors[i], 3);
-  // What presses lies a little below the surface, and is seen all the same. The offset is a share of
-  // all depth there is: were the nearest plane much nearer, front and back would be no farther apart.
-  my.scene->SetNearClippingPlaneTolerance(0.02);
-  auto* mapper = my.mesh->GetMapper();
-  mapper->SetResolveCoincidentTopologyToPolygonOffset();
-  mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(0, 4000);
-  // In front of the mesh and behind the path.
-  auto* above = my.highlight->GetMapper();
-  above->SetResolveCoincidentTopologyToPolygonOffset();
-  above->SetRelativeCoincidentTopologyPolygonOffsetParameters(0, 3000);
   for (const auto& actor : {my.mesh, my.highlight, my.frustum}) my.scene->AddActor(actor);
   for (const auto& actor : {my.shaft, my.ball, my.axes[0], my.axes[1], my.axes[2]})
     my.overlay->AddActor(actor);
@@ -309,6 +300,16 @@ void ScanPicture::Impl::fit(bool with_camera) {
   my.dirty = true;
 }
 
+// What presses lies a little below the surface, and is seen all the same. A depth offset would be
+// one of units that differ from window to window.
+void ScanPicture::Impl::sinkMesh() {
+  if (mesh_box.isEmpty()) return;
+  const Vec3 behind = 0.01 * mesh_box.diagonal().norm() * viewDirection(*scene->GetActiveCamera());
+  mesh->SetPosition(behind.x(), behind.y(), behind.z());
+  const Vec3 before = 0.75 * behind; // the mesh, and behind the path
+  highlight->SetPosition(before.x(), before.y(), before.z());
+}
+
 std::optional<double> ScanPicture::timeAt(double x, double y, double reach) const {
   return impl_->path.timeAt(*impl_->scene, x, y, reach);
 }
@@ -326,10 +327,8 @@ bool ScanPicture::prepare() {
   my.sizeBall();
   my.handle.prepare();
   my.syncCorner();
+  my.sinkMesh();
   my.scene->ResetCameraClippingRange();
-  // Behind the farthest is room for the mesh's offset, or its back would come to the front.
-  vtkCamera& eye = *my.scene->GetActiveCamera();
-  eye.SetClippingRange(eye.GetClippingRange()[0], 1.3 * eye.GetClippingRange()[1]);
   const CameraPlace place = placeOf(*my.scene->GetActiveCamera());
   const bool changed = my.dirty || place != my.drawn_from || my.size() != my.drawn_size;
   my.drawn_from = place;
