@@ -198,8 +198,12 @@ TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
   click(*board);
   type('a', kControl);
   type(QStringLiteral("chessboard:8x5"));
+  ASSERT_TRUE(waitUntil([&] { return board->text() == QStringLiteral("chessboard:8x5"); }, 5000))
+      << board->text().toStdString();
   clickOn("calibrate_camera");
-  EXPECT_TRUE(found->text().contains(QStringLiteral("chessboard:COLUMNSxROWS")));
+  EXPECT_TRUE(waitUntil(
+      [&] { return found->text().contains(QStringLiteral("chessboard:COLUMNSxROWS")); }, 5000))
+      << found->text().toStdString();
   EXPECT_FALSE(find<QPushButton>("calibrate_use")->isVisible());
 }
 

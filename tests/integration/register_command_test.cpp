@@ -53,6 +53,16 @@ TEST_F(RegisteredScans, LandOnTheirMeshWithoutAGuess) {
   }
 }
 
+// Each sample sees a little of a turn, and all of them together nothing that is more than noise.
+TEST_F(RegisteredScans, OnAPlateAreFreeOrKnownAndNeverKnownToKilometres) {
+  scan("plate", "+z", "8", "1");
+  const Outcome outcome = run({"register", mesh, path, "-o", out, "--json"});
+  const Json report = parseJson(outcome.out, "report");
+  EXPECT_EQ(outcome.exit, 1) << "a plate lies as well turned about";
+  EXPECT_GE(report.at("unobservable").asArray().size(), 2U);
+  EXPECT_LT(report.at("deviation").at("shift").asNumber(), 1e-3);
+}
+
 // It would say how long a turn of all the others is.
 TEST_F(RegisteredScans, LeaveOutASampleThatLiesFartherThanTheMeshIsLong) {
   scan("dinosaur", "+x");

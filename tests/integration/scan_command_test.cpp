@@ -8,36 +8,10 @@
 
 #include "core/csv.h"
 #include "core/file.h"
-#include "integration/program.h"
+#include "integration/scans.h"
 
 namespace patina::test {
 namespace {
-
-class Scans : public testing::Test {
- protected:
-  void SetUp() override {
-    ball = folder / "ball.ply";
-    ASSERT_EQ(run({"model", "sphere", "-o", ball}).exit, 0);
-    scan = folder / "scan";
-    path = folder / "path.csv";
-  }
-  Json simulate(std::vector<std::string> more = {}) const {
-    std::vector<std::string> words = {"simulate-scan", ball, "-o", scan};
-    words.insert(words.end(), more.begin(), more.end());
-    return runJson(words);
-  }
-  void refused(const std::string& file, const std::string& text,
-               const std::vector<std::string>& parts) const {
-    const std::string kept = readFile(scan + "/" + file);
-    writeFileAtomically(scan + "/" + file, text);
-    expectOneLineError(run({"filter", scan, "-o", path}), parts);
-    EXPECT_FALSE(std::filesystem::exists(path));
-    writeFileAtomically(scan + "/" + file, kept);
-  }
-
-  ScratchFolder folder;
-  std::string ball, scan, path;
-};
 
 TEST_F(Scans, RunFromSimulationToPath) {
   const Json made = simulate();
@@ -154,36 +128,6 @@ TEST_F(Scans, ArePosesAloneToo) {
   expectOneLineError(run({"filter", poses, "-o", path, "--model", "fused"}), {"--probe"});
 }
 
-TEST_F(Scans, ThatAreDamagedAreRefusedWithFileAndLine) {
-  simulate();
-  const std::string poses = readFile(scan + "/poses.tum"), probe = readFile(scan + "/probe.csv");
-  const std::string head = probe.substr(0, probe.find('\n') + 1);
-  refused("poses.tum", "", {"poses.tum", "no pose"});
-  refused("poses.tum", poses + "0 0 0 0 0 0 0 1\n", {"poses.tum:", "backwards"});
-  refused("poses.tum", "0 0,5 0 0 0 0 0 1\n", {"poses.tum:1:", "decimal commas"});
-  refused("poses.tum", "0 nan 0 0 0 0 0 1\n", {"poses.tum:1:", "nan"});
-  refused("poses.tum", "1000 0 0 0 0 0 0 1\n1001 0 0 0 0 0 0 1\n", {"no time in common"});
-  refused("probe.csv", "", {"probe.csv", "empty"});
-  refused("probe.csv", head, {"probe.csv", "no sample"});
-  refused("probe.csv", probe + "0,0,0,0,0,0\n", {"probe.csv:", "backwards"});
-  refused("probe.csv", head + "0,0,0,nan,0,0\n", {"probe.csv:2:", "a1v"});
-  refused("probe.csv", head + "0,1;0;0;0;0;0\n", {"probe.csv:2:", "decimal commas"});
-  refused("rig.json", "{", {"rig.json"});
-  refused("rig.json", "{\"tip\": 3}", {"rig.json", "tip"});
-  refused("rig.json", "{\"tip\": [0, 0, -1e9]}", {"rig.json", "'tip' is more than 10 m away"});
-  const std::string rig = readFile(scan + "/rig.json");
-  const std::size_t gravity = rig.find("\"gravity\"");
-  ASSERT_NE(gravity, std::string::npos);
-  refused("rig.json",
-          rig.substr(0, gravity) + "\"gravity\": [0, 0, -1]" +
-              rig.substr(rig.find(']', gravity) + 1),
-          {"rig.json", "'gravity' has length 1 m/s^2"});
-  std::filesystem::remove(scan + "/poses.tum");
-  expectOneLineError(run({"filter", scan, "-o", path}), {"poses.tum"});
-  expectOneLineError(run({"filter", folder / "none.tum", "-o", path}), {"none.tum"});
-  EXPECT_FALSE(std::filesystem::exists(path));
-}
-
 TEST_F(Scans, AGapOfTheProbeHasItsLineWhereItsClockIsBehind) {
   simulate({"--clock-offset", "-0.3"});
   const std::string whole = readFile(scan + "/probe.csv");
@@ -199,47 +143,6 @@ TEST_F(Scans, AGapOfTheProbeHasItsLineWhereItsClockIsBehind) {
   EXPECT_EQ(outcome.exit, 0);
   EXPECT_NE(outcome.err.find("probe.csv:1000: before this line 0.502"), std::string::npos)
       << outcome.err;
-}
-
-TEST_F(Scans, WhatNothingMeasuresIsAnErrorOfItsLine) {
-  const std::string out = folder / "out.csv";
-  const std::string head = "t [s],x [m],y [m],z [m],qx,qy,qz,qw,sigma [m],force [N]\n",
-                    good = "0,0,0,.05,0,0,0,1,1e-4,1\n";
-  for (const char* row : {"1,0,0,.05,0,0,0,2,1e-4,1\n", "1,0,0,.05,0,0,0,1,-1e-4,1\n",
-                          "1,0,0,1e300,0,0,0,1,1e-4,1\n", "1,nan,0,.05,0,0,0,1,1e-4,1\n"}) {
-    writeFileAtomically(path, head + good + row);
-    expectOneLineError(run({"register", ball, path, "-o", out}), {"path.csv:3:"});
-    EXPECT_FALSE(std::filesystem::exists(out)) << row;
-  }
-  const std::string heights = folder / "heights.csv", texture = folder / "texture.json";
-  for (const char* row : {"1,.1,nan,1e-5,0\n", "1,.1,1e300,1e-5,0\n"}) {
-    writeFileAtomically(heights, "t [s],along [m],height [m],sigma [m],stretch\n0,0,0,1e-5,0\n" +
-                                     std::string(row));
-    expectOneLineError(run({"fit-texture", heights, "-o", texture}), {"heights.csv:3:", "height"});
-    EXPECT_FALSE(std::filesystem::exists(texture)) << row;
-  }
-}
-
-TEST_F(Scans, AreMixedWithNoOther) {
-  const auto again = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"simulate-scan", ball, "-o", scan, "--seconds", "1"});
-    return run(more);
-  };
-  simulate();
-  EXPECT_EQ(again({"--seed", "3"}).exit, 0) << "one of the same files takes its place";
-  const std::string kept = readFile(scan + "/rig.json");
-  expectOneLineError(again({"--frames"}), {scan, "holds a scan already: name another folder"});
-  std::filesystem::remove(scan + "/truth.json"); // as one that was recorded
-  expectOneLineError(again({}), {scan, "holds a scan already"});
-  EXPECT_EQ(readFile(scan + "/rig.json"), kept);
-  expectOneLineError(run({"simulate-scan", ball, "-o", "-"}), {"a scan is a folder"});
-}
-
-TEST_F(Scans, OfNothingToScanAreRefused) {
-  const std::string plate = folder.write("wall.obj", "v 0 0 0\nv 100 0 0\nv 0 0.1 100\nf 1 2 3\n");
-  expectOneLineError(run({"simulate-scan", plate, "-o", scan}), {"--from"});
-  EXPECT_FALSE(std::filesystem::exists(scan));
-  expectOneLineError(run({"simulate-scan", ball, "-o", scan, "--from", "up"}), {"--from", "up"});
 }
 
 // The whole chain, by nothing but its files.

@@ -8,6 +8,7 @@
 #include "acquisition/registration/joint_fit.h"
 #include "acquisition/registration/scan_options.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/scan_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -235,17 +236,6 @@ Report reportOf(const Registration& found, const RegisterOptions& options, doubl
              rounded(1e3 * found.last_turn) + " mrad, " + formatLength(found.last_shift));
   report.set("iterations", static_cast<std::size_t>(found.iterations));
   return report.set("seconds", seconds);
-}
-
-// Of a path file, what can be registered onto a mesh of that length.
-std::vector<PathSample> readTouching(const std::filesystem::path& file, double length,
-                                     Console& console) {
-  std::vector<PathSample> path = inContact(readPath(file));
-  if (const std::vector<PathSample> far = leaveOutFar(path, 2 * length); !far.empty())
-    console.warn(file.string() + ": the sample at " + formatNumber(far.front().t) +
-                 " s lies farther from the path's middle than the mesh is long, and is left out" +
-                 (far.size() > 1 ? ", as are " + formatCount(far.size() - 1) + " more" : ""));
-  return path;
 }
 
 int runRegister(RegisterOptions options, Console& console) {

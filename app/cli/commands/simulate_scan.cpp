@@ -191,7 +191,9 @@ Command simulateScanCommand() {
           "A hand scans what of the mesh is seen along an axis and no steeper than 45 degrees: "
           "strokes, presses, pauses, ways back and lift-offs. FOLDER becomes a scan folder with "
           "the poses that a camera would find, the probe's stream, its rig and the truth. The "
-          "same words give the same scan.\n"
+          "same words give the same scan. It takes the place of one of poses that was simulated "
+          "too; "
+          "a folder with another scan is refused.\n"
           "With --frames the camera's frames of a cube of markers on the probe take the place of "
           "its poses, which patina track then finds: through a lens, blurred, noisy, unevenly lit; "
           "in dropouts something is before the markers.",

@@ -111,6 +111,11 @@ std::string direction(const Vec3& v) {
   return text;
 }
 
+void add(FreeMotions& free, const Vec6& direction) {
+  free.basis.conservativeResize(6, free.basis.cols() + 1);
+  free.basis.rightCols(1) = direction;
+}
+
 } // namespace
 
 std::string inWords(const FreeMotion& motion) {
@@ -131,11 +136,20 @@ FreeMotions freeMotions(const SurfaceTarget& target, const std::vector<Vec3>& po
     const Vec6 direction = eigen.vectors.col(k);
     const double share = eigen.values[k] / eigen.values[5];
     if (share > kWeak || (share > kBlind && !trial.unseen(direction))) continue;
-    free.basis.conservativeResize(6, free.basis.cols() + 1);
-    free.basis.rightCols(1) = direction;
+    add(free, direction);
   }
   if (free.basis.cols() > 0) free.named = named(free.basis, trial.scale);
   return free;
+}
+
+void addUnknown(FreeMotions& free, const ErrorLaw& law, const MotionScale& scale) {
+  const Eigen::Index before = free.basis.cols();
+  while (free.basis.cols() < 6) {
+    const SymmetricEigen eigen(law.covariance(free.basis));
+    if (!(std::sqrt(eigen.values[5]) > scale.radius / 2)) break;
+    add(free, eigen.vectors.col(5));
+  }
+  if (free.basis.cols() > before) free.named = named(free.basis, scale);
 }
 
 } // namespace patina

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/registration/error_law.h"
 #include "acquisition/registration/path_fit.h"
 
 namespace patina {
@@ -28,5 +29,8 @@ std::string inWords(const FreeMotion& motion); // "free to slide along (1, 0, 0)
 FreeMotions freeMotions(const SurfaceTarget& target, const std::vector<Vec3>& points,
                         const PathFit& fit, double noise, double together,
                         const std::vector<double>& pressed);
+// Adds what the errors leave known no better than to half the path's radius: neighbours that err
+// alike may leave nothing of what each sample alone still sees.
+void addUnknown(FreeMotions& free, const ErrorLaw& law, const MotionScale& scale);
 
 } // namespace patina

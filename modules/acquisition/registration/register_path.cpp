@@ -159,6 +159,7 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
       for (const double f : options.force) yielding.pressed.push_back(result.compliance * f);
     }
     free = freeMotions(target, points, best, noiseOf(best), law.together, yielding.pressed);
+    addUnknown(free, law, scaleOf(points, best.mesh_from_path));
   };
   judge();
   if (options.rivals) {
