@@ -56,7 +56,7 @@ class Recorder::Work {
       throw Error("frames and probe share no clock: both must be live, or both recorded");
     requireNoScan(folder_);
     const std::string camera_text = readFile(setup.camera), rig_text = readFile(setup.rig);
-    NewFolder fresh(folder_, "frames/000000.pgm");
+    fresh_.emplace(folder_, "frames/000000.pgm");
     makeFolder(folder_);
     writeBeside(folder_ / "camera.yml", camera_text);
     writeBeside(folder_ / "rig.json", rig_text);
@@ -64,7 +64,6 @@ class Recorder::Work {
     frame_rows_.emplace(folder_ / "frames.csv", frameListHeader());
     pose_rows_.emplace(folder_ / "poses.tum", posesHeader());
     if (probe_) probe_rows_.emplace(folder_ / "probe.csv", probeHeader());
-    fresh.keep();
     state_.paused = setup.paused;
     probe_done_ = !probe_;
     const auto start = [&](void (Work::*work)()) {
@@ -76,7 +75,10 @@ class Recorder::Work {
     threads_.push_back(start(&Work::keepWriting));
   }
 
-  ~Work() { stop(); }
+  ~Work() {
+    stop();
+    if (state_.error.empty()) fresh_->keep();
+  }
 
   void setPaused(bool paused) {
     const std::lock_guard lock(mutex_);
@@ -149,6 +151,7 @@ class Recorder::Work {
         createFile(folder_ / "frames" / (frameStem(number) + ".pgm"), greyText(frame->image));
       std::unique_lock lock(mutex_);
       if (write) {
+        fresh_->keep();
         frame_rows_->add(std::to_string(number) + "," + formatNumber(frame->t) + "\n");
         ++number;
         ++state_.frames;
@@ -228,6 +231,7 @@ class Recorder::Work {
         state_.dropouts += last && sample.t - *last > kDropout;
         last = sample.t;
         if (!state_.paused) {
+          fresh_->keep();
           probe_rows_->add(probeRow(sample));
           ++state_.samples;
         }
@@ -289,6 +293,7 @@ class Recorder::Work {
 
   std::mutex mutex_; // for all below
   std::condition_variable changed_;
+  std::optional<NewFolder> fresh_; // one that failed before anything came is taken back
   std::optional<RowFile> frame_rows_, pose_rows_, probe_rows_;
   std::optional<Arrived> waiting_;
   RecordingState state_;
