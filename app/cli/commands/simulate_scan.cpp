@@ -192,8 +192,7 @@ Command simulateScanCommand() {
           "strokes, presses, pauses, ways back and lift-offs. FOLDER becomes a scan folder with "
           "the poses that a camera would find, the probe's stream, its rig and the truth. The "
           "same words give the same scan. It takes the place of one of poses that was simulated "
-          "too; "
-          "a folder with another scan is refused.\n"
+          "too; a folder with another scan is refused.\n"
           "With --frames the camera's frames of a cube of markers on the probe take the place of "
           "its poses, which patina track then finds: through a lens, blurred, noisy, unevenly lit; "
           "in dropouts something is before the markers.",

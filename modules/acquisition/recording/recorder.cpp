@@ -151,7 +151,7 @@ class Recorder::Work {
         createFile(folder_ / "frames" / (frameStem(number) + ".pgm"), greyText(frame->image));
       std::unique_lock lock(mutex_);
       if (write) {
-        fresh_->keep();
+        if (number == 0) fresh_->keep();
         frame_rows_->add(std::to_string(number) + "," + formatNumber(frame->t) + "\n");
         ++number;
         ++state_.frames;
@@ -231,7 +231,7 @@ class Recorder::Work {
         state_.dropouts += last && sample.t - *last > kDropout;
         last = sample.t;
         if (!state_.paused) {
-          fresh_->keep();
+          if (state_.samples == 0) fresh_->keep();
           probe_rows_->add(probeRow(sample));
           ++state_.samples;
         }
