@@ -39,11 +39,17 @@ std::string inBrackets(const std::string& text) {
   return text.empty() ? "" : " [" + text + "]";
 }
 
+// Not the one within a file's name.
+std::size_t firstStop(const std::string& text) {
+  for (std::size_t at = 0; (at = text.find_first_of(".;:", at)) != std::string::npos; ++at)
+    if (at + 1 == text.size() || text[at + 1] == ' ') return at;
+  return text.size();
+}
+
 // The unit stands before the caption's full stop.
 std::string textOf(const Argument& argument) {
   std::string text = argument.caption;
-  if (!argument.unit.empty())
-    text.insert(std::min(text.find_first_of(".;:"), text.size()), inBrackets(argument.unit));
+  if (!argument.unit.empty()) text.insert(firstStop(text), inBrackets(argument.unit));
   if (argument.isRepeated()) text += " May be given more than once.";
   if (argument.isRequired() && !argument.isInput()) text += " Required.";
   return text + inBrackets(argument.fallback);
