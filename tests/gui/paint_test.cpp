@@ -5,6 +5,7 @@
 #include <QAction>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QElapsedTimer>
 #include <QKeyEvent>
 #include <QRegularExpression>
 #include <QTabletEvent>

@@ -111,15 +111,15 @@ TEST_F(Program, CtrlCAndKillAndALostTerminalWriteTheLog) {
     windows.push_back(std::make_unique<test::Running>(
         std::vector<std::string>{"--log", logOf(name), (folder_ / "sphere.obj").string()},
         program_));
-  // Its log has begun when a window catches signals; three seconds are some thousand ticks.
+  // Its log has begun when a window catches signals, and grows with the servo.
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(120);
   for (std::size_t i = 0; i < ends.size(); ++i)
-    while (!windows[i]->catches(ends[i].second)) {
+    while (!windows[i]->catches(ends[i].second) || !windows[i]->hasThread("servo")) {
       ASSERT_FALSE(windows[i]->finished()) << ends[i].first;
       ASSERT_LT(std::chrono::steady_clock::now(), until) << ends[i].first;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-  std::this_thread::sleep_for(std::chrono::seconds(3));
+  std::this_thread::sleep_for(std::chrono::seconds(1)); // a thousand ticks, or some hundred
   for (std::size_t i = 0; i < ends.size(); ++i) windows[i]->signal(ends[i].second);
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const auto& name = ends[i].first;

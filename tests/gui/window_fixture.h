@@ -8,7 +8,6 @@
 
 #include <QApplication>
 #include <QCheckBox>
-#include <QElapsedTimer>
 #include <QMenu>
 #include <QMouseEvent>
 #include <QSettings>
@@ -19,6 +18,7 @@
 
 #include "app/gui/window/main_window.h"
 #include "app/gui/window/theme.h"
+#include "app/gui/window/wait.h"
 #include "geometry/io/mesh_io.h"
 #include "support/own_display.h"
 
@@ -65,16 +65,10 @@ class WindowTest : public ::testing::Test {
   }
 
   static bool waitUntil(const std::function<bool()>& done, int milliseconds = 60000) {
-    QElapsedTimer clock;
-    clock.start();
-    while (!done()) {
-      if (clock.elapsed() > milliseconds) return false;
-      QApplication::processEvents(QEventLoop::AllEvents, 5);
-    }
-    return true;
+    return patina::waitUntil(done, milliseconds);
   }
   static void wait(int milliseconds) {
-    waitUntil([] { return false; }, milliseconds);
+    patina::wait(milliseconds);
   }
 
   std::filesystem::path saved(const TriangleMesh& mesh, const std::string& name) const {

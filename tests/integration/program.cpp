@@ -81,6 +81,13 @@ bool Running::catches(int number) const {
   return false;
 }
 
+bool Running::hasThread(const std::string& name) const {
+  std::error_code ended;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/task", ended))
+    if (firstLine(task.path() / "comm") == name) return true;
+  return false;
+}
+
 bool Running::finished() {
   if (!reaped_ && waitpid(pid_, &status_, WNOHANG) == pid_) reaped_ = true;
   return reaped_;

@@ -29,6 +29,7 @@ class Running {
 
   void signal(int number) const;
   bool catches(int number) const; // by a handler of its own
+  bool hasThread(const std::string& name) const;
   bool finished();                // without waiting
   Outcome wait();
 

@@ -4,10 +4,9 @@
 #include <fstream>
 #include <sstream>
 
-#include <QApplication>
-#include <QElapsedTimer>
 #include <unistd.h>
 
+#include "app/gui/window/wait.h"
 #include "core/error.h"
 
 namespace patina {
@@ -43,10 +42,7 @@ double firstPictureSeconds(MainWindow& window, const LoadRequest& request) {
     if (mesh_shown && presented == 0) presented = now();
   });
   documents.open(request);
-  QElapsedTimer clock;
-  clock.start();
-  while (presented == 0 && problem.isEmpty() && clock.elapsed() < 120000)
-    QApplication::processEvents(QEventLoop::AllEvents, 5);
+  waitUntil([&] { return presented != 0 || !problem.isEmpty(); }, 120000);
   if (!problem.isEmpty()) throw Error(problem.toStdString());
   if (presented == 0) throw Error("no frame was presented within two minutes");
   documents.cancel();

@@ -7,6 +7,7 @@
 
 #include "app/gui/control/desk_controller.h"
 #include "app/gui/window/tour_hand.h"
+#include "app/gui/window/wait.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "visualization/export/export_files.h"

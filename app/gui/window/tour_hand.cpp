@@ -5,9 +5,9 @@
 #include <cmath>
 #include <thread>
 
-#include <QApplication>
 #include <QElapsedTimer>
 
+#include "app/gui/window/wait.h"
 #include "core/error.h"
 #include "scene/surface_pick.h"
 #include "visualization/view/camera.h"
@@ -35,20 +35,6 @@ std::vector<Vec3> path(int milliseconds, const std::function<std::optional<Vec3>
 }
 
 } // namespace
-
-bool waitUntil(const std::function<bool()>& done, int milliseconds) {
-  QElapsedTimer clock;
-  clock.start();
-  while (!done()) {
-    if (clock.elapsed() > milliseconds) return false;
-    QApplication::processEvents(QEventLoop::AllEvents, 10);
-  }
-  return true;
-}
-
-void wait(int milliseconds) {
-  waitUntil([] { return false; }, milliseconds);
-}
 
 void play(MainWindow& window, const std::vector<Vec3>& targets) {
   if (targets.empty()) return;

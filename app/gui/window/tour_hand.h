@@ -1,4 +1,4 @@
-// The hand of the tour: waits, moves the tip and paints, as a person would.
+// The hand of the tour: moves the tip and paints, as a person would.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,6 @@ namespace patina {
 template <typename Widget> Widget& find(MainWindow& window, const char* name = nullptr) {
   return *window.findChild<Widget*>(QString::fromUtf8(name));
 }
-
-// Events go on while we wait; false after the time is up.
-bool waitUntil(const std::function<bool()>& done, int milliseconds);
-void wait(int milliseconds);
 
 // Targets, one every few milliseconds. A thread of its own plays them, so that the path does not
 // depend on how fast this machine draws.

@@ -1,5 +1,7 @@
 #include "haptics/servo/servo_loop.h"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
@@ -29,6 +31,7 @@ struct ServoLoop::Impl {
   }
 
   void run() noexcept {
+    pthread_setname_np(pthread_self(), "servo"); // as a debugger and /proc show it
     grant.store(requestRealtime(), std::memory_order_release);
 
     const std::int64_t start = monotonicNs();
