@@ -18,9 +18,11 @@ import os
 import pathlib
 import re
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 
 import mutate
 
@@ -110,8 +112,8 @@ def build(mutants, jobs):
         if done.returncode == 0:
             return mutants
         wrong = {(m[1], int(m[2])) for m in
-                 re.finditer(r"^(?:.*build-mutants/)?(modules/[\w/.]+):(\d+):\d+: (?:\w+ )?error",
-                             done.stdout, re.M)}
+                 re.finditer(r"^(?:.*build-mutants/)?(modules/[\w/.]+):(\d+):\d+: +"
+                             r"(?:(?:\w+ )?error|required from here)", done.stdout, re.M)}
         left = [m for m in mutants
                 if not any((m.path, n) in wrong for n in range(m.line, m.last_line + 1))]
         if len(left) == len(mutants):
@@ -134,14 +136,20 @@ def tests_of(program):
 
 
 def run_test(program, test, seconds, **environment):
-    """(whether it passed, processor seconds); beyond `seconds` it is ended and has not."""
+    """(whether it passed, processor seconds); beyond `seconds` it is ended and has not.
+
+    So is one that sleeps for twenty times as long: a mutant may wait for what never comes.
+    """
     limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 2))
     with tempfile.TemporaryDirectory(prefix="patina_mutant") as folder:
         child = subprocess.Popen([TREE / "bin" / program, f"--gtest_filter={test}"], cwd=folder,
                                  env={**os.environ, **environment, "TEST_TMPDIR": folder},
                                  preexec_fn=limit, stdin=subprocess.DEVNULL,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        alarm = threading.Timer(20 * (seconds + 1), os.kill, (child.pid, signal.SIGKILL))
+        alarm.start()
         _, status, usage = os.wait4(child.pid, 0)
+        alarm.cancel()
         child.returncode = status
         return status == 0, usage.ru_utime + usage.ru_stime
 
