@@ -43,8 +43,8 @@ MatX product(const MatrixView& a, const MatrixView& b) {
 }
 
 Svd::Svd(const MatrixView& matrix) {
-  // Divide and conquer would be quicker from some hundred columns on and takes far longer to compile;
-  // 257 by 257 take .17 s.
+  // Divide and conquer would be quicker from some hundred columns on and takes far longer to
+  // compile; 257 by 257 take .17 s.
   const Eigen::JacobiSVD<MatX> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   u = svd.matrixU();
   v = svd.matrixV();

@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "geometry/mesh/shapes.h"
+#include "support/sanitized.h"
 
 namespace patina {
 namespace {
@@ -51,6 +56,56 @@ TEST(CoarseNodes, NearerToOneOfTwoFacesPointAwayFromIt) {
       const Vec3 away = (off > 0 ? -1 : 1) * Vec3::Unit(axis);
       EXPECT_LT((Vec3(node.gx, node.gy, node.gz) - away).norm(), 1e-5) << axis << ' ' << off;
     }
+}
+
+// While it lives, this process may take `bytes` more.
+class Allowance {
+ public:
+  explicit Allowance(std::size_t bytes) {
+    ::getrlimit(RLIMIT_AS, &usual_);
+    rlimit less = usual_;
+    less.rlim_cur = 1UL << 40; // some limit, so that what is left of it is known
+    ::setrlimit(RLIMIT_AS, &less);
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    less.rlim_cur = pages * static_cast<std::size_t>(::getpagesize()) + bytes;
+    ::setrlimit(RLIMIT_AS, &less);
+  }
+  ~Allowance() { ::setrlimit(RLIMIT_AS, &usual_); }
+  Allowance(const Allowance&) = delete;
+  Allowance& operator=(const Allowance&) = delete;
+
+ private:
+  rlimit usual_{};
+};
+
+// 6,000 blocks of it are stored, of 35,937 places: 21 MB beside 5.
+TEST(DistanceBlocks, ThatMemoryDoesNotHoldAreRefusedBeforeTheyAreMade) {
+  if (test::kSanitized) GTEST_SKIP() << "a sanitizer takes addresses of its own";
+  const TriangleMesh mesh = icosphere(120, 4);
+  const TriangleTree tree(mesh);
+  FieldGrid grid;
+  grid.voxel = 1;
+  grid.origin = Vec3::Constant(-128);
+  grid.nodes = {257, 258, 259};
+  Progress progress;
+  const auto blocks = [&] {
+    return distanceBlocks(mesh, tree, grid, 3, progress, 0, 1).distance.size();
+  };
+  const std::size_t stored = blocks(); // and the threads have their memory
+  ASSERT_GT(stored, 4500U);
+  std::string cause = "nothing";
+  {
+    const Allowance allowance(std::size_t{14} << 20);
+    try {
+      (void)blocks();
+    } catch (const Error& error) {
+      cause = error.what();
+    }
+  }
+  EXPECT_TRUE(cause.starts_with("a field of 256 x 257 x 258 cells needs about 2")) << cause;
+  EXPECT_TRUE(cause.ends_with("; choose a larger voxel or a lower resolution")) << cause;
+  EXPECT_EQ(blocks(), stored);
 }
 
 } // namespace

@@ -67,9 +67,7 @@ class WindowTest : public ::testing::Test {
   static bool waitUntil(const std::function<bool()>& done, int milliseconds = 60000) {
     return patina::waitUntil(done, milliseconds);
   }
-  static void wait(int milliseconds) {
-    patina::wait(milliseconds);
-  }
+  static void wait(int milliseconds) { patina::wait(milliseconds); }
 
   std::filesystem::path saved(const TriangleMesh& mesh, const std::string& name) const {
     writeMesh(folder_ / name, mesh);

@@ -159,7 +159,9 @@ TEST(FalconBringUp, LoadsTheFirmwareWhereNoneRunsAndHomesWithEitherBit) {
     FalconRig rig(
         {.homing_bit = bit, .runs_firmware = false, .homed = false, .firmware = madeUpFirmware()},
         {file.file, "any"});
-    EXPECT_TRUE(rig.waitUntilOk(10)) << rig.notes->cause();
+    while (rig.clock->now() < 10 && rig.tick(Vec3::Zero()).status != DeviceStatus::ok)
+      ASSERT_EQ(rig.notes->cause(), "") << "nothing keeps it from loading";
+    EXPECT_LT(rig.clock->now(), 10);
     EXPECT_TRUE(rig.bench.runsFirmware());
     for (const SentFrame& frame : rig.sent) EXPECT_FALSE(frame.force());
   }

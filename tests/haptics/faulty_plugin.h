@@ -30,6 +30,7 @@ enum class Fault {
   negative_age,
   old_age,
   is_gone,
+  calibrates,
   throws,
   hangs,
   slow
@@ -105,6 +106,9 @@ inline int exchangeFaulty(void*, const double force[3], double, patina_device_st
     break;
   case Fault::is_gone:
     state->status = PATINA_DEVICE_GONE;
+    break;
+  case Fault::calibrates:
+    state->status = PATINA_DEVICE_CALIBRATING;
     break;
   case Fault::throws:
     throw std::runtime_error("no plug-in may");

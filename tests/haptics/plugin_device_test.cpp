@@ -142,6 +142,21 @@ TEST(PluginDevice, InEveryFaultSendsNoForceWithTheNextExchangeAndTellsTheLoop) {
   }
 }
 
+TEST(PluginDevice, ThatCalibratesSaysSoAndIsGivenNoForce) {
+  Loop loop;
+  loop.stiffness = 400;
+  ASSERT_TRUE(loop.settles());
+  faulty.fault = Fault::calibrates;
+  loop.tick(60);
+  EXPECT_EQ(judge(loop.state), DeviceStatus::calibrating);
+  const std::size_t first = firstWith(Fault::calibrates);
+  ASSERT_LT(first + 1, static_cast<std::size_t>(faulty.calls));
+  for (std::size_t i = first + 1; i < static_cast<std::size_t>(faulty.calls); ++i)
+    ASSERT_EQ(faulty.noted[i].force, 0) << i - first;
+  faulty.fault = Fault::none;
+  EXPECT_TRUE(loop.settles());
+}
+
 TEST(PluginDevice, AStallShowsAsAgeAndComesBackWithoutForceThatFadesIn) {
   for (const auto& [stiffness, friction] : kLaws) {
     Loop loop;
@@ -260,6 +275,24 @@ TEST(PluginDevice, WhatItSaysOfItselfIsJudged) {
   EXPECT_EQ(found.limits.max_force, 3);
   EXPECT_FALSE(found.limits.max_stiffness);
   EXPECT_FALSE(found.limits.workspace);
+}
+
+TEST(PluginDevice, ThatSaysWhereItReachesIsTakenAtItsWord) {
+  patina_device sound = kFaulty;
+  sound.describe = [](patina_device_description* told) {
+    for (int axis = 0; axis < 3; ++axis) {
+      told->workspace_low[axis] = -0.01 * (axis + 1);
+      told->workspace_high[axis] = 0.02 * (axis + 1);
+    }
+    told->max_stiffness = 1500;
+  };
+  const DeviceLimits limits = described("sound", sound).limits;
+  ASSERT_TRUE(limits.workspace);
+  EXPECT_EQ(limits.workspace->min(), Vec3(-0.01, -0.02, -0.03));
+  EXPECT_EQ(limits.workspace->max(), Vec3(0.02, 0.04, 0.06));
+  EXPECT_EQ(limits.max_stiffness, 1500);
+  ASSERT_TRUE(guardFor(limits).workspace);
+  EXPECT_EQ(guardFor(limits).workspace->max(), Vec3(0.02, 0.04, 0.06));
 }
 
 class PluginLibraries : public testing::Test {

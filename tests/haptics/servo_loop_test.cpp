@@ -214,6 +214,37 @@ TEST(ServoLoop, HoldsWithoutForceWhileItsDeviceIsCalibrated) {
   EXPECT_EQ(loop.timing().device, DeviceStatus::ok);
 }
 
+TEST(ServoLoop, SendsNoForceOnceItsDeviceCalibratesInATouch) {
+  auto owned = std::make_unique<FailingDevice>();
+  FailingDevice& device = *owned;
+  ServoLoop loop(std::move(owned));
+  loop.publish(sphereSnapshot(500));
+  loop.start();
+  waitForForce(device, 0.5);
+  device.status = DeviceStatus::calibrating;
+  for (int i = 0; i < 2000 && device.force_x.load() != 0; ++i) pause(1);
+  EXPECT_EQ(device.force_x.load(), 0);
+}
+
+TEST(ServoLoop, TellsItsRateWithoutTheTimeInWhichItsDeviceWasCalibrated) {
+  auto owned = std::make_unique<FailingDevice>();
+  FailingDevice& device = *owned;
+  device.status = DeviceStatus::calibrating;
+  ServoLoop loop(std::move(owned));
+  loop.start();
+  pause(700);
+  device.status = DeviceStatus::ok;
+  for (int i = 0; i < 5000 && loop.timing().ticks < 250; ++i) pause(1);
+  loop.stop();
+  std::vector<ToolSample> samples;
+  for (ToolSample sample; loop.samples().pop(sample);) samples.push_back(sample);
+  const std::size_t mark = samples.size() / 250 * 250 - 1; // it measures every 250 ticks
+  ASSERT_LT(mark, samples.size());
+  const double ticks = loop.timing().rate_hz * (samples[mark].t - samples[mark - 249].t);
+  EXPECT_GT(ticks, 180); // 249, and with those 700 ms 65
+  EXPECT_LT(ticks, 250);
+}
+
 TEST(ServoLoop, FeelsAStateThatIsNotTooOld) {
   auto owned = std::make_unique<FailingDevice>();
   FailingDevice& device = *owned;

@@ -16,6 +16,7 @@ Contact someContact() {
   contact.surface = {0.03, 0, 0};
   contact.normal = Vec3::UnitX();
   contact.depth = 10;
+  contact.walls = 2;
   contact.deep = true;
   contact.fault = true;
   return contact;
@@ -38,6 +39,7 @@ TEST(TickRecord, SaysOfAContactAllThatTheTickFound) {
     EXPECT_TRUE(sample.deep);
     EXPECT_TRUE(sample.fault);
     EXPECT_EQ(sample.face, -1);
+    EXPECT_EQ(sample.held, attracted ? 0 : 2) << "walls that bear the load";
   }
 }
 

@@ -141,9 +141,6 @@ void FalconBench::control(std::uint8_t request, std::uint16_t value) noexcept {
     break;
   case 9:
     latency_ = 1e-3 * std::max<int>(value, 1);
-    break;
-  default:
-    break;
   }
 }
 

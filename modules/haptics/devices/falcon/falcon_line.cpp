@@ -76,8 +76,7 @@ LineRead FalconLine::receive(std::span<std::byte> into, double seconds) noexcept
     if (left == 0) break;
     std::array<std::byte, kPacket> packet;
     const UsbCount got = usb_->read(kReadPipe, packet, left);
-    if (got.result == UsbResult::timeout) continue; // what is left decides
-    if (got.result != UsbResult::ok) {
+    if (got.result != UsbResult::ok && got.result != UsbResult::timeout) {
       read.result = got.result;
       return read;
     }
