@@ -83,9 +83,12 @@ void parseCsvRow(std::string_view line, std::size_t due, const std::string& name
   if (cells.size() != due) {
     if (looksLikeDecimalComma(line, cells.size(), due))
       throw FileError(name, number, kDecimalComma);
+    // A whole number among them, "0,5,1,2,5", hides that the others were broken in two.
+    const bool broken = cells.size() > due && line.find('.') == std::string_view::npos;
     throw FileError(name, number,
                     std::to_string(cells.size()) + " values where the header names " +
-                        std::to_string(due));
+                        std::to_string(due) +
+                        (broken ? ", none with a point: are there decimal commas?" : ""));
   }
   row.clear();
   for (const std::string_view cell : cells) {

@@ -121,6 +121,9 @@ TEST_F(ScanFiles, TablesThatAreNoneAreRefusedWithTheirLine) {
   EXPECT_EQ(refusal(read, head + "0,nan,1,2,3,4\n"), "file:2: force [N] is not a finite number");
   EXPECT_EQ(refusal(read, head + "0,-1e300,1,2,3,4\n"),
             "file:2: force [N] is -1e+300, which nothing measures");
+  EXPECT_EQ(refusal(read, head + "1e12,0,1,2,3,4\n"),
+            "file:2: t [s] is 1e+12, which nothing measures");
+  EXPECT_EQ(refusal(read, head + "1.8e9,0,1,2,3,4\n"), "taken");
   EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n0.5,0,1,2,3,4\n"), "file:3: time runs backwards");
   EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n1,0,1,2,3,4\n"), "file:3: time repeats");
 }

@@ -101,6 +101,23 @@ TEST_F(Sources, ReplayFramesAndSamplesAtTheirOwnPace) {
   EXPECT_EQ(samples.size(), 200u);
 }
 
+TEST_F(Sources, AFrameThatIsMissingIsAGapAndAllOfThemAnError) {
+  makeScan(3);
+  fs::remove(folder / "frames" / "000000.png");
+  EXPECT_NO_THROW((void)openFrames(folder.string(), 0));
+  fs::remove_all(folder / "frames");
+  for (const char* way : {"", "replay:"})
+    EXPECT_EQ(causeOf([&] { (void)openFrames(way + folder.string(), 0); }),
+              (folder / "frames").string() +
+                  ": holds none of the 3 pictures that frames.csv lists");
+}
+
+TEST_F(Sources, AFrameListedTwiceIsRefusedWithBothLines) {
+  const std::string list = "frame,t [s]\n4,1\n5,2\n4,3\n";
+  EXPECT_EQ(causeOf([&] { (void)parseFrameList(list, "frames.csv"); }),
+            "frames.csv:4: frame 4 stands in line 2 already");
+}
+
 TEST_F(Sources, ThatAreStoppedEndAtOnce) {
   makeScan(2);
   writeFileAtomically(folder / "frames.csv", "frame,t [s]\n0,5\n1,500\n");

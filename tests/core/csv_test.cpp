@@ -43,6 +43,10 @@ TEST(Csv, NamesADecimalCommaAsSuch) {
   const std::string header = "t [s],x [m],y [m],z [m]\n";
   EXPECT_NE(csvError(header + "0,1,1,5,2,5,3,5\n").find("decimal comma"), std::string::npos);
   EXPECT_NE(csvError(header + "0,1;1,5;2,5;3,5\n").find("decimal comma"), std::string::npos);
+  EXPECT_EQ(csvError(header + "0,1,1,2,5,3,5\n"),
+            "tip.csv:2: 7 values where the header names 4, none with a point: are there decimal "
+            "commas?");
+  EXPECT_EQ(csvError(header + "0.1,1,1,2,5\n"), "tip.csv:2: 5 values where the header names 4");
 }
 
 TEST(Csv, KeepsTheMessageOnOneLineWhateverTheFileHolds) {

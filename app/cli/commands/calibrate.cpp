@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "acquisition/calibration/calibrate_camera.h"
 #include "acquisition/calibration/force_fit.h"
@@ -44,9 +46,14 @@ void tellParameter(Json& parameters, Report& report, const std::string& name, do
                    double deviation, double shown_in, const std::string& unit) {
   Json json = Json::object();
   parameters.set(name, json.set("value", value).set("deviation", deviation));
+  // Two digits of the deviation, and of the value no digit beyond them.
+  const bool known = deviation > 0 && std::isfinite(deviation);
+  const int behind =
+      known ? std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation * shown_in))), 0, 12)
+            : 6;
   const auto text = [&](double number) {
-    char digits[40];
-    std::snprintf(digits, sizeof digits, "%.6g", number * shown_in);
+    char digits[400];
+    std::snprintf(digits, sizeof digits, "%.*f", behind, number * shown_in);
     return std::string(digits);
   };
   report.tell(name, text(value) + " +- " + text(deviation) + unit);

@@ -200,6 +200,7 @@ std::vector<Frame> framesOf(const fs::path& folder, double rate) {
 std::vector<FrameRow> parseFrameList(const std::string& text, const std::string& name) {
   CsvReader reader(sourceOfText(text), name, kFrameColumns);
   std::vector<FrameRow> rows;
+  std::map<int, std::size_t> line_of;
   for (std::vector<double> row; reader.next(row);) {
     if (!(row[0] >= 0 && row[0] < 1e9 && row[0] == std::floor(row[0])))
       throw FileError(name, reader.line(), "a frame's number must be whole and not negative");
@@ -207,7 +208,12 @@ std::vector<FrameRow> parseFrameList(const std::string& text, const std::string&
     if (!rows.empty() && !(row[1] > rows.back().t))
       throw FileError(name, reader.line(),
                       row[1] == rows.back().t ? "time repeats" : "time runs backwards");
-    rows.push_back({static_cast<int>(row[0]), row[1]});
+    const int number = static_cast<int>(row[0]);
+    if (const auto [before, is_new] = line_of.emplace(number, reader.line()); !is_new)
+      throw FileError(name, reader.line(),
+                      "frame " + std::to_string(number) + " stands in line " +
+                          std::to_string(before->second) + " already");
+    rows.push_back({number, row[1]});
   }
   if (rows.empty()) throw FileError(name, 0, "there is no frame in it");
   return rows;

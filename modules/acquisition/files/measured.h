@@ -3,18 +3,25 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/numbers.h"
 
 namespace patina {
 
-// Throws FileError unless a value in SI units can have been measured: finite, and so small, 1e12,
-// that no sum of squares overflows. `what` it is: "x [m]".
+// Beyond it no value of a column, "x [m]", is one. Clocks that count from 1970 are at 1.8e9 s;
+// where a time is larger than 1e10 a double no longer tells two samples of a fast probe apart.
+inline double mostMeasured(std::string_view column) {
+  return column.ends_with("[s]") ? 1e10 : column.ends_with("[m]") ? 1e4 : 1e12;
+}
+
+// Throws FileError unless a value in SI units can have been measured: finite and no more than
+// mostMeasured(). `what` it is: its column.
 inline void requireMeasured(double value, const std::string& what, const std::string& name,
                             std::size_t line) {
   if (!std::isfinite(value)) throw FileError(name, line, what + " is not a finite number");
-  if (std::abs(value) > 1e12)
+  if (std::abs(value) > mostMeasured(what))
     throw FileError(name, line, what + " is " + formatNumber(value) + ", which nothing measures");
 }
 

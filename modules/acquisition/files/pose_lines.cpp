@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -12,13 +14,17 @@ namespace {
 
 constexpr double kUnit = 0.01; // by how much a quaternion's length may differ from 1
 
-double finiteIn(const std::string& word, const std::string& name, std::size_t line) {
+constexpr std::array<const char*, 10> kColumns = {
+    "t [s]", "tx [m]", "ty [m]", "tz [m]",    "qx",
+    "qy",    "qz",     "qw",     "sigma [m]", "sigma_angle [rad]"};
+
+double measuredIn(const std::string& word, std::size_t column, const std::string& name,
+                  std::size_t line) {
   if (word.find(',') != std::string::npos)
     throw FileError(name, line, "decimal commas: write numbers with a point, spaces between them");
   const std::optional<double> value = parseNumber(word);
-  const std::string shown = "'" + word.substr(0, 40) + "'";
-  if (!value) throw FileError(name, line, shown + " is not a finite number");
-  requireMeasured(*value, shown, name, line);
+  if (!value) throw FileError(name, line, "'" + word.substr(0, 40) + "' is not a finite number");
+  requireMeasured(*value, kColumns[std::min(column, kColumns.size() - 1)], name, line);
   return *value;
 }
 
@@ -44,7 +50,8 @@ OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
     ++number;
     std::istringstream words(line.substr(0, line.find('#')));
     std::vector<double> values;
-    for (std::string word; words >> word;) values.push_back(finiteIn(word, name, number));
+    for (std::string word; words >> word;)
+      values.push_back(measuredIn(word, values.size(), name, number));
     if (values.empty()) continue;
     if (values.size() != 8 && values.size() != 10)
       throw FileError(name, number,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <thread>
@@ -187,6 +188,22 @@ double replayStart(const std::string& folder, double first_frame) {
   return reader.next(row) ? std::min(row[0], first_frame) : first_frame;
 }
 
+namespace {
+
+// One missing frame is a gap; where all are missing nothing can be read.
+std::vector<Frame> framesToRead(const std::filesystem::path& folder, double rate) {
+  std::vector<Frame> list = framesOf(folder, rate);
+  std::error_code code;
+  if (std::none_of(list.begin(), list.end(),
+                   [&](const Frame& frame) { return std::filesystem::exists(frame.file, code); }))
+    throw FileError((folder / "frames").string(), 0,
+                    "holds none of the " + std::to_string(list.size()) +
+                        " pictures that frames.csv lists");
+  return list;
+}
+
+} // namespace
+
 std::optional<std::filesystem::path> scanFolderOf(const std::string& frames) {
   if (frames.starts_with("replay:")) return frames.substr(7);
   if (std::filesystem::is_directory(frames)) return frames;
@@ -198,13 +215,13 @@ std::unique_ptr<FrameSource> openFrames(const std::string& frames, double rate) 
     return std::make_unique<CameraFrames>(cameraNumber(frames.substr(7)));
   if (frames.starts_with("replay:")) {
     const std::string folder = frames.substr(7);
-    std::vector<Frame> list = framesOf(folder, rate);
+    std::vector<Frame> list = framesToRead(folder, rate);
     const double start = replayStart(folder, list[0].t);
     return std::make_unique<ReplayedFrames>(std::move(list), start);
   }
   if (!std::filesystem::exists(frames)) throw FileError(frames, 0, "does not exist");
   if (std::filesystem::is_directory(frames))
-    return std::make_unique<FolderFrames>(framesOf(frames, rate));
+    return std::make_unique<FolderFrames>(framesToRead(frames, rate));
   return std::make_unique<VideoFrames>(frames, rate);
 }
 
