@@ -76,7 +76,9 @@ TEST_F(ScanFiles, PosesThatAreNoneAreRefusedWithTheirLine) {
   EXPECT_EQ(refusal(read, ""), "file: there is no pose in it");
   EXPECT_EQ(refusal(read, "# t x y z\n"), "file: there is no pose in it");
   EXPECT_TRUE(refusal(read, good + "0,1 1 2 3 0 0 0 1\n").starts_with("file:2: decimal commas"));
-  EXPECT_TRUE(refusal(read, good + "1 1 nan 3 0 0 0 1\n").starts_with("file:2: 'nan' is not"));
+  EXPECT_EQ(refusal(read, good + "1 1 nan 3 0 0 0 1\n"), "file:2: ty [m] is not a finite number");
+  EXPECT_EQ(refusal(read, good + "1 1 2 1e30 0 0 0 1\n"),
+            "file:2: tz [m] is 1e+30, which nothing measures");
   EXPECT_TRUE(refusal(read, good + "1 1 x 3 0 0 0 1\n").starts_with("file:2: 'x' is not"));
   EXPECT_TRUE(refusal(read, good + "1 1 2 3 0 0 1\n").starts_with("file:2: 7 numbers where"));
   EXPECT_TRUE(refusal(read, good + "1 1 2 3 0 0 0 1 1\n").starts_with("file:2: 9 numbers where"));

@@ -330,8 +330,7 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
   choose("stiffness");
   QElapsedTimer clock;
   const RunQueueWait queue; // what other programs take of the processor is not the window's
-  // Its work by its own processor time, its waiting by what the edit takes beside it: both of them
-  // hold on a machine that does other things.
+  // Its work by its own processor time, its waiting by what the edit takes beside it.
   double longest = 0, most_work = 0, frame = 0, before = 0, worked = 0; // [ms]
   QTimer beat;
   QObject::connect(&beat, &QTimer::timeout, [&] {

@@ -195,7 +195,9 @@ TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
   // A word that names no board is said to be none, and nothing is offered.
   ASSERT_TRUE(waitUntil([&] { return !desk().work(); }, 10000));
   auto* board = find<QLineEdit>("calibrate_board");
+  wait(200); // the card has its place, now that there is a camera
   click(*board);
+  ASSERT_TRUE(waitUntil([&] { return board->hasFocus(); }, 5000));
   type('a', kControl);
   type(QStringLiteral("chessboard8x5"));
   ASSERT_TRUE(waitUntil([&] { return board->text() == QStringLiteral("chessboard8x5"); }, 5000))
