@@ -12,7 +12,7 @@ TEST_F(Scans, ThatAreDamagedAreRefusedWithFileAndLine) {
   refused("poses.tum", "", {"poses.tum", "no pose"});
   refused("poses.tum", poses + "0 0 0 0 0 0 0 1\n", {"poses.tum:", "backwards"});
   refused("poses.tum", "0 0,5 0 0 0 0 0 1\n", {"poses.tum:1:", "decimal commas"});
-  refused("poses.tum", "0 nan 0 0 0 0 0 1\n", {"poses.tum:1:", "nan"});
+  refused("poses.tum", "0 nan 0 0 0 0 0 1\n", {"poses.tum:1:", "tx [m] is not a finite number"});
   refused("poses.tum", "1000 0 0 0 0 0 0 1\n1001 0 0 0 0 0 0 1\n", {"no time in common"});
   refused("probe.csv", "", {"probe.csv", "empty"});
   refused("probe.csv", head, {"probe.csv", "no sample"});
