@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 
 #include <Eigen/Geometry>
 
@@ -220,6 +221,13 @@ TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
   EXPECT_NEAR(parameters.at("z").at("value").asNumber(), -0.12, 1e-5);
   EXPECT_LT(parameters.at("z").at("deviation").asNumber(), 1e-4);
   EXPECT_NEAR(parseJson(readFile(rig), rig).at("tip").asArray()[2].asNumber(), -0.12, 1e-5);
+  // Two digits of a deviation, and as many behind the point of its value.
+  const std::string shown = run({"calibrate", poses, "-o", rig}).out;
+  std::smatch z;
+  ASSERT_TRUE(std::regex_search(
+      shown, z, std::regex(R"(z\s+-1\d\d\.(\d+) \+- 0\.(0*[1-9]\d) mm)")))
+      << shown;
+  EXPECT_EQ(z[1].length(), z[2].length()) << shown;
   std::filesystem::remove(rig);
   writeFileAtomically(poses, text.substr(0, text.find("\n5 ") + 1));
   expectOneLineError(run({"calibrate", poses, "-o", rig}), {"turning.tum", "tip"});

@@ -1,6 +1,6 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "acquisition/files/measured.h"
@@ -24,7 +24,7 @@ double measuredIn(const std::string& word, std::size_t column, const std::string
     throw FileError(name, line, "decimal commas: write numbers with a point, spaces between them");
   const std::optional<double> value = parseNumber(word);
   if (!value) throw FileError(name, line, "'" + word.substr(0, 40) + "' is not a finite number");
-  requireMeasured(*value, kColumns[std::min(column, kColumns.size() - 1)], name, line);
+  requireMeasured(*value, kColumns[column], name, line);
   return *value;
 }
 
@@ -49,14 +49,15 @@ OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
   for (std::string line; std::getline(text, line);) {
     ++number;
     std::istringstream words(line.substr(0, line.find('#')));
-    std::vector<double> values;
-    for (std::string word; words >> word;)
-      values.push_back(measuredIn(word, values.size(), name, number));
-    if (values.empty()) continue;
-    if (values.size() != 8 && values.size() != 10)
+    const std::vector<std::string> word{std::istream_iterator<std::string>(words), {}};
+    if (word.empty()) continue;
+    if (word.size() != 8 && word.size() != kColumns.size())
       throw FileError(name, number,
-                      std::to_string(values.size()) +
+                      std::to_string(word.size()) +
                           " numbers where t tx ty tz qx qy qz qw are due, or two more");
+    std::vector<double> values;
+    for (const std::string& each : word)
+      values.push_back(measuredIn(each, values.size(), name, number));
     CameraPose pose;
     pose.t = values[0];
     pose.position = {values[1], values[2], values[3]};

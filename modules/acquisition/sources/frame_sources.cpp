@@ -178,6 +178,22 @@ int cameraNumber(const std::string& word) {
   return static_cast<int>(*number);
 }
 
+// One missing frame is a gap; where all are missing nothing can be read. One that cannot be looked
+// at is another matter, which reading it tells.
+std::vector<Frame> framesToRead(const std::filesystem::path& folder, double rate) {
+  std::vector<Frame> list = framesOf(folder, rate);
+  const auto isMissing = [](const Frame& frame) {
+    std::error_code code;
+    return std::filesystem::status(frame.file, code).type() ==
+           std::filesystem::file_type::not_found;
+  };
+  if (std::all_of(list.begin(), list.end(), isMissing))
+    throw FileError((folder / "frames").string(), 0,
+                    "holds none of the " + std::to_string(list.size()) +
+                        " pictures that frames.csv lists");
+  return list;
+}
+
 } // namespace
 
 double replayStart(const std::string& folder, double first_frame) {
@@ -187,22 +203,6 @@ double replayStart(const std::string& folder, double first_frame) {
   std::vector<double> row;
   return reader.next(row) ? std::min(row[0], first_frame) : first_frame;
 }
-
-namespace {
-
-// One missing frame is a gap; where all are missing nothing can be read.
-std::vector<Frame> framesToRead(const std::filesystem::path& folder, double rate) {
-  std::vector<Frame> list = framesOf(folder, rate);
-  std::error_code code;
-  if (std::none_of(list.begin(), list.end(),
-                   [&](const Frame& frame) { return std::filesystem::exists(frame.file, code); }))
-    throw FileError((folder / "frames").string(), 0,
-                    "holds none of the " + std::to_string(list.size()) +
-                        " pictures that frames.csv lists");
-  return list;
-}
-
-} // namespace
 
 std::optional<std::filesystem::path> scanFolderOf(const std::string& frames) {
   if (frames.starts_with("replay:")) return frames.substr(7);

@@ -35,7 +35,8 @@ class FrameSource {
 // FRAMES is a scan folder or folder of pictures (framesOf()), a video file, "camera:0", "camera:1"
 // and so on, a live camera, or "replay:SCAN", the frames of a scan folder at the pace at which they
 // were taken, as if live. `rate` is for what carries no time, and overrules a video's own; 0: not
-// told. Throws FileError or Error.
+// told. One frame that is missing is a gap; throws FileError where all are, and FileError or Error
+// for what is no source.
 std::unique_ptr<FrameSource> openFrames(const std::string& frames, double rate);
 
 // The folder of "replay:SCAN" or of what is a folder; nullopt: a camera, a video.
