@@ -212,6 +212,56 @@ TEST(RigPose, DropsAMarkerThatContradictsTheOthers) {
   EXPECT_LT((seen.camera_from_probe * kTip - known * kTip).norm(), 1e-3);
 }
 
+// Of a flat rig far away two poses fit, and a wrong marker must not hide the other one.
+TEST(RigPose, AMarkerThatIsDroppedLeavesTheDoubtAboutTheTilt) {
+  RenderedRig rig(test::smallCamera(), "4x4_50");
+  const RigMarker first = rig.markers[0];
+  rig.markers.clear();
+  for (int i = 0; i < 6; ++i) {
+    RigMarker marker = first;
+    marker.id = i;
+    marker.size = 0.03;
+    marker.probe_from_marker = Pose::Identity();
+    marker.probe_from_marker.translation() = Vec3(0.04 * (i % 3) - 0.04, 0.04 * (i / 3) - 0.02, 0);
+    rig.markers.push_back(marker);
+  }
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int with = 0, wrong = 0, without = 0, wrong_without = 0;
+  for (int i = 0; i < 1000; ++i) {
+    Pose known = Pose::Identity();
+    known.translation() = Vec3(0.1 * unit(random), 0.1 * unit(random), 1.2);
+    known.linear() = (Eigen::AngleAxisd(M_PI + 0.4 * unit(random), Vec3::UnitX()) *
+                      Eigen::AngleAxisd(0.4 * unit(random), Vec3::UnitY()))
+                         .toRotationMatrix();
+    auto seen = seenExactly(rig, known, {0, 1, 2, 3, 4, 5});
+    for (SeenMarker& marker : seen)
+      for (FittedCorner& corner : marker.corner) {
+        corner.straight += 0.15 * Vec2(normal(random), normal(random));
+        corner.whiten = 1 / 0.15 * Eigen::Matrix2d::Identity();
+      }
+    const auto turned = [&](const std::vector<SeenMarker>& of, int& told) {
+      const SeenRig found = poseOf(of, rig.markers, rig.camera);
+      if (found.verdict != RigVerdict::seen) return 0;
+      ++told;
+      if (of.size() == 6) {
+        double t = poseError(found.camera_from_probe, known).tail<3>().norm();
+        if (t > .2) std::printf("dropped %zu turned %.2f rms %.2f\n", found.dropped, t, found.rms);
+      }
+      return int{poseError(found.camera_from_probe, known).tail<3>().norm() > 0.2};
+    };
+    const auto five = std::vector<SeenMarker>(seen.begin() + 1, seen.end());
+    for (FittedCorner& corner : seen[0].corner) corner.straight += Vec2(5, -4);
+    wrong += turned(seen, with);
+    wrong_without += turned(five, without);
+  }
+  std::printf("turned: %d of %d with a wrong marker, %d of %d without it\n", wrong, with,
+              wrong_without, without);
+  EXPECT_LE(wrong, wrong_without + 0.01 * with);
+  EXPECT_GT(with, 0.9 * without);
+}
+
 TEST(RigPose, RefusesARigOfAnotherSize) {
   RenderedRig rig(test::smallCamera(), "4x4_50");
   std::mt19937 random(3);

@@ -98,6 +98,11 @@ int runTrack(TrackOptions options, Console& console) {
     console.warn(options.frames + ": " + formatCount(found.unreadable) + " of " +
                  formatCount(found.frames) +
                  " frames cannot be read; the first: " + found.first_fault);
+  if (2 * found.dropped > found.poses.size())
+    console.warn(options.rig.string() + ": in " + formatCount(found.poses.size()) + " frames " +
+                 formatCount(found.dropped) +
+                 " markers were not where it has them, so that poses may be those of the wrong "
+                 "ones: look at ids, sizes and places, and at the camera's focal length");
   if (found.poses.empty())
     console.warn(options.frames + ": no frame shows a pose of the rig, so nothing is written");
   return console.report(report, found.poses.empty() ? kNotSolved : kDone);

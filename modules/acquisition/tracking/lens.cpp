@@ -36,13 +36,28 @@ Vec2 pixelOf(const Camera& camera, const Vec3& in_camera) {
 
 Vec2 flatOf(const Camera& camera, const Vec2& pixel) {
   const Vec2 seen = toPlane(camera, pixel);
+  const auto& [k1, k2, p1, p2, k3] = camera.distortion;
   Vec2 flat = seen;
-  for (int i = 0; i < 100; ++i) {
-    const Bend bend = bendAt(camera, flat);
-    const Vec2 next = (seen - bend.tangential) / bend.radial;
-    const double step = (next - flat).squaredNorm();
-    flat = next;
-    if (!(step > 1e-20)) break;
+  double off = (distorted(camera, flat) - seen).norm();
+  // Newton's, halved where a step leads away.
+  for (int i = 0; i < 100 && off > 1e-13; ++i) {
+    const double x = flat.x(), y = flat.y(), r2 = flat.squaredNorm(),
+                 radial = bendAt(camera, flat).radial, per_r2 = k1 + r2 * (2 * k2 + 3 * r2 * k3);
+    Eigen::Matrix2d change;
+    change << radial + 2 * x * x * per_r2 + 2 * p1 * y + 6 * p2 * x,
+        2 * x * y * per_r2 + 2 * p1 * x + 2 * p2 * y, 0,
+        radial + 2 * y * y * per_r2 + 6 * p1 * y + 2 * p2 * x;
+    change(1, 0) = change(0, 1);
+    Vec2 step = change.inverse() * (seen - distorted(camera, flat));
+    bool nearer = false;
+    for (int halved = 0; halved < 20 && !nearer; ++halved, step /= 2) {
+      const double now = (distorted(camera, Vec2(flat + step)) - seen).norm();
+      if ((nearer = now < off)) {
+        flat += step;
+        off = now;
+      }
+    }
+    if (!nearer) break;
   }
   return flat;
 }

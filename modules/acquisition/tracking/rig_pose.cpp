@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "acquisition/tracking/face_likeness.h"
 #include "core/decompose.h"
@@ -19,8 +20,9 @@ constexpr double kDoubt = 12; // squared residuals by which another pose must be
 // Beyond the first nobody asks how the faces look; what is systematic about edges counts as the
 // other.
 constexpr double kNoDoubt = 150, kMostTrust = 24;
-constexpr double kSame = 0.05;   // poses nearer to one another are one [rad]
-constexpr double kOwnTurn = 0.3; // the most that a hand turns from frame to frame [rad]
+constexpr double kContradicts = 6; // times the spread without it that a wrong marker makes
+constexpr double kSame = 0.05;     // poses nearer to one another are one [rad]
+constexpr double kOwnTurn = 0.3;   // the most that a hand turns from frame to frame [rad]
 
 // A seen marker and where the rig has it.
 struct Sight {
@@ -201,19 +203,34 @@ PoseChoice choose(const std::vector<Sight>& sights, const Camera& camera) {
   return choice;
 }
 
-// Takes out the marker that contradicts the others most, if there are enough to say so.
-bool dropWorst(std::vector<Sight>& sights, const Camera& camera, const Pose& pose) {
-  if (sights.size() < 3) return false;
-  std::vector<double> misses; // over what the edges allow
-  for (const Sight& sight : sights) {
-    Vec6 gradient;
-    misses.push_back(std::sqrt(linearised({sight}, camera, pose, gradient).cost / 8));
+// How far corners are off, over what their edges allow: 1 where those hold.
+double spreadOf(const PoseChoice& choice) {
+  return choice.best.cost / (8 * static_cast<double>(choice.sights.size()) - 6);
+}
+
+// Takes out the marker that contradicts the others, if there are enough to say so. The others are
+// asked without it: beside it they fit a pose that leans towards it.
+bool dropWorst(PoseChoice& choice, const Camera& camera) {
+  if (choice.sights.size() < 3 || spreadOf(choice) < kContradicts) return false;
+  std::optional<PoseChoice> without;
+  double least = INFINITY, next = INFINITY;
+  for (std::size_t i = 0; i < choice.sights.size(); ++i) {
+    std::vector<Sight> others = choice.sights;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    PoseChoice left = choose(others, camera);
+    if (left.sights.size() < others.size()) continue; // leaves out more than it was asked
+    const double spread = spreadOf(left);
+    if (spread < least) {
+      next = least;
+      least = spread;
+      without = std::move(left);
+    } else {
+      next = std::min(next, spread);
+    }
   }
-  const auto worst = std::max_element(misses.begin(), misses.end());
-  std::vector<double> sorted = misses;
-  std::sort(sorted.begin(), sorted.end());
-  if (*worst < 5 || *worst < 4 * sorted[(sorted.size() - 1) / 2]) return false;
-  sights.erase(sights.begin() + (worst - misses.begin()));
+  // Of three, each one that is left out may leave two that fit.
+  if (!without || least * kContradicts > spreadOf(choice) || 2 * least > next) return false;
+  choice = std::move(*without);
   return true;
 }
 
@@ -243,8 +260,8 @@ SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>
     result.verdict = RigVerdict::misfit;
     return result;
   }
-  while (dropWorst(choice.sights, camera, choice.best.pose))
-    choice.best = refined(choice.sights, camera, choice.best.pose);
+  while (dropWorst(choice, camera)) {
+  }
   result.markers = choice.sights.size();
   result.dropped = all.size() - result.markers;
   const double residuals = 8. * static_cast<double>(result.markers);
