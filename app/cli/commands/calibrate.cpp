@@ -20,6 +20,8 @@ namespace patina::cli {
 
 namespace {
 
+constexpr double kMostGain = 0.05; // by which an accelerometer's may differ from 1
+
 struct CalibrateOptions {
   std::filesystem::path input, rig, output;
   std::optional<Board> board;
@@ -33,13 +35,15 @@ const Keys kCalibrateKeys = {
     {"rms", "m", "tip misses by", "rms of its distance from where it stood"},
     {"rms_acceleration", "m/s^2", "readings miss by", "rms of an axis, of the probe held still"},
     {"rms_force", "N", "forces miss by", "rms of the readings that were used"},
-    {"views", "", "used", "views, poses, half seconds held still, or readings"},
+    {"views", "", "used", "views, poses, attitudes held still, or readings"},
     {"rejected", "", "rejected",
      "views without the board, or poses or readings that contradict the others"},
+    {"axis_deviation", "rad", "axes within", "standard deviation of the least known direction",
+     Shown::if_any},
     {"parameters", "", "parameters",
      "by name: fx fy cx cy k1 k2 p1 p2 k3 of a camera; x y z of a tip [m]; "
-     "of a probe held still a1u a1v a2u a2v, the biases [m/s^2] with the deviations of the axes "
-     "[rad], and force_zero [N]; force_zero and force_gain of known weights",
+     "of a probe held still a1u a1v a2u a2v, the biases [m/s^2], and force_zero [N]; force_zero "
+     "and force_gain of known weights",
      Shown::never, kParameterParts}};
 
 void tellParameter(Json& parameters, Report& report, const std::string& name, double value,
@@ -113,11 +117,17 @@ int calibrateStill(const CalibrateOptions& options, Console& console) {
         "there are too few attitudes in which the probe was held still, or they are too "
         "alike: half a second each, in the air, eight at least, leaning to all sides");
   constexpr const char* kAxes[] = {"a1u", "a1v", "a2u", "a2v"};
+  for (std::size_t k = 0; k < 4; ++k)
+    if (!(std::abs(fit->gain[k] - 1) < kMostGain))
+      throw FileError((options.input / "probe.csv").string(), 0,
+                      std::string(kAxes[k]) + ": gravity reads " + rounded(9.80665 * fit->gain[k]) +
+                          " where it is 9.81: tell the accelerations in m/s^2");
   Report report(kCalibrateKeys);
   report.set("rms_acceleration", fit->rms).set("views", fit->attitudes);
+  report.set("axis_deviation", *std::max_element(fit->deviation.begin(), fit->deviation.end()));
   Json axes = Json::object(), parameters = Json::object();
   for (std::size_t k = 0; k < 4; ++k) {
-    tellParameter(parameters, report, kAxes[k], fit->bias[k], fit->deviation[k], 1, "");
+    tellParameter(parameters, report, kAxes[k], fit->bias[k], fit->bias_deviation[k], 1, " m/s^2");
     Json axis = Json::object();
     axis.set("position", vectorJson(rig.probe.axes[k].position));
     axes.set(kAxes[k], axis.set("direction", vectorJson(fit->directions[k])));
@@ -125,7 +135,10 @@ int calibrateStill(const CalibrateOptions& options, Console& console) {
   tellParameter(parameters, report, "force_zero", fit->force_zero,
                 std::sqrt(rig.probe.forceVariance()), 1, " N");
   report.set("parameters", parameters);
-  if (!json.find("tip")) json.set("tip", vectorJson(rig.probe.tip));
+  if (options.rig.empty()) {
+    console.warn("without --rig the places of tip and accelerometers are those of a common probe");
+    json.set("tip", vectorJson(rig.probe.tip));
+  }
   json.set("accelerometers", axes).set("gravity", vectorJson(fit->gravity));
   json.set("force_zero", fit->force_zero);
   writeFileAtomically(options.output, json.dump() + "\n");
@@ -159,7 +172,10 @@ int calibrateForce(const CalibrateOptions& options, Console& console) {
   tellParameter(parameters, report, "force_zero", fit->zero, fit->zero_deviation, 1, "");
   tellParameter(parameters, report, "force_gain", fit->gain, fit->gain_deviation, 1, "");
   report.set("parameters", parameters);
-  if (!json.find("tip")) json.set("tip", vectorJson(ProbeModel().tip));
+  if (options.rig.empty()) {
+    console.warn("without --rig the tip is that of a common probe");
+    json.set("tip", vectorJson(ProbeModel().tip));
+  }
   json.set("force_zero", fit->zero).set("force_gain", fit->gain);
   json.set("force_zero_deviation", fit->zero_deviation);
   json.set("force_gain_deviation", fit->gain_deviation);

@@ -15,10 +15,24 @@ constexpr std::size_t kAttitudes = 8;
 constexpr double kAlike = 2e-3; // of the normal equations' largest: what is less is not known
 
 struct Attitude {
-  Eigen::Matrix3d camera_from_probe;
+  Eigen::Quaterniond camera_from_probe;
   std::array<double, 4> reading{};
-  double force = 0;
+  double force = 0, windows = 1, sigma = 0; // sigma: of the turn [rad]
 };
+
+// A probe that is held on shows the same steps again: one attitude, and not another.
+bool isHeldOn(const Attitude& before, const Attitude& now) {
+  return before.camera_from_probe.angularDistance(now.camera_from_probe) <
+         kTurned + 3 * std::hypot(before.sigma, now.sigma);
+}
+
+void join(Attitude& attitude, const Attitude& more) {
+  const double share = 1 / ++attitude.windows;
+  attitude.camera_from_probe = attitude.camera_from_probe.slerp(share, more.camera_from_probe);
+  for (std::size_t k = 0; k < 4; ++k)
+    attitude.reading[k] += share * (more.reading[k] - attitude.reading[k]);
+  attitude.force += share * (more.force - attitude.force);
+}
 
 template <class Value>
 std::vector<const Value*> within(const std::vector<Value>& values, double from, double to) {
@@ -45,7 +59,8 @@ std::optional<Attitude> attitudeIn(const std::vector<const CameraPose*>& poses,
     const Eigen::Vector4d q = pose->orientation.coeffs();
     sum += q.dot(middle.orientation.coeffs()) < 0 ? Eigen::Vector4d(-q) : q;
   }
-  attitude.camera_from_probe = Eigen::Quaterniond(sum).normalized().toRotationMatrix();
+  attitude.camera_from_probe = Eigen::Quaterniond(sum).normalized();
+  attitude.sigma = middle.sigma_angle / std::sqrt(static_cast<double>(poses.size()));
   const double n = static_cast<double>(samples.size());
   for (const ProbeSample* sample : samples) attitude.force += sample->force / n;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -77,11 +92,16 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
                                         const ProbeModel& model) {
   std::vector<Attitude> attitudes;
   if (poses.empty()) return std::nullopt;
-  for (double t = poses.front().t; t < poses.back().t; t += kWindow)
-    if (const auto attitude =
-            attitudeIn(within(poses, t, t + kWindow), within(samples, t, t + kWindow),
-                       9 * model.accelerationVariance()))
+  bool goes_on = false;
+  for (double t = poses.front().t; t < poses.back().t; t += kWindow) {
+    const auto attitude = attitudeIn(within(poses, t, t + kWindow), within(samples, t, t + kWindow),
+                                     9 * model.accelerationVariance());
+    if (attitude && goes_on && isHeldOn(attitudes.back(), *attitude))
+      join(attitudes.back(), *attitude);
+    else if (attitude)
       attitudes.push_back(*attitude);
+    goes_on = attitude.has_value();
+  }
   if (attitudes.size() < kAttitudes) return std::nullopt;
 
   StillProbe fit;
@@ -113,12 +133,13 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
     for (std::size_t k = 0; k < 4; ++k) {
       axes[k] = Affine();
       for (const Attitude& a : attitudes)
-        axes[k].add(-(a.camera_from_probe.transpose() * fit.gravity) / kGravityLength,
+        axes[k].add(-(a.camera_from_probe.conjugate() * fit.gravity) / kGravityLength,
                     a.reading[k] / kGravityLength);
       const SymmetricSolver axis(axes[k].normal);
       if (!(axis.evenness() > kAlike)) return std::nullopt;
       const Eigen::Vector4d solved = axis.solve(axes[k].right);
-      const Vec3 direction = solved.head<3>().normalized();
+      fit.gain[k] = solved.head<3>().norm();
+      const Vec3 direction = solved.head<3>() / fit.gain[k];
       change = std::max(change, (direction - fit.directions[k]).norm());
       fit.directions[k] = direction;
       fit.bias[k] = kGravityLength * solved[3];
@@ -130,17 +151,19 @@ std::optional<StillProbe> fitStillProbe(const std::vector<CameraPose>& poses,
     fit.force_zero += a.force / static_cast<double>(attitudes.size());
     for (std::size_t k = 0; k < 4; ++k) {
       const double shown =
-          -fit.directions[k].dot(a.camera_from_probe.transpose() * fit.gravity) + fit.bias[k];
+          -fit.directions[k].dot(a.camera_from_probe.conjugate() * fit.gravity) + fit.bias[k];
       squares += std::pow(a.reading[k] - shown, 2);
     }
   }
   // Four axes with a direction and a bias each, and gravity's direction.
   const double freedom = std::max(1., 4. * static_cast<double>(attitudes.size()) - 14);
   fit.rms = std::sqrt(squares / freedom);
-  for (std::size_t k = 0; k < 4; ++k)
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Matrix4d inverse = SymmetricSolver(axes[k].normal).inverse();
     fit.deviation[k] =
-        fit.rms / kGravityLength *
-        std::sqrt(SymmetricSolver(axes[k].normal).inverse().topLeftCorner<3, 3>().trace() / 3);
+        fit.rms / kGravityLength * std::sqrt(inverse.topLeftCorner<3, 3>().trace() / 3);
+    fit.bias_deviation[k] = fit.rms * std::sqrt(inverse(3, 3));
+  }
   return fit;
 }
 
