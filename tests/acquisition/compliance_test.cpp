@@ -122,6 +122,37 @@ TEST(Compliance, OfFewPressesHasAnHonestDeviation) {
   }
 }
 
+// A path that errs for as long as a press, and says by how much.
+TEST(Compliance, OfOnePressIsAsUncertainAsThePath) {
+  constexpr double kSigma = 0.2e-3;
+  for (const double stiffness : {300., 1000., 3000.}) {
+    double squares = 0, stated = 0;
+    constexpr int kSeeds = 400;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+      std::mt19937 random(seed);
+      std::normal_distribution<double> normal;
+      std::vector<PressSample> samples;
+      double error = kSigma * normal(random);
+      const double stays = std::exp(-0.002 / 0.3);
+      for (int i = 0; i < 250; ++i) {
+        const double force = 3.0 * i / 249;
+        error = stays * error + kSigma * std::sqrt(1 - stays * stays) * normal(random);
+        samples.push_back(
+            {i / 500., force / stiffness + error, force + kForceSigma * normal(random), kSigma});
+      }
+      const auto estimate = estimateCompliance(samples, kForceSigma, true);
+      ASSERT_TRUE(estimate);
+      ASSERT_EQ(estimate->loadings, 1u);
+      squares += std::pow(estimate->compliance - 1 / stiffness, 2) / kSeeds;
+      stated += estimate->compliance_deviation / kSeeds;
+    }
+    std::printf("one press, %.0f N/m: stated %.2f of the deviation\n", stiffness,
+                stated / std::sqrt(squares));
+    EXPECT_GT(stated, 0.9 * std::sqrt(squares));
+    EXPECT_LT(stated, 2 * std::sqrt(squares));
+  }
+}
+
 TEST(Compliance, IsAbsentWithoutALoading) {
   EXPECT_FALSE(estimateCompliance({}, kForceSigma));
   std::vector<PressSample> resting(500);

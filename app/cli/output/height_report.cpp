@@ -25,15 +25,24 @@ void reportHeights(const ScanHeights& scan, Report& report) {
                "Rq " + formatLength(found->rq) + " +- " + formatLength(found->rq_deviation) +
                    ", Ra " + formatLength(found->ra) + " +- " + formatLength(found->ra_deviation) +
                    ", waves up to " + formatLength(kRoughnessCutoff));
-  if (const auto& found = scan.compliance)
-    report.set("stiffness",
-               Json::object()
-                   .set("value", found->stiffness)
-                   .set("deviation", found->stiffness_deviation)
-                   .set("presses", found->loadings),
-               rounded(found->stiffness) + " N/m, deviation " +
-                   rounded(found->stiffness_deviation) + " N/m, from " +
-                   formatCount(found->loadings) + " presses");
+  if (const auto& found = scan.compliance) {
+    const std::string presses =
+        ", from " + formatCount(found->loadings) + (found->loadings == 1 ? " press" : " presses");
+    if (found->isTold())
+      report.set("stiffness",
+                 Json::object()
+                     .set("value", found->stiffness)
+                     .set("deviation", found->stiffness_deviation)
+                     .set("presses", found->loadings),
+                 rounded(found->stiffness) + " N/m, deviation " +
+                     rounded(found->stiffness_deviation) + " N/m" + presses);
+    else {
+      const double least = 1 / (found->compliance + 2 * found->compliance_deviation);
+      report.set("stiffness", Json::object().set("least", least).set("presses", found->loadings),
+                 "more than " + rounded(least) + " N/m" + presses +
+                     ": it may be rigid, and heights are those of a rigid surface");
+    }
+  }
 }
 
 } // namespace patina::cli

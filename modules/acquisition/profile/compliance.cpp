@@ -127,6 +127,15 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
                 m.freedom * force_variance * (residual_variance + C * C * force_variance) /
                     (true_forces * true_forces));
   const double presses = static_cast<double>(pulls.size());
+  if (alike_in_a_press && presses == 1) {
+    const Loading& press = loadings[0];
+    double squares_of_sigma = 0;
+    for (std::size_t i = press.begin; i < press.end; ++i)
+      squares_of_sigma += samples[i].sigma * samples[i].sigma / n;
+    const auto [least, most] = std::minmax_element(f.begin(), f.end());
+    estimate.compliance_deviation =
+        std::max(estimate.compliance_deviation, std::sqrt(2 * squares_of_sigma) / (*most - *least));
+  }
   if (alike_in_a_press && presses > 1) {
     double sum = 0;
     for (const double pull : pulls) sum += pull * pull;

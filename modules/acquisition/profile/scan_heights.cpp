@@ -21,7 +21,7 @@ std::vector<PressSample> pressesOf(const std::vector<PathSample>& path, const Ca
     const TipOver here = over(sample);
     const Vec3 velocity = motionAt(track, sample.t).velocity;
     if ((velocity - here.normal * here.normal.dot(velocity)).norm() > kStandingSpeed) continue;
-    samples.push_back({sample.t, -here.height, sample.force});
+    samples.push_back({sample.t, -here.height, sample.force, sample.sigma});
   }
   return samples;
 }
@@ -68,7 +68,8 @@ ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& p
                                      return TipOver{normal, normal.dot(sample.position)};
                                    }),
                          std::sqrt(probe.forceVariance()), true);
-  const double compliance = given.value_or(scan.compliance ? scan.compliance->compliance : 0);
+  const bool told = scan.compliance && scan.compliance->isTold();
+  const double compliance = given.value_or(told ? scan.compliance->compliance : 0);
   std::vector<std::vector<TracedSample>> traces;
   for (const Stretch& stretch : touchingStretches(fused.path))
     if (stretch.end - stretch.begin >= kFewest)
