@@ -261,6 +261,54 @@ TEST(FusedPath, ComesBackWhereTheCameraWasAwayForMinutes) {
   EXPECT_NEAR(judged(scan, path).nees, 1, 0.5);
 }
 
+// Rounding must not make of a long gap a place that is known exactly.
+TEST(FusedPath, SaysInAGapOfSecondsWhatItDoesNotKnow) {
+  for (const double gap : {0.5, 1., 1.4, 2., 4., 4.9})
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      FusedScan scan = scanOf(seed, false);
+      std::erase_if(scan.poses,
+                    [&](const CameraPose& pose) { return pose.t > 6 && pose.t < 6 + gap; });
+      const std::vector<PathSample> path = fusePath(scan.poses, scan.samples, scan.probe).path;
+      double least = INFINITY, most = 0;
+      for (const PathSample& sample : path) {
+        least = std::min(least, sample.sigma);
+        const double error = (sample.position - handAt(scan.hand, sample.t).tip).norm();
+        most = std::max(most, error / (std::sqrt(3.) * sample.sigma));
+      }
+      std::printf("gap of %.1f s, seed %u: sigma %.1e at least, %.1f deviations at most\n", gap,
+                  seed, least, most);
+      EXPECT_GT(least, 1e-5);
+      EXPECT_LT(most, 10);
+    }
+}
+
+TEST(FusedPath, InnovationsTellAWrongRig) {
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    const FusedScan scan = scanOf(seed, false);
+    const auto worst = [](const FusedPath& fused) {
+      return std::max(fused.pose_nis,
+                      *std::max_element(fused.axis_nis.begin(), fused.axis_nis.end()));
+    };
+    const double right = worst(fusePath(scan.poses, scan.samples, scan.probe));
+    ProbeModel reversed = scan.probe, swapped = scan.probe;
+    reversed.axes[0].direction *= -1;
+    std::swap(swapped.axes[0].direction, swapped.axes[2].direction);
+    std::vector<ProbeSample> in_g = scan.samples;
+    for (ProbeSample& sample : in_g)
+      for (double& a : sample.acceleration) a /= 9.80665;
+    FusedOptions tilted;
+    tilted.gravity = Eigen::AngleAxisd(0.1, Vec3::UnitX()) * tilted.gravity;
+    const double wrong[] = {worst(fusePath(scan.poses, scan.samples, reversed)),
+                            worst(fusePath(scan.poses, scan.samples, swapped)),
+                            worst(fusePath(scan.poses, in_g, scan.probe)),
+                            worst(fusePath(scan.poses, scan.samples, scan.probe, tilted))};
+    std::printf("seed %u: %.2f; reversed %.1f, swapped %.1f, in g %.1f, gravity .1 rad off %.1f\n",
+                seed, right, wrong[0], wrong[1], wrong[2], wrong[3]);
+    EXPECT_LT(right, 1.5);
+    for (const double nis : wrong) EXPECT_GT(nis, 2.5);
+  }
+}
+
 TEST(FusedPath, FindsTheBiasesOfTheAccelerometers) {
   const FusedScan scan = scanOf(4, false);
   const FusedPath fused = fusePath(scan.poses, scan.samples, scan.probe);

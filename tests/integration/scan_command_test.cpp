@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <regex>
+#include <sstream>
 
 #include <Eigen/Geometry>
 
 #include "core/csv.h"
 #include "core/file.h"
+#include "core/numbers.h"
 #include "integration/scans.h"
 
 namespace patina::test {
@@ -99,6 +101,57 @@ TEST_F(Scans, GiveHeightsWhereTheyAreAskedFor) {
   refused({"--heights", link}, "is the path's file too");
 }
 
+// Each input is well formed, and together they cannot be: it is said.
+TEST_F(Scans, ThatContradictThemselvesSaySo) {
+  simulate({"--seconds", "8"});
+  const auto says = [&](const std::string& words) {
+    const Outcome outcome = run({"filter", scan, "-o", path});
+    EXPECT_EQ(outcome.exit, 0);
+    return outcome.err.find(words) != std::string::npos;
+  };
+  const std::string contradict = "contradict one another";
+  EXPECT_FALSE(says(contradict) || says("clock was not found") || says("rejected"));
+  const std::string probe = readFile(scan + "/probe.csv"), rig = readFile(scan + "/rig.json"),
+                    poses = readFile(scan + "/poses.tum");
+  CsvTable rows = readCsv(scan + "/probe.csv", {"t [s]", "force [N]"});
+  const auto write = [&](const auto& change) {
+    std::string text = probe.substr(0, probe.find('\n') + 1);
+    for (std::vector<double> row : rows.rows) {
+      change(row);
+      for (std::size_t i = 0; i < row.size(); ++i)
+        text += (i > 0 ? "," : "") + formatNumber(row[i]);
+      text += "\n";
+    }
+    writeFileAtomically(scan + "/probe.csv", text);
+  };
+  write([](std::vector<double>& row) {
+    for (std::size_t i = 2; i < 6; ++i) row[i] /= 9.80665;
+  });
+  EXPECT_TRUE(says(contradict)) << "in g";
+  write([](std::vector<double>& row) { std::swap(row[2], row[3]); });
+  EXPECT_TRUE(says(contradict)) << "axes swapped";
+  write([](std::vector<double>& row) { row[0] += 0.8; });
+  EXPECT_TRUE(says(contradict) || says("clock was not found")) << "another clock";
+  writeFileAtomically(scan + "/probe.csv", probe);
+  std::string turned = rig;
+  const std::size_t at = turned.find("\"gravity\"");
+  turned.replace(at, turned.find(']', at) - at, "\"gravity\": [0, 9.80665, 0");
+  writeFileAtomically(scan + "/rig.json", turned);
+  EXPECT_TRUE(says(contradict)) << "gravity";
+  writeFileAtomically(scan + "/rig.json", rig);
+  std::istringstream lines(poses);
+  std::string far; // every second pose half a metre on
+  bool other = false;
+  for (std::string line; std::getline(lines, line); far += line + "\n") {
+    if (line.empty() || line[0] == '#' || !(other = !other)) continue;
+    const std::size_t from = line.find(' ') + 1, to = line.find(' ', from);
+    const double x = *parseNumber(line.substr(from, to - from));
+    line.replace(from, to - from, formatNumber(x + 0.5));
+  }
+  writeFileAtomically(scan + "/poses.tum", far);
+  EXPECT_TRUE(says("poses were rejected"));
+}
+
 TEST_F(Scans, WithFaultsTellThem) {
   simulate({"--dropouts", "3", "--outliers", "0.03", "--clock-offset", "0.1", "--from", "-x"});
   const Outcome text = run({"filter", scan, "-o", path});
@@ -166,6 +219,11 @@ TEST_F(Scans, RunFromFramesToPath) {
   EXPECT_EQ(report.at("model").asString(), "fused");
   EXPECT_EQ(report.at("gaps").asArray().size(), 1u);
   EXPECT_LT(report.at("error").at("rms").asNumber(), 0.3e-3);
+  const double nees = report.at("error").at("nees").asNumber();
+  std::printf("from frames to the path: NEES %.2f\n", nees);
+  EXPECT_GT(nees, 0.4);
+  EXPECT_LT(nees, 2.5);
+  for (const auto& nis : report.at("nis_probe").asArray()) EXPECT_LT(nis.asNumber(), 1.5);
 
   // Bad input: one line, nothing written.
   const std::string other = folder / "other.tum";

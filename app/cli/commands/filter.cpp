@@ -40,7 +40,12 @@ const Keys kFilterKeys = {
     {"rejected", "", "rejected", "poses", Shown::if_any},
     {"restarts", "", "begun anew", "jumps of the poses", Shown::if_any},
     {"nis_mean", "", "NIS",
-     "squared innovations of the poses over their variance, 1 if sigmas hold"},
+     "squared innovations of the poses over their variance, about 1: the motion's noise is fitted "
+     "to them, which hides sigmas that are too small"},
+    {"nis_probe", "", "NIS of the probe",
+     "the same of the accelerometers, a1u a1v a2u a2v; far above 1 where rig, gravity, units or "
+     "clock are wrong",
+     Shown::if_any},
     {"rms_innovation", "m", "innovation", "of the tip, rms of an axis"},
     {"sigma",
      "m",
@@ -78,7 +83,10 @@ const Keys kFilterKeys = {
      "stiffness",
      "from presses while standing; absent without any",
      Shown::if_any,
-     {{"value", "N/m", ""}, {"deviation", "N/m", ""}, {"presses", "", ""}}},
+     {{"value", "N/m", ""},
+      {"deviation", "N/m", ""},
+      {"least", "N/m", "", "in place of both, where presses do not tell it from rigid"},
+      {"presses", "", ""}}},
     {"seconds", "s", "filtered in"}};
 
 PathModel parseModel(const std::string& word) {
@@ -265,7 +273,7 @@ int runFilter(FilterOptions options, Console& console) {
     }
     presses =
         complianceOverMesh(over->target, over->mesh_from_scan, path.path, path.track, in.rig.probe);
-    filter.compliance = presses ? presses->compliance : 0;
+    filter.compliance = presses && presses->isTold() ? presses->compliance : 0;
     filter.heights = true;
   }
   FilteredScan scan = filtered();
@@ -290,8 +298,10 @@ int runFilter(FilterOptions options, Console& console) {
   reportSigma(scan.path, report);
   const Json gaps = gapsJson(scan);
   report.set("gaps", gaps, formatCount(gaps.asArray().size()) + "; sigma grows in them");
-  if (filter.model == PathModel::fused)
+  if (filter.model == PathModel::fused) {
+    report.set("nis_probe", Json(Json::Array(scan.axis_nis.begin(), scan.axis_nis.end())));
     report.set("bias", Json(Json::Array(scan.bias.begin(), scan.bias.end())));
+  }
   if (scan.clock) {
     const ProbeClock clock = scan.clock->differs ? *scan.clock : ProbeClock();
     report.set("clock_offset", clock.offset,
@@ -312,6 +322,7 @@ int runFilter(FilterOptions options, Console& console) {
   }
   if (scan.heights) reportHeights(*scan.heights, report);
   report.set("seconds", taken.count());
+  for (const std::string& doubt : scan.doubts) console.warn(options.input.string() + ": " + doubt);
   warnOf(scan.without_pose, options.input, in.poses, nullptr, "a pose", console);
   warnOf(scan.without_sample, options.probe, in.samples,
          scan.clock && scan.clock->differs ? &*scan.clock : nullptr, "a sample", console);

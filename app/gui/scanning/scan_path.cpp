@@ -118,8 +118,8 @@ ScanFilter filterFor(const ScanFiles& files) {
 } // namespace
 
 QString wordOf(Finding::Kind kind) {
-  constexpr const char* kWords[] = {"unreadable", "no marker", "ambiguous",    "misfit",
-                                    "rejected",   "gap",       "probe dropout"};
+  constexpr const char* kWords[] = {"unreadable", "no marker", "ambiguous",     "misfit",
+                                    "rejected",   "gap",       "probe dropout", "doubt"};
   return say(kWords[static_cast<std::size_t>(kind)]);
 }
 
@@ -143,6 +143,9 @@ ScanPath pathOf(const ScanFiles& files, const std::vector<CameraPose>& poses,
     if (made.path.empty()) made.path = all;
   }
   addFrames(files, seen, made.findings);
+  for (const std::string& doubt : made.filtered.doubts)
+    made.findings.push_back(
+        {Finding::Kind::doubt, poses.front().t, poses.front().t, QString::fromStdString(doubt)});
   addGaps(made, made.findings);
   addRejected(made, files.tip(), made.findings);
   std::stable_sort(made.findings.begin(), made.findings.end(),

@@ -24,7 +24,7 @@ enum class FrameQuality { good, few, ambiguous, rejected, no_marker, unreadable,
 
 // Something of a scan that is missing or was left out, and why.
 struct Finding {
-  enum class Kind { unreadable, no_marker, ambiguous, misfit, outlier, gap, dropout };
+  enum class Kind { unreadable, no_marker, ambiguous, misfit, outlier, gap, dropout, doubt };
   Kind kind = Kind::gap;
   double from = 0, to = 0; // [s]
   QString words;

@@ -12,7 +12,7 @@ namespace patina {
 
 // A track that sees nothing for longer begins anew [s]: errors that grow as t^5 leave no digits of
 // what the next pose says.
-inline constexpr double kUnseen = 5;
+inline constexpr double kUnseen = 1.5;
 
 struct CameraTrackOptions {
   bool acceleration = true; // constant acceleration; else constant velocity
@@ -52,7 +52,8 @@ struct CameraTrack {
   std::vector<Node<3>> fast;
   std::vector<PoseVerdict> verdicts; // of each pose
   std::size_t restarts = 0;
-  double nis_mean = 0; // of the poses that were used, per degree of freedom: 1 where sigmas hold
+  double nis_mean = 0; // of the poses that were used, per degree of freedom; noise that was found
+                       // hides sigmas that are too small
   double rms_innovation = 0; // of the tip, per axis [m]
 
   bool empty() const { return slow.empty() && fast.empty(); }

@@ -1,6 +1,7 @@
 #include "acquisition/filtering/filtered_scan.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "acquisition/filtering/contact.h"
 #include "core/error.h"
@@ -52,6 +53,28 @@ std::vector<PathSample> pathWithForce(const CameraTrack& track,
   return path;
 }
 
+// Innovations of a rig and a clock that are right stay below 1.2, of gravity .1 rad off they are 5.
+constexpr double kContradiction = 2;
+constexpr double kManyRejected = 0.3; // of the poses
+
+std::string rounded(double nis) {
+  return std::to_string(std::lround(std::min(nis, 1e9)));
+}
+
+void addDoubts(FilteredScan& scan, std::size_t poses) {
+  const double rejected = static_cast<double>(poses - scan.track.used());
+  if (rejected > kManyRejected * static_cast<double>(poses))
+    scan.doubts.push_back(formatCount(poses - scan.track.used()) + " of " + formatCount(poses) +
+                          " poses were rejected, and those that are left may be the wrong ones");
+  const double axes = *std::max_element(scan.axis_nis.begin(), scan.axis_nis.end());
+  if (axes > kContradiction || scan.pose_nis > kContradiction)
+    scan.doubts.push_back(
+        "accelerometers and poses contradict one another (NIS " + rounded(axes) + " and " +
+        rounded(scan.pose_nis) +
+        ", 1 is expected): axes or gravity of the rig, units, or the clock are wrong, and so is "
+        "the path");
+}
+
 } // namespace
 
 FilteredScan filterScan(const std::vector<CameraPose>& poses,
@@ -63,6 +86,9 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
     options.gravity = filter.gravity;
     CameraTrack track = firstPass(poses, probe, options);
     scan.clock = fitClock(track, samples, probe, filter.gravity);
+    if (!scan.clock)
+      scan.doubts.push_back("the probe's clock was not found beside the poses': it is taken to be "
+                            "theirs");
     std::vector<ProbeSample> corrected;
     if (scan.clock && scan.clock->differs) {
       corrected = samples;
@@ -80,6 +106,8 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
     scan.path = std::move(fused.path);
     scan.track = std::move(fused.track);
     scan.bias = fused.bias;
+    scan.axis_nis = fused.axis_nis;
+    scan.pose_nis = fused.pose_nis;
   } else {
     CameraTrackOptions options;
     options.acceleration = filter.model == PathModel::acceleration;
@@ -88,6 +116,7 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
     if (!scan.track.empty()) scan.path = pathWithForce(scan.track, samples);
   }
   if (scan.track.empty()) return scan;
+  addDoubts(scan, poses.size());
   const std::vector<double> seen = timesOfUsed(poses, scan.track);
   const double longest = scan.track.options.longest_gap;
   scan.without_pose = gapsIn(seen, longest);

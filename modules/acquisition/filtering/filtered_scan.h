@@ -1,6 +1,8 @@
 // A whole scan through the filter: what the command and the window show and write.
 #pragma once
 
+#include <string>
+
 #include "acquisition/filtering/fused_path.h"
 #include "acquisition/filtering/probe_clock.h"
 #include "acquisition/profile/scan_heights.h"
@@ -27,7 +29,10 @@ struct FilteredScan {
   std::vector<Gap> without_pose, without_sample;
   double largest_force = 0; // [N]
   std::optional<ScanHeights> heights;
-  std::optional<ProbeClock> clock; // where accelerometers are known; corrected where it differs
+  std::optional<ProbeClock> clock;  // where accelerometers are known; corrected where it differs
+  std::array<double, 4> axis_nis{}; // of FusedPath, as pose_nis; 0 where it was not used
+  double pose_nis = 0;
+  std::vector<std::string> doubts; // in words: why its numbers may be wrong
 };
 
 // `samples` may be empty: the path then is at the poses' times, has no force and is not cut. Throws

@@ -231,6 +231,29 @@ class Fusion {
   Eigen::Matrix3d angular_jerk_;
 };
 
+class Innovations {
+ public:
+  void add(const FusedStep& step, bool of_pose) {
+    for (std::size_t i = 0; i < step.count; ++i) {
+      Mean& mean = of_pose ? poses_ : axes_[i];
+      mean.sum += step.used[i].residual * step.used[i].residual / step.used[i].variance;
+      mean.count += 1;
+    }
+  }
+  void tell(FusedPath& fused) const {
+    fused.pose_nis = poses_.value();
+    for (std::size_t i = 0; i < axes_.size(); ++i) fused.axis_nis[i] = axes_[i].value();
+  }
+
+ private:
+  struct Mean {
+    double sum = 0, count = 0;
+    double value() const { return count > 0 ? sum / count : 0; }
+  };
+  Mean poses_;
+  std::array<Mean, 4> axes_;
+};
+
 PathSample sampleFrom(const Event& event, const FusedStep& step, const Adjoint& adjoint) {
   const State::Vector& x = step.x;
   const Eigen::Matrix<double, 6, 1> change = step.columns.transpose().lazyProduct(adjoint.l);
@@ -241,14 +264,18 @@ PathSample sampleFrom(const Event& event, const FusedStep& step, const Adjoint& 
   sample.position = x.segment<3>(State::kTip) - change.head<3>();
   sample.orientation =
       event.reference.orientation * expOf(x.segment<3>(State::kAngle) - change.tail<3>());
+  // The difference of two variances has no more digits than they have: where the camera was away
+  // for long, nothing less than that is known.
+  constexpr double kRounding = 1e-10;
   const auto sigmaOf = [&](int at, int column) {
-    double trace = 0;
+    double trace = 0, least = 0;
     for (int i = 0; i < 3; ++i) {
       const auto known = step.columns.col(column + i);
       const State::Vector learnt = adjoint.L.lazyProduct(known);
       trace += known[at + i] - known.dot(learnt);
+      least += kRounding * known[at + i];
     }
-    return std::sqrt(std::max(trace, 0.) / 3);
+    return std::sqrt(std::max({trace, least, 0.}) / 3);
   };
   sample.sigma = sigmaOf(State::kTip, 0);
   sample.sigma_angle = sigmaOf(State::kAngle, 3);
@@ -276,6 +303,7 @@ FusedPath fuseWith(CameraTrack track, const std::vector<CameraPose>& poses,
   std::vector<State> kept;
   State state;
   std::vector<FusedStep> steps(kBlock);
+  Innovations innovations;
   for (std::size_t k = 0; k < events.size(); ++k) {
     if (k % kBlock == 0) {
       progress.throwIfCancelled();
@@ -283,7 +311,9 @@ FusedPath fuseWith(CameraTrack track, const std::vector<CameraPose>& poses,
       kept.push_back(state);
     }
     fusion.advance(state, k, steps[0]);
+    if (!events[k].starts) innovations.add(steps[0], events[k].pose != nullptr);
   }
+  innovations.tell(fused);
   for (std::size_t i = 0; i < 4; ++i) fused.bias[i] = state.x[State::kBias + static_cast<int>(i)];
   fused.path.reserve(samples.size());
   Adjoint adjoint;

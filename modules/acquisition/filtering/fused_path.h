@@ -17,7 +17,11 @@ struct FusedOptions {
 struct FusedPath {
   std::vector<PathSample> path; // at the times of the probe's samples
   std::array<double, 4> bias{}; // that was found [m/s^2]
-  CameraTrack track;            // of the camera alone, with verdicts on its poses
+  // Mean squares of what each axis, and of what poses, say against what was expected of them, over
+  // their variance: far above 1 where rig, gravity, clock or units are wrong. 0 without any.
+  std::array<double, 4> axis_nis{};
+  double pose_nis = 0;
+  CameraTrack track; // of the camera alone, with verdicts on its poses
 };
 
 // Both streams on one clock, in the order of time; samples of the probe that are not finite, repeat
