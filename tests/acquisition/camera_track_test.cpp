@@ -71,7 +71,7 @@ TEST(CameraTrack, SaysWhyItLeavesAPoseOut) {
 TEST(CameraTrack, DoesNotTrustTheFirstPoseNorThatAfterAGap) {
   std::vector<CameraPose> poses = circle(6);
   poses.front().position.x() += 0.1;
-  poses.erase(poses.begin() + 60, poses.begin() + 105); // 1.5 s
+  poses.erase(poses.begin() + 60, poses.begin() + 98); // 1.3 s
   poses[60].position.z() += 0.05;                       // the first one after
   const CameraTrack track = trackTip(poses, kTip);
   EXPECT_EQ(track.verdicts.front(), PoseVerdict::outlier);

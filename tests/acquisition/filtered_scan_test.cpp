@@ -54,6 +54,45 @@ TEST(FilteredScan, KeepsWhatTouches) {
   EXPECT_GT(kept.largest_force, 0.6);
 }
 
+// A plate that lies flat, 80 mm by 60.
+TriangleMesh plate() {
+  TriangleMesh mesh;
+  mesh.positions = {Vec3(-0.04, -0.03, 0), Vec3(0.04, -0.03, 0), Vec3(0.04, 0.03, 0),
+                    Vec3(-0.04, 0.03, 0)};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+// One noise for the whole of it would take fast lift-offs for outliers.
+TEST(FilteredScan, FollowsACalmHandThatLiftsOffFast) {
+  for (const double speed : {0.005, 0.01, 0.02, 0.05})
+    for (const std::uint32_t seed : {1, 2, 3}) {
+      Scan scan;
+      scan.hand = strokesOver(plate(), seed, 20, speed);
+      scan.hand.relief = roughSurface(seed, 25e-6);
+      scan.poses = simulateCamera(scan.hand, scan.probe, {}, seed);
+      scan.samples = simulateProbe(scan.hand, scan.probe, {}, seed + 100);
+      ScanFilter filter;
+      filter.touching_only = false;
+      const FilteredScan found = filtered(scan, filter);
+      double squares = 0, nees = 0, most = 0;
+      for (const PathSample& sample : found.path) {
+        const double error = (sample.position - handAt(scan.hand, sample.t).tip).norm();
+        squares += error * error;
+        nees += error * error / (3 * sample.sigma * sample.sigma);
+        most = std::max(most, error);
+      }
+      const double n = static_cast<double>(found.path.size());
+      const std::size_t rejected = scan.poses.size() - found.track.used();
+      std::printf("%.0f mm/s, seed %u: %zu poses rejected, %.2f mm, at most %.2f, NEES %.2f\n",
+                  1e3 * speed, seed, rejected, 1e3 * std::sqrt(squares / n), 1e3 * most, nees / n);
+      EXPECT_LE(rejected, 6u);
+      EXPECT_LT(std::sqrt(squares / n), 0.45e-3);
+      EXPECT_LT(nees / n, 4);
+      EXPECT_TRUE(found.doubts.empty());
+    }
+}
+
 TEST(FilteredScan, EachModelIsBetterThanTheOneBefore) {
   const Scan scan = scanOf(2);
   double last = INFINITY;

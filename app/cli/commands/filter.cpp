@@ -38,7 +38,7 @@ const Keys kFilterKeys = {
     {"model", "", "model"},
     {"poses", "", "poses", "", Shown::never},
     {"rejected", "", "rejected", "poses", Shown::if_any},
-    {"restarts", "", "begun anew", "jumps of the poses", Shown::if_any},
+    {"restarts", "", "begun anew", "after jumps of the poses, or 1.5 s without any", Shown::if_any},
     {"nis_mean", "", "NIS",
      "squared innovations of the poses over their variance, about 1: the motion's noise is fitted "
      "to them, which hides sigmas that are too small"},

@@ -39,7 +39,6 @@ template <int N> TipMotion motionOf(const MotionState<N, 3>& tip, const MotionSt
 
 template <int N>
 TipMotion motionIn(const std::vector<Node<N>>& nodes, const CameraTrackOptions& options, double t) {
-  const double tip_noise = *options.position_noise, turn_noise = *options.angle_noise / 2;
   const auto after = std::upper_bound(nodes.begin(), nodes.end(), t,
                                       [](double time, const Node<N>& n) { return time < n.t; });
   // Where the track begins anew nothing leads over; what is nearer tells more.
@@ -48,6 +47,8 @@ TipMotion motionIn(const std::vector<Node<N>>& nodes, const CameraTrackOptions& 
   const Node<N>& node = of_next ? *after : *(after - 1);
   const double since = t - node.t;
   const bool inside = after != nodes.begin() && after != nodes.end() && !after->starts;
+  const Node<N>& leads = inside ? *after : node;
+  const double tip_noise = leads.tip_noise, turn_noise = leads.turn_noise;
   TipMotion motion;
   if (inside && options.smooth) {
     const double until = after->t - t;
@@ -58,6 +59,8 @@ TipMotion motionIn(const std::vector<Node<N>>& nodes, const CameraTrackOptions& 
     motion =
         motionOf<N>(stepped(node.tip, since, tip_noise), stepped(node.turn, since, turn_noise));
   }
+  motion.position_noise = tip_noise;
+  motion.angle_noise = 2 * turn_noise;
   motion.gap = inside && options.smooth ? after->t - node.t > options.longest_gap && t > node.t
                                         : std::abs(since) > options.longest_gap;
   return motion;

@@ -3,22 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/filtering/camera_noise.h"
+
 namespace patina {
 namespace {
 
 template <int N> using Node = CameraTrack::Node<N>;
-using Tip = Eigen::Matrix<double, 1, 3>;
-using Turn = Eigen::Matrix<double, 1, 4>;
-
-constexpr double kFastestTip = 0.3; // [m/s], to begin with
-constexpr double kFastestTurn = 1;  // of a quaternion's component [1/s]
-
-struct Measured {
-  double t;
-  Tip tip;
-  Turn turn;
-  double tip_variance, turn_variance;
-};
+using Measured = MeasuredPose;
 
 Measured measuredFrom(const CameraPose& pose, const Vec3& tip) {
   const Eigen::Quaterniond q = pose.orientation.normalized();
@@ -53,11 +44,10 @@ template <int N> struct Innovations {
   bool within(double gate) const { return tip.nis() <= gate && turn.nis() <= gate; }
 };
 
-template <int N>
-Innovations<N> predictTo(Filter<N>& filter, Measured measured, const CameraTrackOptions& options) {
+template <int N> Innovations<N> predictTo(Filter<N>& filter, Measured measured) {
   const double dt = measured.t - filter.t;
-  predict(filter.tip, motionStep<N>(dt, *options.position_noise, ProcessNoise::white));
-  predict(filter.turn, motionStep<N>(dt, *options.angle_noise / 2, ProcessNoise::white));
+  predict(filter.tip, motionStep<N>(dt, measured.tip_noise, ProcessNoise::white));
+  predict(filter.turn, motionStep<N>(dt, measured.turn_noise, ProcessNoise::white));
   filter.t = measured.t;
   // q and -q are one orientation.
   if (filter.turn.x.row(0).dot(measured.turn) < 0) measured.turn = -measured.turn;
@@ -94,7 +84,7 @@ void gate(const std::vector<Measured>& measured, const CameraTrackOptions& optio
       continue;
     }
     Filter<N> next = *track;
-    const Innovations<N> innovations = predictTo(next, measured[i], options);
+    const Innovations<N> innovations = predictTo(next, measured[i]);
     if (innovations.within(options.gate)) {
       use(next, innovations);
       track = next;
@@ -105,7 +95,7 @@ void gate(const std::vector<Measured>& measured, const CameraTrackOptions& optio
     choice.verdicts[i] = PoseVerdict::outlier;
     if (other) {
       Filter<N> trial = *other;
-      const Innovations<N> fits = predictTo(trial, measured[i], options);
+      const Innovations<N> fits = predictTo(trial, measured[i]);
       if (fits.within(options.gate)) {
         use(trial, fits);
         other = trial;
@@ -177,14 +167,15 @@ Pass<N> filtered(const std::vector<Measured>& measured, const Choice& choice,
       filter.emplace(measured[i]);
       predictions.push_back(*filter);
     } else {
-      const Innovations<N> innovations = predictTo(*filter, measured[i], options);
+      const Innovations<N> innovations = predictTo(*filter, measured[i]);
       predictions.push_back(*filter);
       use(*filter, innovations);
       pass.nis += (innovations.tip.nis() + innovations.turn.nis()) / 6;
       pass.squares += innovations.tip.residual.squaredNorm() / 3;
       pass.count += 1;
     }
-    pass.nodes.push_back({filter->t, filter->tip, filter->turn, starts});
+    pass.nodes.push_back({filter->t, filter->tip, filter->turn, measured[i].tip_noise,
+                          measured[i].turn_noise, starts});
     pass.poses.push_back(i);
   }
   if (!options.smooth) return pass;
@@ -193,12 +184,10 @@ Pass<N> filtered(const std::vector<Measured>& measured, const Choice& choice,
     Node<N>& node = pass.nodes[k - 1];
     const Node<N>& next = pass.nodes[k];
     const double dt = next.t - node.t;
-    node.tip_gain =
-        smootherGain<N>(node.tip.P, predictions[k].tip.P,
-                        motionStep<N>(dt, *options.position_noise, ProcessNoise::white));
-    node.turn_gain =
-        smootherGain<N>(node.turn.P, predictions[k].turn.P,
-                        motionStep<N>(dt, *options.angle_noise / 2, ProcessNoise::white));
+    node.tip_gain = smootherGain<N>(node.tip.P, predictions[k].tip.P,
+                                    motionStep<N>(dt, next.tip_noise, ProcessNoise::white));
+    node.turn_gain = smootherGain<N>(node.turn.P, predictions[k].turn.P,
+                                     motionStep<N>(dt, next.turn_noise, ProcessNoise::white));
     node.tip = smoothed<N, 3>(node.tip, predictions[k].tip, next.tip, node.tip_gain);
     node.turn = smoothed<N, 4>(node.turn, predictions[k].turn, next.turn, node.turn_gain);
   }
@@ -237,80 +226,10 @@ bool judgeAgain(const std::vector<Measured>& measured, const Pass<N>& pass, doub
   return changed;
 }
 
-// Twice the negative logarithm of the likelihood of tips or turns, each innovation counting at most
-// as much as the gate, so that outliers do not choose the noise.
-template <int N, int C, class Part>
-double surprise(const std::vector<Measured>& measured, const Choice& choice, double noise,
-                double fastest, double gate, const Part& part) {
-  std::optional<MotionState<N, C>> state;
-  double t = 0, sum = 0;
-  int refused = 0;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    if (choice.verdicts[i] != PoseVerdict::used) continue;
-    auto [value, variance] = part(measured[i]);
-    if (!state || refused >= 5) {
-      state = firstState<N, C>(value, variance, fastest);
-      t = measured[i].t;
-      refused = 0;
-      continue;
-    }
-    predict(*state, motionStep<N>(measured[i].t - t, noise, ProcessNoise::white));
-    t = measured[i].t;
-    if (C == 4 && state->x.row(0).dot(value) < 0) value = -value;
-    const Innovation<C> innovation = innovationOf(*state, value, variance);
-    sum += 3 * std::log(std::max(innovation.variance, 1e-300)) + std::min(innovation.nis(), gate);
-    refused = innovation.nis() > gate ? refused + 1 : 0;
-    if (refused == 0) update(*state, innovation);
-  }
-  return sum;
-}
-
-// The least of a function of log10(noise) between two bounds: a coarse row, then golden section.
-template <class Function> double likeliest(double low, double high, const Function& f) {
-  constexpr int kRow = 9;
-  double best = low, least = f(low);
-  const double step = (high - low) / (kRow - 1);
-  for (int i = 1; i < kRow; ++i)
-    if (const double value = f(low + step * i); value < least) {
-      least = value;
-      best = low + step * i;
-    }
-  constexpr double kGolden = 0.6180339887498949;
-  double a = best - step, b = best + step;
-  double c = b - kGolden * (b - a), d = a + kGolden * (b - a), fc = f(c), fd = f(d);
-  while (b - a > 0.02) {
-    if (fc < fd) {
-      b = d, d = c, fd = fc;
-      c = b - kGolden * (b - a), fc = f(c);
-    } else {
-      a = c, c = d, fc = fd;
-      d = a + kGolden * (b - a), fd = f(d);
-    }
-  }
-  return std::pow(10, 0.5 * (a + b));
-}
-
 template <int N>
-void findNoise(const std::vector<Measured>& measured, const Choice& choice,
-               CameraTrackOptions& options) {
-  if (!options.position_noise)
-    options.position_noise = likeliest(-3, 3, [&](double exponent) {
-      return surprise<N, 3>(measured, choice, std::pow(10, exponent), kFastestTip, options.gate,
-                            [](const Measured& m) { return std::pair(m.tip, m.tip_variance); });
-    });
-  if (!options.angle_noise)
-    options.angle_noise =
-        2 * likeliest(-2, 4, [&](double exponent) {
-          return surprise<N, 4>(
-              measured, choice, std::pow(10, exponent), kFastestTurn, options.gate,
-              [](const Measured& m) { return std::pair(m.turn, m.turn_variance); });
-        });
-}
-
-template <int N>
-void runInto(CameraTrack& track, std::vector<Node<N>>& nodes, const std::vector<Measured>& measured,
+void runInto(CameraTrack& track, std::vector<Node<N>>& nodes, std::vector<Measured> measured,
              Choice choice) {
-  findNoise<N>(measured, choice, track.options);
+  findNoise<N>(measured, choice.verdicts, track.options);
   // What is smoothed is judged again, more strictly: a hand that starts fast is no outlier.
   CameraTrackOptions lenient = track.options;
   lenient.gate *= 3;
@@ -348,9 +267,9 @@ CameraTrack trackTip(const std::vector<CameraPose>& poses, const Vec3& tip,
   }
   choice.starts.assign(poses.size(), false);
   if (options.acceleration)
-    runInto(track, track.fast, measured, std::move(choice));
+    runInto(track, track.fast, std::move(measured), std::move(choice));
   else
-    runInto(track, track.slow, measured, std::move(choice));
+    runInto(track, track.slow, std::move(measured), std::move(choice));
   return track;
 }
 

@@ -22,7 +22,8 @@ struct CameraTrackOptions {
   int restart_after = 5; // poses in a row that disagree with the track and agree with one another
   double longest_gap = 0.1; // farther from poses the path counts as a gap [s]
   // Density of what disturbs the motion: white acceleration [m/s^1.5] or jerk [m/s^2.5], and the
-  // same for the angle [rad/...]. Absent: where the poses themselves are likeliest.
+  // same for the angle [rad/...]. Absent: where the poses themselves are likeliest, and for a few
+  // poses more than that where the hand is less calm than it usually is.
   std::optional<double> position_noise, angle_noise;
 };
 
@@ -32,9 +33,10 @@ struct TipMotion {
   Vec3 velocity = Vec3::Zero();     // [m/s]
   Vec3 acceleration = Vec3::Zero(); // [m/s^2]; 0 with constant velocity
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  Vec3 rate = Vec3::Zero();          // [rad/s]
-  Vec3 rate_of_rate = Vec3::Zero();  // [rad/s^2]; 0 with constant velocity
-  double sigma = 0, sigma_angle = 0; // of each axis [m], [rad]
+  Vec3 rate = Vec3::Zero();                   // [rad/s]
+  Vec3 rate_of_rate = Vec3::Zero();           // [rad/s^2]; 0 with constant velocity
+  double position_noise = 0, angle_noise = 0; // that the track has here
+  double sigma = 0, sigma_angle = 0;          // of each axis [m], [rad]
   bool gap = false;
 };
 
@@ -43,8 +45,9 @@ struct CameraTrack {
     using Gain = Eigen::Matrix<double, N, N>;
     double t = 0;
     MotionState<N, 3> tip;
-    MotionState<N, 4> turn; // the quaternion's components x y z w
-    bool starts = false;    // nothing leads here from the node before
+    MotionState<N, 4> turn;               // the quaternion's components x y z w
+    double tip_noise = 0, turn_noise = 0; // on the way here, turn: of the quaternion
+    bool starts = false;                  // nothing leads here from the node before
     Gain tip_gain = Gain::Zero(), turn_gain = Gain::Zero(); // of the smoother's step back to here
   };
   CameraTrackOptions options; // with the noise that was found

@@ -53,8 +53,9 @@ std::vector<PathSample> pathWithForce(const CameraTrack& track,
   return path;
 }
 
-// Innovations of a rig and a clock that are right stay below 1.2, of gravity .1 rad off they are 5.
-constexpr double kContradiction = 2;
+// Innovations of a rig and a clock that are right stay below 2.5, of gravity .1 rad off they
+// are 5.6.
+constexpr double kContradiction = 4;
 constexpr double kManyRejected = 0.3; // of the poses
 
 std::string rounded(double nis) {

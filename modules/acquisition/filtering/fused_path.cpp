@@ -50,13 +50,11 @@ std::vector<const ProbeSample*> usable(const std::vector<ProbeSample>& samples) 
 }
 
 // How fast accelerations wander, in the probe's frame, from their differences from sample to
-// sample: texture makes them restless, a hand in the air does not. Never below what the camera
-// found.
-std::vector<Vec3> unrest(const std::vector<const ProbeSample*>& samples, const ProbeModel& probe,
-                         double least) {
+// sample: texture makes them restless, a hand in the air does not.
+std::vector<Vec3> unrest(const std::vector<const ProbeSample*>& samples, const ProbeModel& probe) {
   Vec3 weights = Vec3::Zero();
   for (const AccelerometerAxis& axis : probe.axes) weights += axis.direction.cwiseAbs2();
-  std::vector<Vec3> jerks(samples.size(), Vec3::Constant(least));
+  std::vector<Vec3> jerks(samples.size(), Vec3::Zero());
   for (std::size_t begin = 0; begin + 1 < samples.size(); begin += kUnrest) {
     const std::size_t end = std::min(begin + kUnrest, samples.size() - 1);
     Vec3 jerk = Vec3::Zero();
@@ -69,7 +67,7 @@ std::vector<Vec3> unrest(const std::vector<const ProbeSample*>& samples, const P
       }
       jerk += std::max(squares / seconds, 0.) * probe.axes[k].direction.cwiseAbs2();
     }
-    jerk = jerk.cwiseQuotient(weights.cwiseMax(1e-3)).cwiseMax(least);
+    jerk = jerk.cwiseQuotient(weights.cwiseMax(1e-3));
     std::fill(jerks.begin() + static_cast<std::ptrdiff_t>(begin),
               jerks.begin() + static_cast<std::ptrdiff_t>(end + 1), jerk);
   }
@@ -83,15 +81,20 @@ constexpr double kUnheard = 1;
 std::vector<Event> eventsOf(const std::vector<CameraPose>& poses, const CameraTrack& track,
                             const std::vector<const ProbeSample*>& samples,
                             const ProbeModel& probe) {
-  const double camera_jerk = *track.options.position_noise * *track.options.position_noise;
-  const std::vector<Vec3> jerks = unrest(samples, probe, camera_jerk);
+  const std::vector<Vec3> jerks = unrest(samples, probe);
   std::vector<Event> events;
   events.reserve(samples.size() + poses.size());
   std::size_t next = 0, node = 0;
+  // Never calmer than the camera found the hand to be.
+  const auto add = [&](double t, const Vec3& jerk, const ProbeSample* sample,
+                       const CameraPose* pose, bool starts) {
+    const TipMotion reference = motionAt(track, t);
+    const double least = reference.position_noise * reference.position_noise;
+    events.push_back({reference, t, jerk.cwiseMax(least), sample, pose, starts});
+  };
   const auto addSample = [&](std::size_t i) {
     const bool starts = events.empty() || samples[i]->t - events.back().t > kUnheard;
-    events.push_back(
-        {motionAt(track, samples[i]->t), samples[i]->t, jerks[i], samples[i], nullptr, starts});
+    add(samples[i]->t, jerks[i], samples[i], nullptr, starts);
   };
   std::optional<double> seen; // [s], the last pose
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -101,9 +104,9 @@ std::vector<Event> eventsOf(const std::vector<CameraPose>& poses, const CameraTr
                         (seen && poses[i].t - *seen > kUnseen) ||
                         poses[i].t - events.back().t > kUnheard;
     seen = poses[i].t;
-    const Vec3 jerk =
-        samples.empty() ? Vec3::Constant(camera_jerk) : jerks[std::min(next, samples.size() - 1)];
-    events.push_back({motionAt(track, poses[i].t), poses[i].t, jerk, nullptr, &poses[i], starts});
+    add(poses[i].t,
+        samples.empty() ? Vec3(Vec3::Zero()) : jerks[std::min(next, samples.size() - 1)], nullptr,
+        &poses[i], starts);
     ++node;
   }
   for (; next < samples.size(); ++next) addSample(next);
@@ -121,10 +124,8 @@ struct FusedStep {
 
 class Fusion {
  public:
-  Fusion(const std::vector<Event>& events, const ProbeModel& probe, const FusedOptions& options,
-         double angle_noise)
-      : events_(events), probe_(probe), options_(options),
-        angular_jerk_(Eigen::Matrix3d::Identity() * angle_noise * angle_noise) {}
+  Fusion(const std::vector<Event>& events, const ProbeModel& probe, const FusedOptions& options)
+      : events_(events), probe_(probe), options_(options) {}
 
   void advance(State& state, std::size_t k, FusedStep& step) const {
     const Event& event = events_[k];
@@ -134,7 +135,9 @@ class Fusion {
     } else {
       step.dt = event.t - events_[k - 1].t;
       const Eigen::Matrix3d R = event.reference.orientation.toRotationMatrix();
-      predict(state, step.dt, R * event.jerk.asDiagonal() * R.transpose(), angular_jerk_);
+      const double turning = event.reference.angle_noise * event.reference.angle_noise;
+      predict(state, step.dt, R * event.jerk.asDiagonal() * R.transpose(),
+              turning * Eigen::Matrix3d::Identity());
       followReference(state, events_[k - 1].reference, event.reference, step.dt);
     }
     if (event.sample)
@@ -228,7 +231,6 @@ class Fusion {
   const std::vector<Event>& events_;
   const ProbeModel& probe_;
   const FusedOptions& options_;
-  Eigen::Matrix3d angular_jerk_;
 };
 
 class Innovations {
@@ -299,7 +301,7 @@ FusedPath fuseWith(CameraTrack track, const std::vector<CameraPose>& poses,
   fused.track = std::move(track);
   if (fused.track.empty()) return fused;
   const std::vector<Event> events = eventsOf(poses, fused.track, usable(samples), probe);
-  const Fusion fusion(events, probe, options, *fused.track.options.angle_noise);
+  const Fusion fusion(events, probe, options);
   std::vector<State> kept;
   State state;
   std::vector<FusedStep> steps(kBlock);
