@@ -47,6 +47,29 @@ TEST(Pivot, IsExactWithoutNoise) {
   EXPECT_LT((fit->point - pivot.point).norm(), 1e-9);
 }
 
+// Errors of the angle must not shorten the arm of a probe that turned little.
+TEST(Pivot, IsNoShorterWhereTheProbeTurnedLittle) {
+  for (const double degrees : {9., 14., 34.}) {
+    SimulatedPivot pivot;
+    pivot.cone = degrees * M_PI / 180;
+    pivot.sigma_position = 0.2e-3;
+    pivot.sigma_angle = 0.27 * M_PI / 180;
+    pivot.outliers = 0;
+    double mean = 0, nees = 0;
+    constexpr int kSeeds = 60;
+    for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+      const auto fit = fitPivot(simulatePivot(pivot, seed));
+      ASSERT_TRUE(fit);
+      const Vec3 off = fit->tip - pivot.tip;
+      mean += off.z() / kSeeds;
+      nees += off.dot(SymmetricSolver(fit->covariance).solve(off)) / (3 * kSeeds);
+    }
+    std::printf("cone of %.0f degrees: %.3f mm too short, NEES %.2f\n", degrees, 1e3 * mean, nees);
+    EXPECT_NEAR(mean, 0, 0.15e-3);
+    EXPECT_NEAR(nees, 1, 0.6);
+  }
+}
+
 TEST(Pivot, SaysNothingOfAProbeThatHardlyTurned) {
   SimulatedPivot pivot;
   pivot.cone = 0.001;

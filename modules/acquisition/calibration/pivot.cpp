@@ -27,6 +27,15 @@ Eigen::Matrix3d informationOf(const CameraPose& pose, const Vec3& tip) {
   return spread.inverse();
 }
 
+// The residual's deviation grows with the tip, too, and the likeliest tip knows it: times the tip,
+// what that adds to the gradient. Without it errors of the angle shorten the arm, by their square
+// over that of how far the probe turned. `pull`: information times residual.
+Eigen::Matrix3d bendOf(const CameraPose& pose, const Vec3& pull) {
+  const Vec3 u = pose.orientation.conjugate() * pull;
+  const double angle = pose.sigma_angle * pose.sigma_angle;
+  return angle * (u.squaredNorm() * Eigen::Matrix3d::Identity() - u * u.transpose());
+}
+
 } // namespace
 
 std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses) {
@@ -34,18 +43,23 @@ std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses) {
   PivotFit fit;
   std::vector<double> weights(poses.size(), 1), lengths(poses.size());
   double scale = 1;
+  std::vector<Eigen::Matrix3d> bends(poses.size(), Eigen::Matrix3d::Zero());
   Mat6 normal;
   for (int round = 0; round < 60; ++round) {
     normal.setZero();
     Vec6 right = Vec6::Zero();
+    Eigen::Matrix3d bend = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       Eigen::Matrix<double, 3, 6> J;
       J << poses[i].orientation.toRotationMatrix(), -Eigen::Matrix3d::Identity();
       const Eigen::Matrix3d information = weights[i] * informationOf(poses[i], fit.tip);
       normal += J.transpose() * information * J;
       right -= J.transpose() * information * poses[i].position;
+      bend -= weights[i] * bends[i];
     }
-    const SymmetricSolver solver(normal);
+    Mat6 honest = normal;
+    honest.topLeftCorner<3, 3>() += bend;
+    const SymmetricSolver solver(honest);
     if (!(solver.evenness() > kOpen)) return std::nullopt;
     const Vec6 next = solver.solve(right);
     const double step = (next.head<3>() - fit.tip).norm();
@@ -53,7 +67,9 @@ std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses) {
     fit.point = next.tail<3>();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const Vec3 r = poses[i].orientation * fit.tip + poses[i].position - fit.point;
-      lengths[i] = std::sqrt(r.dot(informationOf(poses[i], fit.tip) * r));
+      const Vec3 pull = informationOf(poses[i], fit.tip) * r;
+      lengths[i] = std::sqrt(r.dot(pull));
+      bends[i] = bendOf(poses[i], pull);
     }
     std::vector<double> sorted = lengths;
     std::nth_element(sorted.begin(),
