@@ -62,6 +62,21 @@ TEST_F(Scans, TellWhereTheMeshIs) {
   }
 }
 
+TEST_F(Scans, LeaveNoPathOfAnotherScanBesideThem) {
+  simulate({"--seconds", "2"});
+  const std::string left = scan + "/path.csv", poses = readFile(scan + "/poses.tum");
+  ASSERT_EQ(run({"filter", scan, "-o", left}).exit, 0);
+  expectOneLineError(run({"simulate-scan", ball, "-o", scan, "--seconds", "3"}), {"path.csv"});
+  EXPECT_EQ(readFile(scan + "/poses.tum"), poses);
+}
+
+TEST_F(Scans, RefuseAFileOfPosesThatNoCameraCanHaveMade) {
+  simulate({"--seconds", "2"});
+  std::filesystem::resize_file(scan + "/poses.tum", 4'000'000'000); // sparse
+  expectOneLineError(run({"filter", scan, "-o", path}), {"poses.tum", "larger than"});
+  std::filesystem::resize_file(scan + "/poses.tum", 0);
+}
+
 TEST_F(Scans, AreTheSameForTheSameWords) {
   simulate();
   const std::string first = readFile(scan + "/probe.csv") + readFile(scan + "/poses.tum");

@@ -95,6 +95,9 @@ void requireNoOther(const std::filesystem::path& folder, bool frames) {
   const bool filmed = has("frames") || has("frames.csv");
   if (filmed || ((has("poses.tum") || has("probe.csv")) && (frames || !has("truth.json"))))
     throw FileError(folder.string(), 0, "holds a scan already: name another folder");
+  if (has("path.csv"))
+    throw FileError((folder / "path.csv").string(), 0,
+                    "is of the scan that is there: take it away, or name another folder");
 }
 
 int runSimulateScan(ScanOptions options, Console& console) {
@@ -192,7 +195,7 @@ Command simulateScanCommand() {
           "strokes, presses, pauses, ways back and lift-offs. FOLDER becomes a scan folder with "
           "the poses that a camera would find, the probe's stream, its rig and the truth. The "
           "same words give the same scan. It takes the place of one of poses that was simulated "
-          "too; a folder with another scan is refused.\n"
+          "too; a folder with another scan, or with a path.csv, is refused.\n"
           "With --frames the camera's frames of a cube of markers on the probe take the place of "
           "its poses, which patina track then finds: through a lens, blurred, noisy, unevenly lit; "
           "in dropouts something is before the markers.",

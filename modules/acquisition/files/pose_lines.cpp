@@ -38,6 +38,12 @@ std::string lineOf(const CameraPose& pose) {
 } // namespace
 
 OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid) {
+  // A pose takes some 150 bytes, so that this is a day of a camera.
+  constexpr std::uintmax_t kMostBytes = 500'000'000;
+  std::error_code unknown;
+  if (const auto size = std::filesystem::file_size(path, unknown); !unknown && size > kMostBytes)
+    throw FileError(path.string(), 0,
+                    "is larger than any scan's poses: " + formatBytes(static_cast<double>(size)));
   return parsePoses(readFile(path), path.string(), unsaid);
 }
 
