@@ -149,10 +149,12 @@ void makeFolder(const fs::path& folder) {
   // "a/b/" has the parent "a/b".
   if (!folder.has_filename()) return makeFolder(parent);
   if (!parent.empty()) makeFolder(parent);
-  if (::mkdir(folder.c_str(), 0777) != 0 && !fs::is_directory(folder, code)) {
-    const int cause = errno;
-    throw DiskError(folder.string(), "cannot be made a folder: " +
-                                         (cause == EEXIST ? "a file stands there" : reason(cause)));
+  if (::mkdir(folder.c_str(), 0777) != 0) {
+    const int cause = errno; // before another look changes it
+    if (!fs::is_directory(folder, code))
+      throw DiskError(folder.string(),
+                      "cannot be made a folder: " +
+                          (cause == EEXIST ? "a file stands there" : reason(cause)));
   }
   if (!syncFolder(parent.empty() ? "." : parent.c_str()))
     throw DiskError(folder.string(), "was made, but cannot be flushed: " + reason(errno));

@@ -92,6 +92,12 @@ TEST_F(FileTest, MakesFoldersOnTheWay) {
   writeFileAtomically(folder / "file", "x");
   EXPECT_THROW(makeFolder(folder / "file"), FileError);
   EXPECT_THROW(makeFolder(folder / "file" / "in"), FileError);
+  try { // where the kernel lets nobody make one, whoever asks
+    makeFolder("/sys/patina");
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(std::string(error.what()).find("No such file"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(FileTest, KnowsItsTemporaryFiles) {
