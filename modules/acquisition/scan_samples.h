@@ -58,7 +58,7 @@ struct Gap {
   double from, to; // [s]
 };
 
-// Why a pose was or was not taken.
+// Why a pose was or was not taken; not_finite: or its sigma is below 0.
 enum class PoseVerdict { used, outlier, not_finite, repeated, backwards };
 std::string_view nameOf(PoseVerdict verdict);
 

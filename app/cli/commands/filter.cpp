@@ -9,6 +9,7 @@
 #include "acquisition/texture/mesh_heights.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/height_report.h"
+#include "app/cli/output/path_report.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -57,6 +58,12 @@ const Keys kFilterKeys = {
     {"clock_offset", "s", "clock",
      "by how much the probe's is ahead at its first sample; corrected"},
     {"clock_skew", "", "clock skew", "by how much it runs faster", Shown::never},
+    {"clock_deviation",
+     "",
+     "clock",
+     "standard deviations",
+     Shown::never,
+     {{"offset", "s", ""}, {"skew", "", ""}}},
     {"bias", "m/s^2", "biases", "of the accelerometers, a1u a1v a2u a2v", Shown::if_any},
     {"error",
      "",
@@ -180,23 +187,6 @@ void warnOf(const std::vector<Gap>& gaps, const std::filesystem::path& path,
                (gaps.size() > 1 ? ", the longest of " + formatCount(gaps.size()) + " gaps" : ""));
 }
 
-Json gapsJson(const FilteredScan& scan) {
-  Json list = Json::array();
-  for (const auto& [stream, gaps] :
-       {std::pair("poses", &scan.without_pose), {"probe", &scan.without_sample}})
-    for (const Gap& gap : *gaps)
-      list.push(Json::object().set("stream", stream).set("from", gap.from).set("to", gap.to));
-  return list;
-}
-
-void reportSigma(const std::vector<PathSample>& path, Report& report) {
-  std::vector<double> sigmas;
-  for (const PathSample& sample : path) sigmas.push_back(sample.sigma);
-  const double median = percentiles(sigmas).p50, most = percentiles(sigmas).max;
-  report.set("sigma", Json::object().set("median", median).set("max", most),
-             formatLength(median) + " (median), " + formatLength(most) + " (max)");
-}
-
 // Heights over a mesh that the scan was registered to.
 struct Over {
   Over(TriangleMesh mesh, double tip_radius, const Pose& pose)
@@ -302,16 +292,7 @@ int runFilter(FilterOptions options, Console& console) {
     report.set("nis_probe", Json(Json::Array(scan.axis_nis.begin(), scan.axis_nis.end())));
     report.set("bias", Json(Json::Array(scan.bias.begin(), scan.bias.end())));
   }
-  if (scan.clock) {
-    const ProbeClock clock = scan.clock->differs ? *scan.clock : ProbeClock();
-    report.set("clock_offset", clock.offset,
-               scan.clock->differs
-                   ? "the probe's is " + rounded(1e3 * clock.offset) + " ms ahead and " +
-                         rounded(1e6 * clock.skew) + " us a second faster; corrected"
-                   : "as the camera's, within " + rounded(1e3 * scan.clock->offset_deviation) +
-                         " ms");
-    report.set("clock_skew", clock.skew);
-  }
+  if (scan.clock) reportClock(*scan.clock, report);
   if (!in.truth.empty()) {
     const PathError error = errorOf(scan.path, in.truth);
     Json json = Json::object();

@@ -99,6 +99,10 @@ QString adviceFor(const QString& message) {
   if (message.contains(QStringLiteral("no object")))
     return QDialog::tr("Start with a mesh, File → Add object…, and save the workspace; or run "
                        "patina scene -o FOLDER --add MESH.");
+  if (message.contains(QStringLiteral("workspace.json: cannot be opened")))
+    return QDialog::tr("A workspace's folder has a workspace.json, a scan's has frames.csv, "
+                       "poses.tum or path.csv. Pictures without times are opened by Open "
+                       "pictures… on the desk Scan.");
   if (message.contains(QStringLiteral("no such file")))
     return QDialog::tr("Check the name, or open it with File → Open.");
   if (message.contains(QStringLiteral("extension")) || message.contains(QStringLiteral("format")))

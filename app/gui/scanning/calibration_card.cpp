@@ -127,9 +127,10 @@ void CalibrationCard::offer(const QString& words, const QString& file, const std
 }
 
 void CalibrationCard::bringIntoView() {
-  if (file_.isEmpty()) return;
+  if (found_->text().isEmpty()) return;
+  QWidget* last = file_.isEmpty() ? static_cast<QWidget*>(found_) : use_;
   for (QWidget* above = parentWidget(); above != nullptr; above = above->parentWidget())
-    if (auto* column = qobject_cast<QScrollArea*>(above)) return column->ensureWidgetVisible(use_);
+    if (auto* column = qobject_cast<QScrollArea*>(above)) return column->ensureWidgetVisible(last);
 }
 
 void CalibrationCard::refuse(const QString& problem) {

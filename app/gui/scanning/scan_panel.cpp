@@ -110,9 +110,9 @@ void ScanPanel::fill() {
     row(tr("Camera"), tr("%1 × %2").arg(files.camera->width).arg(files.camera->height));
   if (!files.frames.empty()) row(tr("Frames"), countWords(files.frames.size()));
   if (files.frames.size() > 0 && !files.camera)
-    row(tr("Tracking"), tr("no camera.yml, so frames are not tracked"));
+    row(tr("Tracking"), tr("needs a camera.yml"));
   else if (files.frames.size() > 0 && files.markers.empty())
-    row(tr("Tracking"), tr("no markers in rig.json, so frames are not tracked"));
+    row(tr("Tracking"), tr("needs markers in rig.json"));
   const ScanPath* path = scan_.path();
   if (path == nullptr) return;
   const std::size_t used = path->filtered.track.used();

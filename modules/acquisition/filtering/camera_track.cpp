@@ -22,7 +22,8 @@ Measured measuredFrom(const CameraPose& pose, const Vec3& tip) {
 PoseVerdict screened(const CameraPose& pose, double last) {
   const bool finite = std::isfinite(pose.t) && pose.position.allFinite() &&
                       pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 1e-3 &&
-                      std::isfinite(pose.sigma_position) && std::isfinite(pose.sigma_angle);
+                      std::isfinite(pose.sigma_position) && std::isfinite(pose.sigma_angle) &&
+                      pose.sigma_position >= 0 && pose.sigma_angle >= 0;
   if (!finite) return PoseVerdict::not_finite;
   if (pose.t == last) return PoseVerdict::repeated;
   return pose.t < last ? PoseVerdict::backwards : PoseVerdict::used;
