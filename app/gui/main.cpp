@@ -142,6 +142,7 @@ int run(const Arguments& arguments, int argc, char** argv) {
   QTimer watch;
   QObject::connect(&watch, &QTimer::timeout, &window, [&] {
     if (interrupted == 0) return;
+    if (documents.asks()) window.controllers().edits.thread().leaveBehind();
     documents.setAsks(false);
     window.close();
     // A question that is still open would keep the program alive.

@@ -100,6 +100,32 @@ TEST(Autosave, NothingIsWrittenBeforeAnEditAndNothingStaysAfterACleanEnd) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "state"));
 }
 
+// A program that is told to end, with nobody to ask, does not lose what a kill would keep.
+TEST(Autosave, WhatIsNotSavedStaysWhereNobodyCanBeAsked) {
+  const Folder folder;
+  for (const bool edited : {false, true}) {
+    {
+      Desk desk(folder.path());
+      desk.open(oneBall());
+      ASSERT_TRUE(desk.settle());
+      if (edited) {
+        desk.edits.beginStroke(stiffBrush());
+        desk.edits.dabs(circle(5));
+        desk.edits.endStroke();
+        ASSERT_TRUE(desk.settle());
+      }
+      desk.edits.leaveBehind();
+    }
+    const auto places = leftBehind(folder.path());
+    ASSERT_EQ(places.size(), edited ? 1U : 0U);
+    if (!edited) continue;
+    Progress progress;
+    const auto autosave = Autosave::adopt(places[0]);
+    const auto editor = Editor::open(autosave->workspace(), {true, true, kHistoryBudget}, progress);
+    EXPECT_EQ(editor->history().undoable(), 1U);
+  }
+}
+
 TEST(Autosave, ADiskThatRefusesIsToldOfOnceAndPaintingGoesOn) {
   Desk desk("/proc/no/state");
   desk.open(oneBall());

@@ -98,7 +98,7 @@ struct EditThread::Impl {
       }
       perform(task);
     }
-    worker.close();
+    worker.close(leaves);
   }
 
   void perform(Task& task) {
@@ -133,7 +133,7 @@ struct EditThread::Impl {
   std::condition_variable wakes;
   std::deque<Task> queue;
   std::shared_ptr<Progress> progress;
-  bool stopping = false, working = false;
+  bool stopping = false, working = false, leaves = false;
   std::chrono::steady_clock::time_point rests_at;
   std::thread thread; // last: it uses all of these
 };
@@ -161,6 +161,11 @@ void EditThread::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave>
   impl_->push({"Opening", [carried](EditWorker& worker, Progress&) {
                  worker.adopt(std::move(carried->first), std::move(carried->second));
                }});
+}
+
+void EditThread::leaveBehind() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->leaves = true;
 }
 
 void EditThread::prepare(Tool tool) {

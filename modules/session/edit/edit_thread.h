@@ -71,6 +71,8 @@ class EditThread {
   // To what was last saved, as far as the history knows it; then nothing is unsaved.
   void discard(Done done = {});
   void cancel(); // what is under way, and what waits
+  // Nobody can be asked what becomes of edits that are not saved: the next start offers them.
+  void leaveBehind();
 
   EditEvents take();
   bool busy() const; // something is under way or waits

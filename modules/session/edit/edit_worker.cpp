@@ -174,11 +174,15 @@ void EditWorker::report() {
   events_.setStatus(std::make_shared<const EditStatus>(std::move(status)));
 }
 
-void EditWorker::close() {
+void EditWorker::close(bool leaves) {
   try {
     endStroke();
     Progress progress;
     settleValues(progress);
+    if (leaves && editor_) {
+      report(); // an edit that has just come to its end is kept, too
+      if (autosave_ && told_.unsaved) autosave_->leave();
+    }
   } catch (const std::exception& error) {
     events_.addProblem(error.what());
   }

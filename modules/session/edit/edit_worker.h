@@ -39,7 +39,9 @@ class EditWorker {
   void saveAs(const std::filesystem::path& folder);
   void discard(Progress& progress);
   void report(); // where the history stands, if that has changed
-  void close();  // ends the stroke, settles values and lets the scene go
+  // Ends the stroke, settles values and lets the scene go; leaves: what is unsaved, for the next
+  // start.
+  void close(bool leaves);
 
  private:
   void show(std::shared_ptr<const CompiledScene> compiled, bool anew = false);

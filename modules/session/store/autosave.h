@@ -25,6 +25,7 @@ class Autosave {
   Autosave& operator=(const Autosave&) = delete;
 
   void own() { removes_ = true; }
+  void leave() { removes_ = false; } // for the next start to offer it
 
   std::filesystem::path workspace() const; // the folder for the scene; made by whoever saves it
 
