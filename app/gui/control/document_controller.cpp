@@ -119,9 +119,11 @@ void DocumentController::open(const LoadRequest& request) {
   emit changed();
 }
 
-void DocumentController::openAsked(const LoadRequest& request) {
-  if (opensElsewhere(at_, recent_, request)) return;
-  if (!asks_ || at_.saving.settleEdits()) open(request);
+bool DocumentController::openAsked(const LoadRequest& request) {
+  if (opensElsewhere(at_, recent_, request)) return true;
+  if (asks_ && !at_.saving.settleEdits()) return false;
+  open(request);
+  return true;
 }
 
 void DocumentController::openDialog(bool adds) {
@@ -136,7 +138,10 @@ void DocumentController::openDialog(bool adds) {
   connect(dialog, &FileQuestion::chosen, this, [this, adds](const QString& path) {
     LoadRequest request = requestFor(path);
     request.adds = adds && at_.edits.scene() != nullptr;
-    request.adds ? open(request) : openAsked(request);
+    if (request.adds)
+      open(request);
+    else
+      openAsked(request);
   });
   dialog->open();
 }

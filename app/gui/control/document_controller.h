@@ -30,7 +30,7 @@ class DocumentController : public QObject {
   void setAsks(bool asks) { asks_ = asks; }
   bool asks() const { return asks_; }
   void open(const LoadRequest& request);
-  void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
+  bool openAsked(const LoadRequest& request); // unless the person would rather keep their edits
   void openDialog(bool adds);
   void cancel(); // what is loaded, else what is edited
   bool close();  // false: a file is still being read, and rested() follows
