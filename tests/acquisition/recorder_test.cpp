@@ -183,13 +183,17 @@ TEST_F(Recordings, RefuseAFolderThatHoldsAScan) {
 
 TEST_F(Recordings, EndWithFramesOfAnotherSize) {
   makeScan(0.4);
-  writeGrey(scan / "frames" / "000000.png", {320, 240, std::vector<std::uint8_t>(320 * 240, 9)});
+  const auto spoil = [&](const char* frame) {
+    writeGrey(scan / "frames" / frame, {320, 240, std::vector<std::uint8_t>(320 * 240, 9)});
+  };
+  spoil("000006.png"); // the probe has sent something by then
   {
     const auto recorder = replaying();
     EXPECT_NE(finished(*recorder).error.find("is 320 x 240"), std::string::npos);
   }
   EXPECT_TRUE(fs::exists(made)) << "what the probe sent is kept";
   fs::remove_all(made);
+  spoil("000000.png");
   {
     Recorder alone(openFrames("replay:" + scan.string(), 0), nullptr, setup());
     EXPECT_NE(finished(alone).error.find("is 320 x 240"), std::string::npos);
