@@ -305,7 +305,7 @@ TEST(FusedPath, InnovationsTellAWrongRig) {
     std::printf("seed %u: %.2f; reversed %.1f, swapped %.1f, in g %.1f, gravity .1 rad off %.1f\n",
                 seed, right, wrong[0], wrong[1], wrong[2], wrong[3]);
     EXPECT_LT(right, 1.5);
-    for (const double nis : wrong) EXPECT_GT(nis, 2.5);
+    for (const double nis : wrong) EXPECT_GT(nis, 4); // from where on filterScan() doubts
   }
 }
 

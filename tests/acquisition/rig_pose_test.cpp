@@ -245,10 +245,6 @@ TEST(RigPose, AMarkerThatIsDroppedLeavesTheDoubtAboutTheTilt) {
       const SeenRig found = poseOf(of, rig.markers, rig.camera);
       if (found.verdict != RigVerdict::seen) return 0;
       ++told;
-      if (of.size() == 6) {
-        double t = poseError(found.camera_from_probe, known).tail<3>().norm();
-        if (t > .2) std::printf("dropped %zu turned %.2f rms %.2f\n", found.dropped, t, found.rms);
-      }
       return int{poseError(found.camera_from_probe, known).tail<3>().norm() > 0.2};
     };
     const auto five = std::vector<SeenMarker>(seen.begin() + 1, seen.end());
