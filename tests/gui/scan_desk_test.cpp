@@ -38,10 +38,10 @@ TEST_F(ScanDeskTest, EveryFaultSaysWhyWhereverItIsClicked) {
   ASSERT_TRUE(openScan());
   // In the strip.
   auto* strip = find<FrameStrip>("strip");
-  scan().setCursor(0.3);
+  scan().cursor().set(0.3);
   wait(100);
   clickIn(*strip->viewport(), strip->placeOf(kUnreadable).center());
-  EXPECT_EQ(scan().frameAt(scan().cursor()), kUnreadable);
+  EXPECT_EQ(scan().cursor().frame(), kUnreadable);
   EXPECT_TRUE(why().contains(QStringLiteral("frame 12"))) << why().toStdString();
   EXPECT_TRUE(why().contains(QStringLiteral("000012.png"))) << why().toStdString();
   EXPECT_EQ(scan().qualityOf(kUnreadable), FrameQuality::unreadable);
@@ -52,7 +52,7 @@ TEST_F(ScanDeskTest, EveryFaultSaysWhyWhereverItIsClicked) {
   ASSERT_NE(wrong, nullptr);
   auto* traces = find<ScanTraces>("traces");
   clickIn(*traces, traces->placeOf(wrong->from));
-  EXPECT_EQ(scan().frameAt(scan().cursor()), kWrong);
+  EXPECT_EQ(scan().cursor().frame(), kWrong);
   EXPECT_TRUE(why().contains(QStringLiteral("left out"))) << why().toStdString();
   EXPECT_TRUE(why().contains(QStringLiteral("sigma"))) << why().toStdString();
   EXPECT_TRUE(why().contains(QStringLiteral(" mm and "))) << why().toStdString();
@@ -65,8 +65,8 @@ TEST_F(ScanDeskTest, EveryFaultSaysWhyWhereverItIsClicked) {
   auto* list = find<FindingList>("findings");
   const int row = static_cast<int>(gap - scan().path()->findings.data());
   clickIn(*list->viewport(), list->visualItemRect(list->item(row)).center());
-  EXPECT_GT(scan().cursor(), gap->from);
-  EXPECT_LT(scan().cursor(), gap->to);
+  EXPECT_GT(scan().cursor().time(), gap->from);
+  EXPECT_LT(scan().cursor().time(), gap->to);
   keepPicture("scan_findings");
   EXPECT_TRUE(list->item(row)->text().contains(QStringLiteral("sigma grows")));
   EXPECT_TRUE(why().contains(QStringLiteral("no marker"))) << why().toStdString();
@@ -79,15 +79,15 @@ TEST_F(ScanDeskTest, KeysStepFramesAndOneCursorIsEverywhere) {
   constexpr std::uint32_t kLeft = 0xff51, kRight = 0xff53, kEnd = 0xff57;
   type(kRight), type(kRight), type(kLeft);
   wait(200);
-  EXPECT_EQ(scan().frameAt(scan().cursor()), 4U);
+  EXPECT_EQ(scan().cursor().frame(), 4U);
   EXPECT_TRUE(find<QLabel>("frame_title")->text().startsWith(QStringLiteral("Frame 4 of")));
   const auto* traces = find<ScanTraces>("traces");
   const QImage drawn = find<ScanTraces>("traces")->grab().toImage();
-  const QPoint at = traces->placeOf(scan().cursor());
+  const QPoint at = traces->placeOf(scan().cursor().time());
   EXPECT_GT(drawn.pixelColor(at.x(), traces->height() / 2).blue(),
             drawn.pixelColor(at.x(), traces->height() / 2).red() + 40);
   type(kEnd);
-  EXPECT_EQ(scan().frameAt(scan().cursor()), scan().files()->frames.size() - 1);
+  EXPECT_EQ(scan().cursor().frame(), scan().files()->frames.size() - 1);
   EXPECT_LT(strip->held(), 3U * 20U);
 }
 
@@ -108,7 +108,7 @@ double awayFromOutline(const QImage& drawn, const QPointF& place) {
 
 TEST_F(ScanDeskTest, OutlinesLieWhereTheRigIs) {
   ASSERT_TRUE(openScan());
-  scan().setCursor(scan().files()->frames[40].t);
+  scan().cursor().set(scan().files()->frames[40].t);
   wait(300);
   auto* canvas = find<FrameCanvas>("frame");
   const QImage drawn = canvas->grab().toImage();

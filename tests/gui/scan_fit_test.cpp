@@ -22,7 +22,7 @@ class ScanFit : public ScanDeskTest {
     desks.choose(Desk::scan);
     desks.foldColumn(false);
     desks.foldDrawer(false);
-    scan().setCursor(findingOf(Finding::Kind::outlier)->from); // the longest words
+    scan().cursor().set(findingOf(Finding::Kind::outlier)->from); // the longest words
     for (const Panel page : {Panel::findings, Panel::messages, Panel::timeline}) {
       desks.open(page);
       wait(150);

@@ -22,11 +22,11 @@ FindingList::FindingList(OpenScan& scan, QWidget* parent) : QListWidget(parent),
     const Finding& finding = findings[static_cast<std::size_t>(row)];
     // Gaps begin and end at poses that are there: what is missing is between them.
     const bool lasts = finding.kind == Finding::Kind::gap || finding.kind == Finding::Kind::dropout;
-    scan_.setCursor(lasts ? (finding.from + finding.to) / 2 : finding.from);
+    scan_.cursor().set(lasts ? (finding.from + finding.to) / 2 : finding.from);
   });
   connect(&scan_, &OpenScan::opened, this, &FindingList::fill);
   connect(&scan_, &OpenScan::pathMade, this, &FindingList::fill);
-  connect(&scan_, &OpenScan::cursorMoved, this, &FindingList::follow);
+  connect(&scan_.cursor(), &ScanCursor::moved, this, &FindingList::follow);
 }
 
 void FindingList::fill() {
@@ -48,7 +48,7 @@ void FindingList::fill() {
 
 void FindingList::follow() {
   const QSignalBlocker quiet(this);
-  const Finding* finding = scan_.findingAtCursor();
+  const Finding* finding = scan_.cursor().finding();
   setCurrentRow(finding == nullptr ? -1
                                    : static_cast<int>(finding - scan_.path()->findings.data()));
 }

@@ -79,7 +79,7 @@ FrameStrip::FrameStrip(OpenScan& scan, QWidget* parent)
   setToolTip(tr("The frames, and what each is worth; a click goes there, as the arrow keys do"));
   setFixedHeight(minimumSizeHint().height());
   connect(&scan_, &OpenScan::opened, this, &FrameStrip::takeScan);
-  connect(&scan_, &OpenScan::cursorMoved, this, &FrameStrip::showCursor);
+  connect(&scan_.cursor(), &ScanCursor::moved, this, &FrameStrip::showCursor);
   const auto redraw = [this] { viewport()->update(); };
   connect(&scan_, &OpenScan::framesSeen, this, redraw);
   connect(&scan_, &OpenScan::pathMade, this, redraw);
@@ -137,7 +137,7 @@ void FrameStrip::resizeEvent(QResizeEvent*) {
 
 void FrameStrip::showCursor() {
   if (count() == 0) return;
-  const QRect place = placeOf(scan_.frameAt(scan_.cursor()));
+  const QRect place = placeOf(scan_.cursor().frame());
   if (!viewport()->rect().contains(place))
     horizontalScrollBar()->setValue(horizontalScrollBar()->value() + place.center().x() -
                                     viewport()->width() / 2);
@@ -178,7 +178,7 @@ void FrameStrip::paintEvent(QPaintEvent*) {
   painter.fillRect(viewport()->rect(), ink("card"));
   painter.setRenderHint(QPainter::SmoothPixmapTransform);
   if (count() == 0) return;
-  const std::size_t now = scan_.frameAt(scan_.cursor());
+  const std::size_t now = scan_.cursor().frame();
   const auto [first, behind] = seen();
   for (std::size_t i = first; i < behind; ++i) {
     const QRect cell = placeOf(i);
@@ -205,7 +205,7 @@ void FrameStrip::paintEvent(QPaintEvent*) {
 }
 
 void FrameStrip::mousePressEvent(QMouseEvent* event) {
-  if (const auto frame = frameAt(event->pos())) scan_.setCursor(scan_.files()->frames[*frame].t);
+  if (const auto frame = frameAt(event->pos())) scan_.cursor().set(scan_.files()->frames[*frame].t);
 }
 
 void FrameStrip::wheelEvent(QWheelEvent* event) {

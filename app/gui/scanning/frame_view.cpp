@@ -203,7 +203,7 @@ FrameView::FrameView(OpenScan& scan, QWidget* parent)
     boards_.clear();
     load();
   });
-  connect(&scan_, &OpenScan::cursorMoved, this, &FrameView::load);
+  connect(&scan_.cursor(), &ScanCursor::moved, this, &FrameView::load);
   connect(&scan_, &OpenScan::framesSeen, this, &FrameView::describe);
   connect(&scan_, &OpenScan::pathMade, this, &FrameView::refresh);
   load();
@@ -240,7 +240,7 @@ void FrameView::load() {
                  : tr("This scan has no frames: its poses come from another program.");
     return refresh();
   }
-  const std::size_t frame = scan_.frameAt(scan_.cursor());
+  const std::size_t frame = scan_.cursor().frame();
   if (asked_ == frame) return describe();
   asked_ = frame;
   job_.start([this, path = files->frames[frame].file, camera = files->camera,
@@ -289,7 +289,7 @@ void FrameView::refresh() {
 void FrameView::describe() {
   const ScanFiles* files = scan_.files();
   if (files == nullptr || scan_.grows()) return;
-  QString title = QStringLiteral("%1 s").arg(scan_.cursor(), 0, 'f', 3), why;
+  QString title = QStringLiteral("%1 s").arg(scan_.cursor().time(), 0, 'f', 3), why;
   if (asked_) {
     const SeenFrame& seen = scan_.seen()[*asked_];
     title = tr("Frame %1 of 0 to %2 · %3 s")
@@ -302,7 +302,7 @@ void FrameView::describe() {
     }
     why = seen.looked ? QString::fromStdString(seen.why) : QString();
   }
-  if (const Finding* finding = scan_.findingAtCursor()) why = finding->words;
+  if (const Finding* finding = scan_.cursor().finding()) why = finding->words;
   title_->setText(title);
   sayWhy(why);
 }

@@ -9,8 +9,7 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kBatch = 16;   // frames that are told of at once
-constexpr double kSameMoment = 1e-4; // [s]
+constexpr std::size_t kBatch = 16; // frames that are told of at once
 
 using Seen = std::vector<SeenFrame>;
 
@@ -41,7 +40,7 @@ PathSample sampleOf(const CameraPose& pose, const Vec3& tip) {
 
 } // namespace
 
-OpenScan::OpenScan(QObject* parent) : QObject(parent), job_(this) {
+OpenScan::OpenScan(QObject* parent) : QObject(parent), job_(this), cursor_(*this) {
   connect(&job_, &Background::progressed, this, &OpenScan::progressed);
 }
 
@@ -121,7 +120,7 @@ void OpenScan::take(std::shared_ptr<const ScanFiles> files) {
   seen_.assign(files_->frames.size(), {});
   path_.reset();
   grows_ = false;
-  cursor_ = span().from;
+  cursor_.rewind();
   emit opened();
 }
 
@@ -144,7 +143,7 @@ void OpenScan::grow(const std::vector<CameraPose>& poses, const std::vector<Prob
     if (!path_->probe.empty()) path_->path.back().force = path_->probe.back().force;
   }
   emit pathMade();
-  if (!poses.empty()) setCursor(poses.back().t);
+  if (!poses.empty()) cursor_.set(poses.back().t);
 }
 
 void OpenScan::close() {
@@ -161,40 +160,8 @@ void OpenScan::cancel() {
   emit finished();
 }
 
-bool OpenScan::canKeep() const {
-  return path_ && !grows_ && !files_->of_scene && !path_->poses.empty() && !path_->path.empty() &&
-         !job_.busy() && (files_->poses.empty() || files_->path.empty());
-}
-
-std::vector<NoPose> OpenScan::without() const {
-  std::vector<NoPose> without;
-  for (std::size_t i = 0; i < seen_.size(); ++i)
-    if (!seen_[i].why.empty()) without.push_back({files_->frames[i].t, seen_[i].why});
-  return without;
-}
-
-std::vector<SceneScan> OpenScan::steps() const {
-  std::vector<SceneScan> steps;
-  if (files_->scan.files.empty()) return steps;
-  steps.push_back(files_->scan);
-  const auto add = [&](const char* file, const auto& text) {
-    if (files_->scan.text(file)) return;
-    SceneScan next = steps.back();
-    next.files[file] = std::make_shared<const std::string>(text());
-    steps.push_back(std::move(next));
-  };
-  if (!path_ || grows_ || job_.busy()) return steps;
-  if (!path_->poses.empty()) add("poses.tum", [&] { return posesText(path_->poses, without()); });
-  if (!path_->path.empty()) add("path.csv", [&] { return pathText(path_->path); });
-  return steps;
-}
-
-void OpenScan::keep() const {
-  if (files_->poses.empty()) writePoses(files_->folder / "poses.tum", path_->poses, without());
-  if (files_->path.empty()) writePath(files_->folder / "path.csv", path_->path);
-}
-
 QString OpenScan::name() const {
+  if (!files_) return {};
   if (files_->of_scene) return QString::fromStdString(files_->scan.name);
   const std::filesystem::path folder = files_->folder.lexically_normal();
   return QString::fromStdString(
@@ -223,56 +190,6 @@ Gap OpenScan::span() const {
     hold(path_->probe);
   }
   return span.from <= span.to ? span : Gap{0, 0};
-}
-
-void OpenScan::setCursor(double t) {
-  const Gap all = span();
-  t = std::clamp(t, all.from, all.to);
-  if (t == cursor_) return;
-  cursor_ = t;
-  emit cursorMoved();
-}
-
-std::size_t OpenScan::frameAt(double t) const {
-  const std::vector<Frame>& frames = files_->frames;
-  const auto after =
-      std::lower_bound(frames.begin(), frames.end(), t,
-                       [](const Frame& frame, double when) { return frame.t < when; });
-  if (after == frames.begin()) return 0;
-  const auto i = static_cast<std::size_t>(after - frames.begin());
-  return after == frames.end() || t - frames[i - 1].t <= after->t - t ? i - 1 : i;
-}
-
-void OpenScan::step(int frames) {
-  if (!files_) return;
-  if (files_->frames.empty()) return setCursor(cursor_ + frames / 30.);
-  const auto now = static_cast<int>(frameAt(cursor_));
-  const int last = static_cast<int>(files_->frames.size()) - 1;
-  setCursor(files_->frames[static_cast<std::size_t>(std::clamp(now + frames, 0, last))].t);
-}
-
-const Finding* OpenScan::findingAtCursor() const {
-  const Finding* found = nullptr;
-  if (path_)
-    for (const Finding& each : path_->findings)
-      if (cursor_ >= each.from - kSameMoment && cursor_ <= each.to + kSameMoment &&
-          (found == nullptr || each.to - each.from < found->to - found->from))
-        found = &each;
-  return found;
-}
-
-std::optional<Pose> OpenScan::probeAtCursor() const {
-  if (!path_) return std::nullopt;
-  const CameraTrack& track = path_->filtered.track;
-  if (track.empty()) {
-    const auto pose = poseAt(path_->poses, cursor_);
-    return pose ? std::optional(poseOf(path_->poses[*pose])) : std::nullopt;
-  }
-  const TipMotion motion = motionAt(track, cursor_);
-  Pose pose = Pose::Identity();
-  pose.linear() = motion.orientation.toRotationMatrix();
-  pose.translation() = motion.position - motion.orientation * files_->tip();
-  return pose;
 }
 
 } // namespace patina

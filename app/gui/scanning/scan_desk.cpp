@@ -6,6 +6,7 @@
 #include <QVBoxLayout>
 
 #include "app/gui/loading/load_dialogs.h"
+#include "app/gui/scanning/found_files.h"
 #include "core/error.h"
 #include "core/file.h"
 
@@ -52,7 +53,8 @@ ScanDesk::ScanDesk(QWidget& window)
                                       {Qt::Key_End, 1'000'000'000}}) {
       auto* shortcut = new QShortcut(key, keys);
       shortcut->setContext(Qt::WidgetWithChildrenShortcut);
-      connect(shortcut, &QShortcut::activated, &scan_, [this, n = frames] { scan_.step(n); });
+      connect(shortcut, &QShortcut::activated, &scan_,
+              [this, n = frames] { scan_.cursor().step(n); });
     }
 }
 
@@ -94,7 +96,7 @@ void ScanDesk::connectScan() {
       emit pathMade(scan_.name(), path->path);
     emit changed();
   });
-  connect(&scan_, &OpenScan::cursorMoved, this, &ScanDesk::drawProbe);
+  connect(&scan_.cursor(), &ScanCursor::moved, this, &ScanDesk::drawProbe);
   connect(&scan_, &OpenScan::progressed, this, [this](double fraction, const QString& what) {
     if (!work_) return;
     work_->words = tr("Scan: %1").arg(what);
@@ -113,7 +115,7 @@ void ScanDesk::connectScan() {
   connect(panel_, &ScanPanel::closeAsked, &scan_, &OpenScan::close);
   connect(panel_, &ScanPanel::keepAsked, this, [this] {
     try {
-      scan_.keep();
+      keepFound(scan_);
       emit said({tr("Poses and path are in %1").arg(scan_.name())});
       open(scan_.files()->folder);
     } catch (const Error& error) {
@@ -130,7 +132,7 @@ void ScanDesk::connectScan() {
 void ScanDesk::connectScans() {
   panel_->layout()->addWidget(scans_);
   connect(scans_, &SceneScans::putAsked, this, [this] {
-    if (isOpen()) scans_->put(scan_.steps());
+    if (isOpen()) scans_->put(foundSteps(scan_));
   });
   connect(scans_, &SceneScans::openAsked, this, qOverload<const SceneScan&>(&ScanDesk::open));
   connect(scans_, &SceneScans::said, this, &ScanDesk::said);
@@ -284,7 +286,7 @@ void ScanDesk::takeScan() {
     view_->setToolTip(tr("The tip's path; a click on it goes there"));
     across_->addWidget(view_);
     across_->setSizes({2000, 3000});
-    connect(view_, &ScanView::timePicked, &scan_, &OpenScan::setCursor);
+    connect(view_, &ScanView::timePicked, &scan_.cursor(), &ScanCursor::set);
   }
   cells_->setCurrentIndex(isOpen() ? 1 : 0);
   looked_at_ = false;
@@ -322,7 +324,7 @@ void ScanDesk::drawPath() {
 
 void ScanDesk::drawProbe() {
   if (view_ == nullptr || !isOpen()) return;
-  const auto probe = scan_.probeAtCursor();
+  const auto probe = scan_.cursor().probe();
   view_->picture().setProbe(
       probe ? std::optional(
                   DrawnProbe{pictureFromCamera(*scan_.files()) * *probe, scan_.files()->tip()})

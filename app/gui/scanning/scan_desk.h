@@ -35,7 +35,6 @@ class ScanDesk : public QObject {
 
   const OpenScan& scan() const { return scan_; }
   bool isOpen() const { return scan_.files() != nullptr; }
-  QString name() const { return isOpen() ? scan_.name() : QString(); }
   const std::optional<Work>& work() const { return work_; }
 
   void open(const std::filesystem::path& folder);

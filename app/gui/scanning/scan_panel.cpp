@@ -2,6 +2,7 @@
 
 #include <QVBoxLayout>
 
+#include "app/gui/scanning/found_files.h"
 #include "app/gui/widgets/elided_label.h"
 #include "app/gui/widgets/words.h"
 #include "core/numbers.h"
@@ -99,7 +100,7 @@ void ScanPanel::refresh() {
   figures_->setVisible(open);
   shown_->setVisible(open);
   close_->setVisible(open);
-  keep_->setVisible(open && scan_.canKeep());
+  keep_->setVisible(open && canKeep(scan_));
 }
 
 void ScanPanel::fill() {

@@ -72,8 +72,8 @@ ScanTraces::ScanTraces(OpenScan& scan, QWidget* parent) : QWidget(parent), scan_
     all();
     shown_.from = std::max(shown_.from, shown_.to - kLive);
   });
-  connect(&scan_, &OpenScan::cursorMoved, this, [this] {
-    const double t = scan_.cursor(), wide = shown_.to - shown_.from;
+  connect(&scan_.cursor(), &ScanCursor::moved, this, [this] {
+    const double t = scan_.cursor().time(), wide = shown_.to - shown_.from;
     if (t < shown_.from || t > shown_.to) {
       const Gap span = scan_.span();
       shown_.from = std::clamp(t - wide / 2, span.from, std::max(span.from, span.to - wide));
@@ -124,7 +124,7 @@ void ScanTraces::look(const QPointF& at) {
                                     : finding.from;
     }
   }
-  scan_.setCursor(t);
+  scan_.cursor().set(t);
 }
 
 void ScanTraces::mousePressEvent(QMouseEvent* event) {
@@ -132,7 +132,7 @@ void ScanTraces::mousePressEvent(QMouseEvent* event) {
 }
 
 void ScanTraces::mouseMoveEvent(QMouseEvent* event) {
-  if (event->buttons().testFlag(Qt::LeftButton)) scan_.setCursor(toTime(event->localPos().x()));
+  if (event->buttons().testFlag(Qt::LeftButton)) scan_.cursor().set(toTime(event->localPos().x()));
 }
 
 void ScanTraces::mouseDoubleClickEvent(QMouseEvent*) {
@@ -226,7 +226,7 @@ void ScanTraces::paintLane(QPainter& painter, const QRectF& whole, const Lane& l
     painter.drawPolyline(line);
   }
   painter.setClipping(false);
-  const auto now = std::lower_bound(all.begin(), all.end(), scan_.cursor(), before);
+  const auto now = std::lower_bound(all.begin(), all.end(), scan_.cursor().time(), before);
   double x = room.left();
   for (const Curve& curve : lane.curves) {
     QString words = curve.name;
@@ -274,7 +274,7 @@ void ScanTraces::paintEvent(QPaintEvent*) {
                 QRectF(room.left(), room.top() + static_cast<double>(i) * high, room.width(), high),
                 lanes()[i]);
   }
-  const double x = toX(scan_.cursor());
+  const double x = toX(scan_.cursor().time());
   if (x < room.left() - 1 || x > room.right() + 1) return;
   painter.setPen(QPen(ink("accent"), 1.5));
   painter.drawLine(QPointF(x, 0), QPointF(x, room.bottom()));

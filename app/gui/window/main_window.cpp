@@ -224,7 +224,7 @@ WindowState MainWindow::state() const {
   state.left_behind = recovery_.present();
 #ifdef PATINA_HAS_ACQUISITION
   state.scan = parts_.scan->isOpen();
-  if (state.name.isEmpty()) state.name = parts_.scan->name();
+  if (state.name.isEmpty()) state.name = parts_.scan->scan().name();
   if (!state.work) state.work = parts_.scan->work();
   state.texture = parts_.texture->hasTexture();
   if (!state.work) state.work = parts_.texture->work();
