@@ -7,7 +7,9 @@
 #include <QPushButton>
 
 #include "acquisition/files/scan_files.h"
+#include "app/gui/scanning/frame_strip.h"
 #include "app/gui/scanning/scan_desk.h"
+#include "app/gui/scanning/scan_traces.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 #include "support/places.h"

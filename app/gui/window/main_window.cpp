@@ -303,7 +303,7 @@ void MainWindow::showScene(const SceneChange& change) {
   if (edited && view_.content() == Content::preview) return; // seen if the preview comes to nothing
   view_.showScene(change);
 #ifdef PATINA_HAS_ACQUISITION
-  parts_.scan->setSceneMesh(change.scene->mesh);
+  parts_.scan->cells()->setSceneMesh(change.scene->mesh);
   const std::shared_ptr<const Scene> scene(change.scene, &change.scene->scene);
   parts_.scan->setScene(scene);
   parts_.align->setScans(scene);

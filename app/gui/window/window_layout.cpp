@@ -105,11 +105,7 @@ WindowParts layOut(QMainWindow& window) {
 #ifdef PATINA_HAS_ACQUISITION
   parts.scan = new ScanDesk(window);
   parts.cells->addWidget(parts.scan->cells());
-  parts.panels.insert({{Panel::scan, parts.scan->panel()},
-                       {Panel::recorder, parts.scan->recorder()},
-                       {Panel::calibration, parts.scan->calibration()},
-                       {Panel::timeline, parts.scan->timeline()},
-                       {Panel::findings, parts.scan->findings()}});
+  parts.panels.merge(parts.scan->panels());
   parts.texture = new TextureDesk(window);
   parts.cells->addWidget(parts.texture->cells());
   parts.panels.insert({{Panel::steps, parts.texture->steps()},

@@ -224,7 +224,8 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   bar.addAction(menu->addAction(
       tr("&Fit"), view, [=] { view->view().fit(); }, Qt::Key_F));
 #ifdef PATINA_HAS_ACQUISITION
-  QObject::connect(menu->actions().back(), &QAction::triggered, parts.scan, &ScanDesk::fit);
+  QObject::connect(menu->actions().back(), &QAction::triggered, parts.scan->cells(),
+                   &ScanCells::fit);
   QObject::connect(menu->actions().back(), &QAction::triggered, parts.texture, &TextureDesk::fit);
   QObject::connect(menu->actions().back(), &QAction::triggered, parts.align, &AlignDesk::fit);
 #endif
@@ -240,7 +241,7 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   for (const ViewPreset preset : allViews())
     QObject::connect(camera->actions()[static_cast<int>(preset)], &QAction::triggered, parts.scan,
                      [scan = parts.scan, texture = parts.texture, preset] {
-                       scan->setView(preset);
+                       scan->cells()->setView(preset);
                        texture->setView(preset);
                      });
 #endif
