@@ -371,7 +371,7 @@ TEST_F(AlignDeskTest, EscapeEndsThePickingAndABadFileLeavesThePath) {
   std::ofstream(folder_ / "bad.csv") << "t [s],x [m]\n0,1\n";
   const std::size_t before = desk().alignment().path().size();
   whenAsked<QDialog>([](QDialog& dialog) { dialog.reject(); });
-  desk().openPath(folder_ / "bad.csv");
+  desk().files().openPath(folder_ / "bad.csv");
   wait(600);
   EXPECT_EQ(desk().alignment().path().size(), before);
 }

@@ -186,15 +186,16 @@ void MainWindow::connectScan() {
             const ScanFiles* files = parts_.scan->scan().files();
             const auto mesh =
                 files != nullptr ? files->folder / "mesh.obj" : std::filesystem::path();
-            parts_.align->offerMesh(std::filesystem::exists(mesh) ? mesh : std::filesystem::path());
+            parts_.align->cells()->offerMesh(
+                std::filesystem::exists(mesh) ? mesh : std::filesystem::path());
           });
-  connect(parts_.align, &AlignDesk::meshAsked, &documents_, [this](const QString& file) {
+  connect(parts_.align->cells(), &AlignCells::meshAsked, &documents_, [this](const QString& file) {
     LoadRequest request;
     request.path = file.toStdString();
     documents_.openAsked(request);
   });
   parts_.scan->scans().setEdits(edits_.thread());
-  connect(parts_.align, &AlignDesk::storeAsked, this, [this](const SceneScan& aligned) {
+  connect(&parts_.align->files(), &AlignFiles::storeAsked, this, [this](const SceneScan& aligned) {
     parts_.scan->scans().change(
         aligned.name, [aligned](const SceneScan* now) { return withAlignment(now, aligned); });
   });
@@ -306,7 +307,7 @@ void MainWindow::showScene(const SceneChange& change) {
   parts_.scan->cells()->setSceneMesh(change.scene->mesh);
   const std::shared_ptr<const Scene> scene(change.scene, &change.scene->scene);
   parts_.scan->setScene(scene);
-  parts_.align->setScans(scene);
+  parts_.align->files().setScene(scene);
   parts_.texture->library().setScene(change.scene);
   if (change.surface) parts_.align->setSceneMesh(change.scene->mesh);
 #endif

@@ -113,7 +113,7 @@ WindowParts layOut(QMainWindow& window) {
                        {Panel::library, parts.texture->library().card()}});
   parts.align = new AlignDesk(window);
   parts.cells->addWidget(parts.align->cells());
-  parts.panels.insert({{Panel::align, parts.align->panel()}, {Panel::basin, parts.align->basin()}});
+  parts.panels.merge(parts.align->panels());
 #endif
   parts.column = makeColumn(parts);
   parts.drawer = makeDrawer(parts);

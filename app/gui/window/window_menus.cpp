@@ -227,7 +227,8 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   QObject::connect(menu->actions().back(), &QAction::triggered, parts.scan->cells(),
                    &ScanCells::fit);
   QObject::connect(menu->actions().back(), &QAction::triggered, parts.texture, &TextureDesk::fit);
-  QObject::connect(menu->actions().back(), &QAction::triggered, parts.align, &AlignDesk::fit);
+  QObject::connect(menu->actions().back(), &QAction::triggered, parts.align->cells(),
+                   &AlignCells::fit);
 #endif
   QMenu* camera = menu->addMenu(tr("&Camera"));
   int digit = Qt::Key_1;

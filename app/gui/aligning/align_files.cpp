@@ -1,10 +1,9 @@
-// What goes into the desk and out of it: files, and scans of the scene.
+#include "app/gui/aligning/align_files.h"
+
 #include <QFileDialog>
 
 #include "acquisition/files/registered_file.h"
 #include "acquisition/files/scan_files.h"
-#include "app/gui/aligning/align_desk.h"
-#include "app/gui/aligning/aligned_scan.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -12,51 +11,50 @@
 
 namespace patina {
 
-void AlignDesk::openPath(const std::filesystem::path& file) {
+AlignFiles::AlignFiles(QWidget& window, const Alignment& alignment, AlignPanel& panel)
+    : window_(window), alignment_(alignment), panel_(panel) {
+  connect(&panel_, &AlignPanel::openAsked, this, &AlignFiles::openDialog);
+  connect(&panel_, &AlignPanel::keepAsked, this, &AlignFiles::keepDialog);
+  connect(&panel_, &AlignPanel::scanChosen, this, &AlignFiles::openScan);
+}
+
+void AlignFiles::open(const QString& name, const std::function<AlignedPath()>& read) {
+  AlignedPath found;
   try {
-    setPath(QString::fromStdString(file.filename().string()), readPath(file));
+    found = read();
   } catch (const Error& error) {
-    showProblem(&window_, tr("The path cannot be read"), QString::fromStdString(error.what()),
-                tr("What was open before is as it was."));
+    return showProblem(&window_, tr("The path cannot be read"),
+                       QString::fromStdString(error.what()),
+                       tr("What was open before is as it was."));
   }
+  emit opened(name, found);
 }
 
-void AlignDesk::offerMesh(const std::filesystem::path& file) {
-  offered_ = file;
-  offer_->setText(tr("Open the scan's %1").arg(QString::fromStdString(file.filename().string())));
-  offer_->setVisible(!offered_.empty() && !alignment_.path().empty());
+void AlignFiles::openPath(const std::filesystem::path& file) {
+  open(QString::fromStdString(file.filename().string()), [&] {
+    return AlignedPath{readPath(file), {}};
+  });
 }
 
-void AlignDesk::setScans(std::shared_ptr<const Scene> scene) {
+void AlignFiles::setScene(std::shared_ptr<const Scene> scene) {
   scene_ = std::move(scene);
   QStringList names;
   if (scene_)
     for (const SceneScan& scan : scene_->scans)
       if (scan.text("path.csv")) names.push_back(QString::fromStdString(scan.name));
-  panel_->setScans(names);
-  panel_->setReady(alignment_.isReady(), work_.has_value());
+  panel_.setScans(names);
 }
 
-void AlignDesk::openScan(const QString& name) {
+void AlignFiles::openScan(const QString& name) {
   const SceneScan* scan = scene_ ? findScan(*scene_, name.toStdString()) : nullptr;
-  if (scan == nullptr) return;
-  try {
-    AlignedPath stored = alignedPathOf(*scan);
-    setPath(name, std::move(stored.path));
-    if (!stored.mesh_from_path || !alignment_.isReady()) return;
-    move(*stored.mesh_from_path);
-    settle();
-  } catch (const Error& error) {
-    showProblem(&window_, tr("The path cannot be read"), QString::fromStdString(error.what()),
-                tr("What was open before is as it was."));
-  }
+  if (scan != nullptr) open(name, [&] { return alignedPathOf(*scan); });
 }
 
-void AlignDesk::store() {
-  if (scene_ && alignment_.isReady()) emit storeAsked(alignedScan(name_.toStdString(), alignment_));
+void AlignFiles::store(const QString& name) {
+  if (scene_ && alignment_.isReady()) emit storeAsked(alignedScan(name.toStdString(), alignment_));
 }
 
-void AlignDesk::openDialog() {
+void AlignFiles::openDialog() {
   auto* dialog =
       new QFileDialog(&window_, tr("Open a scan's path"), {}, tr("Paths (*.csv);;All files (*)"));
   dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -66,7 +64,7 @@ void AlignDesk::openDialog() {
   dialog->open();
 }
 
-void AlignDesk::keepDialog() {
+void AlignFiles::keepDialog() {
   auto* dialog =
       new QFileDialog(&window_, tr("Keep the path on the mesh"), {}, tr("Paths (*.csv)"));
   dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -78,7 +76,7 @@ void AlignDesk::keepDialog() {
   dialog->open();
 }
 
-void AlignDesk::keep(const std::filesystem::path& file) {
+void AlignFiles::keep(const std::filesystem::path& file) {
   try {
     const auto pose = std::filesystem::path(file).replace_extension(".txt");
     writeRegisteredPath(file, alignment_.path(),

@@ -1,0 +1,41 @@
+// What goes onto the desk Align and off it: files, and scans of the scene.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "app/gui/aligning/align_panel.h"
+#include "app/gui/aligning/aligned_scan.h"
+#include "app/gui/panels/message_panel.h"
+
+namespace patina {
+
+class AlignFiles : public QObject {
+  Q_OBJECT
+ public:
+  // Does what the panel asks for, for the window to which it belongs.
+  AlignFiles(QWidget& window, const Alignment& alignment, AlignPanel& panel);
+
+  void setScene(std::shared_ptr<const Scene> scene); // whose paths can be chosen
+  void openPath(const std::filesystem::path& file);
+  void openScan(const QString& name); // of the scene
+  void store(const QString& name);    // as a scan of the scene
+
+ signals:
+  void opened(const QString& name, const patina::AlignedPath& path);
+  void said(const patina::Message& message);
+  void storeAsked(const patina::SceneScan& scan); // with where it lies
+
+ private:
+  void open(const QString& name, const std::function<AlignedPath()>& read);
+  void openDialog();
+  void keepDialog();
+  void keep(const std::filesystem::path& file);
+
+  QWidget& window_;
+  const Alignment& alignment_;
+  AlignPanel& panel_;
+  std::shared_ptr<const Scene> scene_;
+};
+
+} // namespace patina
