@@ -77,6 +77,10 @@ TextureDesk::Scratch::~Scratch() {
   for (const auto& folder : folders) std::filesystem::remove_all(folder, unheard);
 }
 
+std::map<Panel, QWidget*> TextureDesk::panels() const {
+  return {{Panel::steps, steps_}, {Panel::profile, profile_}, {Panel::library, library_.card()}};
+}
+
 void TextureDesk::runAll() {
   run(true);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -27,8 +28,7 @@ class TextureDesk : public QObject {
 
   // To be laid out by the window.
   QStackedWidget* cells() const { return cells_; }
-  QWidget* steps() const { return steps_; }
-  QWidget* profile() const { return profile_; }
+  std::map<Panel, QWidget*> panels() const;
 
   TextureLibrary& library() { return library_; }
   void showLibrary(bool on); // in the place of the sequence

@@ -108,9 +108,7 @@ WindowParts layOut(QMainWindow& window) {
   parts.panels.merge(parts.scan->panels());
   parts.texture = new TextureDesk(window);
   parts.cells->addWidget(parts.texture->cells());
-  parts.panels.insert({{Panel::steps, parts.texture->steps()},
-                       {Panel::profile, parts.texture->profile()},
-                       {Panel::library, parts.texture->library().card()}});
+  parts.panels.merge(parts.texture->panels());
   parts.align = new AlignDesk(window);
   parts.cells->addWidget(parts.align->cells());
   parts.panels.merge(parts.align->panels());
