@@ -28,7 +28,8 @@ template <class Height> Picture pictureOf(int side, const Height& grey) {
 // Two products: waves along each axis, and one that goes across both.
 double twoProducts(double x, double y) {
   return 0.5 + 0.2 * std::cos(kPlaneTurn * 3 * x) * std::cos(kPlaneTurn * 2 * y) +
-         0.1 * std::sin(kPlaneTurn * 5 * x) * (std::sin(kPlaneTurn * y) + 0.5 * std::cos(kPlaneTurn * 7 * y));
+         0.1 * std::sin(kPlaneTurn * 5 * x) *
+             (std::sin(kPlaneTurn * y) + 0.5 * std::cos(kPlaneTurn * 7 * y));
 }
 FittedPlane fitted(const Picture& picture, PlaneFitOptions options) {
   options.length = kLength;
@@ -139,7 +140,7 @@ TEST(FitPlane, LiesOnOneMeshAsOnAnother) {
       for (std::size_t f = 0; f < mesh.triangles.size(); f += 7) {
         const Vec3 p = 0.5 * mesh.corner(f, 0) + 0.3 * mesh.corner(f, 1) + 0.2 * mesh.corner(f, 2);
         const PatchAt at = patches.at(static_cast<std::int32_t>(f), p);
-        if (at.share < 1) continue; // at the sheet's rim
+        if (at.texture.share < 1) continue; // at the sheet's rim
         EXPECT_NEAR(at.height, heightOf(p.x() / kLength, p.y() / kLength), 1e-9);
       }
     }

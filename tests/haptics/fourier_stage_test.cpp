@@ -244,7 +244,7 @@ TEST(TexturePatches, OfUnknownTexturesAreNotThere) {
   const TexturePatches none(*plate.slab_.mesh, unknown);
   EXPECT_EQ(none.highest(), 0);
   EXPECT_EQ(none.bend(), 0);
-  for (std::int32_t f = 0; f < 100; ++f) EXPECT_EQ(none.at(f, Vec3::Zero()).share, 0);
+  for (std::int32_t f = 0; f < 100; ++f) EXPECT_EQ(none.at(f, Vec3::Zero()).texture.share, 0);
 }
 
 // A seam between coordinates that do not agree is no step: the texture is gone there.
@@ -376,8 +376,8 @@ TEST(TexturePatches, VerticesInOnePlaceAreOne) {
     const std::int32_t face = tree.closestPoint(p).surface.face;
     const PatchAt a = whole.at(face, p), b = pieces.at(face, p);
     ASSERT_EQ(a.height, b.height);
-    ASSERT_EQ(a.share, b.share);
-    faded += a.share > 0 && a.share < 1;
+    ASSERT_EQ(a.texture.share, b.texture.share);
+    faded += a.texture.share > 0 && a.texture.share < 1;
   }
   EXPECT_GT(faded, 20);
 }

@@ -24,18 +24,23 @@ struct BandCell {
 };
 
 // False unless all eight nodes are stored. last: of the grid, per axis; cells lie in [0, last). NaN
-// and infinity fail the comparisons, so that nothing is converted that does not fit.
+// and infinity fail the comparisons, so that nothing is converted that does not fit. Unsigned:
+// dividing signed numbers costs a tenth of the look-up.
 inline bool findCell(const SurfaceField& field, const Vec3& last, const Vec3& q,
                      BandCell& cell) noexcept {
   const double x = q[0], y = q[1], z = q[2];
   if (!(x >= 0 && y >= 0 && z >= 0 && x < last[0] && y < last[1] && z < last[2])) return false;
   const int i = static_cast<int>(x), j = static_cast<int>(y), k = static_cast<int>(z);
-  const std::int32_t slot = field.slotOf(i / kBlockSide, j / kBlockSide, k / kBlockSide);
+  const auto part = [](int a) { return static_cast<unsigned>(a) / kBlockSide; };
+  const auto within = [](int a) { return static_cast<unsigned>(a) % kBlockSide; };
+  const std::int32_t slot =
+      field.slotOf(static_cast<int>(part(i)), static_cast<int>(part(j)), static_cast<int>(part(k)));
   if (slot < 0) return false;
   const SampleBlock& block = *field.sample[static_cast<std::size_t>(slot)];
-  const int bi = i % kBlockSide, bj = j % kBlockSide, bk = k % kBlockSide;
-  if (!block.cellComplete(bi, bj, bk)) return false;
-  cell.node = &block.node[static_cast<std::size_t>((bk * kSampleSide + bj) * kSampleSide + bi)];
+  const unsigned bi = within(i), bj = within(j), bk = within(k);
+  if (!block.cellComplete(static_cast<int>(bi), static_cast<int>(bj), static_cast<int>(bk)))
+    return false;
+  cell.node = &block.node[(bk * kSampleSide + bj) * kSampleSide + bi];
   cell.fx = static_cast<float>(x - i);
   cell.fy = static_cast<float>(y - j);
   cell.fz = static_cast<float>(z - k);

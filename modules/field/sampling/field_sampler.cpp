@@ -36,7 +36,7 @@ constexpr double kCreaseWidth = 0.001;
 } // namespace
 
 FieldSampler::FieldSampler(const SurfaceField& field, Sampler sampler)
-    : field_(&field), grid_(field.grid), sampler_(sampler),
+    : field_(&field), grid_(field.grid), per_voxel_(1 / field.grid.voxel), sampler_(sampler),
       last_node_(field.grid.nodes[0] - 1, field.grid.nodes[1] - 1, field.grid.nodes[2] - 1) {
   if (field.sample.size() != field.blockCount())
     throw std::invalid_argument("FieldSampler: the field has no sample layer; call withSamples()");

@@ -92,6 +92,9 @@ class FieldSampler {
   std::int32_t faceNear(const Vec3& p) const noexcept;
 
   const FieldGrid& grid() const noexcept { return grid_; }
+  double perVoxel() const noexcept { return per_voxel_; } // [1/m]
+  // By a product, which is quicker than the grid's own division.
+  Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - grid_.origin); }
   Sampler sampler() const noexcept { return sampler_; }
 
  private:
@@ -105,6 +108,7 @@ class FieldSampler {
 
   const SurfaceField* field_;
   FieldGrid grid_;
+  double per_voxel_;
   Sampler sampler_;
   Vec3 last_node_;   // grid coordinates; cells lie in [0, last_node_)
   double hand_over_; // phi below which the coarse nodes are blended in

@@ -18,14 +18,10 @@ struct CellCurvature {
   float phi;
 };
 
-struct JacobianColumns { // {0, x, y, z} each
-  std::array<Float4, 3> inverse;
-  std::array<Float4, 3> both; // phi H
-};
-
 inline constexpr float kLeastStretch = 0.25F; // of 1 + phi times a curvature
 
-// False where a stretch is less than that: inverse is of no use then.
-using CellJacobian = bool (*)(const CellCurvature& cell, JacobianColumns& columns) noexcept;
+// Three columns {0, x, y, z} of J into `inverse`. False where a stretch is less than kLeastStretch:
+// then phi H's own into `both`, and inverse is of no use.
+using CellJacobian = bool (*)(const CellCurvature& cell, Float4* inverse, Float4* both) noexcept;
 
 } // namespace patina

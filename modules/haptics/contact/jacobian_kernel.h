@@ -12,7 +12,7 @@ namespace patina::PATINA_KERNEL {
   return halves[0] + halves[1];
 }
 
-bool jacobianOf(const CellCurvature& cell, JacobianColumns& columns) noexcept {
+bool jacobianOf(const CellCurvature& cell, Float4* inverse, Float4* both) noexcept {
   const Float4* low = cell.node;
   const Float4* high = low + cell.layer;
   const float fx = cell.part[0], fy = cell.part[1], fz = cell.part[2], ex = 1 - fx, ey = 1 - fy;
@@ -43,13 +43,16 @@ bool jacobianOf(const CellCurvature& cell, JacobianColumns& columns) noexcept {
               determinant = 1 + trace + 0.5F * (trace * trace - squared);
   const float k = 1 + trace, scale = 1 / determinant;
   const Float4 p = out - (out_out + k) * n;
-  columns.both = {both_x, both_y, both_z};
-  columns.inverse = {scale * (Float4{0, k, 0, 0} - both_x + out[1] * n + n[1] * p),
-                     scale * (Float4{0, 0, k, 0} - both_y + out[2] * n + n[2] * p),
-                     scale * (Float4{0, 0, 0, k} - both_z + out[3] * n + n[3] * p)};
-  return trace >= 2 * kLeastStretch - 2 &&
-         determinant >=
-             kLeastStretch * (2 + trace) - kLeastStretch * kLeastStretch; // both eigenvalues
+  inverse[0] = scale * (Float4{0, k, 0, 0} - both_x + out[1] * n + n[1] * p);
+  inverse[1] = scale * (Float4{0, 0, k, 0} - both_y + out[2] * n + n[2] * p);
+  inverse[2] = scale * (Float4{0, 0, 0, k} - both_z + out[3] * n + n[3] * p);
+  if (trace >= 2 * kLeastStretch - 2 &&
+      determinant >= kLeastStretch * (2 + trace) - kLeastStretch * kLeastStretch) [[likely]]
+    return true; // both eigenvalues
+  both[0] = both_x;
+  both[1] = both_y;
+  both[2] = both_z;
+  return false;
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -10,13 +10,12 @@ constexpr double kLongestStep = 1;   // voxels; a longer one leaves the part tha
 
 } // namespace
 
-OffsetStage::OffsetStage(const FieldSampler& sampler)
-    : sampler_(sampler), per_voxel_(1 / sampler.grid().voxel) {}
+OffsetStage::OffsetStage(const FieldSampler& sampler) : sampler_(sampler) {}
 
 void OffsetStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (!contact.touching || contact.normal.isZero(0)) return;
   const FieldGrid& grid = sampler_.grid();
-  const GridSample at = sampler_.atGrid(per_voxel_ * (contact.surface - grid.origin));
+  const GridSample at = sampler_.atGrid(sampler_.toGrid(contact.surface));
   ++contact.samples;
   const double slope = at.gradient.norm();
   if (!(slope >= kMinGradient) || !(std::abs(at.phi) <= kLongestStep)) return;

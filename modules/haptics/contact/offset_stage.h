@@ -18,7 +18,6 @@ class OffsetStage final : public ForceStage {
 
  private:
   FieldSampler sampler_;
-  double per_voxel_; // [1/m]
 };
 
 } // namespace patina

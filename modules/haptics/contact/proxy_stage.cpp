@@ -39,28 +39,28 @@ void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Con
 
 ProxyStage::ProxyStage(const FieldSampler& sampler, double iso, double steepness)
     : sampler_(sampler), search_(sampler_, iso / sampler.grid().voxel, steepness),
-      voxel_(sampler.grid().voxel), per_voxel_(1 / voxel_), iso_(iso * per_voxel_),
-      steepness_(steepness), per_steepness_(1 / steepness),
-      snap_speed_(kSnapSides * sideOf(sampler.grid())) {}
+      voxel_(sampler.grid().voxel), iso_(iso * sampler_.perVoxel()), steepness_(steepness),
+      per_steepness_(1 / steepness), snap_speed_(kSnapSides * sideOf(sampler.grid())) {}
 
 void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   ContactPointMemory& at = memory.contact;
-  const Vec3 x = toGrid(contact.tip);
-  const Vec3 last = memory.tip.last ? toGrid(*memory.tip.last) : x;
+  const Vec3 x = sampler_.toGrid(contact.tip);
+  const Vec3 last = memory.tip.last ? sampler_.toGrid(*memory.tip.last) : x;
   const Vec3 from = last.cwiseAbs().maxCoeff() < kFarthest ? last : x;
   if (!(x.cwiseAbs().maxCoeff() < kFarthest)) // no place at all: squares would overflow
     return stayFree(contact, at);
   Proxy& proxy = memory.proxy;
-  double ball =
-      (x - from).norm() + snap_speed_ * per_voxel_ * std::clamp(contact.dt, 0.0, kLongestTick);
+  double ball = (x - from).norm() +
+                snap_speed_ * sampler_.perVoxel() * std::clamp(contact.dt, 0.0, kLongestTick);
   if (at.c) {
-    proxy.c = toGrid(*at.c);
+    proxy.c = sampler_.toGrid(*at.c);
     if (at.reseat) {
       proxy.walls.count = 0;
       proxy.lent = 0;
       if (!search_.seat(x, proxy.c, contact.samples)) return stayFree(contact, at);
       // What stuck to a surface that is elsewhere now would hold the old one's force.
-      if ((proxy.c - toGrid(*at.c)).squaredNorm() > kSamePlace * kSamePlace) contact.lets_go = true;
+      if ((proxy.c - sampler_.toGrid(*at.c)).squaredNorm() > kSamePlace * kSamePlace)
+        contact.lets_go = true;
     }
   } else {
     if (!enter(x, from, memory, contact, proxy.c)) return stayFree(contact, at);

@@ -28,13 +28,11 @@ class ProxyStage final : public ForceStage {
  private:
   bool enter(const Vec3& x, const Vec3& from, const ContactMemory& memory, Contact& contact,
              Vec3& c) const noexcept;
-  Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - sampler_.grid().origin); }
 
   FieldSampler sampler_;
   ProxySearch search_;
   double voxel_;
-  double per_voxel_; // [1/m]: a product is quicker than grid().toGrid()'s division
-  double iso_;       // voxels
+  double iso_; // voxels
   double steepness_, per_steepness_;
   double snap_speed_; // [m/s]
 };

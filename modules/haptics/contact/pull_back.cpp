@@ -9,7 +9,8 @@
 
 namespace patina {
 namespace jacobian_avx2 {
-bool jacobianOf(const CellCurvature& cell, JacobianColumns& columns) noexcept; // jacobian_avx2.cpp
+bool jacobianOf(const CellCurvature& cell, Float4* inverse,
+                Float4* both) noexcept; // jacobian_avx2.cpp
 }
 namespace {
 
@@ -36,11 +37,10 @@ Eigen::Matrix3d heldInverse(const Eigen::Matrix3d& stretch, const Vec3& n) noexc
          1 / std::max(kLeast, mean - half) * least * least.transpose();
 }
 
-Eigen::Matrix3d matrixOf(const std::array<Float4, 3>& columns) noexcept {
+Eigen::Matrix3d matrixOf(const Float4* columns) noexcept {
   Eigen::Matrix3d m;
   for (Eigen::Index i = 0; i < 3; ++i)
-    for (Eigen::Index j = 0; j < 3; ++j)
-      m(i, j) = static_cast<double>(columns[static_cast<std::size_t>(j)][i + 1]);
+    for (Eigen::Index j = 0; j < 3; ++j) m(i, j) = static_cast<double>(columns[j][i + 1]);
   return m;
 }
 
@@ -54,7 +54,8 @@ SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q,
   };
   BandCell cell;
   if (std::abs(phi) < kNear || !sampler.cellAt(q, cell)) return SurfaceJacobian::of(flat());
-  JacobianColumns columns;
+  SurfaceJacobian jacobian;
+  std::array<Float4, 3> both;
   const CellCurvature curvature{
       reinterpret_cast<const Float4*>(cell.node),
       kRow,
@@ -62,11 +63,11 @@ SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q,
       {cell.fx, cell.fy, cell.fz},
       Float4{0, static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())},
       static_cast<float>(phi)};
-  if (!kJacobian(curvature, columns)) [[unlikely]] {
+  if (!kJacobian(curvature, jacobian.column.data(), both.data())) [[unlikely]] {
     const Eigen::Matrix3d across = flat();
-    return SurfaceJacobian::of(heldInverse(across + across * matrixOf(columns.both) * across, n));
+    return SurfaceJacobian::of(heldInverse(across + across * matrixOf(both.data()) * across, n));
   }
-  return {columns.inverse[0], columns.inverse[1], columns.inverse[2]};
+  return jacobian;
 }
 
 SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) noexcept {
@@ -78,9 +79,8 @@ SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) 
   // Relief leans the normal; the surface that it lies on does not.
   Vec3 n = contact.normal;
   if (!contact.slope.isZero(0)) n = std::sqrt(1 + contact.slope.squaredNorm()) * n + contact.slope;
-  const double per_voxel = 1 / sampler.grid().voxel;
-  return closestPointJacobian(sampler, per_voxel * (contact.surface - sampler.grid().origin), n,
-                              per_voxel * (contact.tip - contact.surface).dot(n));
+  return closestPointJacobian(sampler, sampler.toGrid(contact.surface), n,
+                              sampler.perVoxel() * (contact.tip - contact.surface).dot(n));
 }
 
 } // namespace patina

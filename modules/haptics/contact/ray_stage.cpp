@@ -87,11 +87,10 @@ Vec3 directionAt(const GridSample& sample, const ContactMemory& memory) noexcept
 } // namespace
 
 RayStage::RayStage(const FieldSampler& sampler, double iso)
-    : sampler_(sampler), voxel_(sampler.grid().voxel), per_voxel_(1 / voxel_),
-      iso_(iso * per_voxel_) {}
+    : sampler_(sampler), voxel_(sampler.grid().voxel), iso_(iso * sampler_.perVoxel()) {}
 
 void RayStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  const Vec3 q = per_voxel_ * (contact.tip - sampler_.grid().origin);
+  const Vec3 q = sampler_.toGrid(contact.tip);
   const GridSample sample = sampler_.atGrid(q);
   contact.samples = 1;
   contact.clearance = memory.contact.clearance = sample.phi - iso_;

@@ -26,8 +26,7 @@ class RayStage final : public ForceStage {
  private:
   FieldSampler sampler_;
   double voxel_;
-  double per_voxel_; // [1/m]
-  double iso_;       // voxels
+  double iso_; // voxels
 };
 
 } // namespace patina

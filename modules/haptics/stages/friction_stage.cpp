@@ -16,8 +16,7 @@ constexpr double kMaxTurn = 0.1; // [rad] a tick
 FrictionStage::FrictionStage(const FieldSampler& sampler, double tip_radius,
                              const Friction& friction, bool raised)
     : sampler_(sampler), depth_gain_(friction.depth_gain), slip_(friction.slip), raised_(raised),
-      iso_(tip_radius / sampler.grid().voxel), trail_(kTrailVoxels * sampler.grid().voxel),
-      per_voxel_(1 / sampler.grid().voxel) {}
+      iso_(tip_radius / sampler.grid().voxel), trail_(kTrailVoxels * sampler.grid().voxel) {}
 
 void FrictionStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   const double gain = 1 + depth_gain_ * contact.depth / kFrictionDepthReference;
@@ -90,9 +89,8 @@ Vec3 FrictionStage::againstMotion(const Contact& contact,
 // than the offset belongs to another sheet and is not taken.
 Vec3 FrictionStage::ontoSurface(const Contact& contact, const Vec3& offset,
                                 double length) const noexcept {
-  const FieldGrid& grid = sampler_.grid();
   const Vec3 p = contact.candidate + offset;
-  const double f = (sampler_.phiAtGrid(per_voxel_ * (p - grid.origin)) - iso_) * grid.voxel;
+  const double f = (sampler_.phiAtGrid(sampler_.toGrid(p)) - iso_) * sampler_.grid().voxel;
   if (!(std::abs(f) < length)) return offset;
   const Vec3 projected = offset - f * contact.normal;
   const double squared = projected.squaredNorm() / (length * length);

@@ -50,9 +50,8 @@ class FrictionStage final : public ForceStage {
   double depth_gain_;
   Friction::SlipDirection slip_;
   bool raised_;
-  double iso_;       // voxels
-  double trail_;     // [m]
-  double per_voxel_; // [1/m]
+  double iso_;   // voxels
+  double trail_; // [m]
 };
 
 } // namespace patina

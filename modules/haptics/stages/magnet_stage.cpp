@@ -16,13 +16,12 @@ constexpr double kWholeGradient = 0.5;
 MagnetStage::MagnetStage(const FieldSampler& sampler, double tip_radius, const Magnet& magnet,
                          MagnetRelief relief)
     : sampler_(sampler), magnet_(magnet), relief_(std::move(relief)),
-      per_voxel_(1 / sampler.grid().voxel), iso_(tip_radius * per_voxel_),
-      range_(magnet.range * per_voxel_) {}
+      iso_(tip_radius * sampler_.perVoxel()), range_(magnet.range * sampler_.perVoxel()) {}
 
 void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (!contact.touching && contact.clearance < range_) {
     const FieldGrid& grid = sampler_.grid();
-    const GridSample at = sampler_.atGrid(per_voxel_ * (contact.tip - grid.origin));
+    const GridSample at = sampler_.atGrid(sampler_.toGrid(contact.tip));
     double above = at.phi - iso_;
     const double slope = at.gradient.norm();
     Vec3 leaning = Vec3::Zero();
@@ -30,10 +29,9 @@ void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
       const Vec3 n = at.gradient / slope, c = contact.tip - grid.voxel * at.phi * n;
       const std::int32_t object = relief_.owners ? relief_.owners->ownerAt(c) : 0;
       const ReliefAt raised = relief_.reliefs->at(object, c, memory.walk);
-      above = std::max(0.0, above - per_voxel_ * raised.height);
+      above = std::max(0.0, above - sampler_.perVoxel() * raised.height);
       if (relief_.leans)
-        leaning = closestPointJacobian(sampler_, per_voxel_ * (c - grid.origin), n, at.phi) *
-                  raised.slope;
+        leaning = closestPointJacobian(sampler_, sampler_.toGrid(c), n, at.phi) * raised.slope;
     }
     if (at.region == FieldRegion::band && slope > 0 && above < range_) {
       double pull = above;

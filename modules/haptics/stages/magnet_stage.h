@@ -39,9 +39,8 @@ class MagnetStage final : public ForceStage {
   FieldSampler sampler_;
   Magnet magnet_;
   MagnetRelief relief_;
-  double per_voxel_; // [1/m]
-  double iso_;       // voxels
-  double range_;     // voxels
+  double iso_;   // voxels
+  double range_; // voxels
 };
 
 } // namespace patina

@@ -22,24 +22,24 @@ void MaterialStage::apply(Contact& contact, ContactMemory&) const noexcept {
   const auto i = static_cast<std::size_t>(contact.object);
   if (!contact.touching || i >= objects_.size() || !objects_[i].material) return;
   const FeltObject& object = objects_[i];
-  const MaterialAt at = materialAt(*object.material, object.object_from_world * contact.surface);
-  contact.material = at.material;
+  MaterialGradients at;
+  readMaterial(*object.material, object.object_from_world * contact.surface, contact.material, at);
   const auto inWorld = [&](const Vec3& gradient) {
     return Vec3(object.object_from_world.linear().transpose() * gradient);
   };
-  if (!at.roughness_gradient.isZero(0)) contact.roughness_gradient = inWorld(at.roughness_gradient);
-  if (!gradients_ || at.stiffness_gradient.isZero(0)) return;
-  contact.stiffness_gradient = pulledBack(sampler_, contact, inWorld(at.stiffness_gradient));
+  if (!at.roughness.isZero(0)) contact.roughness_gradient = inWorld(at.roughness);
+  if (gradients_ && !at.stiffness.isZero(0))
+    contact.stiffness_gradient = pulledBack(sampler_, contact, inWorld(at.stiffness));
 }
 
 void TextureStiffnessStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (!contact.touching || contact.normal.isZero(0)) return;
-  const PatchAt at = reliefs_->at(contact.object, contact.surface, memory.walk).texture;
-  if (!(at.stiffness > 0)) return;
-  const double more = at.stiffness - contact.material.stiffness;
-  if (gradients_ && !at.share_slope.isZero(0))
+  const TextureShare at = reliefs_->at(contact.object, contact.surface, memory.walk).texture;
+  if (!at.of || !(at.of->stiffness > 0)) return;
+  const double more = at.of->stiffness - contact.material.stiffness;
+  if (gradients_ && !at.slope.isZero(0))
     contact.stiffness_gradient = (1 - at.share) * contact.stiffness_gradient +
-                                 more * pulledBack(reliefs_->sampler(), contact, at.share_slope);
+                                 more * pulledBack(reliefs_->sampler(), contact, at.slope);
   else
     contact.stiffness_gradient *= 1 - at.share;
   contact.material.stiffness += at.share * more;

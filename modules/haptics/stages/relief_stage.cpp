@@ -88,16 +88,8 @@ ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
   const FeltObject& part = objects_[i];
   const ReliefSurface& surface = *felt;
   ReliefAt at = reliefAt(surface, c, walk.object == object ? walk.face : -1, bend);
-  if (at.face < 0 || at.distance > lost_) [[unlikely]] {
-    const std::int32_t near = sampler_.faceNear(c);
-    Eigen::Matrix3d bent;
-    const ReliefAt afresh =
-        reliefAt(surface, c, near < 0 ? -1 : near - part.first_face, bend ? &bent : nullptr);
-    if (afresh.face >= 0 && (at.face < 0 || afresh.distance < at.distance)) {
-      at = afresh;
-      if (bend) *bend = bent;
-    }
-  }
+  if (at.face < 0 || at.distance > lost_) [[unlikely]]
+    lookAfresh(part, surface, c, at, bend);
   walk = {object, at.face};
   if (surface.image && std::abs(at.height) > part.highest) { // between texels a cubic overshoots
     at.height = std::copysign(part.highest, at.height);
@@ -105,6 +97,17 @@ ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
     if (bend) bend->setZero();
   }
   return at;
+}
+
+void Reliefs::lookAfresh(const FeltObject& part, const ReliefSurface& surface, const Vec3& c,
+                         ReliefAt& at, Eigen::Matrix3d* bend) const noexcept {
+  const std::int32_t near = sampler_.faceNear(c);
+  Eigen::Matrix3d bent;
+  const ReliefAt afresh =
+      reliefAt(surface, c, near < 0 ? -1 : near - part.first_face, bend ? &bent : nullptr);
+  if (afresh.face < 0 || (at.face >= 0 && afresh.distance >= at.distance)) return;
+  at = afresh;
+  if (bend) *bend = bent;
 }
 
 std::size_t Reliefs::bytes() const {
@@ -137,13 +140,14 @@ void TextureLayerStage::apply(Contact& contact, ContactMemory& memory) const noe
     if (contact.touching) lower(contact, shell_, Vec3::Zero());
     return;
   }
-  const PatchAt at = reliefs_->at(contact.object, contact.surface, memory.walk).texture;
-  const double height = at.height - at.share * at.low, depth = depthOf(contact) - shell_,
+  const ReliefAt at = reliefs_->at(contact.object, contact.surface, memory.walk);
+  const double low = at.texture.of ? at.texture.of->value.low : 0,
+               height = at.height - at.texture.share * low, depth = depthOf(contact) - shell_,
                rigid = std::max(depth, 0.0), pressed = gain_ * std::max(depth + height, 0.0);
   Vec3 slope = Vec3::Zero();
   if (form_ == ForceForm::conservative && pressed > 0)
     slope = pressed / (rigid + pressed) *
-            pulledBack(reliefs_->sampler(), contact, at.slope - at.low * at.share_slope);
+            pulledBack(reliefs_->sampler(), contact, at.slope - low * at.texture.slope);
   settle(contact, rigid + pressed, slope);
   announceStep(contact, memory.layer, gain_ * height, slope);
 }

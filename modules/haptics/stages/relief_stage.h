@@ -43,6 +43,10 @@ class Reliefs {
   std::size_t bytes() const; // of the packed faces
 
  private:
+  // Where the walk ended nowhere near: from the face that the field knows, if that is nearer.
+  void lookAfresh(const FeltObject& part, const ReliefSurface& surface, const Vec3& c, ReliefAt& at,
+                  Eigen::Matrix3d* bend) const noexcept;
+
   FieldSampler sampler_;
   std::span<const FeltObject> objects_;
   Part part_;

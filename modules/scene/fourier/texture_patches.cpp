@@ -158,12 +158,6 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
   }
 }
 
-PatchAt TexturePatches::at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend) const noexcept {
-  PatchAt found;
-  read(face, p, found, bend);
-  return found;
-}
-
 void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
                           Eigen::Matrix3d* bend) const noexcept {
   if (bend) bend->setZero();
@@ -178,7 +172,8 @@ void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
   const TextureValue h = texture.at.at(place.x(), place.y());
   found.height = h.height;
   found.slope = Vec3(h.gradient.dot(per_x), h.gradient.dot(per_y), h.gradient.dot(per_z));
-  found.share = 1;
+  found.texture.of = &texture;
+  found.texture.share = 1;
   if (bend) {
     Eigen::Matrix<double, 3, 2> along;
     along << per_x.transpose(), per_y.transpose(), per_z.transpose();
@@ -188,18 +183,16 @@ void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
     const Fade& fade = fades_[static_cast<std::size_t>(patch.fade)];
     const double w = std::clamp(fade.at + fade.slope.dot(q), 0.0, 1.0);
     const double share = w * w * (3 - 2 * w), growth = 6 * w * (1 - w);
-    found.share = share;
-    found.share_slope = growth * fade.slope;
+    found.texture.share = share;
+    found.texture.slope = growth * fade.slope;
     if (bend)
       *bend =
           share * *bend +
           growth * (found.slope * fade.slope.transpose() + fade.slope * found.slope.transpose()) +
           (6 - 12 * w) * found.height * fade.slope * fade.slope.transpose();
-    found.slope = share * found.slope + found.height * found.share_slope;
+    found.slope = share * found.slope + found.height * found.texture.slope;
     found.height *= share;
   }
-  found.stiffness = texture.stiffness;
-  found.low = texture.value.low;
 }
 
 std::size_t TexturePatches::bytes() const {

@@ -10,14 +10,17 @@
 
 namespace patina {
 
+// Which texture lies on a face, and how much of it there is: 1 but where it fades out.
+struct TextureShare {
+  const FeltTexture* of = nullptr; // none
+  double share = 0;
+  Vec3 slope = Vec3::Zero(); // of the share [1/m]
+};
+
 struct PatchAt {
   double height = 0;         // [m], outward, of mean zero
   Vec3 slope = Vec3::Zero(); // its gradient over the face, dimensionless
-  // Of the texture's own stiffness [N/m], and how much of it there is: 1 but where it fades out.
-  double stiffness = 0; // 0: the texture says nothing of it
-  double share = 0;
-  double low = 0;                  // least height of the texture where its share is whole [m]
-  Vec3 share_slope = Vec3::Zero(); // [1/m]
+  TextureShare texture;
 };
 
 // Coordinates are affine over a face, so that neighbours that agree on an edge's ends agree along
@@ -32,7 +35,11 @@ class TexturePatches {
 
   // p [m, world] on or near the face. Servo thread: no allocation. bend, where asked for, becomes
   // the second derivative of the height over the face [1/m].
-  PatchAt at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend = nullptr) const noexcept;
+  PatchAt at(std::int32_t face, const Vec3& p, Eigen::Matrix3d* bend = nullptr) const noexcept {
+    PatchAt found;
+    read(face, p, found, bend);
+    return found;
+  }
   // The same into `found`, which is PatchAt{}.
   void read(std::int32_t face, const Vec3& p, PatchAt& found,
             Eigen::Matrix3d* bend = nullptr) const noexcept;

@@ -176,6 +176,10 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   samples->per_voxel = 1 / map.voxel();
   samples->first = table.first;
   samples->blocks = table.count;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    samples->first_node[a] = kMaterialSide * table.first[static_cast<std::size_t>(a)];
+    samples->node_count[a] = kMaterialSide * table.count[static_cast<std::size_t>(a)];
+  }
   samples->painted = painted;
   for (const Channel& row : kChannels)
     if (painted[static_cast<std::size_t>(row.channel)])
@@ -233,17 +237,17 @@ double blend(Two ends, double part) noexcept {
 
 } // namespace
 
-MaterialAt materialAt(const MaterialSamples& samples, const Vec3& p) noexcept {
-  MaterialAt at;
-  at.material = samples.base;
+void readMaterial(const MaterialSamples& samples, const Vec3& p, Material& material,
+                  MaterialGradients& gradients) noexcept {
   const Vec3 q = (p - samples.origin) * samples.per_voxel;
   std::array<unsigned, 3> node{};
   std::array<double, 3> part{};
   std::size_t cell = 0;
   for (std::size_t a = 3; a-- > 0;) {
     // In nodes of the table; NaN fails the comparison.
-    const double x = q[static_cast<Eigen::Index>(a)] - kMaterialSide * samples.first[a];
-    if (!(x >= 0 && x < kMaterialSide * samples.blocks[a])) return at;
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double x = q[axis] - samples.first_node[axis];
+    if (!(x >= 0 && x < samples.node_count[axis])) return;
     const int whole = static_cast<int>(x);
     const auto i = static_cast<unsigned>(whole);
     part[a] = x - whole;
@@ -251,7 +255,7 @@ MaterialAt materialAt(const MaterialSamples& samples, const Vec3& p) noexcept {
     cell = cell * static_cast<std::size_t>(samples.blocks[a]) + i / kMaterialSide;
   }
   const std::int32_t slot = samples.top[cell];
-  if (slot < 0) return at;
+  if (slot < 0) return;
   const std::size_t right = samples.channels, up = right * kSide, above = up * kSide;
   const double* low = samples.nodes[static_cast<std::size_t>(slot)] + node[2] * above +
                       node[1] * up + node[0] * right;
@@ -263,14 +267,13 @@ MaterialAt materialAt(const MaterialSamples& samples, const Vec3& p) noexcept {
     const Two front = n00 + part[0] * x00, back = n10 + part[0] * x10, between = back - front,
               ends = front + part[1] * between;
     const auto value = samples.value[c];
-    at.material.*value = blend(ends, part[2]);
+    material.*value = blend(ends, part[2]);
     const bool stiffness = value == &Material::stiffness;
     if (stiffness || value == &Material::roughness)
-      (stiffness ? at.stiffness_gradient : at.roughness_gradient) =
+      (stiffness ? gradients.stiffness : gradients.roughness) =
           samples.per_voxel * Vec3(blend(blend(x00, x10, part[1]), part[2]),
                                    blend(between, part[2]), ends[1] - ends[0]);
   }
-  return at;
 }
 
 } // namespace patina

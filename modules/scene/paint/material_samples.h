@@ -21,25 +21,25 @@ struct MaterialSamples {
   Vec3 origin = Vec3::Zero(); // [m], object frame
   double per_voxel = 0;       // [1/m]
   std::array<int, 3> first{}, blocks{};
-  std::vector<std::int32_t> top; // slot, -1 = base everywhere
+  Vec3 first_node = Vec3::Zero(), node_count = Vec3::Zero(); // the same in nodes
+  std::vector<std::int32_t> top;                             // slot, -1 = base everywhere
   std::vector<std::shared_ptr<const MaterialSampleBlock>> block;
   std::vector<const double*> nodes; // of each block
-  std::vector<Extremes> extremes; // by slot
+  std::vector<Extremes> extremes;   // by slot
   std::vector<MaterialMap::Index> block_at;
   std::array<bool, kMaterialChannels> painted{};
-  std::size_t channels = 0; // that are painted
+  std::size_t channels = 0;                                  // that are painted
   std::array<double Material::*, kMaterialChannels> value{}; // of each of them
   Material base;
   Material least, most; // of each channel anywhere, base included
   std::size_t bytes() const;
 };
 
-// What is felt at a point, and how it changes about it.
-struct MaterialAt {
-  Material material;
-  // Of the trilinear interpolant, object frame; zero where the channel is not painted.
-  Vec3 stiffness_gradient = Vec3::Zero(); // [N/m^2]
-  Vec3 roughness_gradient = Vec3::Zero(); // dimensionless
+// How what is felt changes about a point: of the trilinear interpolant, object frame; zero where
+// the channel is not painted.
+struct MaterialGradients {
+  Vec3 stiffness = Vec3::Zero(); // [N/m^2]
+  Vec3 roughness = Vec3::Zero(); // dimensionless
 };
 
 // `before` (made from an earlier version of `map` with the same base) keeps blocks whose layers are
@@ -48,7 +48,10 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
                                                        const MaterialMap* map_before,
                                                        const MaterialSamples* before);
 
-// Servo thread: constant time, no allocation. p in metres, object frame.
-MaterialAt materialAt(const MaterialSamples& samples, const Vec3& p) noexcept;
+// Servo thread: constant time, no allocation. p in metres, object frame. Channels that are painted
+// somewhere come into `material`, which is the base, and into `gradients`, which are
+// MaterialGradients{}.
+void readMaterial(const MaterialSamples& samples, const Vec3& p, Material& material,
+                  MaterialGradients& gradients) noexcept;
 
 } // namespace patina

@@ -299,9 +299,7 @@ ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_
     at.face = faceUnder(mesh, near_face, c - mesh.middle, above);
     if (at.face >= 0) {
       at.distance = std::abs(above);
-      relief.textures->read(at.face, c, at.texture);
-      at.height = at.texture.height;
-      at.slope = at.texture.slope;
+      relief.textures->read(at.face, c, at);
       return at;
     }
   }
@@ -318,9 +316,10 @@ ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_
       on_face = mesh.middle + foot.barycentric[0] * face.at(0) + foot.barycentric[1] * face.at(1) +
                 foot.barycentric[2] * face.at(2);
     Eigen::Matrix3d bent;
-    at.texture = relief.textures->at(foot.face, on_face, bend ? &bent : nullptr);
-    at.height += at.texture.height;
-    at.slope += at.texture.slope;
+    const PatchAt patch = relief.textures->at(foot.face, on_face, bend ? &bent : nullptr);
+    at.height += patch.height;
+    at.slope += patch.slope;
+    at.texture = patch.texture;
     if (bend) *bend += bent;
   }
   return at;

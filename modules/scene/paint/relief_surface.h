@@ -26,12 +26,10 @@ struct ReliefSurface {
   std::shared_ptr<const TexturePatches> textures{}; // absent: none
 };
 
-struct ReliefAt {
-  double height = 0;         // [m], outward
-  Vec3 slope = Vec3::Zero(); // surface gradient of the height, in the face's plane, dimensionless
-  std::int32_t face = -1;    // of the object; a good start for the next query nearby
-  double distance = 0;       // [m], from c to the mesh
-  PatchAt texture;           // what of it is a texture's
+// Height and slope are those of image and texture together.
+struct ReliefAt : PatchAt {
+  std::int32_t face = -1; // of the object; a good start for the next query nearby
+  double distance = 0;    // [m], from c to the mesh
 };
 
 // What cubics may add to the greatest |g| between texels, along both axes.
