@@ -79,7 +79,7 @@ class Fit : public DrivenWindow {
       path[i].position = Vec3(0.02 * std::cos(angle), 0.02 * std::sin(angle), 2e-5 * angle);
     }
     window_->findChild<AlignDesk*>()->setPath(
-        QStringLiteral("a_path_of_a_long_and_winding_name.csv"), path);
+        QStringLiteral("a_path_of_a_long_and_winding_name.csv"), {path, {}});
     find<QPushButton>("align_pick")->click();
 #endif
     wait(400);

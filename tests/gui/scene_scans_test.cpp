@@ -130,9 +130,15 @@ TEST_F(SceneScansTest, AStoredPlaceOutlivesAScanThatIsPutInAtOnce) {
     EXPECT_NE(scene().scans[0].text(file), nullptr) << file;
   // Another path under the name is none of its own.
   for (PathSample& sample : path) sample.position.z() += 0.01;
-  align.setPath(QStringLiteral("stroke"), path);
+  align.setPath(QStringLiteral("stroke"), {path, {}});
   const SceneScan before = scene().scans[0];
   EXPECT_THROW((void)withAlignment(&before, alignedScan("stroke", align.alignment())), Error);
+  // What is refused leaves the path that lies there where it is.
+  const Pose place = align.alignment().pose();
+  path.resize(2);
+  align.setPath(QStringLiteral("touch"), {path, Pose(Eigen::Translation3d(1, 2, 3))});
+  EXPECT_EQ(align.alignment().pose().matrix(), place.matrix());
+  EXPECT_EQ(align.alignment().path().size(), 60u);
 }
 
 // A chessboard of black squares on white, in eight attitudes.

@@ -24,13 +24,7 @@ AlignDesk::AlignDesk(QWidget& window)
   settle_.setSingleShot(true);
   connect(&settle_, &QTimer::timeout, this, [this] { settle(); });
   connect(&files_, &AlignFiles::said, this, &AlignDesk::said);
-  connect(&files_, &AlignFiles::opened, this,
-          [this](const QString& name, const AlignedPath& found) {
-            setPath(name, found.path);
-            if (!found.mesh_from_path || !alignment_.isReady()) return;
-            move(*found.mesh_from_path);
-            settle();
-          });
+  connect(&files_, &AlignFiles::opened, this, &AlignDesk::setPath);
   connect(panel_, &AlignPanel::storeAsked, this, [this] { files_.store(name_); });
   connect(cells_, &AlignCells::dragBegun, this, [this] { held_ = alignment_.pose(); });
   connect(cells_, &AlignCells::dragged, this, [this](const Pose& motion) { move(motion * held_); });
@@ -69,8 +63,8 @@ std::map<Panel, QWidget*> AlignDesk::panels() const {
   return {{Panel::align, panel_}, {Panel::basin, around_.plot()}};
 }
 
-void AlignDesk::setPath(const QString& name, std::vector<PathSample> path) {
-  path = inContact(std::move(path));
+void AlignDesk::setPath(const QString& name, const AlignedPath& aligned) {
+  std::vector<PathSample> path = inContact(aligned.path);
   if (path.size() < 3) {
     emit said({tr("%1 has fewer than three samples in contact").arg(name), true});
     return;
@@ -79,6 +73,9 @@ void AlignDesk::setPath(const QString& name, std::vector<PathSample> path) {
   name_ = name;
   alignment_.setPath(std::move(path));
   begin();
+  if (!aligned.mesh_from_path || !alignment_.isReady()) return;
+  move(*aligned.mesh_from_path);
+  settle();
 }
 
 void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {

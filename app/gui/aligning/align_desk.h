@@ -32,8 +32,9 @@ class AlignDesk : public QObject {
   const QString& name() const { return name_; } // of the path
   const std::optional<Work>& work() const { return work_; }
 
-  void setPath(const QString& name, std::vector<PathSample> path); // not yet told by contact
-  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);     // nullptr: no scene is open
+  // Not yet told by contact. Of a path that touches nothing nothing changes.
+  void setPath(const QString& name, const AlignedPath& aligned);
+  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: no scene is open
   void cancel();
   void undo();
   void redo();

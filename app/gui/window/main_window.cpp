@@ -182,7 +182,7 @@ void MainWindow::connectScan() {
   connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
   connect(parts_.scan, &ScanDesk::pathMade, parts_.align,
           [this](const QString& name, const std::vector<PathSample>& path) {
-            parts_.align->setPath(name, path);
+            parts_.align->setPath(name, {path, {}});
             const ScanFiles* files = parts_.scan->scan().files();
             const auto mesh =
                 files != nullptr ? files->folder / "mesh.obj" : std::filesystem::path();
