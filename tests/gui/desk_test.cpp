@@ -1,4 +1,5 @@
 // Desks: what is at hand on each, and that a person's arrangement stays.
+#include <QScreen>
 #include <QSettings>
 #include <QSplitter>
 
@@ -143,6 +144,18 @@ TEST_F(Desks, SizesTabsAndTheDeskAreThereAtTheNextStart) {
   EXPECT_TRUE(find<EnergyPlot>()->isVisible());
   go("feel");
   EXPECT_LT(column().width(), 60);
+}
+
+TEST_F(Desks, AWindowThatWasLargerIsAllOnThisScreenWithItsFrame) {
+  QSettings().setValue(QStringLiteral("window/size"), QSize(6000, 4000));
+  window_ = std::make_unique<MainWindow>();
+  window_->restorePlace();
+  window_->show();
+  ASSERT_TRUE(waitUntil([&] { return window_->frameGeometry() != window_->geometry(); }, 3000));
+  const QRect screen = window_->screen()->availableGeometry();
+  EXPECT_TRUE(waitUntil([&] { return screen.contains(window_->frameGeometry()); }, 3000))
+      << window_->frameGeometry().bottom() << " of " << screen.bottom();
+  EXPECT_GT(window_->height(), screen.height() - 60);
 }
 
 } // namespace

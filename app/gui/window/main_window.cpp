@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <QCloseEvent>
+#include <QScreen>
 
 #include "app/gui/control/touching.h"
 #include "app/gui/loading/load_dialogs.h"
@@ -17,6 +18,8 @@
 namespace patina {
 namespace {
 constexpr int kNarrow = 1100; // without room for the column
+// Of what a window manager draws about a window, which it says only of one that is seen.
+constexpr QSize kManagersFrame{12, 44};
 
 #ifdef PATINA_HAS_ACQUISITION
 GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, double felt) {
@@ -349,7 +352,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 
 void MainWindow::restorePlace() {
   const WindowPlace place = rememberedPlace();
-  resize(place.size);
+  resize(place.size.boundedTo(screen()->availableSize() - kManagersFrame));
   if (place.maximized) setWindowState(Qt::WindowMaximized);
   desks_.restore();
 }
