@@ -124,6 +124,16 @@ TEST_F(TextureLibraryTest, AnotherTakesItsPlaceOnEveryFaceAndItIsTakenOff) {
   EXPECT_TRUE(readTexture(folder_ / "kept.json") == readTexture(folder_ / "felt.json"));
 }
 
+TEST_F(TextureLibraryTest, TheProfileIsThereAgainAfterAnotherDesk) {
+  read("ribs.json");
+  ASSERT_TRUE(find<QWidget>("page_profile")->isVisible());
+  clickAction("desk_feel");
+  EXPECT_FALSE(find<QWidget>("page_profile")->isVisible());
+  clickAction("desk_texture");
+  EXPECT_TRUE(find<QWidget>("page_profile")->isVisible());
+  EXPECT_TRUE(window_->findChild<ProfilePlot*>()->isVisible());
+}
+
 TEST_F(TextureLibraryTest, WithoutPenOrTextureTheHandTurnsThePictureAndWithoutAScanItIsSaid) {
   const std::size_t done = edits().status().done;
   drag(at(-0.1, 0), at(0.1, 0));

@@ -136,6 +136,22 @@ TEST(WindowState, AScanHasItsPagesOnceItIsOpen) {
   EXPECT_FALSE(isThere(Panel::timeline, state));
 }
 
+TEST(WindowState, AProfileIsThereOfWhatIsInFront) {
+  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without PATINA_ACQUISITION";
+  WindowState state = withScene();
+  state.desk = Desk::texture;
+  state.tab = Tab::library;
+  state.texture = true;
+  EXPECT_FALSE(isThere(Panel::profile, state));
+  state.tab = Tab::steps;
+  EXPECT_TRUE(isThere(Panel::profile, state));
+  state.texture = false;
+  state.chosen_texture = true;
+  EXPECT_FALSE(isThere(Panel::profile, state));
+  state.tab = Tab::library;
+  EXPECT_TRUE(isThere(Panel::profile, state));
+}
+
 TEST(WindowState, ATabWithNothingToShowLeavesItsPlaceToTheFirst) {
   WindowState state = withScene();
   state.desk = Desk::paint;

@@ -33,7 +33,8 @@ class TextureDesk : public QObject {
   TextureLibrary& library() { return library_; }
   void showLibrary(bool on); // in the place of the sequence
 
-  bool hasTexture() const { return library_shown_ ? chosen_ != nullptr : has_texture_; }
+  bool hasTexture() const { return has_texture_; }             // of the sequence
+  bool hasChosenTexture() const { return chosen_ != nullptr; } // of the library
   const std::optional<Work>& work() const { return work_; }
   void runAll(); // the whole sequence
   void cancel();

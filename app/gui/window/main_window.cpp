@@ -231,6 +231,7 @@ WindowState MainWindow::state() const {
   if (state.name.isEmpty()) state.name = parts_.scan->scan().name();
   if (!state.work) state.work = parts_.scan->work();
   state.texture = parts_.texture->hasTexture();
+  state.chosen_texture = parts_.texture->hasChosenTexture();
   if (!state.work) state.work = parts_.texture->work();
   if (!state.work) state.work = parts_.texture->library().work();
   if (!state.work) state.work = parts_.align->work();

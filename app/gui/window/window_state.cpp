@@ -36,7 +36,7 @@ bool isThere(Panel panel, const WindowState& state) {
   case Panel::findings:
     return state.scan;
   case Panel::profile:
-    return state.texture;
+    return tabInFront(state) == Tab::library ? state.chosen_texture : state.texture;
   case Panel::basin:
     return state.path;
   case Panel::display:

@@ -32,6 +32,7 @@ struct WindowState {
   bool relief = false, paint = false; // the scene has some
   bool scan = false;                  // one is open
   bool texture = false;               // one was fitted
+  bool chosen_texture = false;        // one of the library is
   bool path = false;                  // there is one on a mesh, to be aligned
   GuideFacts guide;                   // how far a scan has come to a feel
   std::size_t undoable = 0, redoable = 0;
