@@ -1,6 +1,7 @@
 // From a scan to a feel by pointer alone, as a person who reads nothing does it.
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/texturing/texture_desk.h"
+#include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 
 namespace patina {
@@ -81,6 +82,35 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   }));
   wait(500);
   keepPicture("texture_felt");
+}
+
+TEST_F(TextureDeskTest, TitleHistoryAndGuideAreThoseOfWhatIsShown) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+  setRow("stiffness", 700);
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 1; }, 20000));
+  clickAction("desk_texture");
+  const auto of_scene = [&] {
+    return window_->windowTitle().startsWith(QStringLiteral("sphere.obj")) &&
+           find<QWidget>("page_history")->isVisible() &&
+           find<QWidget>("guide_strip")->isVisible() && window_->isWindowModified();
+  };
+  EXPECT_TRUE(of_scene()) << "the toy is not shown yet";
+  clickOn("next_step");
+  ASSERT_TRUE(rest());
+  EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("The toy's scan")));
+  EXPECT_FALSE(window_->isWindowModified());
+  EXPECT_FALSE(find<QWidget>("page_history")->isVisible());
+  EXPECT_FALSE(find<QWidget>("guide_strip")->isVisible());
+  keepPicture("texture_begun");
+  type('z', kControl);
+  wait(300);
+  EXPECT_EQ(edits().status().done, 1U) << "what is not seen is not undone";
+  clickOn("tab_library");
+  EXPECT_TRUE(of_scene());
+  clickOn("tab_steps");
+  EXPECT_FALSE(of_scene());
+  clickAction("desk_scan");
+  EXPECT_TRUE(find<QWidget>("guide_strip")->isVisible());
 }
 
 TEST_F(TextureDeskTest, AStepThatIsCancelledBeginsAnew) {

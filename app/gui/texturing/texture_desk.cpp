@@ -161,7 +161,7 @@ void TextureDesk::draw() {
 }
 
 void TextureDesk::choosePage() {
-  QWidget* page = demo_ != nullptr && view_ != nullptr ? view_ : cells_->widget(0);
+  QWidget* page = hasBegun() ? view_ : cells_->widget(0);
   if (library_shown_ && library_.hasScene()) {
     page = library_.view();
     if (cells_->indexOf(page) < 0) cells_->addWidget(page);

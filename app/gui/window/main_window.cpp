@@ -230,6 +230,7 @@ WindowState MainWindow::state() const {
   state.scan = parts_.scan->isOpen();
   if (state.name.isEmpty()) state.name = parts_.scan->scan().name();
   if (!state.work) state.work = parts_.scan->work();
+  state.sequence = parts_.texture->hasBegun();
   state.texture = parts_.texture->hasTexture();
   state.chosen_texture = parts_.texture->hasChosenTexture();
   if (!state.work) state.work = parts_.texture->work();

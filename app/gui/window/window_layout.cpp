@@ -159,7 +159,7 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
   const int other = static_cast<int>(state.desk) - static_cast<int>(Desk::scan); // desks in a row
   parts.cells->setCurrentIndex(std::max(0, other + 1));
   parts.tools->setVisible(other < 0);
-  parts.guide->show(state.guide, other >= 0);
+  parts.guide->show(state.guide, other >= 0 && !showsSequence(state));
 #ifdef PATINA_HAS_ACQUISITION
   parts.texture->showLibrary(tabInFront(state) == Tab::library);
 #endif
@@ -170,7 +170,7 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
   parts.commands.at(Command::record)->setChecked(state.recording);
   parts.tools->setPaints(isEnabled(Command::paint, state));
   window.setWindowTitle(titleOf(state));
-  window.setWindowModified(state.unsaved);
+  window.setWindowModified(state.unsaved && !showsSequence(state));
 }
 
 } // namespace patina

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "app/gui/widgets/words.h"
+
 namespace patina {
 namespace {
 
@@ -14,6 +16,11 @@ template <typename Value> Value orFirst(const Value& wanted, const std::vector<V
 }
 
 } // namespace
+
+bool showsSequence(const WindowState& state) {
+  return state.desk == Desk::texture && state.sequence &&
+         !(state.open && tabInFront(state) == Tab::library);
+}
 
 bool isWelcome(const WindowState& state) {
   return state.content == Content::nothing && !state.open && !state.work;
@@ -51,7 +58,7 @@ bool isThere(Panel panel, const WindowState& state) {
   case Panel::paint:
     return state.paint;
   case Panel::history:
-    return scene && state.undoable + state.redoable > 0;
+    return scene && !showsSequence(state) && state.undoable + state.redoable > 0;
   default:
     return scene;
   }
@@ -96,9 +103,9 @@ bool isEnabled(Command command, const WindowState& state) {
   case Command::record:
     return state.open;
   case Command::undo:
-    return state.undoable > 0;
+    return state.undoable > 0 && !showsSequence(state);
   case Command::redo:
-    return state.redoable > 0;
+    return state.redoable > 0 && !showsSequence(state);
   case Command::paint:
     return state.content == Content::scene;
   }
@@ -106,6 +113,7 @@ bool isEnabled(Command command, const WindowState& state) {
 }
 
 QString titleOf(const WindowState& state) {
+  if (showsSequence(state)) return tr("The toy's scan – Patina");
   return state.name.isEmpty() ? QStringLiteral("Patina[*]")
                               : QStringLiteral("%1[*] – Patina").arg(state.name);
 }

@@ -31,6 +31,7 @@ struct WindowState {
   ToolChoice tool;
   bool relief = false, paint = false; // the scene has some
   bool scan = false;                  // one is open
+  bool sequence = false;              // from a scan to a feel on the toy, begun
   bool texture = false;               // one was fitted
   bool chosen_texture = false;        // one of the library is
   bool path = false;                  // there is one on a mesh, to be aligned
@@ -43,6 +44,8 @@ struct WindowState {
   std::optional<std::filesystem::path> left_behind; // by a crash, and offered
 };
 
+// The toy of the sequence is, and not what is open: no history, no step of the guide is its.
+bool showsSequence(const WindowState& state);
 bool isWelcome(const WindowState& state);            // nothing is open, nor about to be
 bool isThere(Panel panel, const WindowState& state); // the desk has it, and a use for it
 bool isShown(Panel panel, const WindowState& state); // it is in front as well
