@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "app/gui/control/touching.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 #include "scene/surface_pick.h"
@@ -146,6 +147,33 @@ TEST_F(Strokes, NoFrameIsUnpaintedWhenAStrokeEnds) {
     EXPECT_FALSE(painted && count < whole / 2) << count << " of " << whole;
     painted = painted || count > 0.9 * whole;
   }
+}
+
+// 0.8 N are 8 mm deep at 100 N/m: a thin part would be left on its other side, unpainted.
+TEST_F(Strokes, APressGoesNoDeeperThanTheMiddleOfAThinPart) {
+  ASSERT_TRUE(open(saved(box({0.06, 0.06, 0.003}, 8), "plate.obj")));
+  const Vec3 above(0.003, 0.004, 0.0015);
+  const CompiledScene& plate = *edits().scene();
+  EXPECT_GT(depthWithin(plate, above, 8e-3), 0.5e-3);
+  EXPECT_LT(depthWithin(plate, above, 8e-3), 1.6e-3);
+  EXPECT_EQ(depthWithin(plate, above, 0.2e-3), 0.2e-3);
+  EXPECT_EQ(depthWithin(plate, above, -1e-3), -1e-3) << "above the skin of what is felt";
+  ASSERT_TRUE(open(saved(icosphere(0.03, 12), "ball.obj")));
+  EXPECT_EQ(depthWithin(*edits().scene(), {0, 0, 0.03}, 3e-3), 3e-3);
+}
+
+TEST_F(Strokes, TheFirstOneWithAnotherToolPaintsWhereItIs) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 22), "sphere.ply")));
+  type(QStringLiteral("p"));
+  pointAt(inView({-120, 0}));
+  wait(800);
+  press();
+  for (int i = 1; i <= 20; ++i) pointAt(inView({-120, 2 * i}));
+  hand_->button(1, false);
+  type(QStringLiteral("h")); // before the tip has come to the end of the way
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 1; }, 5000));
+  drag(inView({120, 0}), inView({120, 40}), 1, 20);
+  EXPECT_TRUE(waitUntil([&] { return edits().status().done == 2; }, 5000));
 }
 
 } // namespace

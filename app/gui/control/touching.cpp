@@ -1,5 +1,7 @@
 #include "app/gui/control/touching.h"
 
+#include <algorithm>
+
 #include "field/sampling/field_sampler.h"
 
 namespace patina {
@@ -12,6 +14,17 @@ Vec3 normalAt(const CompiledScene& scene, const Vec3& surface) {
 
 double skinOf(const HapticProperties& haptics) {
   return haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
+}
+
+double depthWithin(const CompiledScene& scene, const Vec3& surface, double depth) {
+  const FieldSampler sampler(*scene.built.field, scene.scene.sampler);
+  const Vec3 inwards = -normalAt(scene, surface);
+  const double step = 0.5 * scene.built.field->grid.voxel;
+  // To the middle the surface is as far as was gone.
+  double within = step;
+  while (within < depth && sampler.at(surface + (within + step) * inwards).phi < -0.8 * within)
+    within += step;
+  return std::min(depth, within);
 }
 
 Vec3 touching(const CompiledScene& scene, const Vec3& surface) {

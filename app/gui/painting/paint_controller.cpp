@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/gui/control/touching.h"
 #include "app/gui/painting/mirror_plane.h"
@@ -154,8 +155,8 @@ void PaintController::press(const Vec3& surface, double newtons) {
     leapTip(lifted());
   }
   newtons_ = newtons;
-  passTip(surface +
-          (skinOf(haptics) + (values ? values->height : 0) - depth) * normalAt(*scene_, surface));
+  const double below = depth - skinOf(haptics) - (values ? values->height : 0);
+  passTip(surface - depthWithin(*scene_, surface, below) * normalAt(*scene_, surface));
 }
 
 Vec3 PaintController::lifted() const {
@@ -179,7 +180,8 @@ void PaintController::follow(const Pointed& where) {
     passTip(lifted());
   };
   if (where.down) {
-    down_ = true;
+    // A stroke of its own, though the tip may be on its way along the one before.
+    if (!std::exchange(down_, true)) newtons_ = 0;
     lingers_ = false;
     if (where.surface)
       press(*where.surface, presets_.press * where.pressure);
