@@ -1,6 +1,8 @@
 // The page that stands where nothing is open, by pointer and keys.
 #include "app/gui/window/welcome_page.h"
 
+#include <QRegularExpression>
+
 #include "app/gui/control/desk_controller.h"
 #include "app/gui/loading/presets.h"
 #include "geometry/mesh/shapes.h"
@@ -74,6 +76,30 @@ TEST_F(WelcomeTest, TheGuideLeadsToTheScan) {
   clickOn("welcome_guide");
   EXPECT_EQ(window_->controllers().desks.desk(), Desk::scan);
   EXPECT_TRUE(find<GuideStrip>()->isVisible());
+}
+
+TEST_F(WelcomeTest, ItsCardsAreWholeAndInTheMiddleWithNothingBesideThem) {
+  if (IsSkipped()) return;
+  clickAction("desk_paint"); // whose drawer is open
+  takeSize(1280, 620);
+  auto* splitter = find<QSplitter>("across");
+  EXPECT_FALSE(splitter->handle(1)->isVisible());
+  EXPECT_FALSE(find<QWidget>("column")->isVisible());
+  const auto cards = page().findChildren<QToolButton*>(QRegularExpression("^preset_"));
+  QRect all;
+  for (QToolButton* card : cards) {
+    EXPECT_GE(card->height(), card->sizeHint().height());
+    all |= QRect(card->mapTo(&page(), {0, 0}), card->size());
+  }
+  EXPECT_NEAR(all.center().x(), page().width() / 2, 2);
+  EXPECT_TRUE(page().rect().contains(all));
+  if (const char* folder = std::getenv("PATINA_PICTURES"))
+    window_->grab().save(QStringLiteral("%1/welcome.png").arg(QString::fromUtf8(folder)));
+  clickOn("preset_ball");
+  ASSERT_TRUE(isOpen("ball"));
+  wait(300);
+  EXPECT_TRUE(splitter->handle(1)->isVisible());
+  EXPECT_NEAR(find<QWidget>("column")->width(), 300, 2);
 }
 
 TEST(Presets, EachIsASceneOfOneObjectWithAPicture) {

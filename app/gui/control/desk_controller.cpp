@@ -84,6 +84,7 @@ void DeskController::arrange() {
   const DeskLayout& layout = layouts_[desk_];
   at_.column.setFolded(narrow_ ? !opened_ : layout.column_folded);
   at_.drawer.setFolded(layout.drawer_folded);
+  at_.down.handle(1)->setEnabled(!at_.drawer.folded()); // it has one height then
   const int wide = at_.column.folded() ? at_.column.maximumWidth() : layout.column;
   const int high = at_.drawer.folded() ? at_.drawer.maximumHeight() : layout.drawer;
   at_.across.setSizes({at_.across.width() - at_.across.handleWidth() - wide, wide});

@@ -52,6 +52,13 @@ class FlatControls final : public QProxyStyle {
       drawFrame(*option, *painter, element == PE_IndicatorRadioButton);
   }
 
+  // Nothing to hold where nothing can be moved.
+  void drawControl(ControlElement element, const QStyleOption* option, QPainter* painter,
+                   const QWidget* widget) const override {
+    if (element != CE_Splitter || (option->state & State_Enabled))
+      QProxyStyle::drawControl(element, option, painter, widget);
+  }
+
  private:
   static QRectF frameOf(const QStyleOption& option) {
     return QRectF(option.rect).adjusted(0.5, 0.5, -0.5, -0.5);

@@ -27,14 +27,14 @@ QLabel* heading(const QString& words, const char* name) {
 } // namespace
 
 WelcomePage::WelcomePage(QWidget& over)
-    : QWidget(&over), over_(over), recent_column_(new QVBoxLayout) {
+    : QScrollArea(&over), over_(over), recent_column_(new QVBoxLayout) {
   hide();
   setObjectName(QStringLiteral("welcome"));
-  setAttribute(Qt::WA_StyledBackground);
   setCursor(Qt::ArrowCursor);
   dress(*this,
         QStringLiteral(
-            "QWidget#welcome { background: @window; }"
+            "QScrollArea#welcome, QScrollArea#welcome > QWidget > QWidget {"
+            " background: @window; }"
             "QLabel#welcome_title { color: @text; font-size: 15pt; font-weight: bold; }"
             "QLabel#welcome_words { color: @quiet; }"
             "QLabel#welcome_recent, QLabel#welcome_try { color: @text; font-weight: bold; }"
@@ -74,19 +74,22 @@ WelcomePage::WelcomePage(QWidget& over)
   across->addStretch(1);
   across->addLayout(column);
   across->addStretch(1);
-  auto* whole = new QVBoxLayout(this);
+  auto* page = new QWidget; // where there is no room for it, it is scrolled
+  auto* whole = new QVBoxLayout(page);
   whole->addStretch(1);
   whole->addLayout(across);
   whole->addStretch(2);
+  setWidget(page);
+  setWidgetResizable(true);
+  setFrameShape(QFrame::NoFrame);
   over_.installEventFilter(this);
   setGeometry(over_.rect());
 }
 
 void WelcomePage::addPresets(QVBoxLayout& column) {
   column.addWidget(heading(tr("Try one"), "welcome_try"));
-  auto* grid = new QGridLayout;
-  grid->setSpacing(8);
-  int index = 0;
+  auto* row = new QHBoxLayout;
+  row->setSpacing(8);
   for (const Preset& preset : presets()) {
     const QString name = QString::fromStdString(preset.name);
     auto* button = new QToolButton;
@@ -99,12 +102,10 @@ void WelcomePage::addPresets(QVBoxLayout& column) {
     button->setFocusPolicy(Qt::StrongFocus);
     button->setFixedWidth(kPicture.width() + 22);
     connect(button, &QToolButton::clicked, this, [this, name] { emit presetChosen(name); });
-    grid->addWidget(button, index / 2, index % 2);
+    row->addWidget(button);
     if (first_ == nullptr) first_ = button;
-    ++index;
   }
-  grid->setColumnStretch(2, 1);
-  column.addLayout(grid);
+  column.addLayout(row);
 }
 
 void WelcomePage::setRecent(const QStringList& paths) {
@@ -122,7 +123,7 @@ void WelcomePage::setRecent(const QStringList& paths) {
     const QFileInfo file(path);
     auto* button = new QPushButton(
         fontMetrics().elidedText(QStringLiteral("%1   %2").arg(file.fileName(), file.path()),
-                                 Qt::ElideMiddle, 2 * kPicture.width() + 40));
+                                 Qt::ElideMiddle, 4 * kPicture.width()));
     button->setProperty("recent", true);
     button->setToolTip(path);
     button->setCursor(Qt::PointingHandCursor);
@@ -144,13 +145,13 @@ void WelcomePage::setShown(bool on) {
 void WelcomePage::keyPressEvent(QKeyEvent* event) {
   auto* button = qobject_cast<QAbstractButton*>(focusWidget());
   if (button == nullptr || (event->key() != Qt::Key_Return && event->key() != Qt::Key_Enter))
-    return QWidget::keyPressEvent(event);
+    return QScrollArea::keyPressEvent(event);
   button->click();
 }
 
 bool WelcomePage::eventFilter(QObject* receiver, QEvent* event) {
   if (receiver == &over_ && event->type() == QEvent::Resize) setGeometry(over_.rect());
-  return false;
+  return QScrollArea::eventFilter(receiver, event);
 }
 
 } // namespace patina

@@ -1,15 +1,14 @@
 // What stands in the place of the 3D view while nothing is open: ways to begin.
 #pragma once
 
-#include <QGridLayout>
+#include <QScrollArea>
 #include <QStringList>
 #include <QToolButton>
 #include <QVBoxLayout>
-#include <QWidget>
 
 namespace patina {
 
-class WelcomePage : public QWidget {
+class WelcomePage : public QScrollArea {
   Q_OBJECT
  public:
   explicit WelcomePage(QWidget& over); // covers it, and belongs to it

@@ -155,6 +155,7 @@ void showState(const WindowState& state, const WindowParts& parts, QMainWindow& 
     if (parts.panels.contains(page.panel))
       parts.drawer->setThere(static_cast<int>(page.panel),
                              std::find(there.begin(), there.end(), page.panel) != there.end());
+  parts.column->setVisible(!tabs.empty());
   parts.welcome->setShown(isWelcome(state));
   const int other = static_cast<int>(state.desk) - static_cast<int>(Desk::scan); // desks in a row
   parts.cells->setCurrentIndex(std::max(0, other + 1));
