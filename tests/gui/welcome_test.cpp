@@ -35,6 +35,15 @@ TEST_F(WelcomeTest, APresetOpensByAClickAndThePageGoes) {
   EXPECT_TRUE(view().hasFocus()) << "keys are the view's";
 }
 
+TEST_F(WelcomeTest, APresetIsNotWarnedOf) {
+  if (IsSkipped()) return;
+  clickOn("preset_dinosaur"); // parts of its feet are thin
+  ASSERT_TRUE(isOpen("dinosaur"));
+  wait(300);
+  EXPECT_EQ(find<MessagePanel>()->count(), 0)
+      << find<MessagePanel>()->item(0)->text().toStdString();
+}
+
 TEST_F(WelcomeTest, TheFirstPresetOpensByEnterAndTabGoesToTheOthers) {
   if (IsSkipped()) return;
   ASSERT_TRUE(waitUntil([&] { return find<QToolButton>("preset_dinosaur")->hasFocus(); }, 2000));

@@ -150,7 +150,9 @@ void SceneLoader::run(const LoadRequest& asked, Progress& progress,
       deliver(false, [this, mesh, name] { emit meshReady(mesh, name); });
     }
     openEditor(request, std::move(opened), *made, progress);
-    made->warnings << lines(compileWarnings(*made->editor->compiled()));
+    // What is known of a preset is no news: nobody has made it, and nobody has to mend it.
+    const bool preset = request.path.empty() && request.place.empty();
+    if (!preset) made->warnings << lines(compileWarnings(*made->editor->compiled()));
     deliver(true, [this, made] { emit ready(made); });
   } catch (const Cancelled&) {
     deliver(true, [this] { emit cancelled(); });

@@ -253,7 +253,7 @@ void MainWindow::refresh() {
 
 void MainWindow::say(const Message& message) {
   parts_.messages->add(message);
-  parts_.notice->show(message);
+  if (!parts_.messages->isVisible()) parts_.notice->show(message); // or it would be there twice
 }
 
 void MainWindow::tick() {
