@@ -64,6 +64,40 @@ TEST_F(Loading, AFailedLoadLeavesTheSceneAsItWas) {
   box->accept();
 }
 
+TEST_F(Loading, WhatIsUnsavedIsAskedAboutOnlyIfTheFileCanBeRead) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
+  setRow("stiffness", 700);
+  ASSERT_TRUE(waitUntil([&] { return edits().unsaved() && edits().status().done == 1; }));
+  const auto before = edits().scene();
+  const auto asked = [&] {
+    auto* box = find<QMessageBox>("unsaved_edits");
+    return box != nullptr && box->isVisible() ? box : nullptr;
+  };
+  std::ofstream(folder_ / "bad.obj") << "v 0 0 0\nv 1 0 x\n";
+  documents().openFile(QString::fromStdString((folder_ / "bad.obj").string()));
+  ASSERT_TRUE(waitUntil([&] { return find<QMessageBox>("problem") != nullptr || asked(); }));
+  EXPECT_FALSE(asked());
+  ASSERT_NE(find<QMessageBox>("problem"), nullptr);
+  find<QMessageBox>("problem")->accept();
+  EXPECT_EQ(edits().scene(), before);
+  // Of one that can be read it is asked, and what is kept is kept.
+  const auto good = QString::fromStdString(saved(icosphere(30, 12), "other.obj").string());
+  for (const auto button : {QMessageBox::Cancel, QMessageBox::Discard}) {
+    bool answered = false;
+    QTimer answer;
+    QObject::connect(&answer, &QTimer::timeout, [&] {
+      if (QMessageBox* box = asked()) answered = true, box->button(button)->click();
+    });
+    answer.start(50);
+    documents().openFile(good);
+    ASSERT_TRUE(waitUntil([&] { return answered; }));
+    wait(500);
+    EXPECT_EQ(edits().scene() == before, button == QMessageBox::Cancel);
+    EXPECT_GT(surfaceShare(), 0.1);
+  }
+  EXPECT_TRUE(waitUntil([&] { return edits().scene()->scene.objects[0].name == "other"; }));
+}
+
 TEST_F(Loading, ASceneWithoutObjectsAsksForAMesh) {
   Scene empty;
   saveWorkspace(empty, folder_ / "empty");

@@ -65,6 +65,12 @@ void DocumentController::connectLoader() {
   });
   connect(&loader_, &SceneLoader::ready, this,
           [this](std::shared_ptr<OpenedEditor> opened) { take(*opened); });
+  connect(&loader_, &SceneLoader::readable, this, [this] {
+    LoadRequest request = loader_.request();
+    request.asks = false;
+    emit abandoned(); // until it is known whether it may
+    if (at_.saving.settleEdits()) open(request);
+  });
   connect(&loader_, &SceneLoader::read, this,
           [this](std::shared_ptr<OpenedScene> opened) { add(*opened); });
   connect(&loader_, &SceneLoader::failed, this, &DocumentController::fail);
@@ -119,11 +125,10 @@ void DocumentController::open(const LoadRequest& request) {
   emit changed();
 }
 
-bool DocumentController::openAsked(const LoadRequest& request) {
-  if (opensElsewhere(at_, recent_, request)) return true;
-  if (asks_ && !at_.saving.settleEdits()) return false;
-  open(request);
-  return true;
+void DocumentController::openAsked(const LoadRequest& request) {
+  LoadRequest asked = request;
+  asked.asks = asks_ && (at_.edits.unsaved() || at_.edits.thread().busy());
+  open(asked);
 }
 
 void DocumentController::openDialog(bool adds) {

@@ -30,14 +30,14 @@ class DocumentController : public QObject {
   void setAsks(bool asks) { asks_ = asks; }
   bool asks() const { return asks_; }
   void open(const LoadRequest& request);
-  bool openAsked(const LoadRequest& request); // unless the person would rather keep their edits
+  void openAsked(const LoadRequest& request); // unless the person would rather keep their edits
   void openDialog(bool adds);
   void cancel(); // what is loaded, else what is edited
   bool close();  // false: a file is still being read, and rested() follows
 
   QString nameUnderWay() const;
   QStringList recent() const { return recent_.paths(); } // the newest first
-  void openFile(const QString& path); // asks for what is not saved // of what is being opened
+  void openFile(const QString& path);                    // asks for what is not saved
   const std::optional<Work>& work() const { return work_; }
 
  signals:

@@ -123,6 +123,8 @@ void SceneLoader::run(const LoadRequest& asked, Progress& progress,
   try {
     auto made = std::make_shared<OpenedEditor>();
     LoadRequest request = asked;
+    if (request.asks && request.path.empty()) // a preset, or what a crash left
+      return deliver(true, [this] { emit readable(); });
     if (!request.place.empty()) {
       made->autosave = Autosave::adopt(request.place);
       request.path = made->autosave->workspace();
@@ -133,10 +135,12 @@ void SceneLoader::run(const LoadRequest& asked, Progress& progress,
     if (folder && !request.adds) {
       // To be seen at once: as it was saved, without what the journal says beyond.
       if (!request.recover) opened.scene = loadWorkspace(request.path);
+      if (!request.recover && request.asks) openWorkspace(request.path); // its journal, too
     } else if (!readFile(request, deliver, opened)) {
       return;
     }
     progress.throwIfCancelled();
+    if (request.asks) return deliver(true, [this] { emit readable(); });
     made->warnings = lines(opened.warnings);
     if (request.adds) {
       auto objects = std::make_shared<OpenedScene>(std::move(opened));

@@ -20,6 +20,7 @@ struct LoadRequest {
   OpenOptions options;
   bool unit_chosen = false; // by a person: no question about the size
   bool adds = false;        // its objects come to those that are open
+  bool asks = false;        // only read: readable(), or why not, before anything is given up
   bool recover = false;     // of a workspace that is damaged what can be read
   bool own = true;          // edits go into the folder; false: it is only read
   std::filesystem::path
@@ -56,6 +57,7 @@ class SceneLoader : public QObject {
   void read(std::shared_ptr<patina::OpenedScene> objects); // instead of ready(), of what adds
   void failed(const QString& message);
   void cancelled();
+  void readable();                     // instead of ready(), of what asks
   void needsUnit(double longest_side); // in file units, when millimetres give an odd size
   void needsIso(double low, double high);
   void rested(); // the last thread has ended

@@ -173,7 +173,9 @@ void MainWindow::connectScan() {
   connect(parts_.texture, &TextureDesk::openAsked, &documents_, [this](const QString& folder) {
     LoadRequest request;
     request.path = folder.toStdString();
-    if (documents_.openAsked(request)) desks_.choose(Desk::feel);
+    if (documents_.asks() && !saving_.settleEdits()) return;
+    documents_.open(request);
+    desks_.choose(Desk::feel);
   });
   connect(parts_.texture, &TextureDesk::changed, this, &MainWindow::refresh);
   connect(parts_.texture, &TextureDesk::said, this, &MainWindow::say);
