@@ -63,9 +63,9 @@ TEST(MalformedMesh, ObjIsRefusedWithItsLine) {
           {"negative_index_too_far.obj", 4, "the face names vertex -4, but only 3 stand before it"},
           {"no_faces.obj", 3, "the file ends without a face"},
           {"not_quite_a_number.obj", 2,
-           "'1e' is no number a double can hold; it stands where a coordinate should be"},
+           "'1e' is not a number; it stands where a coordinate should be"},
           {"number_too_large.obj", 2,
-           "'1e999' is no number a double can hold; it stands where a coordinate should be"},
+           "'1e999' is too large a number; it stands where a coordinate should be"},
           {"picture_named_obj.obj", 2, "binary data where OBJ text should be"},
           {"texture_without_number.obj", 4, "the line ends where a texture coordinate should be"},
           {"truncated_in_corner.obj", 5, "the face names texture point 2, but the file has 1"},
@@ -74,7 +74,7 @@ TEST(MalformedMesh, ObjIsRefusedWithItsLine) {
           {"two_coordinates.obj", 2, "the line ends where a coordinate should be"},
           {"utf16.obj", 1, "binary data where OBJ text should be"},
           {"word_for_number.obj", 2,
-           "'zero' is no number a double can hold; it stands where a coordinate should be"},
+           "'zero' is not a number; it stands where a coordinate should be"},
       });
 }
 
@@ -170,7 +170,7 @@ TEST(MalformedMesh, StlIsRefusedWithItsLineOrByte) {
           {"truncated_in_number.stl", 6, "the file ends where a coordinate should be"},
           {"two_corners.stl", 6, "'endloop' where 'vertex' should be"},
           {"word_for_number.stl", 5,
-           "'one' is no number a double can hold; it stands where a coordinate should be"},
+           "'one' is not a number; it stands where a coordinate should be"},
       });
 }
 

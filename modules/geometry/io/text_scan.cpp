@@ -1,5 +1,8 @@
 #include "geometry/io/text_scan.h"
 
+#include <cmath>
+#include <cstdlib>
+
 namespace patina::text {
 
 void throwNotANumber(std::string_view word, const std::string& name, std::size_t line,
@@ -15,8 +18,12 @@ void throwNotANumber(std::string_view word, const std::string& name, std::size_t
       throw FileError(name, line,
                       quoted(word) + " has a decimal comma; numbers need a decimal point");
   }
+  char* end = nullptr;
+  const bool large = std::isinf(std::strtod(with_point.c_str(), &end)) && *end == '\0' &&
+                     with_point.find_first_of("0123456789") != std::string::npos;
   throw FileError(name, line,
-                  quoted(word) + " is no number a double can hold; it stands" + expected);
+                  quoted(word) + (large ? " is too large a number" : " is not a number") +
+                      "; it stands" + expected);
 }
 
 } // namespace patina::text
