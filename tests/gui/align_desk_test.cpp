@@ -299,7 +299,8 @@ TEST_F(AlignDeskTest, ThreePointsAndAFitPutThePathWhereItBelongs) {
 
 // The words of "rms 1.23 mm" and the like [m].
 double lengthAfter(const QString& words, const QString& what) {
-  const QStringList parts = words.mid(words.indexOf(what) + what.size()).split(' ');
+  const QString after = words.mid(words.indexOf(what) + what.size());
+  const QStringList parts = after.split(QRegularExpression("[\\s\u00a0]"));
   return parts[1].toDouble() * (parts[2].startsWith(QStringLiteral("µm")) ? 1e-6 : 1e-3);
 }
 

@@ -38,7 +38,7 @@ TEST(GuideSteps, AreDoneWithAFigureEach) {
   }
   const auto steps = guideSteps({244, 244, 1203, 70e-6, 617, 0.8});
   const QString figures[] = {QStringLiteral("244 frames"), QStringLiteral("1,203 samples"),
-                             QStringLiteral("0.07 mm off"), QStringLiteral("617 faces"),
+                             QStringLiteral("0.07\u00a0mm off"), QStringLiteral("617 faces"),
                              QStringLiteral("0.80 N")};
   ASSERT_EQ(steps.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
@@ -48,7 +48,7 @@ TEST(GuideSteps, AreDoneWithAFigureEach) {
   // A fit that may as well lie elsewhere is none to build on.
   const GuideStep doubtful = guideSteps({0, 0, 1203, 70e-6, 0, 0, true})[2];
   EXPECT_FALSE(doubtful.done);
-  EXPECT_EQ(doubtful.figure, QStringLiteral("0.07 mm off, not sure"));
+  EXPECT_EQ(doubtful.figure, QStringLiteral("0.07\u00a0mm off, not sure"));
   // A force on a surface without a texture is not what the job is about.
   EXPECT_FALSE(guideSteps({0, 0, 0, {}, 0, 0.8})[4].done);
 }

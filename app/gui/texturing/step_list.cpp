@@ -5,11 +5,13 @@
 #include <QGridLayout>
 #include <QVBoxLayout>
 
+#include "app/gui/widgets/words.h"
+
 namespace patina {
 namespace {
 
 QString valueWords(double value, const std::string& unit) {
-  return QString::fromStdString(figureText(value, unit));
+  return inWords(figureText(value, unit));
 }
 
 // The worst of each figure of a step, over the materials.

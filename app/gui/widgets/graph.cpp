@@ -4,15 +4,40 @@
 #include <cmath>
 #include <utility>
 
+#include "app/gui/widgets/words.h"
 #include "app/gui/window/theme.h"
 
 namespace patina {
+namespace {
+
+// 1, 2, 5, 10 and so on.
+std::vector<double> roundIn(const AxisSpan& span) {
+  std::vector<double> marks;
+  for (double power = std::pow(10, std::floor(std::log10(span.from))); power <= span.to;
+       power *= 10)
+    for (const double digit : {1., 2., 5.})
+      if (digit * power >= span.from && digit * power <= span.to) marks.push_back(digit * power);
+  return marks;
+}
+
+} // namespace
 
 double stepFor(double range, int count) {
   const double least = range / count, power = std::pow(10, std::floor(std::log10(least)));
   for (const double step : {1., 2., 5., 10.})
     if (step * power >= least) return step * power;
   return least;
+}
+
+std::vector<double> marksOf(const AxisSpan& span, int count, double least) {
+  std::vector<double> marks;
+  for (int most = count; marks.size() < 2 && most < count + 8; ++most) {
+    const double step = std::max(stepFor(span.length(), most), least);
+    marks.clear();
+    for (double k = std::ceil(span.from / step - 1e-9); k * step <= span.to + 1e-9 * step; ++k)
+      marks.push_back(k * step + 0.0); // no -0
+  }
+  return marks;
 }
 
 AxisSpan wholeOf(const Graph& graph) {
@@ -31,14 +56,15 @@ QRectF paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
   if (!(high > low)) high = low + std::max(1e-9, std::abs(low));
   if (graph.logarithmic) {
     low = std::log10(low);
-    high = std::ceil(std::log10(high));
     low = std::floor(low);
+    high = std::max(low + 1, std::ceil(std::log10(high)));
   }
-  const double step = graph.logarithmic ? 1 : stepFor(high - low, 4);
+  const std::vector<double> levels = marksOf({low, high}, 4, graph.logarithmic ? 1 : 0);
+  const double step = levels[1] - levels[0];
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
   std::vector<std::pair<double, QString>> rows;
   int widest = letters.horizontalAdvance(graph.y_unit);
-  for (double value = std::ceil(low / step) * step; value <= high + 1e-9; value += step) {
+  for (const double value : levels) {
     const double shown = graph.logarithmic ? std::pow(10, value) : value;
     rows.emplace_back(shown, graph.logarithmic && shown < 1
                                  ? QString::number(shown, 'g', 3)
@@ -67,19 +93,13 @@ QRectF paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
   painter.setPen(ink("quiet"));
   painter.drawText(QRectF(whole.left(), whole.top() + 3, margin, line), Qt::AlignRight,
                    graph.y_unit);
-  std::vector<double> marks;
-  const double across =
-      std::max(stepFor(seen.length(), std::clamp(static_cast<int>(area.width() / 60), 2, 8)),
-               graph.counted ? 1. : 0.);
-  if (graph.logarithmic && seen.to > 3 * seen.from)
-    marks = {0.1, 0.2, 0.5, 1, 2, 5, 10};
-  else
-    for (double x = std::ceil(seen.from / across) * across; x <= seen.to; x += across)
-      marks.push_back(std::abs(x) < 1e-9 * across ? 0 : x);
-  std::erase_if(marks, [&](double x) { return x < seen.from || x > seen.to; });
+  std::vector<double> marks = graph.logarithmic ? roundIn(seen) : std::vector<double>();
+  if (marks.size() < 2)
+    marks = marksOf(seen, std::clamp(static_cast<int>(area.width() / 60), 2, 8), graph.counted);
   for (const double x : marks) {
     painter.setPen(ink("quiet"));
-    const QString words = QString::number(x) + (x == marks.back() ? ' ' + graph.x_unit : QString());
+    const QString words =
+        QString::number(x) + (x == marks.back() ? kNoBreak + graph.x_unit : QString());
     const double wide = painter.fontMetrics().horizontalAdvance(words) + 2;
     const double from = std::min(xAt(x) - wide / 2, whole.right() - wide);
     painter.drawText(QRectF(from, area.bottom() + 3, wide, line), Qt::AlignCenter, words);
@@ -87,7 +107,7 @@ QRectF paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
   painter.setRenderHint(QPainter::Antialiasing);
   // A graph that is narrow has of its first name, the longest, what fits.
   constexpr int kMark = 12, kGap = 5, kApart = 12;
-  double legend = area.left(), room = whole.right() - area.left();
+  double legend = area.left() + kApart / 2, room = whole.right() - legend; // clear of the unit
   for (const GraphCurve& curve : graph.curves)
     room -= kMark + kGap + kApart +
             (&curve == &graph.curves.front() ? 0 : letters.horizontalAdvance(curve.name));

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <QCoreApplication>
+#include <QRegularExpression>
 
 #include "core/numbers.h"
 
@@ -15,9 +16,21 @@ inline QString tr(std::string_view words) {
   return QCoreApplication::translate("Window", std::string(words).c_str());
 }
 
+// A number and its unit stay on one line.
+inline const QString kNoBreak{QChar(0x00A0)};
+
+// Of a text of the library's: "50 um" as people write it.
+inline QString inWords(const std::string& text) {
+  static const QRegularExpression kMicro(QStringLiteral("(?<=\\d) um\\b"));
+  static const QRegularExpression kUnit(
+      QStringLiteral("(?<=\\d) (?=(µm|mm|cm|m|N|N/m|dB|%)(?![\\wµ]))"));
+  return QString::fromStdString(text)
+      .replace(kMicro, QStringLiteral(" µm"))
+      .replace(kUnit, kNoBreak);
+}
+
 inline QString inWords(double metres) {
-  if (metres == 0 || std::abs(metres) < 0.5e-9) return QStringLiteral("0 mm"); // rounding
-  return QString::fromStdString(formatLength(metres)).replace(" um", " µm");
+  return inWords(std::abs(metres) < 0.5e-9 ? "0 mm" : formatLength(metres)); // rounding
 }
 
 } // namespace patina
