@@ -65,6 +65,9 @@ TEST(PaintQuantity, RangesHaveRoundEndsAndHoldWhatTheyAreOf) {
   }
   EXPECT_EQ(arrayName(quantityOf(MaterialChannel::damping)), "damping [N s/m]");
   EXPECT_EQ(arrayName(quantityOf(MaterialChannel::static_friction)), "friction.static");
+  EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::static_friction), {0, 1}).title,
+            "static friction");
+  EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::damping), {0, 1}).title, "damping [N s/m]");
   EXPECT_EQ(readingUnit(PaintQuantity::relief, {0, 5e-4}).per_si, 1e3);
   EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::roughness), {0, 2e-5}).per_si, 1e6);
 }

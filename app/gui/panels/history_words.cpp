@@ -17,11 +17,6 @@ QString text(std::string_view utf8) {
   return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
 }
 
-// "tip.radius" as "tip radius".
-QString plain(QString key) {
-  return key.replace(QRegExp(QStringLiteral("[._](?=[a-z])")), QStringLiteral(" "));
-}
-
 QString micro(QString words) {
   return words.replace(QStringLiteral(" um"), QStringLiteral(" µm"));
 }
@@ -30,11 +25,14 @@ QString micro(QString words) {
 QString wordsOfValue(const QString& piece) {
   const QString key = piece.section(QStringLiteral(" = "), 0, 0);
   const QString value = piece.section(QStringLiteral(" = "), 1);
+  if (key == QStringLiteral("friction.slip"))
+    return value == QStringLiteral("paper") ? tr("slips towards the tip")
+                                            : tr("slips against its motion");
   const auto number = parseNumber(value.toStdString());
-  if (!number) return plain(key) + ' ' + value;
+  if (!number) return wordsOfKeys(key) + ' ' + value;
   const std::string_view unit = sceneKey(key.toStdString()).unit;
-  if (unit == "m") return plain(key) + ' ' + micro(text(formatLength(*number)));
-  return (plain(key) + ' ' + QString::number(*number, 'g', 4) + ' ' + text(unit)).trimmed();
+  if (unit == "m") return wordsOfKeys(key) + ' ' + micro(text(formatLength(*number)));
+  return (wordsOfKeys(key) + ' ' + QString::number(*number, 'g', 4) + ' ' + text(unit)).trimmed();
 }
 
 // What goes with all its keys is named once: "no friction".
@@ -45,8 +43,8 @@ QString wordsOfValues(const QStringList& pieces) {
     const QString whole = piece.section('.', 0, 0);
     const bool gone = piece.endsWith(none);
     const bool family = pieces.filter(QRegExp("^" + whole + "[. ]")).filter(none).size() > 1;
-    words << (gone ? tr("no %1").arg(
-                         plain(family ? QString(whole).remove(none) : QString(piece).remove(none)))
+    words << (gone ? tr("no %1").arg(wordsOfKeys(family ? QString(whole).remove(none)
+                                                        : QString(piece).remove(none)))
                    : wordsOfValue(piece));
   }
   words.removeDuplicates();
@@ -61,6 +59,11 @@ bool isStroke(const QString& edit) {
 
 } // namespace
 
+QString wordsOfKeys(QString words) {
+  for (const Channel& row : kChannels) words.replace(text(name(row.channel)), text(row.caption));
+  return words.replace(QRegExp(QStringLiteral("[._](?=[a-z])")), QStringLiteral(" "));
+}
+
 QString wordsOfEdit(const std::string& edit) {
   QString words = text(edit);
   if (words.contains(QStringLiteral(" = "))) {
@@ -68,8 +71,8 @@ QString wordsOfEdit(const std::string& edit) {
   } else if (words.startsWith(text(name(Tool::erase)))) {
     words.replace(0, 5, tr("erased"));
   } else if (isStroke(words)) {
-    words =
-        tr("painted %1").arg(micro(plain(words).replace(QStringLiteral("color"), tr("colour"))));
+    words = tr("painted %1")
+                .arg(micro(wordsOfKeys(words).replace(QStringLiteral("color"), tr("colour"))));
   }
   return words.left(1).toUpper() + words.mid(1);
 }

@@ -7,6 +7,9 @@
 
 namespace patina {
 
+// "tip.radius" as "tip radius", "friction.static" as "static friction".
+QString wordsOfKeys(QString words);
+
 // "offset = 0.00124" is "Offset 1.24 mm", "color" is "Painted colour".
 QString wordsOfEdit(const std::string& edit);
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/gui/panels/history_words.h"
 #include "app/gui/window/theme.h"
 #include "core/numbers.h"
 #include "haptics/stability/stabilisers.h"
@@ -85,7 +86,7 @@ void StatusLine::showScene(const CompiledScene* scene) {
     names << QString::fromStdString(stage.name);
     why << QStringLiteral("<tr><td><b>%1</b></td><td style='padding-left:8px'>%2</td>"
                           "<td align='right' style='padding-left:8px'>%3</td></tr>")
-               .arg(names.back(), QString::fromStdString(stage.why).toHtmlEscaped(),
+               .arg(names.back(), wordsOfKeys(QString::fromStdString(stage.why)).toHtmlEscaped(),
                     QString::fromStdString(formatBytes(static_cast<double>(stage.bytes))));
   }
   showStabilisers(*scene);

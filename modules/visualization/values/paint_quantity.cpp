@@ -113,10 +113,14 @@ vtkSmartPointer<vtkLookupTable> paintColors(PaintQuantity quantity, const ValueR
 ReadingUnit readingUnit(PaintQuantity quantity, const ValueRange& range) {
   if (quantity == PaintQuantity::color) return {"color", 1};
   const auto channel = channelOf(quantity);
-  if (channel && unit(*channel) != "m") return {arrayName(quantity), 1};
+  const auto titled = [](const std::string& words, std::string_view in) {
+    return in.empty() ? words : words + " [" + std::string(in) + "]";
+  };
+  if (channel && unit(*channel) != "m")
+    return {titled(std::string(rowOf(*channel).caption), unit(*channel)), 1};
   const bool fine = std::max(std::abs(range.low), std::abs(range.high)) < 0.95e-4;
-  const std::string what(channel ? name(*channel) : "relief");
-  return {what + (fine ? " [\xC2\xB5m]" : " [mm]"), fine ? 1e6 : 1e3};
+  const std::string what(channel ? rowOf(*channel).caption : "relief");
+  return {titled(what, fine ? "\xC2\xB5m" : "mm"), fine ? 1e6 : 1e3};
 }
 
 } // namespace patina

@@ -1,0 +1,20 @@
+// What an edit is called for a person.
+#include "app/gui/panels/history_words.h"
+
+#include <gtest/gtest.h>
+
+namespace patina {
+namespace {
+
+TEST(HistoryWords, AreNoKeysOfFiles) {
+  EXPECT_EQ(wordsOfEdit("friction.static = 0.5, friction.dynamic = 0.3, friction.slip = paper"),
+            QStringLiteral("Static friction 0.5, dynamic friction 0.3, slips towards the tip"));
+  EXPECT_EQ(wordsOfEdit("friction.slip = displacement"),
+            QStringLiteral("Slips against its motion"));
+  EXPECT_EQ(wordsOfEdit("tip.radius = 0.001"), QStringLiteral("Tip radius 1 mm"));
+  EXPECT_EQ(wordsOfKeys(QStringLiteral("friction.static = 0.5")),
+            QStringLiteral("static friction = 0.5"));
+}
+
+} // namespace
+} // namespace patina
