@@ -100,6 +100,17 @@ TEST_F(Desks, ANarrowWindowFoldsTheColumnToIconsUntilItIsAskedFor) {
   EXPECT_GE(column().width(), 300);
 }
 
+TEST_F(Desks, TheStatusLineHasRoomForItsStages) {
+  addProperty("Friction");
+  addProperty("Damping");
+  const auto* stages = dynamic_cast<ElidedLabel*>(find<QLabel>("stages"));
+  ASSERT_NE(stages, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return stages->text().contains("damp"); }, 5000));
+  wait(100);
+  saveScreen("stages");
+  EXPECT_FALSE(stages->elides()) << stages->text().toStdString();
+}
+
 TEST_F(Desks, MessagesLeaveThePictureWhereItIs) {
   const QRect before = view().geometry();
   const QPoint at = view().mapToGlobal(QPoint());

@@ -32,8 +32,8 @@ StatusLine::StatusLine(QStatusBar* bar) : QObject(bar) {
   stabilisers_ = label("stabilisers");
   dress(*stabilisers_, QStringLiteral("color: @link; font-weight: bold;"));
   bytes_ = label("bytes");
-  stages_ = add(new ElidedLabel(bar), "stages", 2);
-  picked_ = add(new ElidedLabel(bar), "picked", 3);
+  stages_ = add(new ElidedLabel(bar), "stages");
+  picked_ = add(new ElidedLabel(bar), "picked", 1); // it gives way first
   picked_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   dress(*picked_, QStringLiteral("color: @link; padding-right: 8px;"));
   picked_->setToolTip(tr("What is felt and painted under the pointer"));
