@@ -116,6 +116,17 @@ TEST_F(Controls, TheHistorySpeaksInWordsAndRoundedUnits) {
   EXPECT_EQ(words[1], QStringLiteral("Offset 1.24 mm"));
   EXPECT_TRUE(words[2].contains(QRegExp("^Painted colour, [\\d.]+ mm$"))) << words[2].toStdString();
   EXPECT_EQ(words[3], QStringLiteral("Turn sphere by 30° about z"));
+  // The one that holds begins where the others do.
+  auto* list = find<HistoryPanel>();
+  list->setCurrentRow(0);
+  const auto begins = [&](int row) {
+    const QImage line = list->viewport()->grab(list->visualItemRect(list->item(row))).toImage();
+    for (int x = 0; x < line.width(); ++x)
+      for (int y = 0; y < line.height(); ++y)
+        if (line.pixelColor(x, y).lightness() < 120) return x;
+    return -1;
+  };
+  EXPECT_NEAR(begins(0), begins(2), 2);
 }
 
 TEST_F(Controls, TheTitleNamesTheMeshFromTheFirstSecond) {

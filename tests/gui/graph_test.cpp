@@ -24,6 +24,14 @@ TEST(Graphs, AnAxisHasTwoMarksAtLeastAndTheyAreRoundAndWithinIt) {
   EXPECT_EQ(marksOf({0, 2.4}, 8, 1), (std::vector<double>{0, 1, 2}));
 }
 
+TEST(Words, HaveNoMinusBeforeZero) {
+  for (const double value : {-0.04, -0., 0.04}) {
+    EXPECT_EQ(QString::number(shownAs(value, 1), 'f', 1), QStringLiteral("0.0"));
+    EXPECT_EQ(shownAs(value, 3) == 0, value == 0);
+  }
+  EXPECT_EQ(shownAs(-0.06, 1), -0.06);
+}
+
 TEST(Words, KeepANumberAndItsUnitTogether) {
   EXPECT_EQ(inWords(5e-6), QStringLiteral("5 µm").replace(' ', kNoBreak));
   EXPECT_EQ(inWords(std::string("rms 50 um, 3 %")),

@@ -7,6 +7,7 @@
 #include "app/gui/control/touching.h"
 #include "app/gui/painting/mirror_plane.h"
 #include "app/gui/painting/recent_colors.h"
+#include "app/gui/widgets/words.h"
 #include "authoring/brush/painter.h"
 #include "core/numbers.h"
 #include "haptics/devices/device_catalog.h"
@@ -29,9 +30,9 @@ QString number(double value) {
   return QString::fromStdString(formatNumber(std::round(value * 1e4) / 1e4));
 }
 
-// "3 N s/m", "50 um"
+// "3 N s/m", "50 µm"
 QString measured(const Channel& row, double value) {
-  if (row.unit == "m") return QString::fromStdString(formatLength(value));
+  if (row.unit == "m") return inWords(value);
   const QString unit = QString::fromStdString(std::string(row.unit));
   return (number(value) + QStringLiteral(" ") + unit).trimmed();
 }
@@ -288,7 +289,8 @@ QString PaintController::wordsFor(const Vec3& surface) const {
     const QString what = rough ? tr("rough") : captionOf(Tool::material(row.channel));
     words << what + QStringLiteral(" ") + measured(row, value);
   }
-  if (values->height != 0) words << tr("relief %1 mm").arg(1000 * values->height, 0, 'f', 3);
+  if (values->height != 0)
+    words << tr("relief %1 mm").arg(shownAs(1000 * values->height, 3), 0, 'f', 3);
   if (values->color[3] > 0) {
     const double cover = values->color[3];
     words << tr("colour %1")

@@ -13,7 +13,7 @@ HistoryPanel::HistoryPanel(QWidget* parent) : QListWidget(parent) {
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setTextElideMode(Qt::ElideRight);
   dress(*this, QStringLiteral("QListWidget { border: none; background: @card; }"
-                              "QListWidget::item { padding: 2px 6px; }"
+                              "QListWidget::item { padding: 2px 6px; border: none; }"
                               "QListWidget::item:selected { background: @chosen;"
                               " color: @text; }"));
   connect(this, &QListWidget::itemClicked, this,

@@ -17,10 +17,6 @@ QString text(std::string_view utf8) {
   return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
 }
 
-QString micro(QString words) {
-  return words.replace(QStringLiteral(" um"), QStringLiteral(" µm"));
-}
-
 // "tip.radius = 0.001" as "tip radius 1 mm".
 QString wordsOfValue(const QString& piece) {
   const QString key = piece.section(QStringLiteral(" = "), 0, 0);
@@ -31,7 +27,7 @@ QString wordsOfValue(const QString& piece) {
   const auto number = parseNumber(value.toStdString());
   if (!number) return wordsOfKeys(key) + ' ' + value;
   const std::string_view unit = sceneKey(key.toStdString()).unit;
-  if (unit == "m") return wordsOfKeys(key) + ' ' + micro(text(formatLength(*number)));
+  if (unit == "m") return wordsOfKeys(key) + ' ' + text(formatLength(*number));
   return (wordsOfKeys(key) + ' ' + QString::number(*number, 'g', 4) + ' ' + text(unit)).trimmed();
 }
 
@@ -71,9 +67,9 @@ QString wordsOfEdit(const std::string& edit) {
   } else if (words.startsWith(text(name(Tool::erase)))) {
     words.replace(0, 5, tr("erased"));
   } else if (isStroke(words)) {
-    words = tr("painted %1")
-                .arg(micro(wordsOfKeys(words).replace(QStringLiteral("color"), tr("colour"))));
+    words = tr("painted %1").arg(wordsOfKeys(words).replace(QStringLiteral("color"), tr("colour")));
   }
+  words.replace(QStringLiteral(" um"), QStringLiteral(" µm"));
   return words.left(1).toUpper() + words.mid(1);
 }
 

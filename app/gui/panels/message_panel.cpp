@@ -17,7 +17,7 @@ MessagePanel::MessagePanel(QWidget* parent) : QListWidget(parent) {
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setSelectionMode(QAbstractItemView::NoSelection);
   dress(*this, QStringLiteral("QListWidget { border: none; background: @card; }"
-                              "QListWidget::item { padding: 2px 6px; }"));
+                              "QListWidget::item { padding: 2px 6px; border: none; }"));
   setToolTip(tr("What the window has said since it was opened"));
 }
 

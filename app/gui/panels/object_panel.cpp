@@ -5,6 +5,7 @@
 #include <QVariant>
 
 #include "app/gui/widgets/elided_label.h"
+#include "app/gui/widgets/words.h"
 #include "core/numbers.h"
 
 namespace patina {
@@ -115,7 +116,7 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
   const FieldReport& built = scene.built.report;
   const SurfaceField& field = *scene.built.field;
   heading(tr("Field"));
-  row(tr("Voxel"), text(formatLength(field.grid.voxel)));
+  row(tr("Voxel"), inWords(field.grid.voxel));
   row(tr("Nodes"), QStringLiteral("%1 × %2 × %3")
                        .arg(field.grid.nodes[0])
                        .arg(field.grid.nodes[1])

@@ -11,6 +11,7 @@
 
 #include "app/gui/widgets/drawn_icon.h"
 #include "app/gui/widgets/graph.h"
+#include "app/gui/widgets/words.h"
 #include "app/gui/window/theme.h"
 
 namespace patina {
@@ -249,8 +250,10 @@ void StripPlot::paintLegend(QPainter& painter, const QRectF& area) const {
   double x = area.left();
   for (std::size_t c = 0; c < curves_.size(); ++c) {
     const double value = shown().empty() ? 0 : static_cast<double>(shown().back().value[c]);
-    const QString words =
-        withMinus(QStringLiteral("%1 %2 %3").arg(curves_[c].name).arg(value, 0, 'f', 2).arg(unit_));
+    const QString words = withMinus(QStringLiteral("%1 %2 %3")
+                                        .arg(curves_[c].name)
+                                        .arg(shownAs(value, 2), 0, 'f', 2)
+                                        .arg(unit_));
     painter.setPen(QPen(ink(curves_[c].ink), 3));
     painter.drawLine(QPointF(x, middle), QPointF(x + 12, middle));
     painter.setPen(ink("text"));

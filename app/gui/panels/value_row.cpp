@@ -7,16 +7,26 @@
 #include <QSignalBlocker>
 
 #include "app/gui/widgets/elided_label.h"
+#include "app/gui/widgets/words.h"
 
 namespace patina {
 namespace {
 constexpr int kSteps = 1000;
-}
+
+class NumberBox : public QDoubleSpinBox {
+ public:
+  using QDoubleSpinBox::QDoubleSpinBox;
+  QString textFromValue(double value) const override {
+    return QDoubleSpinBox::textFromValue(shownAs(value, decimals()));
+  }
+};
+
+} // namespace
 
 ValueRow::ValueRow(const QString& caption, const QString& unit, const RowRange& range,
                    QWidget* parent)
     : QWidget(parent), range_(range), slider_(new QSlider(Qt::Horizontal, this)),
-      number_(new QDoubleSpinBox(this)), cross_(new QToolButton(this)) {
+      number_(new NumberBox(this)), cross_(new QToolButton(this)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setHorizontalSpacing(6);

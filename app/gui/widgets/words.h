@@ -16,6 +16,11 @@ inline QString tr(std::string_view words) {
   return QCoreApplication::translate("Window", std::string(words).c_str());
 }
 
+// What would be written "-0.0" is 0.
+inline double shownAs(double value, int decimals) {
+  return std::abs(value) < 0.5 * std::pow(10, -decimals) ? 0 : value;
+}
+
 // A number and its unit stay on one line.
 inline const QString kNoBreak{QChar(0x00A0)};
 

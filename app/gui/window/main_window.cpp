@@ -7,6 +7,7 @@
 
 #include "app/gui/control/touching.h"
 #include "app/gui/loading/load_dialogs.h"
+#include "app/gui/widgets/words.h"
 #include "app/gui/window/window_menus.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
@@ -253,7 +254,8 @@ void MainWindow::refresh() {
   showState(state(), parts_, *this);
 }
 
-void MainWindow::say(const Message& message) {
+void MainWindow::say(const Message& said) {
+  const Message message{inWords(said.words.toStdString()), said.warns};
   parts_.messages->add(message);
   if (!parts_.messages->isVisible()) parts_.notice->show(message); // or it would be there twice
 }

@@ -198,7 +198,7 @@ void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
                                  {origin, grid.toWorld(across) - origin, grid.toWorld(up) - origin},
                                  ink));
   bar_->SetLookupTable(map);
-  bar_->SetLabelFormat(limit_mm < 1 ? "%+.2f" : limit_mm < 50 ? "%+.1f" : "%+.0f");
+  bar_->SetLabelFormat(limit_mm < 1 ? "%.2f" : limit_mm < 50 ? "%.1f" : "%.0f");
 }
 
 void SliceLayer::setVisible(bool on) {

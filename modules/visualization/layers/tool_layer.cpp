@@ -111,7 +111,6 @@ ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
   vtkTextProperty* text = label_->GetTextProperty();
   text->BoldOn();
   text->SetVerticalJustificationToCentered();
-  label_->SetDisplayOffset(12, 0);
   overlay.AddActor(label_);
   place();
 }
@@ -129,9 +128,9 @@ void ToolLayer::update(const ToolSample& sample) {
 void ToolLayer::faceCamera(vtkCamera& camera) {
   const Vec3 up(camera.GetViewUp());
   const Vec3 back = Vec3(camera.GetPosition()) - Vec3(camera.GetFocalPoint());
-  const Vec3 right = up.cross(back).normalized();
-  lean_ =
-      (0.55 * right + 0.65 * back.cross(right).normalized() + 0.5 * back.normalized()).normalized();
+  right_ = up.cross(back).normalized();
+  lean_ = (0.55 * right_ + 0.65 * back.cross(right_).normalized() + 0.5 * back.normalized())
+              .normalized();
   length_ = 2 * back.norm() * std::tan(0.5 * camera.GetViewAngle() * M_PI / 180);
   place();
 }
@@ -188,6 +187,10 @@ void ToolLayer::place() {
     stretch(*arrow_shaft_, begin, end - direction * head, 0.0055 * length_);
     stretch(*arrow_head_, end - direction * head, end, 0.35 * head);
     label_->SetPosition(end[0], end[1], end[2]);
+    // Beyond the arrow's end, on the side that it points to.
+    const bool leftwards = direction.dot(right_) < 0;
+    label_->SetDisplayOffset(leftwards ? -12 : 12, 0);
+    label_->GetTextProperty()->SetJustification(leftwards ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
     char words[32];
     std::snprintf(words, sizeof words, " %.2f N ", newtons);
     label_->SetInput(words);
