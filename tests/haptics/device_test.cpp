@@ -113,6 +113,21 @@ TEST(TipTarget, APathTakesAsLongAsTheHandDidAndARestStays) {
   EXPECT_NEAR(rest, 280, 5);
 }
 
+// 50 mm in a step of the pointer: a hand of 1/4 m/s takes 200 ms for them.
+TEST(TipTarget, ALegTakesAsLongAsItsSpeedAllows) {
+  const auto target = targetAt(Vec3::Zero());
+  const auto mouse = makeMouse(target, 0.25);
+  target->pass(Vec3(0.05, 0, 0), 1.0);
+  Vec3 last = Vec3::Zero();
+  int ticks = 0;
+  for (; ticks < 1000 && !target->passed(); ++ticks) {
+    const Vec3 tip = mouse->exchange(Vec3::Zero(), kPeriod).position;
+    ASSERT_LE((tip - last).norm(), 1.0001 * 0.25 * kPeriod);
+    last = tip;
+  }
+  EXPECT_NEAR(ticks, 200, 2);
+}
+
 TEST(TipTarget, APlaceThatIsSetForgetsThePath) {
   const auto target = targetAt(Vec3::Zero());
   const auto mouse = makeMouse(target);
