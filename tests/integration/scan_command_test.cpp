@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <regex>
 #include <sstream>
-
-#include <Eigen/Geometry>
 
 #include "core/csv.h"
 #include "core/file.h"
@@ -270,52 +267,6 @@ TEST_F(Scans, RunFromFramesToPath) {
   writeFileAtomically(scan + "/rig.json", others);
   EXPECT_EQ(run({"track", scan, "--rate", "30", "-o", other}).exit, 1);
   EXPECT_FALSE(std::filesystem::exists(other));
-}
-
-TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
-  // A probe that leans to all sides about a tip 120 mm below its markers.
-  std::string text;
-  for (int i = 0; i < 40; ++i) {
-    const double around = 0.8 * i, leaning = 0.1 + 0.015 * i;
-    const Eigen::Quaterniond turn(Eigen::AngleAxisd(around, Eigen::Vector3d::UnitZ()) *
-                                  Eigen::AngleAxisd(leaning, Eigen::Vector3d::UnitX()));
-    const Eigen::Vector3d at =
-        Eigen::Vector3d(0.1, 0, 0.5) - turn * Eigen::Vector3d(0, 0.01, -0.12);
-    text += std::to_string(i);
-    for (const double value : {at.x(), at.y(), at.z(), turn.x(), turn.y(), turn.z(), turn.w()})
-      text += " " + std::to_string(value);
-    text += "\n";
-  }
-  const std::string poses = folder / "turning.tum", rig = folder / "tip.json";
-  writeFileAtomically(poses, text);
-  const Json report = runJson({"calibrate", poses, "-o", rig});
-  const Json& parameters = report.at("parameters");
-  EXPECT_NEAR(parameters.at("y").at("value").asNumber(), 0.01, 1e-5);
-  EXPECT_NEAR(parameters.at("z").at("value").asNumber(), -0.12, 1e-5);
-  EXPECT_LT(parameters.at("z").at("deviation").asNumber(), 1e-4);
-  EXPECT_NEAR(parseJson(readFile(rig), rig).at("tip").asArray()[2].asNumber(), -0.12, 1e-5);
-  // Two digits of a deviation, and as many behind the point of its value.
-  const std::string shown = run({"calibrate", poses, "-o", rig}).out;
-  std::smatch z;
-  ASSERT_TRUE(std::regex_search(
-      shown, z, std::regex(R"(z\s+-1\d\d\.(\d+) \+- 0\.(0*[1-9]\d) mm)")))
-      << shown;
-  EXPECT_EQ(z[1].length(), z[2].length()) << shown;
-  std::filesystem::remove(rig);
-  writeFileAtomically(poses, text.substr(0, text.find("\n5 ") + 1));
-  expectOneLineError(run({"calibrate", poses, "-o", rig}), {"turning.tum", "tip"});
-  EXPECT_FALSE(std::filesystem::exists(rig));
-  const std::string camera = folder / "camera.yml";
-  expectOneLineError(
-      run({"calibrate", folder / "none", "--board", "chessboard:9x6:25mm", "-o", camera}),
-      {"none"});
-  expectOneLineError(run({"calibrate", folder / "none", "--board", "chess", "-o", camera}),
-                     {"--board", "chessboard:COLUMNSxROWS"});
-  (void)simulate({"--seconds", "3"}); // upright and moving
-  expectOneLineError(run({"calibrate", scan, "--still", "-o", rig}), {"scan", "held still"});
-  // The hand moves: whatever point fits best is no tip.
-  expectOneLineError(run({"calibrate", scan + "/poses.tum", "-o", rig}), {"poses.tum", "tip"});
-  EXPECT_FALSE(std::filesystem::exists(rig));
 }
 
 TEST_F(Scans, BelongToAWorkspaceStepByStep) {
