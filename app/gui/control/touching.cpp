@@ -20,11 +20,16 @@ double depthWithin(const CompiledScene& scene, const Vec3& surface, double depth
   const FieldSampler sampler(*scene.built.field, scene.scene.sampler);
   const Vec3 inwards = -normalAt(scene, surface);
   const double step = 0.5 * scene.built.field->grid.voxel;
-  // To the middle the surface is as far as was gone.
-  double within = step;
-  while (within < depth && sampler.at(surface + (within + step) * inwards).phi < -0.8 * within)
-    within += step;
-  return std::min(depth, within);
+  double at = 0, phi = 0;
+  while (at < 2 * depth) {
+    const double next = at + std::max(step, -phi),
+                 beyond = sampler.at(surface + next * inwards).phi;
+    if (beyond >= 0) // the other side lies between
+      return std::min(depth, 0.5 * (at - phi / (beyond - phi) * (next - at)));
+    at = next;
+    phi = beyond;
+  }
+  return depth;
 }
 
 Vec3 touching(const CompiledScene& scene, const Vec3& surface) {

@@ -7,7 +7,8 @@ namespace patina {
 
 Vec3 normalAt(const CompiledScene& scene, const Vec3& surface); // unit, outwards
 double skinOf(const HapticProperties& haptics); // how far from the surface contact is [m]
-// So far below the surface, or less: past its middle a thin part lets go, on its other side.
+// How deep a press may go that is asked to go `depth` [m] below the surface (negative: above it):
+// as far as the middle between it and the other side, past which a thin part lets go.
 double depthWithin(const CompiledScene& scene, const Vec3& surface, double depth);
 Vec3 touching(const CompiledScene& scene, const Vec3& surface);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "app/gui/control/touching.h"
 #include "app/gui/painting/mirror_plane.h"
@@ -59,6 +58,7 @@ PaintController::PaintController(const Parts& parts, QObject* parent)
 void PaintController::take(const ToolChoice& choice) {
   down_ = lingers_ = false;
   send(tracker_.finish());
+  if (scene_ && newtons_ > 0) lift(); // or the next stroke would begin where this one did
   presses_ = choice.handling == Handling::press;
   if (choice.handling == Handling::paint) {
     tool_ = choice.tool;
@@ -181,8 +181,7 @@ void PaintController::follow(const Pointed& where) {
     passTip(lifted());
   };
   if (where.down) {
-    // A stroke of its own, though the tip may be on its way along the one before.
-    if (!std::exchange(down_, true)) newtons_ = 0;
+    down_ = true;
     lingers_ = false;
     if (where.surface)
       press(*where.surface, presets_.press * where.pressure);
