@@ -22,6 +22,8 @@ TEST(Graphs, AnAxisHasTwoMarksAtLeastAndTheyAreRoundAndWithinIt) {
   EXPECT_EQ(marksOf({-1, 1}, 4), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));
   EXPECT_FALSE(std::signbit(marksOf({-1, 1}, 4)[2]));
   EXPECT_EQ(marksOf({0, 2.4}, 8, 1), (std::vector<double>{0, 1, 2}));
+  EXPECT_TRUE(marksOf({0.3, std::nextafter(0.3, 1)}, 4).empty());
+  EXPECT_TRUE(marksOf({std::nan(""), 1}, 4).empty());
 }
 
 TEST(Words, HaveNoMinusBeforeZero) {

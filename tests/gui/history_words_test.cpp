@@ -13,6 +13,7 @@ TEST(HistoryWords, AreNoKeysOfFiles) {
             QStringLiteral("Slips against its motion"));
   EXPECT_EQ(wordsOfEdit("roughness 50 um, 4 mm"), QStringLiteral("Painted roughness 50 µm, 4 mm"));
   EXPECT_EQ(wordsOfEdit("move cup by 12 um"), QStringLiteral("Move cup by 12 µm"));
+  EXPECT_EQ(wordsOfEdit("remove umbrella"), QStringLiteral("Remove umbrella"));
   EXPECT_EQ(wordsOfEdit("tip.radius = 0.001"), QStringLiteral("Tip radius 1 mm"));
   EXPECT_EQ(wordsOfKeys(QStringLiteral("friction.static = 0.5")),
             QStringLiteral("static friction = 0.5"));

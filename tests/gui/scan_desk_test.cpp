@@ -55,7 +55,7 @@ TEST_F(ScanDeskTest, EveryFaultSaysWhyWhereverItIsClicked) {
   EXPECT_EQ(scan().cursor().frame(), kWrong);
   EXPECT_TRUE(why().contains(QStringLiteral("left out"))) << why().toStdString();
   EXPECT_TRUE(why().contains(QStringLiteral("sigma"))) << why().toStdString();
-  EXPECT_TRUE(why().contains(QStringLiteral("mm and "))) << why().toStdString();
+  EXPECT_TRUE(why().contains(QStringLiteral("\u00A0mm and "))) << why().toStdString();
   keepPicture("scan_rejected");
   // In the list.
   clickOn("page_findings");

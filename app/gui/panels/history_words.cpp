@@ -69,7 +69,7 @@ QString wordsOfEdit(const std::string& edit) {
   } else if (isStroke(words)) {
     words = tr("painted %1").arg(wordsOfKeys(words).replace(QStringLiteral("color"), tr("colour")));
   }
-  words.replace(QStringLiteral(" um"), QStringLiteral(" µm"));
+  words = withMicro(words);
   return words.left(1).toUpper() + words.mid(1);
 }
 

@@ -13,6 +13,7 @@ namespace {
 // 1, 2, 5, 10 and so on.
 std::vector<double> roundIn(const AxisSpan& span) {
   std::vector<double> marks;
+  if (!(span.from > 0)) return marks;
   for (double power = std::pow(10, std::floor(std::log10(span.from))); power <= span.to;
        power *= 10)
     for (const double digit : {1., 2., 5.})
@@ -31,6 +32,8 @@ double stepFor(double range, int count) {
 
 std::vector<double> marksOf(const AxisSpan& span, int count, double least) {
   std::vector<double> marks;
+  // Of a span of rounding alone a step would be lost in the sum.
+  if (!(span.length() > 1e-9 * std::max(std::abs(span.from), std::abs(span.to)))) return marks;
   for (int most = count; marks.size() < 2 && most < count + 8; ++most) {
     const double step = std::max(stepFor(span.length(), most), least);
     marks.clear();
@@ -53,13 +56,16 @@ QRectF paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph) {
   for (const GraphCurve& curve : graph.curves) box = box.united(curve.points.boundingRect());
   if (!(box.width() > 0) || whole.width() < 96) return {};
   double low = box.top(), high = box.bottom();
-  if (!(high > low)) high = low + std::max(1e-9, std::abs(low));
+  // What differs by rounding is drawn as what does not.
+  if (!(high - low > 1e-9 * std::max(std::abs(low), std::abs(high))))
+    high = low + std::max(1e-9, std::abs(low));
   if (graph.logarithmic) {
     low = std::log10(low);
     low = std::floor(low);
     high = std::max(low + 1, std::ceil(std::log10(high)));
   }
   const std::vector<double> levels = marksOf({low, high}, 4, graph.logarithmic ? 1 : 0);
+  if (levels.size() < 2) return {};
   const double step = levels[1] - levels[0];
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
   std::vector<std::pair<double, QString>> rows;

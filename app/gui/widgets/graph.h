@@ -30,8 +30,8 @@ AxisSpan wholeOf(const Graph& graph);
 // room.
 QRectF paintGraph(QPainter& painter, const QRectF& whole, const Graph& graph);
 
-// Round places to be marked along an axis, about `count` of them: two at least, where there is a
-// span. They are `least` apart or more.
+// Round places to be marked along an axis, about `count` of them: two at least where there is a
+// span of finite ends and `least`, how far they are apart at least, leaves room for them.
 std::vector<double> marksOf(const AxisSpan& span, int count, double least = 0);
 // Steps of 1, 2, 5 so that at most `count` of them fit into a range.
 double stepFor(double range, int count);

@@ -22,16 +22,19 @@ inline double shownAs(double value, int decimals) {
 }
 
 // A number and its unit stay on one line.
-inline const QString kNoBreak{QChar(0x00A0)};
+inline constexpr QChar kNoBreak{0x00A0};
 
-// Of a text of the library's: "50 um" as people write it.
-inline QString inWords(const std::string& text) {
+// "50 um" as people write it.
+inline QString withMicro(QString words) {
   static const QRegularExpression kMicro(QStringLiteral("(?<=\\d) um\\b"));
+  return words.replace(kMicro, QStringLiteral(" µm"));
+}
+
+// Of a text of the library's that names no file.
+inline QString inWords(const std::string& text) {
   static const QRegularExpression kUnit(
       QStringLiteral("(?<=\\d) (?=(µm|mm|cm|m|N|N/m|dB|%)(?![\\wµ]))"));
-  return QString::fromStdString(text)
-      .replace(kMicro, QStringLiteral(" µm"))
-      .replace(kUnit, kNoBreak);
+  return withMicro(QString::fromStdString(text)).replace(kUnit, QString(kNoBreak));
 }
 
 inline QString inWords(double metres) {
