@@ -362,6 +362,11 @@ TEST_F(AlignDeskTest, AFitShowsItsResidualsAsLinesAndOverTheMesh) {
   type('z', kControl);
   EXPECT_FALSE(desk().found());
   EXPECT_GT(changed(map, picture("align_map_by_hand")), 0.05);
+  // What the fit said of its place is there again with the place.
+  EXPECT_EQ(find<QLabel>("align_found")->text(), QString());
+  desk().redo();
+  EXPECT_TRUE(desk().found());
+  EXPECT_TRUE(find<QLabel>("align_found")->text().contains(QStringLiteral("Fitted")));
 }
 
 TEST_F(AlignDeskTest, EscapeEndsThePickingAndABadFileLeavesThePath) {

@@ -87,6 +87,7 @@ void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
 void AlignDesk::begin() {
   settle_.stop();
   found_.reset();
+  fits_.clear();
   setPicking(false);
   panel_->setPath(name_, alignment_.path().size());
   panel_->setReady(alignment_.isReady(), false);
@@ -117,7 +118,13 @@ void AlignDesk::settle(std::optional<Registration> fit) {
   if (!alignment_.isReady() || work_) return;
   settle_.stop();
   alignment_.commit();
-  found_ = std::move(fit);
+  fits_.resize(alignment_.done());
+  fits_.push_back(std::move(fit));
+  showPlace();
+}
+
+void AlignDesk::showPlace() {
+  found_ = alignment_.done() < fits_.size() ? fits_[alignment_.done()] : std::nullopt;
   panel_->setFit(found_ ? fitWords(*found_) : QString());
   draw();
   around_.look(found_);
@@ -126,12 +133,14 @@ void AlignDesk::settle(std::optional<Registration> fit) {
 
 void AlignDesk::undo() {
   if (work_ || !alignment_.undo()) return;
-  settle();
+  settle_.stop();
+  showPlace();
 }
 
 void AlignDesk::redo() {
   if (work_ || !alignment_.redo()) return;
-  settle();
+  settle_.stop();
+  showPlace();
 }
 
 void AlignDesk::draw() {

@@ -32,7 +32,7 @@ class AlignDesk : public QObject {
   const QString& name() const { return name_; } // of the path
   const std::optional<Work>& work() const { return work_; }
 
-  // Not yet told by contact. Of a path that touches nothing nothing changes.
+  // Not yet told by contact. A path with fewer than three samples in contact changes nothing.
   void setPath(const QString& name, const AlignedPath& aligned);
   void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: no scene is open
   void cancel();
@@ -48,6 +48,7 @@ class AlignDesk : public QObject {
   void begin();                                      // another path or mesh
   void move(const Pose& pose);                       // while a hand moves it
   void settle(std::optional<Registration> fit = {}); // it has; nullopt: a hand has
+  void showPlace();                                  // of the step that is done
   void draw();
   void drawMap();
   void registerFromHere();
@@ -64,9 +65,10 @@ class AlignDesk : public QObject {
   AlignFiles files_;
   QTimer settle_;
   std::optional<Registration> found_;
-  double reach_ = 1;             // of the sliders [m]
-  Pose held_ = Pose::Identity(); // as it was when a drag began
-  bool stale_ = false;           // moved since it was drawn
+  std::vector<std::optional<Registration>> fits_; // by step: what was found, where one was
+  double reach_ = 1;                              // of the sliders [m]
+  Pose held_ = Pose::Identity();                  // as it was when a drag began
+  bool stale_ = false;                            // moved since it was drawn
   std::optional<Work> work_;
 };
 

@@ -6,9 +6,9 @@
 namespace patina {
 
 void AroundPlace::forget() {
+  job_.silence(); // also of a map that is not here yet
   if (error_.empty()) return;
   error_.clear();
-  job_.silence();
   emit errorChanged();
 }
 

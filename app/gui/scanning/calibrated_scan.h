@@ -18,8 +18,8 @@ struct Calibration {
 
 // What follows from the calibration goes: it is found anew without it.
 SceneScan withCalibration(SceneScan scan, const Calibration& found);
-// The same of a folder, where what follows is set aside, its name with ~ behind it. These are the
-// names. Throws what says why it could not be written.
+// The same of a folder, where what follows is set aside under its name with ~ behind it. Returns
+// the names before that. Throws what says why it could not be written.
 std::vector<std::string> calibrateFolder(const std::filesystem::path& folder, const SceneScan& scan,
                                          const Calibration& found);
 
