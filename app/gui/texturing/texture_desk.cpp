@@ -111,19 +111,23 @@ void TextureDesk::run(bool all) {
         if (all && !isDone(*demo_)) run(true);
       });
     } catch (const Cancelled&) {
-      deliver(true, [this] {
-        demo_.reset(); // what a step has half done cannot be gone on with
-        takeStep();
-      });
+      deliver(true, [this] { beginAnew(); });
     } catch (const std::exception& error) {
       deliver(true, [this, problem = QString::fromStdString(error.what())] {
-        demo_.reset();
-        takeStep();
+        beginAnew();
         showProblem(&window_, tr("A step has failed"), problem,
                     tr("The sequence begins anew; what was open is as it was."));
       });
     }
   });
+}
+
+// What a step has half done cannot be gone on with.
+void TextureDesk::beginAnew() {
+  demo_.reset();
+  delete view_;
+  view_ = nullptr;
+  takeStep();
 }
 
 void TextureDesk::takeStep() {
@@ -189,8 +193,7 @@ void TextureDesk::cancel() {
   library_.cancel();
   if (!work_) return;
   job_.silence();
-  demo_.reset();
-  takeStep();
+  beginAnew();
 }
 
 void TextureDesk::fit() {

@@ -33,9 +33,9 @@ class TextureDesk : public QObject {
   TextureLibrary& library() { return library_; }
   void showLibrary(bool on); // in the place of the sequence
 
-  bool hasBegun() const { return demo_ != nullptr && view_ != nullptr; } // and is shown
-  bool hasTexture() const { return has_texture_; }                       // of the sequence
-  bool hasChosenTexture() const { return chosen_ != nullptr; }           // of the library
+  bool hasBegun() const { return view_ != nullptr; } // and is shown in the cells, or the library is
+  bool hasTexture() const { return has_texture_; }   // of the sequence
+  bool hasChosenTexture() const { return chosen_ != nullptr; } // of the library
   const std::optional<Work>& work() const { return work_; }
   void runAll(); // the whole sequence
   void cancel();
@@ -51,6 +51,7 @@ class TextureDesk : public QObject {
  private:
   void run(bool all);
   void takeStep();
+  void beginAnew(); // of a step that came to nothing
   void draw();
   void showProfile();
   void choosePage();

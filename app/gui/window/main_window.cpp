@@ -183,6 +183,10 @@ void MainWindow::connectScan() {
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.texture, &TextureDesk::cancel);
   connect(&timer_, &QTimer::timeout, parts_.texture, &TextureDesk::refresh);
   parts_.texture->library().setSources(edits_.thread(), [this] {
+    if (const auto& found = parts_.align->found(); found && isDoubtful(*found))
+      say({tr("The fit is not sure where the path lies, and so is the texture that is made of it: "
+              "see the desk Align"),
+           true});
     return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
   });
   connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
@@ -254,8 +258,7 @@ void MainWindow::refresh() {
   showState(state(), parts_, *this);
 }
 
-void MainWindow::say(const Message& said) {
-  const Message message{inWords(said.words.toStdString()), said.warns};
+void MainWindow::say(const Message& message) {
   parts_.messages->add(message);
   if (!parts_.messages->isVisible()) parts_.notice->show(message); // or it would be there twice
 }

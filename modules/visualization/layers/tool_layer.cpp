@@ -18,6 +18,7 @@
 namespace patina {
 namespace {
 
+constexpr double kUpright = 0.2;         // of a force across the picture, by its direction
 constexpr double kSmallestForce = 0.005; // [N]; an arrow below it is a speck
 constexpr double kArrowPerNewton = 0.16; // of the picture's height
 constexpr double kPointRadius = 0.013;   // same
@@ -187,10 +188,11 @@ void ToolLayer::place() {
     stretch(*arrow_shaft_, begin, end - direction * head, 0.0055 * length_);
     stretch(*arrow_head_, end - direction * head, end, 0.35 * head);
     label_->SetPosition(end[0], end[1], end[2]);
-    // Beyond the arrow's end, on the side that it points to.
-    const bool leftwards = direction.dot(right_) < 0;
-    label_->SetDisplayOffset(leftwards ? -12 : 12, 0);
-    label_->GetTextProperty()->SetJustification(leftwards ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
+    // Beyond the arrow's end, on the side that it points to; one that is upright changes no side.
+    const double across = direction.dot(right_);
+    if (std::abs(across) > kUpright) leftwards_ = across < 0;
+    label_->SetDisplayOffset(leftwards_ ? -12 : 12, 0);
+    label_->GetTextProperty()->SetJustification(leftwards_ ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
     char words[32];
     std::snprintf(words, sizeof words, " %.2f N ", newtons);
     label_->SetInput(words);

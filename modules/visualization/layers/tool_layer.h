@@ -43,6 +43,7 @@ class ToolLayer {
   vtkSmartPointer<vtkBillboardTextActor3D> label_;
   ToolSample sample_;
   Vec3 right_ = Vec3::UnitX(); // of the picture
+  bool leftwards_ = false;     // the force's number stands left of its arrow
   Vec3 lean_ = Vec3(0.4, 0.7, 0.6).normalized();
   double tip_radius_ = 0;
   double length_ = 0.1; // height of the picture at the focal point [m]
