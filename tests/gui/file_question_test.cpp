@@ -1,4 +1,6 @@
 // Open and Save As take a workspace for a file.
+#include <fstream>
+
 #include <QFileDialog>
 #include <QLineEdit>
 #include <QListView>
@@ -6,6 +8,9 @@
 #include "app/gui/loading/file_question.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
+#ifdef PATINA_HAS_ACQUISITION
+#include "app/gui/scanning/scan_desk.h"
+#endif
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -69,6 +74,19 @@ TEST_F(FileQuestions, ItsNameAndEnterOpenItToo) {
   enter(*dialog, text(folder_ / "sphere.patina"));
   EXPECT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 10000));
 }
+
+#ifdef PATINA_HAS_ACQUISITION
+TEST_F(FileQuestions, AScansFolderIsOpenedByItsNameAndEnter) {
+  std::filesystem::create_directory(folder_ / "scan");
+  std::ofstream(folder_ / "scan" / "poses.tum") << "0 0 0 0.5 0 0 0 1\n0.1 0 0 0.5 0 0 0 1\n";
+  type('o', kControl);
+  FileQuestion* dialog = question();
+  ASSERT_NE(dialog, nullptr);
+  enter(*dialog, text(folder_ / "scan"));
+  const auto& scan = window_->findChild<ScanDesk*>()->scan();
+  EXPECT_TRUE(waitUntil([&] { return scan.files() != nullptr; }, 10000));
+}
+#endif
 
 TEST_F(FileQuestions, SaveAsSuggestsAFreeNameBesideWhatIsOpen) {
   whenThere([this] { return find<FileQuestion>(); },

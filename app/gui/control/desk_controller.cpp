@@ -93,8 +93,9 @@ void DeskController::arrange() {
 
 void DeskController::takeSizes() {
   DeskLayout& layout = layouts_[desk_];
-  if (!at_.column.folded()) layout.column = at_.column.width();
-  if (!at_.drawer.folded()) layout.drawer = at_.drawer.height();
+  // Hidden ones have a width that nobody gave them.
+  if (at_.column.isVisible() && !at_.column.folded()) layout.column = at_.column.width();
+  if (at_.drawer.isVisible() && !at_.drawer.folded()) layout.drawer = at_.drawer.height();
 }
 
 void DeskController::restore() {

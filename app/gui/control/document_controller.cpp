@@ -68,7 +68,7 @@ void DocumentController::connectLoader() {
   connect(&loader_, &SceneLoader::readable, this, [this] {
     LoadRequest request = loader_.request();
     request.asks = false;
-    emit abandoned(); // until it is known whether it may
+    emit abandoned(); // a question stands before it, and the window is as it was
     if (at_.saving.settleEdits()) open(request);
   });
   connect(&loader_, &SceneLoader::read, this,
@@ -115,6 +115,7 @@ void DocumentController::open(const LoadRequest& request) {
   const auto& folder = at_.edits.status().folder;
   const bool is_open = !request.adds && !request.recover && folder &&
                        std::filesystem::equivalent(request.path, *folder, code);
+  if (is_open && request.asks && !at_.saving.settleEdits()) return;
   if (is_open) { // its journal is ours: there is nothing in the folder that is not in the window
     QMetaObject::invokeMethod(this, &DocumentController::openAlready, Qt::QueuedConnection);
     return;
@@ -134,7 +135,7 @@ void DocumentController::openAsked(const LoadRequest& request) {
 void DocumentController::openDialog(bool adds) {
   auto* dialog = new FileQuestion(&at_.window,
                                   adds ? tr("Add a mesh, volume or workspace to the scene")
-                                       : tr("Open a mesh, volume or workspace"),
+                                       : tr("Open a mesh, volume, workspace or scan"),
                                   FileQuestion::For::opening);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setNameFilters({tr("Meshes, volumes and workspaces (*.obj *.ply *.stl *.vti *.OBJ *.PLY "

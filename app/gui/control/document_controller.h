@@ -43,7 +43,7 @@ class DocumentController : public QObject {
  signals:
   void previewed(std::shared_ptr<const patina::TriangleMesh> mesh, const QString& name);
   void openAlready();
-  void abandoned(); // a load came to nothing; then, if so:
+  void abandoned(); // nothing is being loaded, or not before a question is answered; then, if so:
   void failed(const QString& message);
   void cancelled();
   void changed();

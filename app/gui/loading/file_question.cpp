@@ -2,9 +2,23 @@
 
 #include <QFileInfo>
 
+#ifdef PATINA_HAS_ACQUISITION
+#include "pipeline/scan_files.h"
+#endif
 #include "workspace/workspace.h"
 
 namespace patina {
+namespace {
+
+bool isScan([[maybe_unused]] const QString& path) {
+#ifdef PATINA_HAS_ACQUISITION
+  return isScanFolder(path.toStdString());
+#else
+  return false;
+#endif
+}
+
+} // namespace
 
 FileQuestion::FileQuestion(QWidget* parent, const QString& title, For purpose)
     : QFileDialog(parent, title) {
@@ -29,6 +43,11 @@ bool FileQuestion::take(const QString& path) {
 void FileQuestion::accept() {
   const QStringList files = selectedFiles();
   if (files.isEmpty() || take(files.front())) return;
+  if (acceptMode() == AcceptOpen && isScan(files.front())) {
+    done(Accepted);
+    emit chosen(files.front());
+    return;
+  }
   const bool is_file = acceptMode() == AcceptSave || QFileInfo(files.front()).isFile();
   if (!is_file || QFileInfo(files.front()).isDir()) return QFileDialog::accept();
   done(Accepted);

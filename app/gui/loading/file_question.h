@@ -1,4 +1,5 @@
-// Asks for a file. A workspace is one, though it is a folder: it is chosen, never entered.
+// Asks for a file. A workspace is one, though it is a folder: it is chosen, never entered. A scan's
+// folder can be opened, and entered by a double click: there may be a mesh in it.
 #pragma once
 
 #include <filesystem>

@@ -8,6 +8,7 @@
 #include "app/gui/loading/presets.h"
 #include "core/error.h"
 #include "session/build/compile_warnings.h"
+#include "session/store/journal_fold.h"
 #include "visualization/export/field_io.h"
 #include "workspace/workspace.h"
 
@@ -17,6 +18,14 @@ namespace {
 // The range in which a mesh in millimetres is taken for what it is.
 bool oddSize(double metres) {
   return metres < 1e-3 || metres > 2;
+}
+
+// Throws Error where a workspace cannot be opened though its files can be read.
+void checkOpens(const std::filesystem::path& folder, const Scene& saved) {
+  const OpenedWorkspace history = openHistory(folder);
+  const FoldedJournal fold = folded(history.journal, history.journal_file.string());
+  if (saved.objects.empty() && fold.steps.empty())
+    throw FileError(folder.string(), 0, "the scene has no object");
 }
 
 QStringList lines(const std::vector<std::string>& warnings) {
@@ -135,7 +144,7 @@ void SceneLoader::run(const LoadRequest& asked, Progress& progress,
     if (folder && !request.adds) {
       // To be seen at once: as it was saved, without what the journal says beyond.
       if (!request.recover) opened.scene = loadWorkspace(request.path);
-      if (!request.recover && request.asks) openWorkspace(request.path); // its journal, too
+      if (!request.recover && request.asks) checkOpens(request.path, opened.scene);
     } else if (!readFile(request, deliver, opened)) {
       return;
     }

@@ -31,9 +31,10 @@ WelcomePage::WelcomePage(QWidget& over)
   hide();
   setObjectName(QStringLiteral("welcome"));
   setCursor(Qt::ArrowCursor);
+  setFocusPolicy(Qt::NoFocus); // the keys are its cards'
   dress(*this,
         QStringLiteral(
-            "QScrollArea#welcome, QScrollArea#welcome > QWidget > QWidget {"
+            "QScrollArea#welcome, QWidget#welcome_page {"
             " background: @window; }"
             "QLabel#welcome_title { color: @text; font-size: 15pt; font-weight: bold; }"
             "QLabel#welcome_words { color: @quiet; }"
@@ -75,6 +76,7 @@ WelcomePage::WelcomePage(QWidget& over)
   across->addLayout(column);
   across->addStretch(1);
   auto* page = new QWidget; // where there is no room for it, it is scrolled
+  page->setObjectName(QStringLiteral("welcome_page"));
   auto* whole = new QVBoxLayout(page);
   whole->addStretch(1);
   whole->addLayout(across);

@@ -1,7 +1,6 @@
 #include "geometry/io/text_scan.h"
 
-#include <cmath>
-#include <cstdlib>
+#include <charconv>
 
 namespace patina::text {
 
@@ -18,11 +17,15 @@ void throwNotANumber(std::string_view word, const std::string& name, std::size_t
       throw FileError(name, line,
                       quoted(word) + " has a decimal comma; numbers need a decimal point");
   }
-  char* end = nullptr;
-  const bool large = std::isinf(std::strtod(with_point.c_str(), &end)) && *end == '\0' &&
-                     with_point.find_first_of("0123456789") != std::string::npos;
+  double value = 0;
+  const char* const end = word.data() + word.size();
+  const auto [rest, code] = std::from_chars(word.data(), end, value);
+  const bool beyond = code == std::errc::result_out_of_range && rest == end;
   throw FileError(name, line,
-                  quoted(word) + (large ? " is too large a number" : " is not a number") +
+                  quoted(word) +
+                      (!beyond                          ? " is not a number"
+                       : word.find('-', 1) != word.npos ? " is too small a number"
+                                                        : " is too large a number") +
                       "; it stands" + expected);
 }
 
