@@ -93,7 +93,7 @@ class FieldSampler {
 
   const FieldGrid& grid() const noexcept { return grid_; }
   double perVoxel() const noexcept { return per_voxel_; } // [1/m]
-  // By a product, which is quicker than the grid's own division.
+  // By a product: quicker than the grid's own division, from which its last bit may differ.
   Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - grid_.origin); }
   Sampler sampler() const noexcept { return sampler_; }
 

@@ -46,9 +46,10 @@ bool jacobianOf(const CellCurvature& cell, Float4* inverse, Float4* both) noexce
   inverse[0] = scale * (Float4{0, k, 0, 0} - both_x + out[1] * n + n[1] * p);
   inverse[1] = scale * (Float4{0, 0, k, 0} - both_y + out[2] * n + n[2] * p);
   inverse[2] = scale * (Float4{0, 0, 0, k} - both_z + out[3] * n + n[3] * p);
+  // Both eigenvalues.
   if (trace >= 2 * kLeastStretch - 2 &&
       determinant >= kLeastStretch * (2 + trace) - kLeastStretch * kLeastStretch) [[likely]]
-    return true; // both eigenvalues
+    return true;
   both[0] = both_x;
   both[1] = both_y;
   both[2] = both_z;

@@ -18,7 +18,7 @@ struct TextureShare {
 };
 
 struct PatchAt {
-  double height = 0;         // [m], outward, of mean zero
+  double height = 0;         // [m], outward; of a texture alone, of mean zero
   Vec3 slope = Vec3::Zero(); // its gradient over the face, dimensionless
   TextureShare texture;
 };
