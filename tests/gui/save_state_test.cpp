@@ -20,6 +20,26 @@ class SaveState : public DrivenWindow {
   }
 };
 
+// A part of 1 mm is warned of, too: what is seen of both is what a person must know first.
+TEST_F(SaveState, OfEditsThatAKillHasLeft) {
+  Scene scene;
+  scene.objects.push_back({"plate",
+                           std::make_shared<const TriangleMesh>(box({0.06, 0.06, 0.001}, 8)),
+                           Pose::Identity(),
+                           {}});
+  Progress progress;
+  Editor killed(scene, progress);
+  killed.saveAs(folder_ / "open.patina");
+  killed.apply(ValueEdit{{{"stiffness", "700"}}}, progress);
+  std::filesystem::copy(folder_ / "open.patina", folder_ / "left.patina",
+                        std::filesystem::copy_options::recursive);
+  ASSERT_TRUE(open(folder_ / "left.patina"));
+  EXPECT_TRUE(marked(true));
+  EXPECT_EQ(edits().scene()->scene.haptics.stiffness, 700);
+  EXPECT_TRUE(find<QLabel>("notice")->text().contains(QStringLiteral("here again")))
+      << find<QLabel>("notice")->text().toStdString();
+}
+
 TEST_F(SaveState, OfAWorkspaceThatAnotherProgramHasOpen) {
   Scene scene;
   scene.objects.push_back(

@@ -111,9 +111,6 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
     made.warnings << tr("Edits are not kept in this folder: %1").arg(error.what());
   }
   made.warnings << lines(made.editor->notes());
-  if (made.editor->unsaved() && !made.autosave)
-    made.warnings << tr("Edits that were made after the last save are here again; they are not "
-                        "saved yet.");
   const Scene& scene = made.editor->scene();
   const bool both_sides =
       scene.field.sides == OpenSides::two || scene.haptics.tip_radius.value_or(0) > 0;
@@ -166,6 +163,9 @@ void SceneLoader::run(const LoadRequest& asked, Progress& progress,
     // What is known of a preset is no news: nobody has made it, and nobody has to mend it.
     const bool preset = request.path.empty() && request.place.empty();
     if (!preset) made->warnings << lines(compileWarnings(*made->editor->compiled()));
+    if (folder && made->editor->unsaved() && !made->autosave) // last, for it is what is seen
+      made->warnings << tr("Edits that were made after the last save are here again; they are not "
+                           "saved yet.");
     deliver(true, [this, made] { emit ready(made); });
   } catch (const Cancelled&) {
     deliver(true, [this] { emit cancelled(); });
