@@ -186,12 +186,15 @@ TEST_F(Recordings, EndWithFramesOfAnotherSize) {
   const auto spoil = [&](const char* frame) {
     writeGrey(scan / "frames" / frame, {320, 240, std::vector<std::uint8_t>(320 * 240, 9)});
   };
-  spoil("000006.png"); // the probe has sent something by then
-  {
+  spoil("000006.png");
+  // On a busy machine this frame may be the first that is seen at all.
+  for (RecordingState state; state.frames + state.samples == 0;) {
+    EXPECT_FALSE(fs::exists(made));
     const auto recorder = replaying();
-    EXPECT_NE(finished(*recorder).error.find("is 320 x 240"), std::string::npos);
+    state = finished(*recorder);
+    EXPECT_NE(state.error.find("is 320 x 240"), std::string::npos);
   }
-  EXPECT_TRUE(fs::exists(made)) << "what the probe sent is kept";
+  EXPECT_TRUE(fs::exists(made)) << "what came before it is kept";
   fs::remove_all(made);
   spoil("000000.png");
   {

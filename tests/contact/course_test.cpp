@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -83,22 +82,13 @@ double orderOn(const std::vector<ContactScene>& scenes, long contacts) {
   return dx.dot(dy) / dx.squaredNorm();
 }
 
+// Where faces are no wider than a voxel, the oracle's contact point rests on one and leaps to the
+// next, which no grid of that voxel can know (docs/studies.md); surfaces without faces are judged
+// in smooth_truth_test.cpp.
 TEST(ContactCourse, ErrorFallsWithTheVoxelWhereFacesAreLarge) {
   std::vector<ContactScene> scenes;
   for (const char* name : {"box", "L", "room", "groove"}) scenes.push_back(contactScene(name));
   EXPECT_GE(orderOn(scenes, longer(2000)), 0.9);
-}
-
-// A limb of 1024 faces, each far narrower than a voxel. Faces as wide as one are another matter:
-// the oracle's contact point rests on one and leaps to the next, which no grid of that voxel can
-// know (docs/studies.md).
-TEST(ContactCourse, ErrorFallsWithTheVoxelAboutALimb) {
-  std::vector<Vec2> circle;
-  for (int i = 0; i < 1024; ++i) {
-    const double turn = 2 * std::numbers::pi / 1024 * i;
-    circle.emplace_back(0.004 * std::cos(turn), 0.004 * std::sin(turn));
-  }
-  EXPECT_GE(orderOn({{"limb", {prism(circle, 0.1)}}}, longer(4000)), 0.5); // 0.67; 0.77 over 12,000
 }
 
 TEST(ContactCourse, NoLoopGivesEnergy) {

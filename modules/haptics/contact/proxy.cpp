@@ -13,6 +13,7 @@ constexpr double kRestError = 3e-4;   // what a step may leave undone where the 
 constexpr double kTurnedError = 5e-3; // and before the turn of the surface is taken out of it
 constexpr double kCreaseStep = 0.03;  // the last one where there may be several walls
 constexpr double kMostRate = 0.8;     // of a step, that the next one takes
+constexpr double kLeastRate = 0.01;   // below it a guess ahead is not worth its time
 constexpr double kLeastWay = 1e-4;    // below it the turn of a normal is rounding
 constexpr double kMostStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
@@ -28,7 +29,7 @@ constexpr double kForget = 2;
 constexpr double kLent = 4e-3;     // voxel^2, from where on it is taken back
 constexpr double kRoom = 1 + 1e-6; // of the square of a bound, for rounding
 constexpr double kAlwaysSpread = 1e-12;
-constexpr int kMostSlides = 2, kFewLooks = 3, kMostLooks = 8, kMostSecants = 4, kMostHalvings = 6;
+constexpr int kMostSlides = 3, kFewLooks = 3, kMostLooks = 8, kMostSecants = 4, kMostHalvings = 6;
 
 } // namespace
 
@@ -155,16 +156,28 @@ ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec
 
 // The usual tick: one wall, nearly where it was predicted. False: nothing was changed; `first` is
 // what was seen at the first place, if there alone.
+//
+// One look after another would find of each step the share of it by which the surface turns under
+// the depth: a geometric series, whose sum is taken here along the way that was seen.
 bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy, ProxyMove& move,
                         std::optional<Seen>& first) const noexcept {
   const WallPlane& before = proxy.walls[0];
   const Vec3& start = proxy.c;
   const double most = std::min(ball, kTrust), own = ownShare(proxy);
+  const auto isNear = [&](const Vec3& p) { return (p - start).squaredNorm() < most * most; };
   WallPlane wall = before;
   double load = -wall.height(x);
   Vec3 c = x + load * wall.normal;
+  // The wall is looked at where c will be if it turns on as the last tick saw it turn.
+  if (const double rate = load * proxy.turn.per_voxel.dot(proxy.turn.along);
+      std::abs(rate) > kLeastRate) {
+    const double sum = 1 / (1 - std::min(rate, kMostRate));
+    const Vec3 ahead = c + load * sum * (c - start).dot(proxy.turn.along) * proxy.turn.per_voxel;
+    if (isNear(ahead)) c = ahead;
+  }
+  WallTurn seen_turn;
   for (int looks = 0; looks < kMostSlides; ++looks) {
-    if (!(load > kOnSurface && (c - start).squaredNorm() < most * most)) return false;
+    if (!(load > kOnSurface && isNear(c))) return false;
     const Vec3 z = c;
     const Seen seen = look(z, own);
     ++move.samples;
@@ -175,38 +188,49 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     if (!seen.known || !(std::abs(seen.height) < kMostStep) || !(turned < kTurnOfAWall))
       return false;
     const Vec3 way = z - wall.seen;
-    const double way_squared = std::max(way.squaredNorm(), kLeastWay * kLeastWay);
+    const double per_square = 1 / std::max(way.squaredNorm(), kLeastWay * kLeastWay),
+                 curvature = per_square * turn.dot(way);
+    if (looks == 0) {
+      const double per_way = std::sqrt(per_square);
+      seen_turn = {per_way * way, per_way * turn};
+    }
     wall = wallAt(z, seen);
-    WallPlane ahead = wall;
+    WallPlane rest = wall; // seen at z: from a guessed normal facets would turn twice
     load = -wall.height(x);
     c = x + load * wall.normal;
     const Vec3 step = c - z;
     const double step_squared = step.squaredNorm();
     bool last = step_squared < kRestError * kRestError;
     if (!last) {
-      // Of each step the next look would find the share of it by which the surface turns under the
-      // depth, and so on: a geometric series, whose sum is taken here along the way that was seen.
-      const double rate = load / way_squared * turn.dot(way),
-                   sum = 1 / (1 - std::min(rate, kMostRate)),
-                   left = sum * sum * load * load * turned / way_squared * step_squared;
-      const bool settles = load * load * turned < way_squared;
-      last = settles && step_squared < kMostStep * kMostStep && left < kTurnedError * kTurnedError;
+      const double share = load * load * turned * per_square,
+                   sum = 1 / (1 - std::min(load * curvature, kMostRate)),
+                   left = sum * sum * share * step_squared;
+      const bool settles = share < 1;
+      last = settles && step_squared < kMostStep * kMostStep &&
+             (left < kTurnedError * kTurnedError || looks + 1 == kMostSlides);
       if (settles && left > kRestError * kRestError) {
-        ahead.normal = (wall.normal + sum * step.dot(way) / way_squared * turn).normalized();
-        ahead.offset = ahead.normal.dot(c);
-        load = -ahead.height(x);
-        c = x + load * ahead.normal; // seen at z: from a guessed normal facets would turn twice
+        WallPlane guess = wall;
+        guess.normal = (wall.normal + sum * step.dot(way) * per_square * turn).normalized();
+        guess.offset = guess.normal.dot(c);
+        const double guessed_load = -guess.height(x);
+        const Vec3 guessed = x + guessed_load * guess.normal;
+        if (isNear(guessed)) {
+          rest = guess;
+          load = guessed_load;
+          c = guessed;
+        }
       }
     }
-    // Beside a crease another look may be another wall's, and no move of c makes it longer (P11).
-    if (!seen.smooth && !(last && load * load <= (start - x).squaredNorm())) return false;
     if (!last) continue;
+    // Beside a crease another look may be another wall's, and no move of c makes it longer (P11).
+    if (!seen.smooth && !(load * load <= (start - x).squaredNorm())) return false;
     if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
     if (seen.smooth)
       lend(proxy, 0.25 * (before.normal.dot(start - from) + load) *
-                      (before.normal + ahead.normal).dot(c - start));
+                      (before.normal + rest.normal).dot(c - start));
     proxy.c = c;
-    proxy.walls[0] = ahead;
+    proxy.walls[0] = rest;
+    proxy.turn = seen_turn;
     move.touching = move.smooth = true;
     move.held.load[0] = load;
     return true;
@@ -219,6 +243,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
   ProxyMove move;
   std::optional<Seen> first;
   if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move, first)) return move;
+  proxy.turn = {};
   Walls& walls = proxy.walls;
   Vec3 start = proxy.c, anchor = proxy.c;
   double anchor_height = 0, trust = kTrust;

@@ -9,11 +9,18 @@
 
 namespace patina {
 
+// How a wall's normal turns along a way, as the last tick saw it; 0 where it is not known.
+struct WallTurn {
+  Vec3 along = Vec3::Zero();     // unit
+  Vec3 per_voxel = Vec3::Zero(); // [1/voxel]
+};
+
 // What contact remembers: where the VCP is, and the walls about it as they were last seen. Walls
 // that are absent are looked up again.
 struct Proxy {
   Vec3 c = Vec3::Zero();
   Walls walls;
+  WallTurn turn;   // of a lone wall
   double lent = 0; // work that moves of c gave since contact began, over the stiffness [voxel^2]
 };
 
