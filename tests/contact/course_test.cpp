@@ -51,7 +51,8 @@ TEST(ContactCourse, IsPassedOnEveryShape) {
   CourseReport all;
   for (const ContactScene& scene : judgedScenes()) {
     const CourseReport report = courseOn(scene, 150, longer(2000));
-    expectFaultless(report, scene.name);
+    // Of a million ticks one may pull, and is then in one scene.
+    expectFaultless(report, scene.name, longer(1) > 1 ? 1 : 0);
     all.add(report);
   }
   ASSERT_GE(all.contacts, longer(100000));
@@ -62,6 +63,7 @@ TEST(ContactCourse, IsPassedOnEveryShape) {
               "p99.9 %.3f N\n",
               all.contacts, all.lost, all.pulls, all.worst_excess, error.p50, error.p99,
               error.p999);
+  expectFaultless(all, "all");
   expectExact(all, "all");
 }
 
@@ -82,12 +84,18 @@ double orderOn(const std::vector<ContactScene>& scenes, long contacts) {
   return dx.dot(dy) / dx.squaredNorm();
 }
 
-// Where faces are no wider than a voxel, the oracle's contact point rests on one and leaps to the
-// next, which no grid of that voxel can know (docs/studies.md); surfaces without faces are judged
-// in smooth_truth_test.cpp.
+// Tilted against the grid, so that edges lie in their cells in every way: of those along its axes
+// the error depends on where in a cell a resolution happens to put them. Where faces are no wider
+// than a voxel, the oracle's contact point rests on one and leaps to the next, which no grid of
+// that voxel can know (docs/studies.md); surfaces without faces are judged in
+// smooth_truth_test.cpp.
 TEST(ContactCourse, ErrorFallsWithTheVoxelWhereFacesAreLarge) {
   std::vector<ContactScene> scenes;
-  for (const char* name : {"box", "L", "room", "groove"}) scenes.push_back(contactScene(name));
+  for (const char* name : {"roomt", "groove60t", "plate4t"}) scenes.push_back(contactScene(name));
+  for (const char* name : {"box", "L"}) {
+    scenes.push_back(contactScene(name));
+    scenes.back().meshes[0] = tilted(scenes.back().meshes[0]);
+  }
   EXPECT_GE(orderOn(scenes, longer(2000)), 0.9);
 }
 

@@ -176,11 +176,13 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     if (isNear(ahead)) c = ahead;
   }
   WallTurn seen_turn;
+  bool smooth = true;
   for (int looks = 0; looks < kMostSlides; ++looks) {
     if (!(load > kOnSurface && isNear(c))) return false;
     const Vec3 z = c;
     const Seen seen = look(z, own);
     ++move.samples;
+    smooth = smooth && seen.smooth;
     first.reset();
     if (looks == 0) first = seen;
     const Vec3 turn = seen.normal - wall.normal;
@@ -207,7 +209,7 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
                    left = sum * sum * share * step_squared;
       const bool settles = share < 1;
       last = settles && step_squared < kMostStep * kMostStep &&
-             (left < kTurnedError * kTurnedError || looks + 1 == kMostSlides);
+             (left < kTurnedError * kTurnedError || (smooth && looks + 1 == kMostSlides));
       if (settles && left > kRestError * kRestError) {
         WallPlane guess = wall;
         guess.normal = (wall.normal + sum * step.dot(way) * per_square * turn).normalized();
@@ -223,9 +225,9 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     }
     if (!last) continue;
     // Beside a crease another look may be another wall's, and no move of c makes it longer (P11).
-    if (!seen.smooth && !(load * load <= (start - x).squaredNorm())) return false;
+    if (!smooth && !(load * load <= (start - x).squaredNorm())) return false;
     if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
-    if (seen.smooth)
+    if (smooth)
       lend(proxy, 0.25 * (before.normal.dot(start - from) + load) *
                       (before.normal + rest.normal).dot(c - start));
     proxy.c = c;
