@@ -13,6 +13,7 @@
 #include "acquisition/recording/arrival_clock.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "support/fresh_folder.h"
 #include "support/rendered_rig.h"
 
 namespace patina {
@@ -27,8 +28,7 @@ class Recordings : public testing::Test {
   static constexpr double kRate = 25;
 
   Recordings()
-      : rig(test::smallCamera(), "4x4_50"),
-        folder(fs::path(testing::TempDir()) / ("patina_recordings_" + std::to_string(getpid()))),
+      : rig(test::smallCamera(), "4x4_50"), folder(test::freshFolder("recordings")),
         scan(folder / "scan"), made(folder / "made") {
     fs::create_directories(scan / "frames");
     writeFileAtomically(scan / "camera.yml", cameraText(rig.camera));

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <unistd.h>
 
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/track_frames.h"
 #include "core/decompose.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "support/fresh_folder.h"
 #include "support/rendered_rig.h"
 
 namespace patina {
@@ -277,9 +277,7 @@ TEST(RigPose, NeedsAMarkerOfTheRig) {
 
 class Frames : public testing::Test {
  protected:
-  Frames()
-      : rig(test::smallCamera(), "4x4_50"), folder(std::filesystem::path(testing::TempDir()) /
-                                                   ("patina_frames_" + std::to_string(getpid()))) {
+  Frames() : rig(test::smallCamera(), "4x4_50"), folder(test::freshFolder("frames")) {
     std::filesystem::create_directories(folder / "frames");
     std::mt19937 random(8);
     std::string list = "frame,t [s]\n";

@@ -9,17 +9,14 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "support/fresh_folder.h"
 
 namespace patina {
 namespace {
 
 class ScanFiles : public testing::Test {
  protected:
-  ScanFiles()
-      : folder(std::filesystem::path(testing::TempDir()) /
-               ("patina_scan_files_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder);
-  }
+  ScanFiles() : folder(test::freshFolder("scan_files")) {}
   ~ScanFiles() override { std::filesystem::remove_all(folder); }
 
   std::filesystem::path written(const std::string& text) const {

@@ -14,6 +14,7 @@
 #include "acquisition/files/scan_files.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "support/fresh_folder.h"
 
 namespace patina {
 namespace {
@@ -27,10 +28,7 @@ double since(Clock::time_point begin) {
 
 class Sources : public testing::Test {
  protected:
-  Sources()
-      : folder(fs::path(testing::TempDir()) / ("patina_sources_" + std::to_string(getpid()))) {
-    fs::create_directories(folder / "frames");
-  }
+  Sources() : folder(test::freshFolder("sources")) { fs::create_directories(folder / "frames"); }
   ~Sources() override { fs::remove_all(folder); }
 
   // Each frame has a grey of its own.

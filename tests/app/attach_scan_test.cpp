@@ -7,6 +7,7 @@
 #include "app/edit_desk.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "support/fresh_folder.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 class AttachScan : public testing::Test {
  protected:
-  AttachScan() : root_(fs::path(testing::TempDir()) / ("attach_" + std::to_string(getpid()))) {
+  AttachScan() : root_(test::freshFolder("attach")) {
     fs::create_directories(scan() / "frames");
     write("frames/000000.png", "one");
     write("frames/000001.png", "two");

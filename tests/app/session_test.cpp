@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unistd.h>
 
 #include "core/error.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/shapes.h"
 #include "session/build/stage_cost.h"
+#include "support/fresh_folder.h"
 #include "visualization/export/field_io.h"
 #include "workspace/workspace.h"
 
@@ -19,12 +19,7 @@ namespace {
 
 class Session : public testing::Test {
  protected:
-  void SetUp() override {
-    folder = std::filesystem::temp_directory_path() /
-             ("patina-session-" + std::to_string(getpid()) + "-" +
-              testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder);
-  }
+  void SetUp() override { folder = test::freshFolder("session"); }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
   static Scene smallSphere() {

@@ -15,6 +15,7 @@
 #include "session/edit/editor.h"
 #include "session/store/journal_fold.h"
 #include "session/store/replay.h"
+#include "support/fresh_folder.h"
 #include "support/places.h"
 
 namespace patina {
@@ -25,10 +26,7 @@ namespace fs = std::filesystem;
 
 class Links : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::create_directories(root);
-    saveWorkspace(ballScene(), folder);
-  }
+  void SetUp() override { saveWorkspace(ballScene(), folder); }
   void TearDown() override { fs::remove_all(root); }
 
   std::unique_ptr<Editor> open(bool own = true) {
@@ -38,7 +36,7 @@ class Links : public testing::Test {
   }
   Scene read(const fs::path& path) { return openScene(path, {}).scene; }
 
-  const fs::path root = fs::temp_directory_path() / ("patina-link-" + std::to_string(getpid()));
+  const fs::path root = test::freshFolder("link");
   const fs::path folder = root / "ball";
   Progress progress;
 };

@@ -13,6 +13,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/shapes.h"
+#include "support/fresh_folder.h"
 #include "support/least_time.h"
 #include "support/shared_data.h"
 
@@ -37,12 +38,7 @@ template <typename T> void append(std::string& out, T value, bool big_endian = f
 
 class MeshFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("patina_mesh_io_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
+  void SetUp() override { folder_ = test::freshFolder("mesh_io"); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   TriangleMesh throughFile(const TriangleMesh& mesh, const char* name) {
     writeMesh(folder_ / name, mesh);

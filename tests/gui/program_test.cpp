@@ -14,6 +14,7 @@
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 #include "integration/program.h"
+#include "support/fresh_folder.h"
 #include "support/least_time.h"
 #include "support/places.h"
 
@@ -31,7 +32,7 @@ class Program : public ::testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(fs::exists(program_)) << program_ << " is not built";
-    fs::create_directories(folder_);
+    folder_ = test::freshFolder("program");
   }
   void TearDown() override { fs::remove_all(folder_); }
   static std::string contents(const fs::path& path) {
@@ -54,8 +55,7 @@ class Program : public ::testing::Test {
   }
 
   const fs::path program_ = test::programFolder() / "patina-gui";
-  const fs::path folder_ =
-      fs::temp_directory_path() / ("patina-program-" + std::to_string(getpid()));
+  fs::path folder_;
 };
 
 TEST_F(Program, WithoutADisplayItSaysWhatToDoAndExits2) {

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
+#include "support/fresh_folder.h"
 
 namespace patina {
 namespace {
@@ -19,12 +20,11 @@ TEST(RecordingBuffer, AFailedWriteKeepsTheSamplesAndASuccessfulOneEmptiesIt) {
   recording.add(samples, 3);
   EXPECT_THROW(recording.save("/no/such/folder/log.csv"), FileError);
   EXPECT_EQ(recording.samples().size(), 5U);
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("patina-recording-" + std::to_string(getpid()) + ".csv");
+  const auto path = test::freshFolder("recording") / "log.csv";
   recording.save(path);
   EXPECT_TRUE(recording.samples().empty());
   EXPECT_EQ(readCsv(path, {"t [s]", "x [m]"}).rows.size(), 5U);
-  std::filesystem::remove(path);
+  std::filesystem::remove_all(path.parent_path());
 }
 
 TEST(RecordingBuffer, CountsWhatTheRingLostWhileItWasOn) {

@@ -12,6 +12,7 @@
 #include "app/gui/scanning/scan_traces.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
+#include "support/fresh_folder.h"
 #include "support/places.h"
 
 namespace patina {
@@ -28,9 +29,7 @@ class ScanDeskTest : public DrivenWindow {
         scan_ = known;
         return;
       }
-      folder_ =
-          std::filesystem::temp_directory_path() / ("patina-made-" + std::to_string(getpid()));
-      std::filesystem::create_directories(folder_);
+      folder_ = test::freshFolder("made");
       scan_ = folder_ / "a scan of a sphere";
       writeMesh(folder_ / "sphere.obj", icosphere(40, 12)); // mm
       const std::string command = "'" + (test::programFolder() / "patina").string() +

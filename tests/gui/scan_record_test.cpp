@@ -32,17 +32,17 @@ class ScanRecord : public ScanDeskTest {
 TEST_F(ScanRecord, AReplayIsSeenAsItComesPausedAndOpened) {
   const fs::path into = folder_ / "recorded";
   record(into);
-  wait(300);
-  keepPicture("scan_live");
-  EXPECT_TRUE(find<QLabel>("frame_title")->text().startsWith(QStringLiteral("Live")));
-  EXPECT_GT(scan().path()->probe.size(), 100U);
   clickOn("pause_scan");
   ASSERT_TRUE(waitUntil(
       [&] { return find<QLabel>("record_count")->text().startsWith(QStringLiteral("Paused")); },
       5000));
   wait(700);
   clickOn("pause_scan");
-  wait(700);
+  wait(500);
+  EXPECT_TRUE(find<QLabel>("frame_title")->text().startsWith(QStringLiteral("Live")));
+  EXPECT_GT(scan().path()->probe.size(), 100U);
+  keepPicture("scan_live");
+  wait(200);
   clickOn("stop_scan");
   ASSERT_TRUE(waitUntil([&] {
     return !scan().grows() && scan().files() != nullptr && scan().files()->folder == into &&

@@ -14,12 +14,12 @@
 #include <QToolButton>
 #include <QWheelEvent>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "app/gui/window/main_window.h"
 #include "app/gui/window/theme.h"
 #include "app/gui/window/wait.h"
 #include "geometry/io/mesh_io.h"
+#include "support/fresh_folder.h"
 #include "support/own_display.h"
 
 namespace patina {
@@ -45,8 +45,7 @@ class WindowTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!test::hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
-    folder_ = std::filesystem::temp_directory_path() / ("patina-gui-" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
+    folder_ = test::freshFolder("gui");
     QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,
                        QString::fromStdString(folder_.string()));
     application();

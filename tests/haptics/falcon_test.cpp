@@ -14,6 +14,7 @@
 #include "core/sha256.h"
 #include "haptics/devices/falcon/falcon_frame.h"
 #include "haptics/falcon_support.h"
+#include "support/fresh_folder.h"
 #include "support/longer.h"
 
 namespace patina::test {
@@ -104,14 +105,12 @@ TEST(FalconFrame, WhatIsTooMuchKeepsItsDirection) {
 }
 
 struct Firmware {
-  explicit Firmware(std::size_t size = 8000)
-      : file(fs::temp_directory_path() /
-             ("falcon-" + std::to_string(::getpid()) + "-" + std::to_string(size) + ".bin")) {
+  explicit Firmware(std::size_t size = 8000) : file(test::freshFolder("falcon") / "firmware.bin") {
     const auto image = madeUpFirmware(size);
     std::ofstream out(file, std::ios::binary);
     out.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(size));
   }
-  ~Firmware() { fs::remove(file); }
+  ~Firmware() { fs::remove_all(file.parent_path()); }
   fs::path file;
 };
 

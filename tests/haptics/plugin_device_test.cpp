@@ -10,13 +10,13 @@
 #include <fstream>
 #include <pthread.h>
 #include <thread>
-#include <unistd.h>
 
 #include "core/error.h"
 #include "haptics/devices/plugin/plugin_library.h"
 #include "haptics/faulty_plugin.h"
 #include "haptics/servo/realtime.h"
 #include "support/constants.h"
+#include "support/fresh_folder.h"
 #include "support/places.h"
 
 namespace patina {
@@ -298,8 +298,7 @@ TEST(PluginDevice, ThatSaysWhereItReachesIsTakenAtItsWord) {
 class PluginLibraries : public testing::Test {
  protected:
   PluginLibraries() {
-    folder_ = std::filesystem::path(testing::TempDir()) / ("plugins" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
+    folder_ = test::freshFolder("plugins");
     ::setenv("PATINA_DEVICES", folder_.c_str(), 1);
   }
   ~PluginLibraries() override {

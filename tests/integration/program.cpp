@@ -23,8 +23,12 @@ namespace {
 
 std::filesystem::path freshName(const std::string& what) {
   static std::atomic<int> counter{0};
-  return std::filesystem::temp_directory_path() /
-         ("patina-test-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + what);
+  std::filesystem::path path;
+  do { // a killed test may have left one
+    path = std::filesystem::temp_directory_path() /
+           ("patina-test-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + what);
+  } while (std::filesystem::exists(path));
+  return path;
 }
 
 } // namespace
@@ -83,7 +87,8 @@ bool Running::catches(int number) const {
 
 bool Running::hasThread(const std::string& name) const {
   std::error_code ended;
-  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/task", ended))
+  for (const auto& task :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/task", ended))
     if (firstLine(task.path() / "comm") == name) return true;
   return false;
 }

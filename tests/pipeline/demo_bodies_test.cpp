@@ -1,5 +1,4 @@
 // The whole chain on other bodies and by other hands.
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -9,6 +8,7 @@
 #include "core/decompose.h"
 #include "geometry/mesh/shapes.h"
 #include "pipeline/demo_report.h"
+#include "support/fresh_folder.h"
 #include "support/longer.h"
 
 namespace patina {
@@ -69,9 +69,7 @@ double placeInDeviations(const Demo& demo) {
 
 TEST_P(DemoOnBodies, HoldsButForAPlaceThatIsAsUncertainAsItSays) {
   const auto& [body, seed, spectrum] = GetParam();
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) /
-      ("patina_demo_" + std::string(body) + std::to_string(seed) + "_" + std::to_string(getpid()));
+  const std::filesystem::path folder = test::freshFolder("demo");
   Demo demo(folder, seed, objectOf(body));
   Progress progress;
   while (!isDone(demo)) runNext(demo, progress);

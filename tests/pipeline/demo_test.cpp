@@ -1,19 +1,17 @@
 // The whole chain on its embedded scan, and that its figures would tell if it were broken.
 #include "pipeline/demo_report.h"
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include "geometry/io/textured_obj.h"
+#include "support/fresh_folder.h"
 #include "workspace/workspace.h"
 
 namespace patina {
 namespace {
 
 TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("patina_demo_" + std::to_string(getpid()));
+  const std::filesystem::path folder = test::freshFolder("demo");
   Demo demo(folder, 1);
   Progress progress;
   while (!isDone(demo)) runNext(demo, progress);

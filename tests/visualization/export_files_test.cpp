@@ -1,7 +1,6 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -15,6 +14,7 @@
 #include "core/csv.h"
 #include "core/error.h"
 #include "geometry/mesh/shapes.h"
+#include "support/fresh_folder.h"
 #include "visualization/export/export_files.h"
 
 namespace patina {
@@ -22,7 +22,6 @@ namespace {
 
 class ExportFiles : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::vector<ToolSample> samples() const {
     std::vector<ToolSample> list(5);
@@ -35,8 +34,7 @@ class ExportFiles : public ::testing::Test {
     }
     return list;
   }
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("patina-export-" + std::to_string(getpid()));
+  const std::filesystem::path folder_ = test::freshFolder("export");
 };
 
 TEST_F(ExportFiles, MeshesReadBackInDoublePrecisionWithTheirFaceNumbers) {

@@ -6,7 +6,6 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -21,6 +20,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "field/store/surface_field.h"
+#include "support/fresh_folder.h"
 #include "support/node_values.h"
 #include "visualization/export/field_io.h"
 
@@ -31,10 +31,7 @@ namespace fs = std::filesystem;
 
 class FieldIo : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("patina-field-io-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
+  void SetUp() override { folder_ = test::freshFolder("field_io"); }
   void TearDown() override { fs::remove_all(folder_); }
   fs::path file(const std::string& name) const { return folder_ / name; }
 

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "geometry/mesh/shapes.h"
+#include "support/fresh_folder.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -111,9 +112,7 @@ Scene texturedScene() {
 }
 
 TEST(TextureFile, AWorkspaceKeepsFacesAndTextures) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("patina_textures_" + std::to_string(getpid()));
-  std::filesystem::remove_all(folder);
+  const std::filesystem::path root = test::freshFolder("textures"), folder = root / "scene";
   const Scene scene = texturedScene();
   saveWorkspace(scene, folder);
   const OpenedWorkspace opened = openWorkspace(folder);
@@ -122,7 +121,7 @@ TEST(TextureFile, AWorkspaceKeepsFacesAndTextures) {
   // From the bytes, not from what is in memory.
   const LaidTextures& laid = *scene.objects[0].paint->textures;
   EXPECT_TRUE(same(parseLaidTextures(laidTexturesText(laid), "l.json"), laid));
-  std::filesystem::remove_all(folder);
+  std::filesystem::remove_all(root);
 }
 
 TEST(TextureFile, FacesThatTheMeshDoesNotHaveAreRefused) {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "support/fresh_folder.h"
 #include "support/painted_scene.h"
 #include "workspace/workspace.h"
 
@@ -45,9 +46,7 @@ inline std::filesystem::path fastFolder() {
 class WorkspaceTest : public testing::Test {
  protected:
   explicit WorkspaceTest(const std::filesystem::path& base = fastFolder())
-      : root(base / ("patina_workspace_" + std::to_string(getpid()))), folder(root / "scene") {
-    std::filesystem::create_directories(root);
-  }
+      : root(test::freshFolder("workspace", base)), folder(root / "scene") {}
   ~WorkspaceTest() override { std::filesystem::remove_all(root); }
 
   std::size_t filesIn(const std::string& part) const {
