@@ -173,7 +173,7 @@ TEST_F(FalconWindow, DISABLED_FaultsInAStroke) {
     double shown = 10, back = 0; // [s]
     for (int time = 0; time < kTimes && (shown > limit || back > 2.3); ++time) {
       do { // a machine that is busy gives trouble of its own
-        ASSERT_TRUE(waitUntil([&] { return rate.forceIsBack(); }, 5000)) << fault.name;
+        ASSERT_TRUE(waitUntil([&] { return rate.forceIsBack(); }, 20000)) << fault.name;
         wait(300);
       } while (!rate.forceIsBack());
       rate.trouble.reset();
@@ -192,7 +192,7 @@ TEST_F(FalconWindow, DISABLED_FaultsInAStroke) {
     EXPECT_LE(shown, limit) << fault.name;
     EXPECT_LE(back, 2.3) << "two seconds and the ramp";
   }
-  ASSERT_TRUE(waitUntil([&] { return rate.forceIsBack(); }, 5000));
+  ASSERT_TRUE(waitUntil([&] { return rate.forceIsBack(); }, 20000));
   wait(500);
   felt.presses = false;
   ASSERT_TRUE(waitUntil([&] { return !feel().sample().contact; }, 5000));

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "support/fresh_folder.h"
 #include "support/places.h"
 
 extern char** environ;
@@ -128,9 +129,7 @@ void expectOneLineError(const Outcome& outcome, const std::vector<std::string>& 
     EXPECT_NE(outcome.err.find(part), std::string::npos) << part << " in: " << outcome.err;
 }
 
-ScratchFolder::ScratchFolder() : path_(freshName("")) {
-  std::filesystem::create_directories(path_);
-}
+ScratchFolder::ScratchFolder() : path_(freshFolder("test")) {}
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
