@@ -13,7 +13,7 @@ constexpr double kRestError = 3e-4;   // what a step may leave undone where the 
 constexpr double kTurnedError = 5e-3; // and before the turn of the surface is taken out of it
 constexpr double kCreaseStep = 0.03;  // the last one where there may be several walls
 constexpr double kMostRate = 0.8;     // of a step, that the next one takes
-constexpr double kLeastRate = 0.01;   // below it a guess ahead is not worth its time
+constexpr double kLeastRate = 0.06;   // below it a look at the wall as it was finds it as well
 constexpr double kLeastWay = 1e-4;    // below it the turn of a normal is rounding
 constexpr double kMostStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
@@ -26,6 +26,7 @@ constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
+constexpr double kForgetLent = 25; // voxels of way, after which it was chance
 constexpr double kLent = 4e-3;     // voxel^2, from where on it is taken back
 constexpr double kRoom = 1 + 1e-6; // of the square of a bound, for rounding
 constexpr double kAlwaysSpread = 1e-12;
@@ -64,10 +65,11 @@ namespace {
 
 // On a smooth surface blended normals are the more exact ones, but not those of the level set, so
 // that a move of c may give work: the mean depth times how far it went along the mean normal, which
-// is nothing on an exact surface. What it gave in this contact turns the normals to the level set's
-// own.
-void lend(Proxy& proxy, double given) noexcept {
-  proxy.lent = std::max(0.0, proxy.lent + given);
+// is nothing on an exact surface. What it gave of late turns the normals to the level set's own:
+// over faces gains and losses follow one another, and their sum would wander there by chance.
+void lend(Proxy& proxy, double given, const Vec3& moved) noexcept {
+  const double kept = std::max(0.0, 1 - moved.norm() / kForgetLent);
+  proxy.lent = std::max(0.0, kept * proxy.lent + given);
 }
 double ownShare(const Proxy& proxy) noexcept {
   return std::clamp((proxy.lent - kLent) / kLent, 0.0, 1.0);
@@ -228,8 +230,10 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     if (!smooth && !(load * load <= (start - x).squaredNorm())) return false;
     if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
     if (smooth)
-      lend(proxy, 0.25 * (before.normal.dot(start - from) + load) *
-                      (before.normal + rest.normal).dot(c - start));
+      lend(proxy,
+           0.25 * (before.normal.dot(start - from) + load) *
+               (before.normal + rest.normal).dot(c - start),
+           c - start);
     proxy.c = c;
     proxy.walls[0] = rest;
     proxy.turn = seen_turn;
@@ -355,7 +359,8 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
       c = (anchor - x).squaredNorm() <= from_start ? anchor : start;
   } else if (const double d0 = (start - from).norm(), d1 = (c - x).norm();
              d0 > kOnSurface && d1 > kOnSurface) {
-    lend(proxy, 0.25 * (d0 + d1) * (1 / d0 * (start - from) + 1 / d1 * (c - x)).dot(c - start));
+    lend(proxy, 0.25 * (d0 + d1) * (1 / d0 * (start - from) + 1 / d1 * (c - x)).dot(c - start),
+         c - start);
   }
   for (int i = walls.count - 1; i >= 0; --i)
     if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);

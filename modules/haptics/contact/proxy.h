@@ -21,7 +21,7 @@ struct Proxy {
   Vec3 c = Vec3::Zero();
   Walls walls;
   WallTurn turn;   // of a lone wall
-  double lent = 0; // work that moves of c gave since contact began, over the stiffness [voxel^2]
+  double lent = 0; // work that moves of c gave of late, over the stiffness [voxel^2]
 };
 
 struct ProxyMove {
