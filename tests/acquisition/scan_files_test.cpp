@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <unistd.h>
 
 #include "core/error.h"
 #include "core/file.h"

@@ -17,13 +17,13 @@ inline constexpr double kMostOf = 1e-6;    // of the ticks in contact
 inline constexpr double kMostSamples = 12; // of the field, a tick that began in contact
 inline constexpr double kMostEntrySamples = 40;
 
-// single_ticks: how many of a few scenes' ticks may fail, where all of them are judged together.
+// pulls_allowed: in one scene, where all of them are judged together after.
 inline void expectFaultless(const CourseReport& report, const std::string& what,
-                            long single_ticks = 0) {
-  const double most =
-      std::max(kMostOf * static_cast<double>(report.contacts), static_cast<double>(single_ticks));
+                            double pulls_allowed = 0) {
+  const double most = kMostOf * static_cast<double>(report.contacts);
   EXPECT_LE(static_cast<double>(report.lost), most) << what << ": of " << report.contacts;
-  EXPECT_LE(static_cast<double>(report.pulls), most) << what << ": of " << report.contacts;
+  EXPECT_LE(static_cast<double>(report.pulls), std::max(most, pulls_allowed))
+      << what << ": of " << report.contacts;
   EXPECT_EQ(report.faults, 0) << what;
   EXPECT_LE(report.worst_excess, kWorstStep) << what;
   EXPECT_EQ(report.unjudged, 0) << what;

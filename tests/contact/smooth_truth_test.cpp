@@ -1,11 +1,14 @@
 // On surfaces without faces, where the contact point has a closed form, the error of the force
 // falls with the voxel: of a mesh that stands for one, the judge's own faces would be seen.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <numbers>
+#include <memory>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +24,7 @@ namespace {
 struct Round {
   std::string name;
   double radius;
+  double most_error; // [N], p99 at 150 voxels
   std::function<Vec3(const Vec3&)> spine;
 
   Vec3 out(const Vec3& p) const { return (p - spine(p)).normalized(); }
@@ -31,10 +35,10 @@ struct Round {
 const Vec3 kAlong = Vec3(3, 1, 2).normalized();
 
 std::vector<Round> rounds() {
-  return {{"ball", 0.03, [](const Vec3&) { return Vec3(Vec3::Zero()); }},
-          {"limb", 0.004,
+  return {{"ball", 0.03, 4e-4, [](const Vec3&) { return Vec3(Vec3::Zero()); }},
+          {"limb", 0.004, 0.03,
            [](const Vec3& p) { return Vec3(std::clamp(p.dot(kAlong), -0.04, 0.04) * kAlong); }},
-          {"torus", 0.012, [](const Vec3& p) {
+          {"torus", 0.012, 5e-3, [](const Vec3& p) {
              const Vec3 flat = p - p.dot(kAlong) * kAlong;
              return Vec3(0.032 * flat.normalized());
            }}};
@@ -51,8 +55,8 @@ std::shared_ptr<const SurfaceField> fieldOf(const Round& round, double iso, int 
                      grid, 4 + iso / grid.voxel)));
 }
 
-// Strokes at 10 to 500 mm/s, pressed to 3 N or to three quarters of the radius, in and out of
-// contact. [N], |F - K (c - x)| with the c of the closed form.
+// Strokes at 10 to 500 mm/s, pressed to 3 N, to three quarters of the radius, or to where c would
+// have to run (P04), in and out of contact. [N], |F - K (c - x)| with the c of the closed form.
 std::vector<double> errorsOn(const Round& round, double iso, int resolution, long contacts) {
   const auto field = fieldOf(round, iso, resolution);
   const auto snapshot = contactSnapshot(field, iso, "");
@@ -60,6 +64,7 @@ std::vector<double> errorsOn(const Round& round, double iso, int resolution, lon
   std::uniform_real_distribution<double> any(0, 1);
   std::normal_distribution<double> normal;
   std::vector<double> errors;
+  long snaps = 0;
   while (std::cmp_less(errors.size(), contacts)) {
     ContactMemory memory;
     Vec3 c = round.on(0.03 * Vec3(normal(random), normal(random), normal(random)), iso);
@@ -76,10 +81,12 @@ std::vector<double> errorsOn(const Round& round, double iso, int resolution, lon
       const Vec3 out = round.out(c), tip = c - depth * out;
       const Contact contact = tick(*snapshot, memory, tip, kTick);
       EXPECT_FALSE(contact.fault) << round.name;
-      if (depth < 0.5 * field->grid.voxel || contact.snap) continue;
+      if (depth < 0.5 * field->grid.voxel) continue;
+      snaps += contact.snap;
       errors.push_back((contact.force - kJudgeStiffness * depth * out).norm());
     }
   }
+  EXPECT_LE(200 * snaps, contacts) << round.name; // 14 of 4000 at most
   return errors;
 }
 
@@ -94,6 +101,7 @@ TEST(SmoothSurface, ErrorOfTheForceFallsWithTheVoxel) {
         p99.push_back(error.p99);
       }
       EXPECT_GE(std::log2(p99[0] / p99[2]) / 2, 0.9) << round.name << ' ' << iso;
+      EXPECT_LE(p99[1], round.most_error) << round.name << ' ' << iso;
     }
 }
 

@@ -32,6 +32,7 @@ class ScanRecord : public ScanDeskTest {
 TEST_F(ScanRecord, AReplayIsSeenAsItComesPausedAndOpened) {
   const fs::path into = folder_ / "recorded";
   record(into);
+  EXPECT_TRUE(find<QLabel>("frame_title")->text().startsWith(QStringLiteral("Live")));
   clickOn("pause_scan");
   ASSERT_TRUE(waitUntil(
       [&] { return find<QLabel>("record_count")->text().startsWith(QStringLiteral("Paused")); },

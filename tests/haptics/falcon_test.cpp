@@ -8,7 +8,6 @@
 #include <fstream>
 #include <limits>
 #include <random>
-#include <unistd.h>
 
 #include "core/error.h"
 #include "core/sha256.h"

@@ -7,8 +7,11 @@ namespace patina::test {
 
 // PATINA_LONG=1 in the environment: ten times as many ticks, loops and rounds
 // (docs/contributing.md).
+inline bool isLong() {
+  return std::getenv("PATINA_LONG") != nullptr;
+}
 inline long longer(long count) {
-  return std::getenv("PATINA_LONG") ? 10 * count : count;
+  return isLong() ? 10 * count : count;
 }
 
 } // namespace patina::test

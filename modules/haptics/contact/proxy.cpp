@@ -15,6 +15,7 @@ constexpr double kCreaseStep = 0.03;  // the last one where there may be several
 constexpr double kMostRate = 0.8;     // of a step, that the next one takes
 constexpr double kLeastRate = 0.06;   // below it a look at the wall as it was finds it as well
 constexpr double kLeastWay = 1e-4;    // below it the turn of a normal is rounding
+constexpr double kLongWay = 1e-2;     // from where on it tells how the wall will turn
 constexpr double kMostStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
 constexpr double kFlat = 0.2, kLeastSlope = 0.3;
@@ -26,7 +27,7 @@ constexpr double kRefuted = 0.02;
 constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
-constexpr double kForgetLent = 25; // voxels of way, after which it was chance
+constexpr double kForgetLent = 25; // voxels of way, over which what moves gave is forgotten
 constexpr double kLent = 4e-3;     // voxel^2, from where on it is taken back
 constexpr double kRoom = 1 + 1e-6; // of the square of a bound, for rounding
 constexpr double kAlwaysSpread = 1e-12;
@@ -40,6 +41,13 @@ struct ProxySearch::Seen {
   Vec3 normal = Vec3::Zero();
   bool smooth = false; // no crease here
   bool known = false;  // in the band
+};
+
+// What the quick way has seen before it gave up.
+struct ProxySearch::Tried {
+  std::optional<Seen> first; // at the projection onto the wall, if there alone
+  bool elsewhere = false;    // it has looked where c would be instead
+  bool crease = false;
 };
 
 struct ProxySearch::Aim {
@@ -156,13 +164,12 @@ ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec
   return aim;
 }
 
-// The usual tick: one wall, nearly where it was predicted. False: nothing was changed; `first` is
-// what was seen at the first place, if there alone.
+// The usual tick: one wall, nearly where it was predicted. False: nothing was changed but `tried`.
 //
 // One look after another would find of each step the share of it by which the surface turns under
 // the depth: a geometric series, whose sum is taken here along the way that was seen.
 bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy, ProxyMove& move,
-                        std::optional<Seen>& first) const noexcept {
+                        Tried& tried) const noexcept {
   const WallPlane& before = proxy.walls[0];
   const Vec3& start = proxy.c;
   const double most = std::min(ball, kTrust), own = ownShare(proxy);
@@ -175,18 +182,19 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
       std::abs(rate) > kLeastRate) {
     const double sum = 1 / (1 - std::min(rate, kMostRate));
     const Vec3 ahead = c + load * sum * (c - start).dot(proxy.turn.along) * proxy.turn.per_voxel;
-    if (isNear(ahead)) c = ahead;
+    tried.elsewhere = isNear(ahead);
+    if (tried.elsewhere) c = ahead;
   }
-  WallTurn seen_turn;
-  bool smooth = true;
+  WallTurn seen_turn = proxy.turn;
+  bool& crease = tried.crease;
   for (int looks = 0; looks < kMostSlides; ++looks) {
     if (!(load > kOnSurface && isNear(c))) return false;
     const Vec3 z = c;
     const Seen seen = look(z, own);
     ++move.samples;
-    smooth = smooth && seen.smooth;
-    first.reset();
-    if (looks == 0) first = seen;
+    crease = crease || !seen.smooth;
+    tried.first.reset();
+    if (looks == 0 && !tried.elsewhere) tried.first = seen;
     const Vec3 turn = seen.normal - wall.normal;
     const double turned = turn.squaredNorm();
     if (!seen.known || !(std::abs(seen.height) < kMostStep) || !(turned < kTurnOfAWall))
@@ -194,7 +202,7 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     const Vec3 way = z - wall.seen;
     const double per_square = 1 / std::max(way.squaredNorm(), kLeastWay * kLeastWay),
                  curvature = per_square * turn.dot(way);
-    if (looks == 0) {
+    if (looks == 0 && per_square * kLongWay * kLongWay < 1) {
       const double per_way = std::sqrt(per_square);
       seen_turn = {per_way * way, per_way * turn};
     }
@@ -211,7 +219,8 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
                    left = sum * sum * share * step_squared;
       const bool settles = share < 1;
       last = settles && step_squared < kMostStep * kMostStep &&
-             (left < kTurnedError * kTurnedError || (smooth && looks + 1 == kMostSlides));
+             (left < kTurnedError * kTurnedError ||
+              (!crease && looks + 1 == kMostSlides && left < kCreaseStep * kCreaseStep));
       if (settles && left > kRestError * kRestError) {
         WallPlane guess = wall;
         guess.normal = (wall.normal + sum * step.dot(way) * per_square * turn).normalized();
@@ -222,14 +231,16 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
           rest = guess;
           load = guessed_load;
           c = guessed;
+        } else {
+          last = false;
         }
       }
     }
     if (!last) continue;
     // Beside a crease another look may be another wall's, and no move of c makes it longer (P11).
-    if (!smooth && !(load * load <= (start - x).squaredNorm())) return false;
+    if (crease && !(load * load <= (start - x).squaredNorm())) return false;
     if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
-    if (smooth)
+    if (!crease)
       lend(proxy,
            0.25 * (before.normal.dot(start - from) + load) *
                (before.normal + rest.normal).dot(c - start),
@@ -247,8 +258,8 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
 ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
                               Proxy& proxy) const noexcept {
   ProxyMove move;
-  std::optional<Seen> first;
-  if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move, first)) return move;
+  Tried tried;
+  if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move, tried)) return move;
   proxy.turn = {};
   Walls& walls = proxy.walls;
   Vec3 start = proxy.c, anchor = proxy.c;
@@ -261,7 +272,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
   }
 
   // Walls of blended normals meet nowhere on the surface: with several, each has the derivative.
-  bool may_end = true, converged = false, smooth = false, crease = walls.count > 1;
+  bool may_end = true, converged = false, smooth = false, crease = walls.count > 1 || tried.crease;
   Vec3 c = start;
   Seen seen;
   // One more for each voxel that c may have to go; what is left is the next tick's.
@@ -279,9 +290,9 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
       may_end = false;
     }
     const Vec3 z = aim.to.z;
-    if (first) {
-      seen = *first;
-      first.reset();
+    if (tried.first) {
+      seen = *tried.first;
+      tried.first.reset();
     } else {
       seen = look(z, crease ? 1.0 : ownShare(proxy));
       ++move.samples;
