@@ -276,7 +276,8 @@ TEST(MergeExtremes, EditsOfTheObjectAroundTheTipFade) {
       EXPECT_FALSE(contact.fault);
     }
     if (next == both.get()) {
-      EXPECT_NEAR((contact.force - felt).norm(), 0, 1e-3);
+      // Over faces c rests to 5e-3 voxel.
+      EXPECT_NEAR((contact.force - felt).norm(), 0, 2e-3);
     } else if (next == left.get()) {
       EXPECT_EQ(contact.force.norm(), 0);
     } else {
