@@ -1,5 +1,5 @@
-// What moves of the contact point give is forgotten over 100 voxels of way: on any length of it the
-// hand gains no more than that allows (mathematics.md, section 4).
+// What moves of the contact point give is forgotten over 100 voxels of way (P11): on any length of
+// it the hand gains no more than that allows.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -14,8 +14,7 @@ namespace {
 
 constexpr double kMostDrive = 8e-5; // voxel^2 per voxel of way, over the stiffness
 
-// Ten times round a ball of faces about as wide as a voxel, to and fro, at one depth [J, given to
-// the hand], and the way of the contact point [m].
+// Ten times round a ball at one depth, over faces wider and narrower than a voxel.
 TEST(LongRounds, GiveNoMoreThanIsForgotten) {
   for (const int split : {16, 48, 100})
     for (const double depth : {1e-3, 3e-3, 6e-3}) {

@@ -28,8 +28,8 @@ constexpr double kStale = 0.3; // an active wall seen farther away is looked at 
 constexpr double kStaleTrust = 0.25;
 constexpr double kForget = 2;
 constexpr double kForgetLent = 100; // voxels of way, over which what moves gave is forgotten
-constexpr double kLent = 4e-3;     // voxel^2, from where on it is taken back
-constexpr double kRoom = 1 + 1e-6; // of the square of a bound, for rounding
+constexpr double kLent = 4e-3;      // voxel^2, from where on it is taken back
+constexpr double kRoom = 1 + 1e-6;  // of the square of a bound, for rounding
 constexpr double kAlwaysSpread = 1e-12;
 constexpr int kMostSlides = 3, kFewLooks = 3, kMostLooks = 8, kMostSecants = 4, kMostHalvings = 6;
 

@@ -38,8 +38,8 @@ struct ProxyMove {
 //
 // What shapes may give (P11): about creases, where c depends on the way, |c - x| never grows by a
 // move of c. On a smooth surface c is that of x whatever came before; there the sampled normals
-// give a little, which is kept count of over 100 voxels of way and taken back out of them: some uJ a
-// loop of a few mm at 500 N/m, and on any way less than 8e-5 K voxel^2 a voxel.
+// give a little, which is kept count of over 100 voxels of way and taken back out of them: some uJ
+// a loop of a few mm at 500 N/m, and on any way less than 8e-5 K voxel^2 a voxel.
 class ProxySearch {
  public:
   // steepness: how much faster than the distance to the surface phi may fall, >= 1.
