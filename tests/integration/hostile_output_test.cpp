@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <fcntl.h>
 #include <future>
@@ -135,6 +136,8 @@ TEST_F(HostileOutput, ADeviceIsWrittenAndStaysOne) {
     EXPECT_EQ(run(line.to(link)).exit, 0) << line.name;
     EXPECT_TRUE(fs::is_symlink(link)) << line.name;
     EXPECT_TRUE(fs::is_character_file(device)) << line.name;
+    for (int time = 0; time < 500 && bytes <= 10; ++time) // the reader may not have had its turn
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_GT(bytes, 10u) << line.name;
   }
   over = true;
