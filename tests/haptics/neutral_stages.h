@@ -41,7 +41,7 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   const ForceForm form = scene.relief.form;
   const double radius = scene.haptics.tip_radius.value_or(0);
   std::vector<std::unique_ptr<const ForceStage>> neutral;
-  neutral.push_back(std::make_unique<MaterialStage>(sampler, objects, false));
+  neutral.push_back(std::make_unique<MaterialStage>(objects, false));
   neutral.push_back(std::make_unique<TextureStiffnessStage>(reliefs, false));
   neutral.push_back(
       std::make_unique<LateralStage>(reliefs, objects, raisedBy(felt), LateralPlan{}));
@@ -50,7 +50,7 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   neutral.push_back(std::make_unique<FrictionStage>(sampler, radius, Friction{}, false));
   neutral.push_back(std::make_unique<MagnetStage>(sampler, radius, Magnet{}, MagnetRelief{}));
   if (!pruned->stabilisers.coupling) neutral.push_back(std::make_unique<DampingStage>());
-  neutral.push_back(std::make_unique<StiffnessSlopeStage>());
+  neutral.push_back(std::make_unique<StiffnessSlopeStage>(sampler));
 
   // The order of addForceLaw() and compileStages().
   const char* const order[] = {

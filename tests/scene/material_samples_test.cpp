@@ -1,4 +1,4 @@
-#include "scene/paint/material_samples.h"
+#include "scene/paint/material_reader.h"
 
 #include <chrono>
 
@@ -7,6 +7,11 @@
 #include "support/painted_shapes.h"
 
 namespace patina {
+
+namespace material_plain { // material_reader.cpp
+bool lookUp(const MaterialView& view, const double* p, double (*found)[4]) noexcept;
+}
+
 namespace {
 
 constexpr double kSampleVoxel = 0x1p-10;
@@ -17,7 +22,7 @@ struct FeltAt {
 };
 FeltAt feltAt(const MaterialSamples& samples, const Vec3& p) {
   FeltAt at{samples.base, {}};
-  readMaterial(samples, p, at.material, at.gradients);
+  MaterialReader(samples, Pose::Identity()).read(p, at.material, at.gradients);
   return at;
 }
 
@@ -74,6 +79,81 @@ TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
   const double far = 1e300, nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(feltAt(*samples, Vec3(far, -far, 0)).material, base);
   EXPECT_EQ(feltAt(*samples, Vec3(nan, 0, 0)).material, base);
+}
+
+// Of an object that is turned and moved: value and gradient are those of the map at the
+// place in the object's own frame.
+TEST(MaterialReader, ReadsInTheWorldWhatLiesInTheObject) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> value(0, 900);
+  MaterialMap map(Vec3(1e-3, -2e-3, 0.3e-3), kSampleVoxel);
+  for (const MaterialMap::Index& b : {MaterialMap::Index{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})
+    for (const auto channel :
+         {MaterialChannel::stiffness, MaterialChannel::damping, MaterialChannel::roughness})
+      for (float& each : map.writable(b, channel).value)
+        each = static_cast<float>((channel == MaterialChannel::roughness ? 1e-7 : 1e-3) *
+                                  value(random));
+  const Material base;
+  const auto samples = materialSamples(map, base, nullptr, nullptr);
+  Pose world_from_object = Pose::Identity();
+  world_from_object.translate(Vec3(0.2, -0.1, 0.05))
+      .rotate(Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()));
+  const Pose object_from_world = world_from_object.inverse();
+  const MaterialReader reader(*samples, object_from_world);
+  const auto at = [&](const Vec3& p) {
+    FeltAt felt{base, {}};
+    reader.read(p, felt.material, felt.gradients);
+    return felt;
+  };
+  std::uniform_real_distribution<double> in(0.1, 6.9);
+  constexpr double kStep = 1e-7;
+  for (int i = 0; i < 2000; ++i) {
+    // Within a cell, so that differences are those of one trilinear.
+    const Vec3 cell(std::floor(in(random)), std::floor(in(random)), std::floor(in(random)));
+    const Vec3 own =
+        map.origin() + kSampleVoxel * (cell + 0.8 / 6.9 * Vec3(in(random), in(random), in(random)) +
+                                       Vec3::Constant(0.1));
+    const Vec3 p = world_from_object * own;
+    const FeltAt felt = at(p);
+    const Material told = map.at(own, base);
+    ASSERT_NEAR(felt.material.stiffness, told.stiffness, 1e-9);
+    ASSERT_NEAR(felt.material.damping, told.damping, 1e-9);
+    ASSERT_NEAR(felt.material.roughness, told.roughness, 1e-15);
+    ASSERT_EQ(felt.material.static_friction, base.static_friction);
+    for (int a = 0; a < 3; ++a) {
+      const Vec3 d = kStep * Vec3::Unit(a);
+      const FeltAt above = at(p + d), below = at(p - d);
+      ASSERT_NEAR(felt.gradients.stiffness[a],
+                  (above.material.stiffness - below.material.stiffness) / (2 * kStep), 1e-3);
+      ASSERT_NEAR(felt.gradients.roughness[a],
+                  (above.material.roughness - below.material.roughness) / (2 * kStep), 1e-7);
+    }
+  }
+}
+
+TEST(MaterialReader, ReadsTheSameOnEveryProcessor) {
+  const auto map =
+      coveredMap(kSampleVoxel, cube(12e-3), MaterialChannel::stiffness,
+                 [](const Vec3& p) { return 500 + 1e6 * p.x() * p.y() - 2e3 * p.z(); });
+  const auto samples = materialSamples(*map, Material{}, nullptr, nullptr);
+  const MaterialReader reader(*samples, Pose::Identity());
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> in(-16e-3, 16e-3);
+  int painted = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(in(random), in(random), in(random));
+    FeltAt felt{samples->base, {}};
+    reader.read(p, felt.material, felt.gradients);
+    alignas(32) double found[kMaterialChannels][4];
+    if (!material_plain::lookUp(reader.view(), p.data(), found)) {
+      ASSERT_EQ(felt.material, samples->base);
+      continue;
+    }
+    ++painted;
+    ASSERT_NEAR(found[0][3], felt.material.stiffness, 1e-10);
+    for (int a = 0; a < 3; ++a) ASSERT_NEAR(found[0][a], felt.gradients.stiffness[a], 1e-7);
+  }
+  EXPECT_GT(painted, 500);
 }
 
 TEST(MaterialSamples, HoldTheExtremesOfEveryChannelAndTheBase) {

@@ -67,7 +67,9 @@ class FieldSampler {
   // own: share of the value's own derivative in the gradient also where the nodes agree, 0 .. 1.
   // With 0 a crease is told only where the blend's length is not 1 either, as beside every crease
   // of a distance; between baked flanks of one slope it may be.
-  SurfaceSample surfaceAtGrid(const Vec3& q, double own = 0) const noexcept;
+  // seen, where asked for, becomes the cell about q, if that is in the band.
+  SurfaceSample surfaceAtGrid(const Vec3& q, double own = 0,
+                              BandCell* seen = nullptr) const noexcept;
   // The cell about q; false outside of the band.
   bool cellAt(const Vec3& q, BandCell& cell) const noexcept {
     return findCell(*field_, last_node_, q, cell);
@@ -114,13 +116,15 @@ class FieldSampler {
   double hand_over_; // phi below which the coarse nodes are blended in
 };
 
-inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own) const noexcept {
+inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own,
+                                                 BandCell* seen) const noexcept {
   SurfaceSample sample;
   BandCell cell;
   if (!findCell(*field_, last_node_, q, cell)) [[unlikely]] {
     const GridSample beyond = beyondBand(q);
     return {beyond.phi, beyond.gradient, 0, beyond.region};
   }
+  if (seen) *seen = cell;
   const Blend value = blended(cell);
   sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
   sample.region = FieldRegion::band;

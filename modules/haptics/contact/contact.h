@@ -8,7 +8,7 @@
 
 #include "core/types.h"
 #include "haptics/contact/surface_jacobian.h"
-#include "scene/paint/material_map.h"
+#include "scene/paint/channels.h"
 
 namespace patina {
 
@@ -21,11 +21,9 @@ struct Contact {
   Vec3 velocity = Vec3::Zero(); // [m/s], backward difference; VelocityFilterStage: filtered
   double dt = 0;                // [s], since the last finite tip
 
-  // tick(): the snapshot's base; MaterialStage: what is painted
+  // tick(): the snapshot's base; MaterialStage: what is painted; TextureStiffnessStage
   Material material;
-  // As the tip moves (pull_back.h); zero unless painted and conservative.
-  Vec3 stiffness_gradient = Vec3::Zero(); // [N/m^2]
-  Vec3 roughness_gradient = Vec3::Zero(); // over the surface, dimensionless
+  MaterialGradients gradients; // over the surface, in the world
 
   // The contact stage; relief and roughness lower it, down to no contact
   bool touching = false;
@@ -56,7 +54,8 @@ struct Contact {
   Vec3 surface = Vec3::Zero();
   Vec3 vcp = Vec3::Zero(); // p, after FrictionStage; the tip if not touching
 
-  // pulledBack(), for whichever stage asks first: how surface moves with the tip
+  // How surface moves with the tip: ProxyStage where it knows it, else pulledBack() for whichever
+  // stage asks first
   std::optional<SurfaceJacobian> jacobian;
 
   // OwnerStage

@@ -44,7 +44,7 @@ std::shared_ptr<const HapticSnapshot> planeSnapshot(const HapticProperties& hapt
   const bool limited = std::isfinite(haptics.force_limit);
   snapshot->base = baseMaterial(haptics);
   addForceLaw(*snapshot, haptics, paintedRange(snapshot->base, {}), plan, nullptr,
-              limited ? kHandSpeed : std::numeric_limits<double>::infinity(), false);
+              limited ? kHandSpeed : std::numeric_limits<double>::infinity(), nullptr);
   return snapshot;
 }
 

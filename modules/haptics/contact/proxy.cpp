@@ -41,6 +41,7 @@ struct ProxySearch::Seen {
   Vec3 normal = Vec3::Zero();
   bool smooth = false; // no crease here
   bool known = false;  // in the band
+  BandCell cell{};     // if known
 };
 
 // What the quick way has seen before it gave up.
@@ -59,8 +60,8 @@ ProxySearch::Seen ProxySearch::look(const Vec3& q, double own) const noexcept {
   if (sampler_->sampler() != Sampler::high) own = 0;
   // With relief baked in gradients are not of length 1, and a blend's length tells no crease.
   if (per_steepness_ < 1) own = std::max(own, kAlwaysSpread);
-  const SurfaceSample sample = sampler_->surfaceAtGrid(q, own);
   Seen seen;
+  const SurfaceSample sample = sampler_->surfaceAtGrid(q, own, &seen.cell);
   seen.height = sample.phi - iso_;
   seen.known = sample.region == FieldRegion::band;
   seen.slope = sample.gradient.norm();
@@ -210,6 +211,8 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
     WallPlane rest = wall; // seen at z: from a guessed normal facets would turn twice
     load = -wall.height(x);
     c = x + load * wall.normal;
+    // Here, and not when a stage asks: while c is worked out there is time.
+    if (curved_) move.jacobian.emplace(seen.cell, seen.normal, load, iso_);
     const Vec3 step = c - z;
     const double step_squared = step.squaredNorm();
     bool last = step_squared < kRestError * kRestError;

@@ -6,6 +6,7 @@
 
 #include "field/sampling/field_sampler.h"
 #include "haptics/contact/half_spaces.h"
+#include "haptics/contact/surface_jacobian.h"
 
 namespace patina {
 
@@ -30,7 +31,8 @@ struct ProxyMove {
   int samples = 0;
   double clearance = 0; // phi - iso at x, out of contact
   bool smooth = false;  // held by one wall, from which c is perpendicular to the tip
-  WallProjection held;  // by which of the proxy's walls, and how hard; if smooth, load[0] alone
+  std::optional<SurfaceJacobian> jacobian; // if smooth and it is asked for
+  WallProjection held; // by which of the proxy's walls, and how hard; if smooth, load[0] alone
 };
 
 // c(t) = local argmin |y - x|^2 subject to phi(y) >= iso, continued from where it was. Only the
@@ -43,8 +45,10 @@ struct ProxyMove {
 class ProxySearch {
  public:
   // steepness: how much faster than the distance to the surface phi may fall, >= 1.
-  ProxySearch(const FieldSampler& sampler, double iso, double steepness = 1) noexcept
-      : sampler_(&sampler), iso_(iso), per_steepness_(1 / steepness) {}
+  // curved: ProxyMove::jacobian is asked for.
+  ProxySearch(const FieldSampler& sampler, double iso, double steepness = 1,
+              bool curved = false) noexcept
+      : sampler_(&sampler), iso_(iso), per_steepness_(1 / steepness), curved_(curved) {}
 
   // In contact: x is the new tip, from the last (proxy.c where contact begins, and nothing pulls
   // yet); `ball` bounds how far c goes, but for a last step
@@ -86,6 +90,7 @@ class ProxySearch {
   const FieldSampler* sampler_;
   double iso_; // voxels
   double per_steepness_;
+  bool curved_;
 };
 
 } // namespace patina

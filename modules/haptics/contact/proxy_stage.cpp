@@ -37,8 +37,8 @@ void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Con
 
 } // namespace
 
-ProxyStage::ProxyStage(const FieldSampler& sampler, double iso, double steepness)
-    : sampler_(sampler), search_(sampler_, iso / sampler.grid().voxel, steepness),
+ProxyStage::ProxyStage(const FieldSampler& sampler, double iso, double steepness, bool curved)
+    : sampler_(sampler), search_(sampler_, iso / sampler.grid().voxel, steepness, curved),
       voxel_(sampler.grid().voxel), iso_(iso * sampler_.perVoxel()), steepness_(steepness),
       per_steepness_(1 / steepness), snap_speed_(kSnapSides * sideOf(sampler.grid())) {}
 
@@ -87,6 +87,7 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
     contact.wall[0] = {contact.normal, contact.depth};
     contact.walls = 1;
     contact.surface = contact.candidate - iso_ * voxel_ * contact.normal;
+    contact.jacobian = move.jacobian;
     return;
   }
   const Vec3 out = proxy.c - x;

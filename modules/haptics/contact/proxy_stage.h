@@ -19,8 +19,9 @@ inline constexpr double kSnapSides = 0.9;
 class ProxyStage final : public ForceStage {
  public:
   // iso [m]: the tip's radius, plus the offset, plus a shell about what is pulled. steepness >= 1:
-  // how much faster than the distance to it the field may fall, where relief is baked in.
-  ProxyStage(const FieldSampler& sampler, double iso, double steepness = 1);
+  // how much faster than the distance to it the field may fall, where relief is baked in. curved:
+  // whether stages pull back what lies on the surface.
+  ProxyStage(const FieldSampler& sampler, double iso, double steepness = 1, bool curved = false);
 
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "contact"; }

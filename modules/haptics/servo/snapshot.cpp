@@ -132,11 +132,15 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   const FieldSampler sampler(*field, scene.sampler);
   const double radius = haptics.tip_radius.value_or(0);
   const double iso = radius + haptics.offset.value_or(0) + shell.whole();
+  const bool slopes = (range.has(MaterialChannel::stiffness) || range.texture_stiffness > 0) &&
+                      scene.material_form == ForceForm::conservative;
+  const bool leans = shell.whole() > 0 && scene.relief.form == ForceForm::conservative;
   const std::string why = haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always";
   if (haptics.contact == HapticProperties::Contact::ray)
     snapshot->add(std::make_unique<RayStage>(sampler, iso), why, bytesRead(*field));
   else
-    snapshot->add(std::make_unique<ProxyStage>(sampler, iso, range.baked ? kBakedSteepness : 1),
+    snapshot->add(std::make_unique<ProxyStage>(sampler, iso, range.baked ? kBakedSteepness : 1,
+                                               slopes || leans),
                   why, bytesRead(*field));
   if (haptics.offset)
     snapshot->add(std::make_unique<OffsetStage>(sampler),
@@ -148,13 +152,11 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                   std::to_string(objects.size()) + " objects, some painted");
     if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(sampler, objects);
   }
-  const bool slopes = (range.has(MaterialChannel::stiffness) || range.texture_stiffness > 0) &&
-                      scene.material_form == ForceForm::conservative;
   if (range.any()) {
     std::size_t bytes = 0;
     for (const FeltObject& object : objects)
       bytes += object.material ? object.material->bytes() : 0;
-    snapshot->add(std::make_unique<MaterialStage>(sampler, objects, slopes), namesOf(range), bytes);
+    snapshot->add(std::make_unique<MaterialStage>(objects, slopes), namesOf(range), bytes);
   }
   if (shell.relief > 0) raised.reliefs = std::make_shared<const Reliefs>(sampler, objects);
   if (range.texture_stiffness > 0)
@@ -193,7 +195,8 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
     haptics.magnet->strength = plan.softened(haptics.magnet->strength);
     magnet = std::make_unique<MagnetStage>(sampler, radius, *haptics.magnet, raised);
   }
-  addForceLaw(*snapshot, haptics, range, plan, std::move(magnet), maxSpeed(field->grid), slopes);
+  addForceLaw(*snapshot, haptics, range, plan, std::move(magnet), maxSpeed(field->grid),
+              slopes ? &sampler : nullptr);
   snapshot->field = std::move(field);
   return snapshot;
 }

@@ -12,7 +12,8 @@ namespace patina {
 
 void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
                  const PaintedRange& range, StabiliserPlan plan,
-                 std::unique_ptr<const ForceStage> magnet, double max_speed, bool slopes) {
+                 std::unique_ptr<const ForceStage> magnet, double max_speed,
+                 const FieldSampler* slopes) {
   const auto says = [](const char* key, double value) {
     return key + (" = " + formatNumber(value));
   };
@@ -42,7 +43,7 @@ void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
                    painted ? "damping is painted" : says("damping", *haptics.damping));
   }
   if (slopes)
-    snapshot.add(std::make_unique<StiffnessSlopeStage>(), "material.force = conservative");
+    snapshot.add(std::make_unique<StiffnessSlopeStage>(*slopes), "material.force = conservative");
   if (plan.passivity) snapshot.add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
   snapshot.add(std::make_unique<LimitStage>(limit), "always");
   snapshot.stabilisers = std::move(plan);

@@ -1,12 +1,15 @@
 // What the contact is made of: painted values at the closest point of the surface (K12, K22, K23).
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "field/sampling/field_sampler.h"
 #include "haptics/servo/felt_object.h"
 #include "haptics/stages/relief_stage.h"
 #include "haptics/stages/stage.h"
+#include "scene/paint/material_reader.h"
 
 namespace patina {
 
@@ -25,18 +28,16 @@ class OwnerStage final : public ForceStage {
   std::span<const FeltObject> objects_;
 };
 
-// Sets Contact::material and, with `gradients`, how stiffness changes as the tip moves. Objects
-// without paint keep the snapshot's base.
+// Sets Contact::material and how it changes over the surface; of stiffness only with `gradients`.
+// Objects without paint keep the snapshot's base.
 class MaterialStage final : public ForceStage {
  public:
-  MaterialStage(const FieldSampler& sampler, std::span<const FeltObject> objects, bool gradients)
-      : sampler_(sampler), objects_(objects), gradients_(gradients) {}
+  MaterialStage(std::span<const FeltObject> objects, bool gradients);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "material"; }
 
  private:
-  FieldSampler sampler_;
-  std::span<const FeltObject> objects_;
+  std::vector<std::optional<MaterialReader>> readers_; // of each object
   bool gradients_;
 };
 
@@ -64,8 +65,12 @@ struct StiffnessSlopeMemory {
 // place of K. Part of the surface and not of friction's grip.
 class StiffnessSlopeStage final : public ForceStage {
  public:
+  explicit StiffnessSlopeStage(const FieldSampler& sampler) : sampler_(sampler) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
   std::string_view name() const noexcept override { return "stiffness slope"; }
+
+ private:
+  FieldSampler sampler_;
 };
 
 } // namespace patina

@@ -24,22 +24,17 @@ void notTouching(Contact& contact) noexcept {
 
 // Length of n - slope.
 double steepnessOf(const Contact& contact) noexcept {
-  return contact.slope.isZero(0) ? 1 : std::sqrt(1 + contact.slope.squaredNorm());
-}
-
-// Along n, of the contact as it is.
-double depthOf(const Contact& contact) noexcept {
-  return contact.slope.isZero(0) ? contact.depth : contact.depth / steepnessOf(contact);
+  return std::sqrt(1 + contact.slope.squaredNorm());
 }
 
 // `depth` becomes that along n, and the normal leans by `slope` more. n - slope is longer than 1:
-// of a potential, the depth along the leaning normal is not the distance.
-void settle(Contact& contact, double depth, const Vec3& slope) noexcept {
+// of a potential, the depth along the leaning normal is not the distance. steepness: as it was.
+void settle(Contact& contact, double depth, const Vec3& slope, double steepness) noexcept {
   if (!(depth > 0)) {
     notTouching(contact);
     return;
   }
-  const Vec3 outward = steepnessOf(contact) * contact.normal - slope; // n - all slopes
+  const Vec3 outward = steepness * contact.normal - slope; // n - all slopes
   contact.slope += slope;
   // The root and both quotients at one time: a tick waits for the longest, not for their sum.
   const double square = 1 + contact.slope.squaredNorm(), length = std::sqrt(square),
@@ -55,7 +50,8 @@ void settle(Contact& contact, double depth, const Vec3& slope) noexcept {
 // d -= gap.
 void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
   if (gap == 0 && slope.isZero(0)) return;
-  settle(contact, depthOf(contact) - gap, slope);
+  const double steepness = steepnessOf(contact);
+  settle(contact, contact.depth / steepness - gap, slope, steepness);
 }
 
 // By how much the relief itself has moved the VCP since the last tick, at most.
@@ -74,48 +70,40 @@ void announceStep(Contact& contact, TextureMemory& memory, double height,
 } // namespace
 
 Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects, Part part)
-    : sampler_(sampler), objects_(objects), part_(part), lost_(kLostVoxels * sampler.grid().voxel) {
+    : sampler_(sampler), lost_(kLostVoxels * sampler.grid().voxel) {
+  for (const FeltObject& object : objects)
+    felt_.push_back({object.*part, object.highest, object.first_face});
 }
 
-ReliefAt Reliefs::at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
-                     Eigen::Matrix3d* bend) const noexcept {
-  const auto i = static_cast<std::size_t>(object);
-  const ReliefSurface* felt = i < objects_.size() ? (objects_[i].*part_).get() : nullptr;
-  if (!felt) {
-    if (bend) bend->setZero();
-    return {};
+// What is rare: a point that the walk has lost, and heights between texels, where a cubic
+// overshoots.
+void Reliefs::mend(const Felt& felt, const Vec3& c, ReliefAt& at,
+                   Eigen::Matrix3d* bend) const noexcept {
+  const ReliefSurface& surface = *felt.surface;
+  if (at.face < 0 || at.distance > lost_) {
+    // From the face that the field knows, if that is nearer.
+    const std::int32_t near = sampler_.faceNear(c);
+    Eigen::Matrix3d bent;
+    const ReliefAt afresh =
+        reliefAt(surface, c, near < 0 ? -1 : near - felt.first_face, bend ? &bent : nullptr);
+    if (afresh.face >= 0 && (at.face < 0 || afresh.distance < at.distance)) {
+      at = afresh;
+      if (bend) *bend = bent;
+    }
   }
-  const FeltObject& part = objects_[i];
-  const ReliefSurface& surface = *felt;
-  ReliefAt at = reliefAt(surface, c, walk.object == object ? walk.face : -1, bend);
-  if (at.face < 0 || at.distance > lost_) [[unlikely]]
-    lookAfresh(part, surface, c, at, bend);
-  walk = {object, at.face};
-  if (surface.image && std::abs(at.height) > part.highest) { // between texels a cubic overshoots
-    at.height = std::copysign(part.highest, at.height);
+  if (surface.image && std::abs(at.height) > felt.highest) {
+    at.height = std::copysign(felt.highest, at.height);
     at.slope.setZero();
     if (bend) bend->setZero();
   }
-  return at;
-}
-
-void Reliefs::lookAfresh(const FeltObject& part, const ReliefSurface& surface, const Vec3& c,
-                         ReliefAt& at, Eigen::Matrix3d* bend) const noexcept {
-  const std::int32_t near = sampler_.faceNear(c);
-  Eigen::Matrix3d bent;
-  const ReliefAt afresh =
-      reliefAt(surface, c, near < 0 ? -1 : near - part.first_face, bend ? &bent : nullptr);
-  if (afresh.face < 0 || (at.face >= 0 && afresh.distance >= at.distance)) return;
-  at = afresh;
-  if (bend) *bend = bent;
 }
 
 std::size_t Reliefs::bytes() const {
   std::size_t sum = 0;
-  for (const FeltObject& object : objects_)
-    if (const auto& surface = object.*part_) {
-      sum += patina::bytes(*surface->faces);
-      if (surface->textures) sum += surface->textures->bytes();
+  for (const Felt& felt : felt_)
+    if (felt.surface) {
+      sum += patina::bytes(*felt.surface->faces);
+      if (felt.surface->textures) sum += felt.surface->textures->bytes();
     }
   return sum;
 }
@@ -142,13 +130,14 @@ void TextureLayerStage::apply(Contact& contact, ContactMemory& memory) const noe
   }
   const ReliefAt at = reliefs_->at(contact.object, contact.surface, memory.walk);
   const double low = at.texture.of ? at.texture.of->value.low : 0,
-               height = at.height - at.texture.share * low, depth = depthOf(contact) - shell_,
-               rigid = std::max(depth, 0.0), pressed = gain_ * std::max(depth + height, 0.0);
+               height = at.height - at.texture.share * low, steepness = steepnessOf(contact),
+               depth = contact.depth / steepness - shell_, rigid = std::max(depth, 0.0),
+               pressed = gain_ * std::max(depth + height, 0.0);
   Vec3 slope = Vec3::Zero();
   if (form_ == ForceForm::conservative && pressed > 0)
     slope = pressed / (rigid + pressed) *
             pulledBack(reliefs_->sampler(), contact, at.slope - low * at.texture.slope);
-  settle(contact, rigid + pressed, slope);
+  settle(contact, rigid + pressed, slope, steepness);
   announceStep(contact, memory.layer, gain_ * height, slope);
 }
 
@@ -193,7 +182,7 @@ void RoughnessStage::apply(Contact& contact, ContactMemory& memory) const noexce
     if (form_ == ForceForm::conservative)
       slope = pulledBack(sampler_, contact,
                          roughness * (object_from_world.linear().transpose() * pattern.slope) +
-                             pattern.height * contact.roughness_gradient);
+                             pattern.height * contact.gradients.roughness);
   }
   lower(contact, shell_ - height, slope);
   announceStep(contact, memory.roughness, height, slope);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "field/sampling/field_sampler.h"
 #include "haptics/servo/felt_object.h"
@@ -38,19 +39,33 @@ class Reliefs {
   // has none. The walk over its faces goes on from walk.
   // bend: as of reliefAt().
   ReliefAt at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
-              Eigen::Matrix3d* bend = nullptr) const noexcept;
+              Eigen::Matrix3d* bend = nullptr) const noexcept {
+    const auto i = static_cast<std::size_t>(object);
+    const ReliefSurface* surface = i < felt_.size() ? felt_[i].surface.get() : nullptr;
+    if (!surface) {
+      if (bend) bend->setZero();
+      return {};
+    }
+    ReliefAt found = reliefAt(*surface, c, walk.object == object ? walk.face : -1, bend);
+    if (found.face < 0 || found.distance > lost_ || surface->image) [[unlikely]]
+      mend(felt_[i], c, found, bend);
+    walk = {object, found.face};
+    return found;
+  }
   const FieldSampler& sampler() const noexcept { return sampler_; }
   std::size_t bytes() const; // of the packed faces
 
  private:
-  // Where the walk ended nowhere near: from the face that the field knows, if that is nearer.
-  void lookAfresh(const FeltObject& part, const ReliefSurface& surface, const Vec3& c, ReliefAt& at,
-                  Eigen::Matrix3d* bend) const noexcept;
+  struct Felt {
+    std::shared_ptr<const ReliefSurface> surface;
+    double highest;
+    std::int32_t first_face;
+  };
+  void mend(const Felt& felt, const Vec3& c, ReliefAt& at, Eigen::Matrix3d* bend) const noexcept;
 
   FieldSampler sampler_;
-  std::span<const FeltObject> objects_;
-  Part part_;
-  double lost_; // [m] from the mesh, where the walk begins afresh
+  std::vector<Felt> felt_; // of each object
+  double lost_;            // [m] from the mesh, where the walk begins afresh
 };
 
 // Behind a contact with a shell `shell` [m] outside everything, this lowers it to the relief:

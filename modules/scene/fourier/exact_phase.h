@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #if defined(__GNUC__)
 #define PATINA_ALWAYS_INLINE [[gnu::always_inline]] inline
@@ -41,7 +42,8 @@ class ExactRing {
  public:
   ExactRing() = default;
   ExactRing(double omega, int steps)
-      : steps_(steps), all_(steps), inverse_(1. / steps), per_metre_(omega * steps / kTurn) {
+      : steps_(steps), mask_((steps & (steps - 1)) == 0 ? steps - 1 : 0), all_(steps),
+        inverse_(1. / steps), per_metre_(omega * steps / kTurn) {
     const double product = omega * steps, rest = std::fma(omega, steps, -product);
     const double left = std::fma(-per_metre_, kTurn, product); // exact
     rest_ = (left + rest - per_metre_ * kTurnRest) / kTurn;
@@ -64,15 +66,18 @@ class ExactRing {
     const double rest = ((high * high_ - product) + high * low_ + low * high_) + low * low_;
 #endif
     const double whole = __builtin_floor(product);
+    const double beyond = (product - whole) + (rest + x * rest_);
+    if (mask_ > 0) return {static_cast<int>(static_cast<std::int64_t>(whole) & mask_), beyond};
     // The half keeps the quotient's rounding away from whole numbers.
     const double step = whole - all_ * __builtin_floor((whole + 0.5) * inverse_);
-    return {static_cast<int>(step), (product - whole) + (rest + x * rest_)};
+    return {static_cast<int>(step), beyond};
   }
 
  private:
   static constexpr double kSplit = 0x1p27 + 1, kFarthestStep = 0x1p50;
 
   int steps_ = 1;
+  std::int64_t mask_ = 0;                                   // steps less one, of a power of two
   double all_ = 1, inverse_ = 1, per_metre_ = 0, rest_ = 0; // steps a metre, as the sum of two
   double high_ = 0, low_ = 0;                               // the first of them in halves
 };

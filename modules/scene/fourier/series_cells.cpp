@@ -70,8 +70,8 @@ SeriesCells::SeriesCells(const FourierSeries& series, double value_error, double
     }
   }
   ring_ = ExactRing(omega, cells);
-  const int rows = degree / 4;
-  look_ = lookOfThisProcessor(rows);
+  rows_ = degree / 4;
+  look_ = lookOfThisProcessor(rows_);
   const double width = 2 * std::numbers::pi / cells, half = width / 2;
   slope_scale_ = 1 / half;
   std::vector<double> weight(series.a.size() * static_cast<std::size_t>(degree));
@@ -94,8 +94,8 @@ SeriesCells::SeriesCells(const FourierSeries& series, double value_error, double
       const double odd = series.b[i] * co - series.a[i] * si;
       const double* w = weight.data() + i * static_cast<std::size_t>(degree);
       for (int k = 0; k < degree; k += 2) {
-        c[4 * (k % rows) + k / rows] += w[k] * even;
-        c[4 * ((k + 1) % rows) + (k + 1) / rows] += w[k + 1] * odd;
+        c[4 * (k % rows_) + k / rows_] += w[k] * even;
+        c[4 * ((k + 1) % rows_) + (k + 1) / rows_] += w[k + 1] * odd;
       }
     }
     c[0] += series.mean;

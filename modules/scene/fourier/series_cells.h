@@ -21,11 +21,14 @@ class SeriesCells {
     sum.slope *= slope_scale_;
     return sum;
   }
+  // A view; slopes by the phase.
+  SeriesTable table() const noexcept { return {ring_, table_.data(), rows_, slope_scale_}; }
   std::size_t bytes() const { return sizeof(double) * table_.size(); }
 
  private:
   ExactRing ring_;
   SeriesLook look_;
+  int rows_ = 0;
   double slope_scale_ = 0;
   std::vector<double> table_; // cell upon cell, each in rows of four (series_cells_kernel.h)
 };

@@ -32,6 +32,13 @@ class TextureEvaluator {
     return {value.value, Vec2(omega_ * value.slope, 0)};
   }
 
+  // Where that is all there is to it, its line: a view, slopes by x [m]. Else one without cells.
+  SeriesTable line() const noexcept {
+    if (!line_) return {};
+    SeriesTable table = line_->table();
+    table.slope_scale *= omega_;
+    return table;
+  }
   double omega() const { return omega_; } // [rad/m]
   double low() const { return low_; }     // at(...).height - low() >= 0, but for the tolerance [m]
   std::size_t bytes() const;              // of its tables

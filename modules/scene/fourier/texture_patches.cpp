@@ -91,6 +91,7 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
   for (const auto& [number, texture] : laid.library) {
     place[number] = static_cast<std::int32_t>(textures_.size());
     textures_.push_back(texture);
+    patch_textures_.push_back({texture->at.line(), texture.get()});
   }
   std::vector<std::int32_t> texture_of(mesh.triangles.size(), -1);
   std::vector<const TexturedFace*> told(mesh.triangles.size());
@@ -136,11 +137,15 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
     }
     const FeltTexture& of = *textures_[texture];
     const Vec3 x_slope = slopeOver(corner, x), y_slope = slopeOver(corner, y);
-    Patch patch;
-    patch.texture = &of;
-    patch.place = {Vec2(x[0] - x_slope.dot(corner[0]), y[0] - y_slope.dot(corner[0])),
-                   Vec2(x_slope.x(), y_slope.x()), Vec2(x_slope.y(), y_slope.y()),
-                   Vec2(x_slope.z(), y_slope.z())};
+    TexturePatch patch{};
+    patch.texture = &patch_textures_[texture];
+    for (int a = 0; a < 3; ++a) {
+      patch.x[a] = x_slope[a];
+      patch.y[a] = y_slope[a];
+    }
+    patch.x[3] = x[0] - x_slope.dot(corner[0]);
+    patch.y[3] = y[0] - y_slope.dot(corner[0]);
+    patch.fade = -1;
     const Vec3 fade_slope = slopeOver(corner, fade);
     if (fade[0] + fade[1] + fade[2] < 3) {
       patch.fade = static_cast<std::int32_t>(fades_.size());
@@ -156,6 +161,7 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
                                 6 * of.highest * ends * ends);
     stiffest_ = std::max(stiffest_, of.stiffness);
   }
+  table_ = {{middle_.x(), middle_.y(), middle_.z(), -1}, patch_of_.data(), patches_.data()};
 }
 
 void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
@@ -164,40 +170,37 @@ void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
   if (face < 0 || static_cast<std::size_t>(face) >= patch_of_.size()) return;
   const std::int32_t index = patch_of_[static_cast<std::size_t>(face)];
   if (index < 0) return;
-  const Patch& patch = patches_[static_cast<std::size_t>(index)];
-  const FeltTexture& texture = *patch.texture;
-  const Vec3 q = p - middle_;
-  const auto& [origin, per_x, per_y, per_z] = patch.place;
-  const Vec2 place = origin + (q.x() * per_x + q.y() * per_y + q.z() * per_z);
-  const TextureValue h = texture.at.at(place.x(), place.y());
-  found.height = h.height;
-  found.slope = Vec3(h.gradient.dot(per_x), h.gradient.dot(per_y), h.gradient.dot(per_z));
-  found.texture.of = &texture;
-  found.texture.share = 1;
+  const TexturePatch& patch = patches_[static_cast<std::size_t>(index)];
+  const FeltTexture& texture = *patch.texture->of;
+  const Vec3 q = p - middle_, by_x(patch.x), by_y(patch.y);
+  const double x = patch.x[3] + by_x.dot(q), y = patch.y[3] + by_y.dot(q);
+  const TextureValue h = texture.at.at(x, y);
   if (bend) {
     Eigen::Matrix<double, 3, 2> along;
-    along << per_x.transpose(), per_y.transpose(), per_z.transpose();
-    *bend = along * bendAt(texture, place.x(), place.y()) * along.transpose();
+    along << by_x, by_y;
+    *bend = along * bendAt(texture, x, y) * along.transpose();
   }
-  if (patch.fade >= 0) {
-    const Fade& fade = fades_[static_cast<std::size_t>(patch.fade)];
-    const double w = std::clamp(fade.at + fade.slope.dot(q), 0.0, 1.0);
-    const double share = w * w * (3 - 2 * w), growth = 6 * w * (1 - w);
-    found.texture.share = share;
-    found.texture.slope = growth * fade.slope;
-    if (bend)
-      *bend =
-          share * *bend +
-          growth * (found.slope * fade.slope.transpose() + fade.slope * found.slope.transpose()) +
-          (6 - 12 * w) * found.height * fade.slope * fade.slope.transpose();
-    found.slope = share * found.slope + found.height * found.texture.slope;
-    found.height *= share;
-  }
+  take(patch, p, h.height, h.gradient.x() * by_x + h.gradient.y() * by_y, found, bend);
+}
+
+void TexturePatches::fadeOut(const TexturePatch& patch, const Vec3& p, PatchAt& found,
+                             Eigen::Matrix3d* bend) const noexcept {
+  const Fade& fade = fades_[static_cast<std::size_t>(patch.fade)];
+  const double w = std::clamp(fade.at + fade.slope.dot(p - middle_), 0.0, 1.0);
+  const double share = w * w * (3 - 2 * w), growth = 6 * w * (1 - w);
+  found.texture.share = share;
+  found.texture.slope = growth * fade.slope;
+  if (bend)
+    *bend = share * *bend +
+            growth * (found.slope * fade.slope.transpose() + fade.slope * found.slope.transpose()) +
+            (6 - 12 * w) * found.height * fade.slope * fade.slope.transpose();
+  found.slope = share * found.slope + found.height * found.texture.slope;
+  found.height *= share;
 }
 
 std::size_t TexturePatches::bytes() const {
   std::size_t sum = sizeof *this + patch_of_.capacity() * sizeof(std::int32_t) +
-                    patches_.capacity() * sizeof(Patch) + fades_.capacity() * sizeof(Fade);
+                    patches_.capacity() * sizeof(TexturePatch) + fades_.capacity() * sizeof(Fade);
   for (const auto& texture : textures_) sum += texture->at.bytes();
   return sum;
 }

@@ -7,6 +7,7 @@
 
 #include "geometry/mesh/triangle_mesh.h"
 #include "scene/fourier/laid_textures.h"
+#include "scene/fourier/patch_table.h"
 
 namespace patina {
 
@@ -32,6 +33,8 @@ class TexturePatches {
   // mesh: the object's, world frame. Makes room for 4 bytes a face, 80 a textured one and 32 where
   // it fades.
   TexturePatches(const TriangleMesh& mesh, const LaidTextures& laid);
+  TexturePatches(const TexturePatches&) = delete;
+  TexturePatches& operator=(const TexturePatches&) = delete;
 
   // p [m, world] on or near the face. Servo thread: no allocation. bend, where asked for, becomes
   // the second derivative of the height over the face [1/m].
@@ -43,6 +46,16 @@ class TexturePatches {
   // The same into `found`, which is PatchAt{}.
   void read(std::int32_t face, const Vec3& p, PatchAt& found,
             Eigen::Matrix3d* bend = nullptr) const noexcept;
+  // For a look that has the height and the slope of a patch's texture at p already.
+  void take(const TexturePatch& patch, const Vec3& p, double height, const Vec3& slope,
+            PatchAt& found, Eigen::Matrix3d* bend = nullptr) const noexcept {
+    found.height = height;
+    found.slope = slope;
+    found.texture.of = patch.texture->of;
+    found.texture.share = 1;
+    if (patch.fade >= 0) fadeOut(patch, p, found, bend);
+  }
+  const PatchTable& table() const noexcept { return table_; } // a view
 
   double highest() const { return highest_; } // of |height| anywhere [m]
   double bend() const {
@@ -52,20 +65,20 @@ class TexturePatches {
   std::size_t bytes() const;
 
  private:
-  struct Patch {
-    std::array<Vec2, 4> place;            // {x, y}: at middle_, and by each axis
-    const FeltTexture* texture = nullptr; // of textures_
-    std::int32_t fade = -1;               // place in fades_; -1: none
-  };
   struct Fade {
     double at = 0;             // middle_
     Vec3 slope = Vec3::Zero(); // over the face
   };
   class InnerCorners;
 
+  void fadeOut(const TexturePatch& patch, const Vec3& p, PatchAt& found,
+               Eigen::Matrix3d* bend) const noexcept;
+
   Vec3 middle_ = Vec3::Zero();
   std::vector<std::int32_t> patch_of_; // by face; -1: none
-  std::vector<Patch> patches_;
+  std::vector<TexturePatch> patches_;
+  std::vector<PatchTexture> patch_textures_; // of textures_
+  PatchTable table_{};
   std::vector<Fade> fades_;
   std::vector<std::shared_ptr<const FeltTexture>> textures_;
   double highest_ = 0, bend_ = 0, stiffest_ = 0;

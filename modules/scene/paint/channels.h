@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/types.h"
+
 namespace patina {
 
 // What a contact is made of at one point. SI. Members are all channels, in the order of kChannels.
@@ -18,6 +20,13 @@ struct Material {
   double damping = 0;          // B [N s/m]
   double roughness = 0;        // [m], rms height of a fine pattern
   bool operator==(const Material&) const = default;
+};
+
+// How what is felt changes about a point: of the trilinear interpolant, in the world; zero where
+// the channel is not painted.
+struct MaterialGradients {
+  Vec3 stiffness = Vec3::Zero(); // [N/m^2]
+  Vec3 roughness = Vec3::Zero(); // dimensionless
 };
 
 enum class MaterialChannel : std::uint8_t {

@@ -176,10 +176,6 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   samples->per_voxel = 1 / map.voxel();
   samples->first = table.first;
   samples->blocks = table.count;
-  for (Eigen::Index a = 0; a < 3; ++a) {
-    samples->first_node[a] = kMaterialSide * table.first[static_cast<std::size_t>(a)];
-    samples->node_count[a] = kMaterialSide * table.count[static_cast<std::size_t>(a)];
-  }
   samples->painted = painted;
   for (const Channel& row : kChannels)
     if (painted[static_cast<std::size_t>(row.channel)])
@@ -218,62 +214,6 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
       most = std::max(most, extremes.most[c]);
     }
   return samples;
-}
-
-namespace {
-
-using Two = double __attribute__((vector_size(16)));
-
-Two pairOf(const double* first, const double* second) noexcept {
-  return Two{*first, *second};
-}
-Two blend(Two from, Two to, double part) noexcept {
-  // a + f (b - a) is exact for equal ends: where nothing is painted the base stays itself.
-  return from + part * (to - from);
-}
-double blend(Two ends, double part) noexcept {
-  return ends[0] + part * (ends[1] - ends[0]);
-}
-
-} // namespace
-
-void readMaterial(const MaterialSamples& samples, const Vec3& p, Material& material,
-                  MaterialGradients& gradients) noexcept {
-  const Vec3 q = (p - samples.origin) * samples.per_voxel;
-  std::array<unsigned, 3> node{};
-  std::array<double, 3> part{};
-  std::size_t cell = 0;
-  for (std::size_t a = 3; a-- > 0;) {
-    // In nodes of the table; NaN fails the comparison.
-    const auto axis = static_cast<Eigen::Index>(a);
-    const double x = q[axis] - samples.first_node[axis];
-    if (!(x >= 0 && x < samples.node_count[axis])) return;
-    const int whole = static_cast<int>(x);
-    const auto i = static_cast<unsigned>(whole);
-    part[a] = x - whole;
-    node[a] = i % kMaterialSide;
-    cell = cell * static_cast<std::size_t>(samples.blocks[a]) + i / kMaterialSide;
-  }
-  const std::int32_t slot = samples.top[cell];
-  if (slot < 0) return;
-  const std::size_t right = samples.channels, up = right * kSide, above = up * kSide;
-  const double* low = samples.nodes[static_cast<std::size_t>(slot)] + node[2] * above +
-                      node[1] * up + node[0] * right;
-  for (std::size_t c = 0; c < right; ++c, ++low) {
-    // Pairs are those of the lower and of the upper layer.
-    const Two n00 = pairOf(low, low + above), n10 = pairOf(low + up, low + up + above),
-              x00 = pairOf(low + right, low + right + above) - n00,
-              x10 = pairOf(low + up + right, low + up + right + above) - n10;
-    const Two front = n00 + part[0] * x00, back = n10 + part[0] * x10, between = back - front,
-              ends = front + part[1] * between;
-    const auto value = samples.value[c];
-    material.*value = blend(ends, part[2]);
-    const bool stiffness = value == &Material::stiffness;
-    if (stiffness || value == &Material::roughness)
-      (stiffness ? gradients.stiffness : gradients.roughness) =
-          samples.per_voxel * Vec3(blend(blend(x00, x10, part[1]), part[2]),
-                                   blend(between, part[2]), ends[1] - ends[0]);
-  }
 }
 
 } // namespace patina

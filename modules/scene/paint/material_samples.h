@@ -1,4 +1,4 @@
-// Painted material as the servo reads it (K22, K23).
+// Painted material as the servo reads it, by MaterialReader (K22, K23).
 #pragma once
 
 #include <array>
@@ -21,8 +21,7 @@ struct MaterialSamples {
   Vec3 origin = Vec3::Zero(); // [m], object frame
   double per_voxel = 0;       // [1/m]
   std::array<int, 3> first{}, blocks{};
-  Vec3 first_node = Vec3::Zero(), node_count = Vec3::Zero(); // the same in nodes
-  std::vector<std::int32_t> top;                             // slot, -1 = base everywhere
+  std::vector<std::int32_t> top; // slot, -1 = base everywhere
   std::vector<std::shared_ptr<const MaterialSampleBlock>> block;
   std::vector<const double*> nodes; // of each block
   std::vector<Extremes> extremes;   // by slot
@@ -35,23 +34,10 @@ struct MaterialSamples {
   std::size_t bytes() const;
 };
 
-// How what is felt changes about a point: of the trilinear interpolant, object frame; zero where
-// the channel is not painted.
-struct MaterialGradients {
-  Vec3 stiffness = Vec3::Zero(); // [N/m^2]
-  Vec3 roughness = Vec3::Zero(); // dimensionless
-};
-
 // `before` (made from an earlier version of `map` with the same base) keeps blocks whose layers are
 // the same; nullptr makes all. Null if nothing is painted.
 std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, const Material& base,
                                                        const MaterialMap* map_before,
                                                        const MaterialSamples* before);
-
-// Servo thread: constant time, no allocation. p in metres, object frame. Channels that are painted
-// somewhere come into `material`, which is the base, and into `gradients`, which are
-// MaterialGradients{}.
-void readMaterial(const MaterialSamples& samples, const Vec3& p, Material& material,
-                  MaterialGradients& gradients) noexcept;
 
 } // namespace patina

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "field/sampling/four.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/tree/triangle_tree.h"
+#include "scene/paint/texture_look.h"
 
 namespace patina {
 namespace {
@@ -28,30 +28,12 @@ struct PackedFace {
   Vec2 uvAt(std::size_t k) const noexcept { return {uv[2 * k], uv[2 * k + 1]}; }
 };
 
-// Over a face: its barycentric coordinates and the height above it, affine from its first corner
-// on. Textures alone are read by it, a cache line a face: no corner is unpacked, nothing divided.
-struct alignas(64) FaceFrame {
-  // {w1, w2, above} by each axis; in the last lanes the faces across the edges from corner 0, 1, 2.
-  std::array<Int4, 3> lanes{};
-  std::array<float, 3> corner{};
-
-  std::int32_t across(std::size_t edge) const noexcept { return lanes[edge][3]; }
-  Float4 at(const Vec3& p) const noexcept { // {w1, w2, above, 0}
-    constexpr Int4 kThree = {-1, -1, -1, 0};
-    const auto x = static_cast<float>(p.x() - static_cast<double>(corner[0])),
-               y = static_cast<float>(p.y() - static_cast<double>(corner[1])),
-               z = static_cast<float>(p.z() - static_cast<double>(corner[2]));
-    return x * (Float4)(lanes[0] & kThree) + y * (Float4)(lanes[1] & kThree) +
-           z * (Float4)(lanes[2] & kThree);
-  }
-};
-
 FaceFrame frameOf(const PackedFace& face) {
   const Vec3 a = face.at(0), along1 = face.at(1) - a, along2 = face.at(2) - a;
   const Vec3 normal = along1.cross(along2);
   const double squared = normal.squaredNorm();
-  FaceFrame frame;
-  std::copy_n(face.corner.begin(), 3, frame.corner.begin());
+  FaceFrame frame{};
+  std::copy_n(face.corner.begin(), 3, std::begin(frame.corner));
   std::array<Vec3, 3> by{Vec3::Zero(), Vec3::Zero(),
                          Vec3::Zero()}; // of no area: nothing is over it
   if (squared > 0)
@@ -67,11 +49,11 @@ FaceFrame frameOf(const PackedFace& face) {
   return frame;
 }
 
+const TextureLook kLook = textureLook();
+
 constexpr int kMostSteps = 64;
 // Steps across edges that bring the point no nearer: half way round a vertex they may be needed.
 constexpr int kMostStalls = 8;
-constexpr double kWellWithin = 1e-3; // of a barycentric coordinate
-constexpr int kMostCrossed = 4;      // edges, before a walk begins that unpacks corners and divides
 
 } // namespace
 
@@ -80,6 +62,8 @@ class ReliefFaces {
   Vec3 middle = Vec3::Zero();
   std::vector<PackedFace> faces;
   std::vector<FaceFrame> frames; // where no image is read
+  FaceTable table{};             // of them
+  std::size_t count = 0;         // of faces
 };
 
 std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& mesh, const CornerUvs& uvs) {
@@ -90,6 +74,7 @@ std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& mesh, const C
   if (!box.isEmpty()) packed->middle = box.center();
   const Adjacency neighbours = adjacency(mesh);
   packed->faces.resize(mesh.triangles.size());
+  packed->count = packed->faces.size();
   for (std::size_t f = 0; f < packed->faces.size(); ++f) {
     PackedFace& face = packed->faces[f];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -106,6 +91,8 @@ std::shared_ptr<const ReliefFaces> reliefFaces(const TriangleMesh& mesh, const C
   if (uvs.empty()) {
     packed->frames.reserve(packed->faces.size());
     for (const PackedFace& face : packed->faces) packed->frames.push_back(frameOf(face));
+    std::copy_n(packed->middle.data(), 3, std::begin(packed->table.middle));
+    packed->table.frames = packed->frames.data();
   }
   return packed;
 }
@@ -129,7 +116,8 @@ Foot footWithin(const PackedFace& face, std::int32_t f, const Vec3& p) noexcept 
   const Vec3 a = face.at(0), r = p - a, along1 = face.at(1) - a, along2 = face.at(2) - a;
   const Vec3 normal = along1.cross(along2);
   const double squared = normal.squaredNorm(), one = r.cross(along2).dot(normal),
-               two = along1.cross(r).dot(normal), least = kWellWithin * squared;
+               two = along1.cross(r).dot(normal),
+               least = static_cast<double>(kWellWithin) * squared;
   if (!(one > least && two > least && squared - one - two > least)) return {};
   const double per = 1 / squared, above = r.dot(normal);
   return {f, Vec3((squared - one - two) * per, one * per, two * per), above * above * per};
@@ -176,25 +164,6 @@ Foot walk(const ReliefFaces& mesh, const Vec3& p, std::int32_t start) noexcept {
     }
   }
   return best;
-}
-
-// The face that p is well over, near_face or one that a few steps across edges lead to, each time
-// the edge that p is farthest outside of; -1: the walk has to tell. above: it [m].
-std::int32_t faceUnder(const ReliefFaces& mesh, std::int32_t near_face, const Vec3& p,
-                       double& above) noexcept {
-  constexpr auto kLeast = static_cast<float>(kWellWithin);
-  for (int crossed = 0; crossed <= kMostCrossed; ++crossed) {
-    const FaceFrame& frame = mesh.frames[static_cast<std::size_t>(near_face)];
-    const Float4 at = frame.at(p);
-    const float least = std::min(at[0], at[1]), rest = 1 - (at[0] + at[1]);
-    above = static_cast<double>(at[2]);
-    if (std::min(least, rest) > kLeast) return near_face;
-    if (std::min(least, rest) > 0) return -1; // on an edge
-    // Corner k lies across the edge from k + 1 to k + 2.
-    near_face = frame.across(rest <= least ? 1 : at[0] <= at[1] ? 2 : 0);
-    if (near_face < 0) return -1;
-  }
-  return -1;
 }
 
 struct Cubic {
@@ -288,22 +257,13 @@ void readImage(const ReliefSurface& relief, const PackedFace& face, const Foot& 
 
 } // namespace
 
-ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
-                  Eigen::Matrix3d* bend) noexcept {
-  ReliefAt at;
+namespace {
+
+// By the closest point of all: beside edges, and where an image is read.
+void readClosest(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face, ReliefAt& at,
+                 Eigen::Matrix3d* bend) noexcept {
   const ReliefFaces& mesh = *relief.faces;
-  if (bend) bend->setZero();
-  if (near_face < 0 || static_cast<std::size_t>(near_face) >= mesh.faces.size()) return at;
-  if (!mesh.frames.empty() && relief.textures && !bend) {
-    double above = 0;
-    at.face = faceUnder(mesh, near_face, c - mesh.middle, above);
-    if (at.face >= 0) {
-      at.distance = std::abs(above);
-      relief.textures->read(at.face, c, at);
-      return at;
-    }
-  }
-  if (!c.allFinite()) return at;
+  if (!c.allFinite()) return;
   const Foot foot = walk(mesh, c - mesh.middle, near_face);
   at.face = foot.face;
   at.distance = std::sqrt(foot.squared);
@@ -322,6 +282,30 @@ ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_
     at.texture = patch.texture;
     if (bend) *bend += bent;
   }
+}
+
+} // namespace
+
+ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
+                  Eigen::Matrix3d* bend) noexcept {
+  ReliefAt at;
+  const ReliefFaces& mesh = *relief.faces;
+  if (bend) bend->setZero();
+  if (static_cast<std::size_t>(near_face) >= mesh.count) return at;
+  if (mesh.table.frames && relief.textures && !bend) {
+    TextureFoot foot;
+    kLook(mesh.table, relief.textures->table(), c.x(), c.y(), c.z(), near_face, foot);
+    if (foot.face >= 0) {
+      at.face = foot.face;
+      at.distance = static_cast<double>(std::abs(foot.above));
+      if (foot.patch && foot.patch->texture->line.cells)
+        relief.textures->take(*foot.patch, c, foot.height, Vec3(foot.slope), at);
+      else if (foot.patch)
+        relief.textures->read(foot.face, c, at);
+      return at;
+    }
+  }
+  readClosest(relief, c, near_face, at, bend);
   return at;
 }
 

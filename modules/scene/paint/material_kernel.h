@@ -1,0 +1,77 @@
+// The look into painted material, compiled once for every instruction set: a source defines
+// PATINA_KERNEL (a name of its own) and includes this. It must use no inline function of another
+// header, else the linker could keep the wrong copy for the whole program.
+#pragma once
+
+#include "field/sampling/four.h"
+#include "scene/paint/material_view.h"
+
+namespace patina::PATINA_KERNEL {
+
+using Four = double __attribute__((vector_size(32)));
+using Stored = double __attribute__((vector_size(32), aligned(8)));
+using Two = double __attribute__((vector_size(16)));
+using Mask4 = std::int64_t __attribute__((vector_size(32)));
+
+[[gnu::always_inline]] inline Four load(const double (&from)[4]) noexcept {
+  return *reinterpret_cast<const Stored*>(from);
+}
+
+// All of the first three.
+[[gnu::always_inline]] inline bool holds(Mask4 mask) noexcept {
+#if defined(__AVX2__)
+  return (__builtin_ia32_movmskpd256((Four)mask) & 7) == 7;
+#else
+  return (mask[0] & mask[1] & mask[2]) != 0;
+#endif
+}
+
+// The lower and the upper layer at a node and at the one above it along y.
+[[gnu::always_inline]] inline Four fourAt(const double* low, std::int32_t up,
+                                          std::int32_t above) noexcept {
+  return Four{low[0], low[above], low[up], low[up + above]};
+}
+
+bool lookUp(const MaterialView& view, const double* p, double (*found)[4]) noexcept {
+  const Four q = p[0] * load(view.node_of_world[0]) + p[1] * load(view.node_of_world[1]) +
+                 (p[2] * load(view.node_of_world[2]) + load(view.node_of_world[3]));
+  if (!holds((q >= 0) & (q < load(view.count)))) return false; // NaN as well
+  const Int4 whole = __builtin_convertvector(q, Int4);
+  const Four part = q - __builtin_convertvector(whole, Four);
+  Int4 block_step, step;
+  __builtin_memcpy(&block_step, view.block_step, sizeof block_step);
+  __builtin_memcpy(&step, view.step, sizeof step);
+  const Int4 cells = (whole >> 3) * block_step, nodes = (whole & 7) * step;
+  // Both sums at once.
+  const Int4 halves = __builtin_shufflevector(cells, nodes, 0, 4, 1, 5) +
+                      __builtin_shufflevector(cells, nodes, 2, 6, 3, 7),
+             sums = halves + __builtin_shufflevector(halves, halves, 2, 3, 2, 3);
+  const std::int32_t slot = view.top[sums[0]];
+  if (slot < 0) return false;
+  const double* low = view.nodes[slot] + sums[1];
+  const std::int32_t right = step[0], up = step[1], above = step[2];
+  const double fx = part[0], fy = part[1], fz = part[2];
+  for (std::size_t c = 0; c < view.channels; ++c, ++low) {
+    // a + f (b - a) is exact for equal ends: where nothing is painted the base stays itself.
+    const Four left = fourAt(low, up, above), along_x = fourAt(low + right, up, above) - left,
+               at_x = left + fx * along_x;
+    const Two front = __builtin_shufflevector(at_x, at_x, 0, 1),
+              back = __builtin_shufflevector(at_x, at_x, 2, 3), along_y = back - front,
+              ends = front + fy * along_y,
+              x_front = __builtin_shufflevector(along_x, along_x, 0, 1),
+              x_back = __builtin_shufflevector(along_x, along_x, 2, 3),
+              x_ends = x_front + fy * (x_back - x_front);
+    const Two lower = __builtin_shufflevector(ends, x_ends, 0, 2),
+              upper = __builtin_shufflevector(ends, x_ends, 1, 3),
+              of_both = lower + fz * (upper - lower);
+    const double gx = of_both[1], gy = along_y[0] + fz * (along_y[1] - along_y[0]),
+                 gz = ends[1] - ends[0];
+    Four at =
+        gx * load(view.by_world[0]) + gy * load(view.by_world[1]) + gz * load(view.by_world[2]);
+    at[3] = of_both[0];
+    *reinterpret_cast<Stored*>(found[c]) = at;
+  }
+  return true;
+}
+
+} // namespace patina::PATINA_KERNEL

@@ -1,0 +1,27 @@
+// Painted material read at a point of the world (K22, K23).
+#pragma once
+
+#include "scene/paint/material_samples.h"
+#include "scene/paint/material_view.h"
+
+namespace patina {
+
+// A view: the samples must outlive it.
+class MaterialReader {
+ public:
+  MaterialReader(const MaterialSamples& samples, const Pose& object_from_world);
+
+  // Servo thread: constant time, no allocation. p in metres, world. Channels that are painted
+  // somewhere come into `material`, which is the base, and into `gradients`, which are
+  // MaterialGradients{}.
+  void read(const Vec3& p, Material& material, MaterialGradients& gradients) const noexcept;
+
+  const MaterialView& view() const noexcept { return view_; }
+
+ private:
+  MaterialView view_;
+  std::array<double Material::*, kMaterialChannels> value_; // of each painted channel
+  std::array<Vec3 MaterialGradients::*, kMaterialChannels> gradient_;
+};
+
+} // namespace patina

@@ -1,0 +1,19 @@
+#define PATINA_KERNEL texture_plain
+#include "scene/paint/texture_kernel.h"
+#undef PATINA_KERNEL
+
+namespace patina {
+namespace texture_avx2 {
+void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
+               std::int32_t near_face, TextureFoot& foot) noexcept; // texture_avx2.cpp
+}
+
+TextureLook textureLook() noexcept {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    return &texture_avx2::lookUnder;
+#endif
+  return &texture_plain::lookUnder;
+}
+
+} // namespace patina

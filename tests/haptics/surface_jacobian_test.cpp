@@ -1,0 +1,152 @@
+// J of the closest point (F6) against closed forms.
+#include <gtest/gtest.h>
+
+#include "haptics/contact/cell_jacobian.h"
+#include "haptics/contact/pull_back.h"
+#include "haptics/painted_fixture.h"
+
+namespace patina {
+
+namespace jacobian_plain { // surface_jacobian.cpp
+bool jacobianOf(const Float4* low, float x, float y, float z, const double* n, double depth,
+                double iso, Float4* columns) noexcept;
+}
+
+namespace {
+
+Vec3 directionAt(std::mt19937& random) {
+  std::normal_distribution<double> any;
+  return Vec3(any(random), any(random), any(random)).normalized();
+}
+
+Eigen::Matrix3d matrixOf(const SurfaceJacobian& jacobian) {
+  Eigen::Matrix3d m;
+  for (int i = 0; i < 3; ++i) m.col(i) = jacobian * Vec3::Unit(i);
+  return m;
+}
+
+// The largest error of J at random places of a ball, or of a hollow of its size. The point on the
+// surface is R / rho times as far round as the tip, rho the tip's distance from the middle.
+double ballError(int cells, bool hollow, double iso, double depth) {
+  const double R = 0.03, sign = hollow ? -1 : 1, voxel = 2 * R / (cells - 16);
+  const Field field = cubeField([=](const Vec3& p) { return sign * (p.norm() - R); }, voxel, cells);
+  const FieldSampler sampler(*field, Sampler::high);
+  std::mt19937 random(3);
+  double worst = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 n = directionAt(random);
+    BandCell cell;
+    EXPECT_TRUE(sampler.cellAt(sampler.toGrid((R + sign * iso * voxel) * n), cell));
+    const double rho = R + sign * (iso - depth) * voxel;
+    const Eigen::Matrix3d truth = R / rho * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    worst = std::max(worst, (matrixOf(SurfaceJacobian(cell, sign * n, depth, iso)) - truth).norm());
+  }
+  return worst;
+}
+
+TEST(SurfaceJacobian, IsThatOfABallAndOfAHollowWhereverTheSurfaceIsSeen) {
+  for (const bool hollow : {false, true})
+    for (const double iso : {0.0, 1.5, 4.0})
+      for (const double depth : {-1.0, 0.5, 3.0, 6.0}) {
+        const double coarse = ballError(76, hollow, iso, depth),
+                     fine = ballError(136, hollow, iso, depth);
+        SCOPED_TRACE(testing::Message() << hollow << ", iso " << iso << ", depth " << depth << ": "
+                                        << coarse << " " << fine);
+        EXPECT_LT(coarse, 8e-3);
+        EXPECT_LT(fine, std::max(0.6 * coarse, 1e-5)); // of voxels half as large
+      }
+}
+
+// The tip near the axis of a limb, at it and beyond: J is held at 4 across the axis and stays 1
+// along it.
+TEST(SurfaceJacobian, IsHeldTowardsTheAxisOfALimb) {
+  const double r = 6; // voxels
+  const double voxel = 0.5e-3;
+  const Field field =
+      cubeField([=](const Vec3& p) { return std::hypot(p.x(), p.y()) - r * voxel; }, voxel, 48);
+  const FieldSampler sampler(*field, Sampler::high);
+  for (const double iso : {0.0, 2.0})
+    for (const double share : {0.5, 0.9, 0.99, 1.0, 1.2}) {
+      const double depth = share * (r + iso), exact = r / (r + iso - depth);
+      const Vec3 n = Vec3(3, 4, 0) / 5, around(-n.y(), n.x(), 0);
+      BandCell cell;
+      ASSERT_TRUE(sampler.cellAt(sampler.toGrid((r + iso) * voxel * n), cell));
+      const SurfaceJacobian jacobian(cell, n, depth, iso);
+      SCOPED_TRACE(testing::Message() << "iso " << iso << ", share " << share);
+      EXPECT_NEAR((jacobian * Vec3::UnitZ()).z(), 1, 1e-4);
+      EXPECT_NEAR((jacobian * around).dot(around), share < 1 ? std::min(exact, 4.0) : 4.0, 0.12);
+      EXPECT_NEAR((jacobian * n).norm(), 0, 1e-4);
+    }
+}
+
+// Of a rounded outer edge, seen in front of it, the edge itself does not go round with the tip.
+TEST(SurfaceJacobian, LeavesAnEdgeWhereItIs) {
+  const double voxel = 0.5e-3;
+  const Field field = cubeField(
+      [=](const Vec3& p) {
+        const double x = p.x(), y = p.y();
+        return x > 0 && y > 0 ? std::hypot(x, y) : std::max(x, y);
+      },
+      voxel, 40);
+  const FieldSampler sampler(*field, Sampler::high);
+  const double iso = 5;
+  const Vec3 n = Vec3(1, 1, 0) / std::sqrt(2), around(-n.y(), n.x(), 0);
+  BandCell cell;
+  ASSERT_TRUE(sampler.cellAt(sampler.toGrid(iso * voxel * n), cell));
+  const SurfaceJacobian jacobian(cell, n, 1, iso);
+  EXPECT_NEAR((jacobian * around).norm(), 0, 0.03);
+  EXPECT_NEAR((jacobian * Vec3::UnitZ()).z(), 1, 1e-3);
+}
+
+// What the contact stage found on its way is what a look at the surface itself tells.
+TEST(SurfaceJacobian, OfAContactIsThatOfTheSurfaceItRestsOn) {
+  const double R = 0.03;
+  const Field field = sphereField(R);
+  Scene scene = sceneOf(500);
+  for (const double radius : {0.0, 2e-3}) {
+    if (radius > 0) scene.haptics.tip_radius = radius;
+    const auto map = coveredMap(field->grid.voxel, cube(R + 2e-3), MaterialChannel::stiffness,
+                                [](const Vec3& p) { return 600 + 5e3 * p.x(); });
+    const FeltObject object = feltMaterial(*map, scene);
+    const auto snapshot = compileStages(scene, field, std::span(&object, 1));
+    const FieldSampler sampler(*field, Sampler::high);
+    ContactMemory memory;
+    int known = 0;
+    double worst = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const double t = 2e-3 * i;
+      const Vec3 n(std::sin(1 + 0.3 * t) * std::cos(t), std::sin(1 + 0.3 * t) * std::sin(t),
+                   std::cos(1 + 0.3 * t));
+      Contact contact =
+          tick(*snapshot, memory, (R + radius - 1e-3 - 0.4e-3 * std::sin(9 * t)) * n, 1e-3);
+      if (!contact.touching || !contact.jacobian) continue;
+      ++known;
+      const Eigen::Matrix3d told = matrixOf(*contact.jacobian);
+      worst = std::max(worst, (told - matrixOf(jacobianOf(sampler, contact))).norm());
+    }
+    EXPECT_GT(known, 1900);
+    EXPECT_LT(worst, 3e-3) << "tip of " << radius;
+  }
+}
+
+TEST(SurfaceJacobian, IsTheSameOnEveryProcessor) {
+  const Field field = sphereField();
+  const FieldSampler sampler(*field, Sampler::high);
+  std::mt19937 random(5);
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 n = directionAt(random);
+    BandCell cell;
+    ASSERT_TRUE(sampler.cellAt(sampler.toGrid(0.0305 * n), cell));
+    std::array<Float4, 3> columns{};
+    ASSERT_TRUE(jacobian_plain::jacobianOf(reinterpret_cast<const Float4*>(cell.node), cell.fx,
+                                           cell.fy, cell.fz, n.data(), 2, 1, columns.data()));
+    const Eigen::Matrix3d here = matrixOf(SurfaceJacobian(cell, n, 2, 1));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        ASSERT_NEAR(static_cast<double>(columns[static_cast<std::size_t>(j)][i + 1]), here(i, j),
+                    1e-6);
+  }
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,94 @@
+// From a point to the texture under it, by the kernels of either instruction set.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "scene/fourier/texture_patches.h"
+#include "scene/paint/texture_look.h"
+
+namespace patina {
+
+namespace texture_plain { // texture_look.cpp
+void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
+               std::int32_t near_face, TextureFoot& foot) noexcept;
+}
+
+namespace {
+
+// Two faces of a square of 1 cm, cut from (0, 0) to (1, 1); the second one's right angle is at
+// (0, 1).
+struct Square {
+  TriangleMesh mesh;
+  std::vector<FaceFrame> frames{2};
+  FaceTable faces{};
+
+  Square() {
+    mesh.positions = {Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0.01, 0.01, 0), Vec3(0, 0.01, 0)};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    // w1, w2 and above by x, y and z; across edge 2 of the first and edge 0 of the second lies the
+    // other.
+    const auto bits = [](float value) { return std::bit_cast<std::int32_t>(value); };
+    const std::int32_t side = bits(100), back = bits(-100), one = bits(1);
+    frames[0].lanes[0] = Int4{side, 0, 0, -1};
+    frames[0].lanes[1] = Int4{back, side, 0, -1};
+    frames[0].lanes[2] = Int4{0, 0, one, 1};
+    frames[1].lanes[0] = Int4{side, back, 0, 0};
+    frames[1].lanes[1] = Int4{0, side, 0, -1};
+    frames[1].lanes[2] = Int4{0, 0, one, -1};
+    faces.frames = frames.data();
+  }
+};
+
+TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
+  const Square square;
+  FourierTexture texture;
+  texture.omega = 2 * 3.14159265358979 / 3e-3;
+  for (int j = 1; j <= 40; ++j) {
+    texture.series.a.push_back(1e-5 / j * std::cos(j));
+    texture.series.b.push_back(1e-5 / j * std::sin(j));
+  }
+  texture.low = leastHeight(texture);
+  LaidTextures laid;
+  laid.library[0] = feltTexture(texture);
+  for (std::int32_t f = 0; f < 2; ++f) {
+    TexturedFace face;
+    face.face = f;
+    for (int c = 0; c < 3; ++c)
+      face.at[static_cast<std::size_t>(c)] =
+          square.mesh.corner(static_cast<std::size_t>(f), c).head<2>() + Vec2(1, 0);
+    laid.faces.push_back(face);
+  }
+  const TexturePatches patches(square.mesh, laid);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> in(5e-5, 0.01 - 5e-5), over(-1e-3, 1e-3);
+  int other = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(in(random), in(random), over(random));
+    if (std::abs(p.x() - p.y()) < 5e-5) continue;
+    const std::int32_t own = p.x() > p.y() ? 0 : 1, begin = i % 2;
+    other += begin != own;
+    for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
+      TextureFoot foot;
+      look(square.faces, patches.table(), p.x(), p.y(), p.z(), begin, foot);
+      ASSERT_EQ(foot.face, own);
+      ASSERT_NEAR(static_cast<double>(foot.above), p.z(), 1e-9);
+      ASSERT_NE(foot.patch, nullptr);
+      const TextureValue truth = laid.library[0]->at.at(1 + p.x());
+      ASSERT_NEAR(foot.height, truth.height, 1e-15);
+      ASSERT_NEAR(foot.slope[0], truth.gradient.x(), 1e-11);
+      ASSERT_EQ(foot.slope[1], 0);
+      ASSERT_EQ(foot.slope[2], 0);
+    }
+  }
+  EXPECT_GT(other, 500);
+  for (const Vec3& p : {Vec3(-1e-3, 5e-3, 0), Vec3(5e-3, 5e-3, 0),
+                        Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0)})
+    for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
+      TextureFoot foot;
+      look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot);
+      EXPECT_EQ(foot.face, -1) << "beyond the rim, on an edge, or nowhere";
+    }
+}
+
+} // namespace
+} // namespace patina
