@@ -1,6 +1,8 @@
 #include "scene/paint/material_reader.h"
 
 #include <chrono>
+#include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -87,7 +89,8 @@ TEST(MaterialReader, ReadsInTheWorldWhatLiesInTheObject) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> value(0, 900);
   MaterialMap map(Vec3(1e-3, -2e-3, 0.3e-3), kSampleVoxel);
-  for (const MaterialMap::Index& b : {MaterialMap::Index{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})
+  for (const MaterialMap::Index& b :
+       {MaterialMap::Index{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}})
     for (const auto channel :
          {MaterialChannel::stiffness, MaterialChannel::damping, MaterialChannel::roughness})
       for (float& each : map.writable(b, channel).value)
@@ -105,14 +108,13 @@ TEST(MaterialReader, ReadsInTheWorldWhatLiesInTheObject) {
     reader.read(p, felt.material, felt.gradients);
     return felt;
   };
-  std::uniform_real_distribution<double> in(0.1, 6.9);
+  std::uniform_real_distribution<double> in(0, 15), part(0.1, 0.9);
   constexpr double kStep = 1e-7;
   for (int i = 0; i < 2000; ++i) {
     // Within a cell, so that differences are those of one trilinear.
     const Vec3 cell(std::floor(in(random)), std::floor(in(random)), std::floor(in(random)));
     const Vec3 own =
-        map.origin() + kSampleVoxel * (cell + 0.8 / 6.9 * Vec3(in(random), in(random), in(random)) +
-                                       Vec3::Constant(0.1));
+        map.origin() + kSampleVoxel * (cell + Vec3(part(random), part(random), part(random)));
     const Vec3 p = world_from_object * own;
     const FeltAt felt = at(p);
     const Material told = map.at(own, base);
@@ -135,6 +137,9 @@ TEST(MaterialReader, ReadsTheSameOnEveryProcessor) {
   const auto map =
       coveredMap(kSampleVoxel, cube(12e-3), MaterialChannel::stiffness,
                  [](const Vec3& p) { return 500 + 1e6 * p.x() * p.y() - 2e3 * p.z(); });
+  coveredMap(
+      kSampleVoxel, cube(9e-3), MaterialChannel::damping,
+      [](const Vec3& p) { return 2 + 90 * p.y(); }, map);
   const auto samples = materialSamples(*map, Material{}, nullptr, nullptr);
   const MaterialReader reader(*samples, Pose::Identity());
   std::mt19937 random(8);
@@ -151,6 +156,7 @@ TEST(MaterialReader, ReadsTheSameOnEveryProcessor) {
     }
     ++painted;
     ASSERT_NEAR(found[0][3], felt.material.stiffness, 1e-10);
+    ASSERT_NEAR(found[1][3], felt.material.damping, 1e-12);
     for (int a = 0; a < 3; ++a) ASSERT_NEAR(found[0][a], felt.gradients.stiffness[a], 1e-7);
   }
   EXPECT_GT(painted, 500);

@@ -1,5 +1,9 @@
 // From a point to the texture under it, by the kernels of either instruction set.
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -15,15 +19,18 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
 
 namespace {
 
-// Two faces of a square of 1 cm, cut from (0, 0) to (1, 1); the second one's right angle is at
-// (0, 1).
+const Vec3 kAt(0.3, -0.2, 0.1), kMiddle = kAt + Vec3(0.004, 0.007, 0.001);
+
+// Two faces of a square of 1 cm, cut from kAt to the corner across; the second one's right angle is
+// 1 cm from kAt along y.
 struct Square {
   TriangleMesh mesh;
   std::vector<FaceFrame> frames{2};
   FaceTable faces{};
 
   Square() {
-    mesh.positions = {Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0.01, 0.01, 0), Vec3(0, 0.01, 0)};
+    mesh.positions = {kAt, kAt + Vec3(0.01, 0, 0), kAt + Vec3(0.01, 0.01, 0),
+                      kAt + Vec3(0, 0.01, 0)};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     // w1, w2 and above by x, y and z; across edge 2 of the first and edge 0 of the second lies the
     // other.
@@ -35,6 +42,9 @@ struct Square {
     frames[1].lanes[0] = Int4{side, back, 0, 0};
     frames[1].lanes[1] = Int4{0, side, 0, -1};
     frames[1].lanes[2] = Int4{0, 0, one, -1};
+    for (FaceFrame& frame : frames)
+      for (int a = 0; a < 3; ++a) frame.corner[a] = static_cast<float>(kAt[a] - kMiddle[a]);
+    for (int a = 0; a < 3; ++a) faces.middle[a] = kMiddle[a];
     faces.frames = frames.data();
   }
 };
@@ -63,15 +73,15 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
   std::uniform_real_distribution<double> in(5e-5, 0.01 - 5e-5), over(-1e-3, 1e-3);
   int other = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 p(in(random), in(random), over(random));
-    if (std::abs(p.x() - p.y()) < 5e-5) continue;
-    const std::int32_t own = p.x() > p.y() ? 0 : 1, begin = i % 2;
+    const Vec3 from(in(random), in(random), over(random)), p = kAt + from;
+    if (std::abs(from.x() - from.y()) < 5e-5) continue;
+    const std::int32_t own = from.x() > from.y() ? 0 : 1, begin = i % 2;
     other += begin != own;
     for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
       TextureFoot foot;
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), begin, foot);
       ASSERT_EQ(foot.face, own);
-      ASSERT_NEAR(static_cast<double>(foot.above), p.z(), 1e-9);
+      ASSERT_NEAR(static_cast<double>(foot.above), from.z(), 1e-9);
       ASSERT_NE(foot.patch, nullptr);
       const TextureValue truth = laid.library[0]->at.at(1 + p.x());
       ASSERT_NEAR(foot.height, truth.height, 1e-15);
@@ -81,12 +91,44 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
     }
   }
   EXPECT_GT(other, 500);
-  for (const Vec3& p : {Vec3(-1e-3, 5e-3, 0), Vec3(5e-3, 5e-3, 0),
-                        Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0)})
+  const Vec3 nowhere(std::numeric_limits<double>::quiet_NaN(), 0, 0);
+  for (const Vec3& p : {Vec3(kAt + Vec3(-1e-3, 5e-3, 0)), Vec3(kAt + Vec3(5e-3, 5e-3, 0)), nowhere})
     for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
       TextureFoot foot;
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot);
       EXPECT_EQ(foot.face, -1) << "beyond the rim, on an edge, or nowhere";
+    }
+}
+
+// A face without a texture, and a texture that is more than a line, are found and not looked into.
+TEST(TextureLook, LeavesOtherTexturesToThoseWhoKnowThem) {
+  const Square square;
+  FourierTexture waves;
+  waves.kind = TextureKind::products;
+  waves.omega = 2000;
+  FourierSeries wave;
+  wave.a = {1e-3};
+  wave.b = {0};
+  waves.products = {{wave, wave}};
+  waves.low = leastHeight(waves);
+  LaidTextures laid;
+  laid.library[0] = feltTexture(waves);
+  TexturedFace face;
+  face.face = 0;
+  for (int c = 0; c < 3; ++c)
+    face.at[static_cast<std::size_t>(c)] = square.mesh.corner(0, c).head<2>();
+  laid.faces = {face};
+  const TexturePatches patches(square.mesh, laid);
+  for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)})
+    for (const bool textured : {true, false}) {
+      const Vec3 p = kAt + (textured ? Vec3(7e-3, 2e-3, 0) : Vec3(2e-3, 7e-3, 0));
+      TextureFoot foot;
+      look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot);
+      EXPECT_EQ(foot.face, textured ? 0 : 1);
+      ASSERT_EQ(foot.patch != nullptr, textured);
+      if (!textured) continue;
+      EXPECT_EQ(foot.patch->texture->line.cells, nullptr);
+      EXPECT_EQ(foot.patch->texture->of, laid.library[0].get());
     }
 }
 

@@ -1,5 +1,5 @@
 // A cell of the band whose eight nodes are stored, and the blend of them: what every sample of a
-// field comes down to. Inline, for FieldSampler alone: it is most of a tick.
+// field comes down to. Inline: it is most of a tick.
 #pragma once
 
 #include <cstdint>

@@ -12,10 +12,9 @@ inline constexpr std::size_t kNodeRow = 9, kNodeLayer = 81;
 
 inline constexpr float kMostStretch = 4; // of J, along any direction
 
-// Columns {0, x, y, z} of J by what SurfaceJacobian is made of. node: the lowest of the cell's; x,
-// y, z: of the way along each axis. False where a stretch might be none or more than kMostStretch:
-// then those of H across n.
-using JacobianOfCell = bool (*)(const Float4* node, float x, float y, float z, const double* n,
+// The columns {0, x, y, z} of SurfaceJacobian. node: the lowest of the cell's; x, y, z: how far
+// along each axis the place is, 0 .. 1; the rest as of SurfaceJacobian's constructor.
+using JacobianOfCell = void (*)(const Float4* node, float x, float y, float z, const double* n,
                                 double depth, double iso, Float4* columns) noexcept;
 
 } // namespace patina

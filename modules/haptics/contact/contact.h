@@ -23,7 +23,8 @@ struct Contact {
 
   // tick(): the snapshot's base; MaterialStage: what is painted; TextureStiffnessStage
   Material material;
-  MaterialGradients gradients; // over the surface, in the world
+  // In the world; that of stiffness is 0 unless it is painted and the force conservative.
+  MaterialGradients gradients;
 
   // The contact stage; relief and roughness lower it, down to no contact
   bool touching = false;
@@ -54,8 +55,8 @@ struct Contact {
   Vec3 surface = Vec3::Zero();
   Vec3 vcp = Vec3::Zero(); // p, after FrictionStage; the tip if not touching
 
-  // How surface moves with the tip: ProxyStage where it knows it, else pulledBack() for whichever
-  // stage asks first
+  // How surface moves with the tip: ProxyStage where one wall holds it, else pulledBack() for
+  // whichever stage asks first
   std::optional<SurfaceJacobian> jacobian;
 
   // OwnerStage

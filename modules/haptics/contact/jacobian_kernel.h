@@ -7,6 +7,8 @@
 
 namespace patina::PATINA_KERNEL {
 
+constexpr float kLeastSquare = 1e-16F; // of a difference of curvatures
+
 [[gnu::always_inline]] inline float sumOf(Float4 value) noexcept {
   const Float4 halves = value + __builtin_shufflevector(value, value, 2, 3, 2, 3);
   return halves[0] + halves[1];
@@ -16,7 +18,14 @@ namespace patina::PATINA_KERNEL {
   return Float4{0, static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-bool jacobianOf(const Float4* low, float fx, float fy, float fz, const double* normal, double depth,
+// Of one curvature.
+[[gnu::always_inline]] inline float stretchOf(float bend, float depth, float iso) noexcept {
+  const float part = 1 - iso * bend, by = 1 - depth * bend;
+  if (!(part > 0)) return 0;
+  return part < kMostStretch * by ? part / by : kMostStretch;
+}
+
+void jacobianOf(const Float4* low, float fx, float fy, float fz, const double* normal, double depth,
                 double iso, Float4* columns) noexcept {
   const Float4* high = low + kNodeLayer;
   const float ex = 1 - fx, ey = 1 - fy;
@@ -42,24 +51,27 @@ bool jacobianOf(const Float4* low, float fx, float fy, float fz, const double* n
   // Less what it has along n.
   const Float4 rest = out - along * n, flat_x = h_x - out[1] * n - n[1] * rest,
                flat_y = h_y - out[2] * n - n[2] * rest, flat_z = h_z - out[3] * n - n[3] * rest;
+  // J has the directions of H: it is a P + b H.
   const auto d = static_cast<float>(depth), i = static_cast<float>(iso);
   const float span = (kMostStretch * d - i) * (1.F / 3), spans = span * span, ds = d * d,
               is = i * i, most = ds > is ? ds : is;
-  if (!(squares * (spans > most ? spans : most) < 1)) [[unlikely]] {
-    columns[0] = flat_x;
-    columns[1] = flat_y;
-    columns[2] = flat_z;
-    return false;
+  float of_plane, of_bend;
+  if (squares * (spans > most ? spans : most) < 1) [[likely]] { // no stretch need be held
+    const float product = 0.5F * (sum * sum - squares), less = 1 - d * sum,
+                scale = 1 / (less + ds * product);
+    of_plane = scale * (less + i * d * product);
+    of_bend = scale * (d - i);
+  } else {
+    const float mean = 0.5F * sum, square = 0.5F * squares - mean * mean,
+                half = __builtin_sqrtf(square > kLeastSquare ? square : kLeastSquare),
+                upper = stretchOf(mean + half, d, i), lower = stretchOf(mean - half, d, i);
+    of_bend = 0.5F * (upper - lower) / half;
+    of_plane = 0.5F * (upper + lower) - of_bend * mean;
   }
-  // Of its two eigenvalues the product.
-  const float product = 0.5F * (sum * sum - squares), less = 1 - d * sum,
-              scale = 1 / (less + ds * product), of_plane = scale * (less + i * d * product),
-              of_bend = scale * (d - i);
   const Float4 plane_n = of_plane * n;
   columns[0] = of_bend * flat_x + (Float4{0, of_plane, 0, 0} - n[1] * plane_n);
   columns[1] = of_bend * flat_y + (Float4{0, 0, of_plane, 0} - n[2] * plane_n);
   columns[2] = of_bend * flat_z + (Float4{0, 0, 0, of_plane} - n[3] * plane_n);
-  return true;
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -41,7 +41,7 @@ struct ProxySearch::Seen {
   Vec3 normal = Vec3::Zero();
   bool smooth = false; // no crease here
   bool known = false;  // in the band
-  BandCell cell{};     // if known
+  BandCell cell{};     // if known and curved_
 };
 
 // What the quick way has seen before it gave up.
@@ -61,7 +61,7 @@ ProxySearch::Seen ProxySearch::look(const Vec3& q, double own) const noexcept {
   // With relief baked in gradients are not of length 1, and a blend's length tells no crease.
   if (per_steepness_ < 1) own = std::max(own, kAlwaysSpread);
   Seen seen;
-  const SurfaceSample sample = sampler_->surfaceAtGrid(q, own, &seen.cell);
+  const SurfaceSample sample = sampler_->surfaceAtGrid(q, own, curved_ ? &seen.cell : nullptr);
   seen.height = sample.phi - iso_;
   seen.known = sample.region == FieldRegion::band;
   seen.slope = sample.gradient.norm();
@@ -263,6 +263,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
   ProxyMove move;
   Tried tried;
   if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move, tried)) return move;
+  move.jacobian.reset();
   proxy.turn = {};
   Walls& walls = proxy.walls;
   Vec3 start = proxy.c, anchor = proxy.c;

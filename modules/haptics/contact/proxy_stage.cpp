@@ -40,7 +40,8 @@ void takeWalls(const Walls& walls, const WallProjection& held, double voxel, Con
 ProxyStage::ProxyStage(const FieldSampler& sampler, double iso, double steepness, bool curved)
     : sampler_(sampler), search_(sampler_, iso / sampler.grid().voxel, steepness, curved),
       voxel_(sampler.grid().voxel), iso_(iso * sampler_.perVoxel()), steepness_(steepness),
-      per_steepness_(1 / steepness), snap_speed_(kSnapSides * sideOf(sampler.grid())) {}
+      per_steepness_(1 / steepness), snap_speed_(kSnapSides * sideOf(sampler.grid())),
+      curved_(curved) {}
 
 void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   ContactPointMemory& at = memory.contact;
@@ -103,6 +104,8 @@ void ProxyStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
     contact.normal = contact.wall[0].normal;
   }
   contact.surface = contact.candidate - iso_ * voxel_ * contact.wall[0].normal;
+  if (BandCell cell; curved_ && contact.walls == 1 && sampler_.cellAt(proxy.c, cell))
+    contact.jacobian.emplace(cell, contact.wall[0].normal, depth, iso_);
 }
 
 // Whether the tip has come into contact, and where.

@@ -36,6 +36,7 @@ class ProxyStage final : public ForceStage {
   double iso_; // voxels
   double steepness_, per_steepness_;
   double snap_speed_; // [m/s]
+  bool curved_;
 };
 
 } // namespace patina

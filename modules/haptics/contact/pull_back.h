@@ -6,7 +6,8 @@
 
 namespace patina {
 
-// Of a surface that is seen at q, in grid coordinates, phi [voxel] from the tip.
+// J by a look at the surface itself, at q in grid coordinates; n: unit, outward there; phi [voxel]:
+// of the tip, positive outside.
 SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q, const Vec3& n,
                                      double phi) noexcept;
 

@@ -11,9 +11,10 @@ namespace patina {
 // J of the closest point c (F6), by the curvature H, across n, of a level set that was seen `iso`
 // in front of c and `depth` in front of the tip:
 //   J = (P - iso H) (I - depth H)^-1,  P = I - n n^T.
-// H is that of one cell, O(h) of itself, in single precision as the nodes are. Symmetric; the
-// gradient by the tip of what is read at c is J times its gradient over the surface. Towards a
-// medial axis J grows beyond bounds; it is held at 4.
+// H is that of one cell, O(h) of itself, in single precision as the nodes are, of a phi that grows
+// by 1 a voxel. Symmetric; the gradient by the tip of what is read at c is J times its gradient
+// over the surface. Its stretches are held within 0, as where c stays on an edge, and 4: towards a
+// medial axis they grow beyond bounds.
 class SurfaceJacobian {
  public:
   // n: unit; lengths in voxels.

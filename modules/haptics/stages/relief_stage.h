@@ -1,6 +1,7 @@
 // Relief read at the contact's closest point: not a voxel of it is in the field (K21, F6, F8).
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -47,7 +48,8 @@ class Reliefs {
       return {};
     }
     ReliefAt found = reliefAt(*surface, c, walk.object == object ? walk.face : -1, bend);
-    if (found.face < 0 || found.distance > lost_ || surface->image) [[unlikely]]
+    if (found.face < 0 || found.distance > lost_ ||
+        (surface->image && std::abs(found.height) > felt_[i].highest)) [[unlikely]]
       mend(felt_[i], c, found, bend);
     walk = {object, found.face};
     return found;

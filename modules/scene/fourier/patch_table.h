@@ -1,6 +1,7 @@
 // Textured faces, plain enough for a kernel of any instruction set (TexturePatches).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "scene/fourier/series_value.h"
@@ -24,6 +25,7 @@ struct PatchTable {
   double middle[4]; // [m, world]; the last is -1: a place less it ends in 1, as x and y do
   const std::int32_t* patch_of; // by face; -1: none
   const TexturePatch* patches;
+  std::size_t faces;
 };
 
 } // namespace patina

@@ -161,7 +161,10 @@ TexturePatches::TexturePatches(const TriangleMesh& mesh, const LaidTextures& lai
                                 6 * of.highest * ends * ends);
     stiffest_ = std::max(stiffest_, of.stiffness);
   }
-  table_ = {{middle_.x(), middle_.y(), middle_.z(), -1}, patch_of_.data(), patches_.data()};
+  table_ = {{middle_.x(), middle_.y(), middle_.z(), -1},
+            patch_of_.data(),
+            patches_.data(),
+            patch_of_.size()};
 }
 
 void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
@@ -199,7 +202,8 @@ void TexturePatches::fadeOut(const TexturePatch& patch, const Vec3& p, PatchAt& 
 }
 
 std::size_t TexturePatches::bytes() const {
-  std::size_t sum = sizeof *this + patch_of_.capacity() * sizeof(std::int32_t) +
+  std::size_t sum = sizeof *this + patch_textures_.capacity() * sizeof(PatchTexture) +
+                    patch_of_.capacity() * sizeof(std::int32_t) +
                     patches_.capacity() * sizeof(TexturePatch) + fades_.capacity() * sizeof(Fade);
   for (const auto& texture : textures_) sum += texture->at.bytes();
   return sum;

@@ -22,7 +22,7 @@ struct FaceTable {
 };
 
 inline constexpr float kWellWithin = 1e-3F; // of a barycentric coordinate
-inline constexpr int kMostCrossed =
-    4; // edges, before a walk begins that unpacks corners and divides
+// Edges, before a walk begins that unpacks corners and divides.
+inline constexpr int kMostCrossed = 4;
 
 } // namespace patina

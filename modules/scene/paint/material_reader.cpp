@@ -11,6 +11,8 @@ bool lookUp(const MaterialView& view, const double* p,
 }
 namespace {
 
+static_assert(kMaterialSide == 8); // material_kernel.h
+
 MaterialLook lookOfThisProcessor() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
@@ -18,8 +20,6 @@ MaterialLook lookOfThisProcessor() {
 #endif
   return &material_plain::lookUp;
 }
-
-const MaterialLook kLook = lookOfThisProcessor();
 
 } // namespace
 
@@ -39,8 +39,10 @@ MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& objec
     view_.count[a] = kMaterialSide * samples.blocks[i];
     view_.block_step[a] = block_step;
     view_.step[a] = step;
-    block_step *= samples.blocks[i];
-    step *= kMaterialSide + 1;
+    if (a < 2) {
+      block_step *= samples.blocks[i];
+      step *= kMaterialSide + 1;
+    }
   }
   view_.count[3] = 1;
   view_.top = samples.top.data();
@@ -54,6 +56,7 @@ MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& objec
 
 void MaterialReader::read(const Vec3& p, Material& material,
                           MaterialGradients& gradients) const noexcept {
+  static const MaterialLook kLook = lookOfThisProcessor();
   alignas(32) double found[kMaterialChannels][4];
   if (!kLook(view_, p.data(), found)) return;
   for (std::size_t c = 0; c < view_.channels; ++c) {

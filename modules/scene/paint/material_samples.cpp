@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 namespace patina {
 
@@ -169,6 +171,8 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   const bool keeps = before && map_before && before->painted == painted && before->base == base &&
                      map_before->origin() == map.origin() && map_before->voxel() == map.voxel();
   Table<char> table = tableAround(map);
+  if (table.cells.size() > std::numeric_limits<std::int32_t>::max())
+    throw std::length_error("materialSamples: paint lies too far apart");
   mark(map, keeps ? map_before : nullptr, table);
 
   auto samples = std::make_shared<MaterialSamples>();

@@ -49,8 +49,6 @@ FaceFrame frameOf(const PackedFace& face) {
   return frame;
 }
 
-const TextureLook kLook = textureLook();
-
 constexpr int kMostSteps = 64;
 // Steps across edges that bring the point no nearer: half way round a vertex they may be needed.
 constexpr int kMostStalls = 8;
@@ -255,10 +253,6 @@ void readImage(const ReliefSurface& relief, const PackedFace& face, const Foot& 
   }
 }
 
-} // namespace
-
-namespace {
-
 // By the closest point of all: beside edges, and where an image is read.
 void readClosest(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face, ReliefAt& at,
                  Eigen::Matrix3d* bend) noexcept {
@@ -292,7 +286,9 @@ ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_
   const ReliefFaces& mesh = *relief.faces;
   if (bend) bend->setZero();
   if (static_cast<std::size_t>(near_face) >= mesh.count) return at;
-  if (mesh.table.frames && relief.textures && !bend) {
+  if (mesh.table.frames && relief.textures && !bend &&
+      mesh.count <= relief.textures->table().faces) {
+    static const TextureLook kLook = textureLook();
     TextureFoot foot;
     kLook(mesh.table, relief.textures->table(), c.x(), c.y(), c.z(), near_face, foot);
     if (foot.face >= 0) {
