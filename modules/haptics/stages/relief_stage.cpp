@@ -29,7 +29,7 @@ double steepnessOf(const Contact& contact) noexcept {
 
 // `depth` becomes that along n, and the normal leans by `slope` more. n - slope is longer than 1:
 // of a potential, the depth along the leaning normal is not the distance. steepness: as it was.
-void settle(Contact& contact, double depth, const Vec3& slope, double steepness) noexcept {
+[[gnu::always_inline]] inline void settle(Contact& contact, double depth, const Vec3& slope, double steepness) noexcept {
   if (!(depth > 0)) {
     notTouching(contact);
     return;
@@ -48,7 +48,7 @@ void settle(Contact& contact, double depth, const Vec3& slope, double steepness)
 }
 
 // d -= gap.
-void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
+[[gnu::always_inline]] inline void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
   if (gap == 0 && slope.isZero(0)) return;
   const double steepness = steepnessOf(contact);
   settle(contact, contact.depth / steepness - gap, slope, steepness);
@@ -57,12 +57,14 @@ void lower(Contact& contact, double gap, const Vec3& slope) noexcept {
 // By how much the relief itself has moved the VCP since the last tick, at most.
 void announceStep(Contact& contact, TextureMemory& memory, double height,
                   const Vec3& slope) noexcept {
-  const TextureMemory::Felt now{height, contact.depth,
-                                contact.touching ? slope : Vec3(Vec3::Zero())};
+  TextureMemory::Felt now{height, contact.depth, slope, slope.squaredNorm()};
+  if (!contact.touching) {
+    now.slope.setZero();
+    now.steep = 0;
+  }
   if (const auto& last = memory.last)
     contact.relief_step +=
-        std::abs(now.height - last->height) *
-            std::sqrt(1 + std::max(now.slope.squaredNorm(), last->slope.squaredNorm())) +
+        std::abs(now.height - last->height) * std::sqrt(1 + std::max(now.steep, last->steep)) +
         std::max(now.depth, last->depth) * (now.slope - last->slope).norm();
   memory.last = now;
 }

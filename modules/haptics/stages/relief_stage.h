@@ -25,6 +25,7 @@ struct TextureMemory {
     double height = 0; // [m]
     double depth = 0;  // [m]
     Vec3 slope = Vec3::Zero();
+    double steep = 0; // its square
   };
   std::optional<Felt> last; // a tick ago
 };

@@ -32,10 +32,11 @@ using Mask4 = std::int64_t __attribute__((vector_size(32)));
   return Four{low[0], low[above], low[up], low[up + above]};
 }
 
-bool lookUp(const MaterialView& view, const double* p, double (*found)[4]) noexcept {
+void lookUp(const MaterialView& view, const double* p, double* material,
+            double* const* gradients) noexcept {
   const Four q = p[0] * load(view.node_of_world[0]) + p[1] * load(view.node_of_world[1]) +
                  (p[2] * load(view.node_of_world[2]) + load(view.node_of_world[3]));
-  if (!holds((q >= 0) & (q < load(view.count)))) return false; // NaN as well
+  if (!holds((q >= 0) & (q < load(view.count)))) return; // NaN as well
   const Int4 whole = __builtin_convertvector(q, Int4);
   const Four part = q - __builtin_convertvector(whole, Four);
   Int4 block_step, step;
@@ -47,7 +48,7 @@ bool lookUp(const MaterialView& view, const double* p, double (*found)[4]) noexc
                       __builtin_shufflevector(cells, nodes, 2, 6, 3, 7),
              sums = halves + __builtin_shufflevector(halves, halves, 2, 3, 2, 3);
   const std::int32_t slot = view.top[sums[0]];
-  if (slot < 0) return false;
+  if (slot < 0) return;
   const double* low = view.nodes[slot] + sums[1];
   const std::int32_t right = step[0], up = step[1], above = step[2];
   const double fx = part[0], fy = part[1], fz = part[2];
@@ -64,14 +65,15 @@ bool lookUp(const MaterialView& view, const double* p, double (*found)[4]) noexc
     const Two lower = __builtin_shufflevector(ends, x_ends, 0, 2),
               upper = __builtin_shufflevector(ends, x_ends, 1, 3),
               of_both = lower + fz * (upper - lower);
+    const MaterialView::Channel& channel = view.channel[c];
+    material[channel.value] = of_both[0];
+    if (channel.gradient < 0) continue;
     const double gx = of_both[1], gy = along_y[0] + fz * (along_y[1] - along_y[0]),
                  gz = ends[1] - ends[0];
-    Four at =
+    const Four at =
         gx * load(view.by_world[0]) + gy * load(view.by_world[1]) + gz * load(view.by_world[2]);
-    at[3] = of_both[0];
-    *reinterpret_cast<Stored*>(found[c]) = at;
+    __builtin_memcpy(gradients[channel.gradient], &at, 3 * sizeof(double));
   }
-  return true;
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -6,12 +6,14 @@
 
 namespace patina {
 namespace material_avx2 {
-bool lookUp(const MaterialView& view, const double* p,
-            double (*found)[4]) noexcept; // material_avx2.cpp
+void lookUp(const MaterialView& view, const double* p, double* material,
+            double* const* gradients) noexcept; // material_avx2.cpp
 }
 namespace {
 
-static_assert(kMaterialSide == 8); // material_kernel.h
+// What material_kernel.h takes for granted.
+static_assert(kMaterialSide == 8);
+static_assert(sizeof(Material) == kMaterialChannels * sizeof(double));
 
 MaterialLook lookOfThisProcessor() {
 #if defined(__x86_64__)
@@ -24,7 +26,7 @@ MaterialLook lookOfThisProcessor() {
 } // namespace
 
 MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& object_from_world)
-    : view_{}, value_(samples.value), gradient_{} {
+    : view_{} {
   const Eigen::Matrix3d by = samples.per_voxel * object_from_world.linear();
   const Vec3 at = samples.per_voxel * (object_from_world.translation() - samples.origin);
   const auto right = static_cast<std::int32_t>(samples.channels);
@@ -48,21 +50,20 @@ MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& objec
   view_.top = samples.top.data();
   view_.nodes = samples.nodes.data();
   view_.channels = samples.channels;
-  for (std::size_t c = 0; c < samples.channels; ++c)
-    gradient_[c] = value_[c] == &Material::stiffness   ? &MaterialGradients::stiffness
-                   : value_[c] == &Material::roughness ? &MaterialGradients::roughness
-                                                       : nullptr;
+  std::size_t c = 0;
+  for (const MaterialChannel channel : kAllMaterialChannels)
+    if (samples.painted[static_cast<std::size_t>(channel)])
+      view_.channel[c++] = {static_cast<std::int32_t>(channel),
+                            channel == MaterialChannel::stiffness   ? 0
+                            : channel == MaterialChannel::roughness ? 1
+                                                                    : -1};
 }
 
 void MaterialReader::read(const Vec3& p, Material& material,
                           MaterialGradients& gradients) const noexcept {
   static const MaterialLook kLook = lookOfThisProcessor();
-  alignas(32) double found[kMaterialChannels][4];
-  if (!kLook(view_, p.data(), found)) return;
-  for (std::size_t c = 0; c < view_.channels; ++c) {
-    material.*value_[c] = found[c][3];
-    if (const auto gradient = gradient_[c]) gradients.*gradient = Vec3(found[c]);
-  }
+  double* const into[] = {gradients.stiffness.data(), gradients.roughness.data()};
+  kLook(view_, p.data(), &material.stiffness, into);
 }
 
 } // namespace patina

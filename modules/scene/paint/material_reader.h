@@ -20,8 +20,6 @@ class MaterialReader {
 
  private:
   MaterialView view_;
-  std::array<double Material::*, kMaterialChannels> value_; // of each painted channel
-  std::array<Vec3 MaterialGradients::*, kMaterialChannels> gradient_;
 };
 
 } // namespace patina

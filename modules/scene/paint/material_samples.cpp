@@ -181,9 +181,7 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   samples->first = table.first;
   samples->blocks = table.count;
   samples->painted = painted;
-  for (const Channel& row : kChannels)
-    if (painted[static_cast<std::size_t>(row.channel)])
-      samples->value[samples->channels++] = row.value;
+  samples->channels = countOf(painted);
   samples->base = samples->least = samples->most = base;
   samples->top.assign(table.cells.size(), -1);
   Table<char> old;

@@ -27,8 +27,7 @@ struct MaterialSamples {
   std::vector<Extremes> extremes;   // by slot
   std::vector<MaterialMap::Index> block_at;
   std::array<bool, kMaterialChannels> painted{};
-  std::size_t channels = 0;                                  // that are painted
-  std::array<double Material::*, kMaterialChannels> value{}; // of each of them
+  std::size_t channels = 0; // that are painted
   Material base;
   Material least, most; // of each channel anywhere, base included
   std::size_t bytes() const;

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "scene/paint/channels.h"
+
 namespace patina {
 
 struct MaterialView {
@@ -14,12 +16,17 @@ struct MaterialView {
   const std::int32_t* top;
   const double* const* nodes;          // of each slot
   std::int32_t block_step[4], step[4]; // along each axis: of `top`; of a block's numbers
+  struct Channel {
+    std::int32_t value;    // which of Material's numbers it is
+    std::int32_t gradient; // 0 or 1; -1: nobody asks
+  };
   std::size_t channels;
+  Channel channel[kMaterialChannels];
 };
 
-// {by x, by y, by z, value} of each channel at p [m, world] into `found`. False where it is the
-// base.
-using MaterialLook = bool (*)(const MaterialView& view, const double* p,
-                              double (*found)[4]) noexcept;
+// At p [m, world]: values of channels into `material`, {by x, by y, by z} of those that are asked
+// for into gradients[0] and [1]. Nothing where it is the base.
+using MaterialLook = void (*)(const MaterialView& view, const double* p, double* material,
+                              double* const* gradients) noexcept;
 
 } // namespace patina
