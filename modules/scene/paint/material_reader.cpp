@@ -13,6 +13,7 @@ namespace {
 
 // What material_kernel.h takes for granted.
 static_assert(kMaterialSide == 8);
+static_assert(MaterialView::kMost == kMaterialChannels);
 static_assert(sizeof(Material) == kMaterialChannels * sizeof(double));
 
 MaterialLook lookOfThisProcessor() {

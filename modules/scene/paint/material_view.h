@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scene/paint/channels.h"
-
 namespace patina {
 
 struct MaterialView {
@@ -20,8 +18,9 @@ struct MaterialView {
     std::int32_t value;    // which of Material's numbers it is
     std::int32_t gradient; // 0 or 1; -1: nobody asks
   };
+  static constexpr std::size_t kMost = 5; // kMaterialChannels
   std::size_t channels;
-  Channel channel[kMaterialChannels];
+  Channel channel[kMost];
 };
 
 // At p [m, world]: values of channels into `material`, {by x, by y, by z} of those that are asked
