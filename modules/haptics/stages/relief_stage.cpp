@@ -29,7 +29,8 @@ double steepnessOf(const Contact& contact) noexcept {
 
 // `depth` becomes that along n, and the normal leans by `slope` more. n - slope is longer than 1:
 // of a potential, the depth along the leaning normal is not the distance. steepness: as it was.
-[[gnu::always_inline]] inline void settle(Contact& contact, double depth, const Vec3& slope, double steepness) noexcept {
+[[gnu::always_inline]] inline void settle(Contact& contact, double depth, const Vec3& slope,
+                                          double steepness) noexcept {
   if (!(depth > 0)) {
     notTouching(contact);
     return;
