@@ -1,4 +1,6 @@
 // The kernel for any processor, and the choice at run time.
+#include "core/processor.h"
+
 #define PATINA_KERNEL packet_plain
 #include "geometry/tree/triangle_packet_kernel.h"
 
@@ -15,7 +17,7 @@ namespace {
 
 bool hasWideLanes() {
 #if defined(__x86_64__)
-  static const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  static const bool wide = hasAvx2();
   return wide;
 #else
   return false;

@@ -1,5 +1,7 @@
 #include "haptics/contact/surface_jacobian.h"
 
+#include "core/processor.h"
+
 #define PATINA_KERNEL jacobian_plain
 #include "haptics/contact/jacobian_kernel.h"
 #undef PATINA_KERNEL
@@ -15,8 +17,7 @@ static_assert(kNodeRow == kRow && kNodeLayer == kLayer);
 
 JacobianOfCell jacobianOfThisProcessor() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return &jacobian_avx2::jacobianOf;
+  if (hasAvx2()) return &jacobian_avx2::jacobianOf;
 #endif
   return &jacobian_plain::jacobianOf;
 }

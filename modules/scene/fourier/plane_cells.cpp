@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/processor.h"
 #include "core/types.h"
 
 #define PATINA_KERNEL cells_plain
@@ -28,7 +29,7 @@ constexpr double kPeak = 5;           // errors over their root mean square
 
 auto lookOfThisProcessor() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return &cells_avx2::lookInto;
+  if (hasAvx2()) return &cells_avx2::lookInto;
 #endif
   return &cells_plain::lookInto;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/processor.h"
+
 #define PATINA_KERNEL series_plain
 #include "scene/fourier/series_cells_kernel.h"
 #undef PATINA_KERNEL
@@ -48,8 +50,7 @@ int cellsFor(const FourierSeries& series, double value_error, double slope_error
 
 SeriesLook lookOfThisProcessor(int rows) {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return series_avx2::seriesLook(rows);
+  if (hasAvx2()) return series_avx2::seriesLook(rows);
 #endif
   return series_plain::seriesLook(rows);
 }

@@ -1,5 +1,7 @@
 #include "scene/paint/material_reader.h"
 
+#include "core/processor.h"
+
 #define PATINA_KERNEL material_plain
 #include "scene/paint/material_kernel.h"
 #undef PATINA_KERNEL
@@ -18,8 +20,7 @@ static_assert(sizeof(Material) == kMaterialChannels * sizeof(double));
 
 MaterialLook lookOfThisProcessor() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return &material_avx2::lookUp;
+  if (hasAvx2()) return &material_avx2::lookUp;
 #endif
   return &material_plain::lookUp;
 }

@@ -1,3 +1,5 @@
+#include "core/processor.h"
+
 #define PATINA_KERNEL texture_plain
 #include "scene/paint/texture_kernel.h"
 #undef PATINA_KERNEL
@@ -10,8 +12,7 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
 
 TextureLook textureLook() noexcept {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return &texture_avx2::lookUnder;
+  if (hasAvx2()) return &texture_avx2::lookUnder;
 #endif
   return &texture_plain::lookUnder;
 }
