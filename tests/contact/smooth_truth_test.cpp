@@ -39,8 +39,7 @@ std::vector<Round> rounds() {
   return {{"ball", 0.03, 4e-4, 0.9, [](const Vec3&) { return Vec3(Vec3::Zero()); }},
           {"limb", 0.004, 0.03, 0.9,
            [](const Vec3& p) { return Vec3(std::clamp(p.dot(kAlong), -0.04, 0.04) * kAlong); }},
-          // 0.75 in the long form; with a look ahead at any rate (kLeastRate in proxy.cpp) 1.7.
-          {"torus", 0.012, 5e-3, 0.7, [](const Vec3& p) {
+          {"torus", 0.012, 5e-3, 0.9, [](const Vec3& p) {
              const Vec3 flat = p - p.dot(kAlong) * kAlong;
              return Vec3(0.032 * flat.normalized());
            }}};

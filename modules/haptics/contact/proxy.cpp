@@ -10,7 +10,8 @@ namespace {
 constexpr double kOnSurface = 1e-5, kHeld = 1e-4;
 constexpr double kAtRest = 3e-3;      // a step that is the last one
 constexpr double kRestError = 3e-4;   // what a step may leave undone where the surface is smooth
-constexpr double kTurnedError = 5e-3; // and before the turn of the surface is taken out of it
+constexpr double kTurnedError = 2e-3; // and before the turn of the surface is taken out of it
+constexpr double kCreaseError = 5e-3; // the same where there may be several walls
 constexpr double kCreaseStep = 0.03;  // the last one where there may be several walls
 constexpr double kMostRate = 0.8;     // of a step, that the next one takes
 constexpr double kLeastRate = 0.06;   // below it a look at the wall as it was finds it as well
@@ -221,9 +222,10 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
                    sum = 1 / (1 - std::min(load * curvature, kMostRate)),
                    left = sum * sum * share * step_squared;
       const bool settles = share < 1;
-      last = settles && step_squared < kMostStep * kMostStep &&
-             (left < kTurnedError * kTurnedError ||
-              (!crease && looks + 1 == kMostSlides && left < kCreaseStep * kCreaseStep));
+      const double most_left = crease                    ? kCreaseError
+                               : looks + 1 < kMostSlides ? kTurnedError
+                                                         : kCreaseStep;
+      last = settles && step_squared < kMostStep * kMostStep && left < most_left * most_left;
       if (settles && left > kRestError * kRestError) {
         WallPlane guess = wall;
         guess.normal = (wall.normal + sum * step.dot(way) * per_square * turn).normalized();
