@@ -3,9 +3,9 @@
 
 #include <limits>
 
+#include "app/studies/haptics/measured_limit.h"
 #include "haptics/contact/plane.h"
 #include "haptics/devices/simulation.h"
-#include "haptics/stability/measured_limit.h"
 
 namespace patina {
 

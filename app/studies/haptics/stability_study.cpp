@@ -8,8 +8,8 @@
 #include "app/studies/haptics/bisection.h"
 #include "app/studies/haptics/loop_on_surfaces.h"
 #include "app/studies/haptics/loop_run.h"
+#include "app/studies/haptics/measured_limit.h"
 #include "haptics/contact/plane.h"
-#include "haptics/stability/measured_limit.h"
 
 namespace patina {
 namespace {

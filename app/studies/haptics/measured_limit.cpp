@@ -1,8 +1,9 @@
-#include "haptics/stability/measured_limit.h"
+#include "app/studies/haptics/measured_limit.h"
 
 #include <cmath>
 #include <limits>
 
+#include "app/studies/haptics/bisection.h"
 #include "haptics/contact/plane.h"
 
 namespace patina {
@@ -27,11 +28,10 @@ bool oscillationDecays(const HapticProperties& haptics, SimulationSpec spec) {
 
 double measuredStiffnessLimit(HapticProperties haptics, const SimulationSpec& spec, double low,
                               double high) {
-  while (high - low > kTolerance * high) {
-    haptics.stiffness = 0.5 * (low + high);
-    (oscillationDecays(haptics, spec) ? low : high) = haptics.stiffness;
-  }
-  return 0.5 * (low + high);
+  return bisected(low, high, kTolerance, [&](double stiffness) {
+    haptics.stiffness = stiffness;
+    return oscillationDecays(haptics, spec);
+  });
 }
 
 } // namespace patina
