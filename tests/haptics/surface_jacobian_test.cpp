@@ -1,7 +1,7 @@
 // J of the closest point (F6) against closed forms.
 #include <gtest/gtest.h>
 
-#include "haptics/contact/cell_jacobian.h"
+#include "field/sampling/four.h"
 #include "haptics/contact/pull_back.h"
 #include "haptics/painted_fixture.h"
 

@@ -3,10 +3,15 @@
 // another header, else the linker could keep the wrong copy for the whole program.
 #pragma once
 
-#include "haptics/contact/cell_jacobian.h"
+#include <cstddef>
+
+#include "field/sampling/four.h"
 
 namespace patina::PATINA_KERNEL {
 
+// Of a cell's eight nodes {phi, gx, gy, gz}: how far the next one along y and along z is.
+constexpr std::size_t kNodeRow = 9, kNodeLayer = 81;
+constexpr float kMostStretch = 4;      // of J, along any direction
 constexpr float kLeastSquare = 1e-16F; // of a difference of curvatures
 
 [[gnu::always_inline]] inline float sumOf(Float4 value) noexcept {
@@ -25,6 +30,9 @@ constexpr float kLeastSquare = 1e-16F; // of a difference of curvatures
   return part < kMostStretch * by ? part / by : kMostStretch;
 }
 
+// The columns {0, x, y, z} of SurfaceJacobian, in voxels and single precision. low: the lowest of
+// the cell's nodes; fx, fy, fz: how far along each axis the place is, 0 .. 1; the rest as of
+// SurfaceJacobian's constructor.
 void jacobianOf(const Float4* low, float fx, float fy, float fz, const double* normal, double depth,
                 double iso, Float4* columns) noexcept {
   const Float4* high = low + kNodeLayer;

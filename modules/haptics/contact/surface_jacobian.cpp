@@ -13,9 +13,9 @@ void jacobianOf(const Float4* low, float x, float y, float z, const double* n, d
 }
 namespace {
 
-static_assert(kNodeRow == kRow && kNodeLayer == kLayer);
+static_assert(jacobian_plain::kNodeRow == kRow && jacobian_plain::kNodeLayer == kLayer);
 
-JacobianOfCell jacobianOfThisProcessor() {
+auto jacobianOfThisProcessor() {
 #if defined(__x86_64__)
   if (hasAvx2()) return &jacobian_avx2::jacobianOf;
 #endif
@@ -26,7 +26,7 @@ JacobianOfCell jacobianOfThisProcessor() {
 
 SurfaceJacobian::SurfaceJacobian(const BandCell& cell, const Vec3& n, double depth,
                                  double iso) noexcept {
-  static const JacobianOfCell kJacobian = jacobianOfThisProcessor();
+  static const auto kJacobian = jacobianOfThisProcessor();
   kJacobian(reinterpret_cast<const Float4*>(cell.node), cell.fx, cell.fy, cell.fz, n.data(), depth,
             iso, column_.data());
 }
