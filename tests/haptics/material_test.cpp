@@ -15,7 +15,7 @@ constexpr double kVoxel = 0x1p-11; // of the plane's field and of the map
 
 std::vector<std::string> names(const HapticSnapshot& snapshot) {
   std::vector<std::string> result;
-  for (const auto& stage : snapshot.stages) result.emplace_back(stage->name());
+  for (const StageInfo& stage : snapshot.why) result.push_back(stage.name);
   return result;
 }
 using Names = std::vector<std::string>;

@@ -1,6 +1,9 @@
 // A scene's law with every stage it does without, at its neutral value.
 #pragma once
 
+#include <map>
+#include <string_view>
+
 #include "haptics/contact_fixture.h"
 #include "haptics/stages/friction_stage.h"
 #include "haptics/stages/lateral_stage.h"
@@ -19,7 +22,6 @@ class BorrowedStage final : public ForceStage {
   void apply(Contact& contact, ContactMemory& memory) const noexcept override {
     stage_.apply(contact, memory);
   }
-  std::string_view name() const noexcept override { return stage_.name(); }
 
  private:
   std::shared_ptr<const HapticSnapshot> from_;
@@ -40,17 +42,17 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   const auto reliefs = std::make_shared<const Reliefs>(sampler, objects);
   const ForceForm form = scene.relief.form;
   const double radius = scene.haptics.tip_radius.value_or(0);
-  std::vector<std::unique_ptr<const ForceStage>> neutral;
-  neutral.push_back(std::make_unique<MaterialStage>(objects, false));
-  neutral.push_back(std::make_unique<TextureStiffnessStage>(reliefs, false));
-  neutral.push_back(
-      std::make_unique<LateralStage>(reliefs, objects, raisedBy(felt), LateralPlan{}));
-  neutral.push_back(std::make_unique<ReliefStage>(reliefs, 0, form));
-  neutral.push_back(std::make_unique<RoughnessStage>(sampler, objects, 0, form));
-  neutral.push_back(std::make_unique<FrictionStage>(sampler, radius, Friction{}, false));
-  neutral.push_back(std::make_unique<MagnetStage>(sampler, radius, Magnet{}, MagnetRelief{}));
-  if (!pruned->stabilisers.coupling) neutral.push_back(std::make_unique<DampingStage>());
-  neutral.push_back(std::make_unique<StiffnessSlopeStage>(sampler));
+  std::map<std::string_view, std::unique_ptr<const ForceStage>> neutral;
+  neutral["material"] = std::make_unique<MaterialStage>(objects, false);
+  neutral["texture stiffness"] = std::make_unique<TextureStiffnessStage>(reliefs, false);
+  neutral["lateral coupling"] =
+      std::make_unique<LateralStage>(reliefs, objects, raisedBy(felt), LateralPlan{});
+  neutral["relief"] = std::make_unique<ReliefStage>(reliefs, 0, form);
+  neutral["roughness"] = std::make_unique<RoughnessStage>(sampler, objects, 0, form);
+  neutral["friction"] = std::make_unique<FrictionStage>(sampler, radius, Friction{}, false);
+  neutral["magnet"] = std::make_unique<MagnetStage>(sampler, radius, Magnet{}, MagnetRelief{});
+  if (!pruned->stabilisers.coupling) neutral["damping"] = std::make_unique<DampingStage>();
+  neutral["stiffness slope"] = std::make_unique<StiffnessSlopeStage>(sampler);
 
   // The order of addForceLaw() and compileStages().
   const char* const order[] = {
@@ -59,13 +61,11 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
       "spring",           "magnet",    "coupling",  "velocity filter", "damping",
       "stiffness slope",  "passivity", "limit"};
   std::size_t taken = 0;
-  for (const std::string_view name : order) {
-    if (taken < pruned->stages.size() && pruned->stages[taken]->name() == name) {
-      full->add(std::make_unique<BorrowedStage>(pruned, taken++), "needed");
-      continue;
-    }
-    for (auto& stage : neutral)
-      if (stage && stage->name() == name) full->add(std::move(stage), "neutral");
+  for (const char* const name : order) {
+    if (taken < pruned->stages.size() && pruned->why[taken].name == name)
+      full->add(name, std::make_unique<BorrowedStage>(pruned, taken++), "needed");
+    else if (const auto found = neutral.find(name); found != neutral.end())
+      full->add(name, std::move(found->second), "neutral");
   }
   if (taken != pruned->stages.size()) throw std::logic_error("a stage is not in the order");
   return full;

@@ -10,8 +10,6 @@ constexpr double kLongestStep = 1;   // voxels; a longer one leaves the part tha
 
 } // namespace
 
-OffsetStage::OffsetStage(const FieldSampler& sampler) : sampler_(sampler) {}
-
 void OffsetStage::apply(Contact& contact, ContactMemory&) const noexcept {
   if (!contact.touching || contact.normal.isZero(0)) return;
   const FieldGrid& grid = sampler_.grid();

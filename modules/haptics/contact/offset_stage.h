@@ -12,9 +12,8 @@ namespace patina {
 // properties: Contact::surface, brought onto phi = 0 by one Newton step, lies there within O(h^2).
 class OffsetStage final : public ForceStage {
  public:
-  explicit OffsetStage(const FieldSampler& sampler);
+  explicit OffsetStage(const FieldSampler& sampler) : sampler_(sampler) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "offset"; }
 
  private:
   FieldSampler sampler_;

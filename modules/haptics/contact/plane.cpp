@@ -29,7 +29,6 @@ class PlaneStage final : public ForceStage {
     if (memory.contact.c) contact.drawn = contact.candidate - *memory.contact.c;
     memory.contact.c = contact.candidate;
   }
-  std::string_view name() const noexcept override { return "plane"; }
 };
 
 } // namespace
@@ -39,7 +38,7 @@ std::shared_ptr<const HapticSnapshot> planeSnapshot(const HapticProperties& hapt
   if (haptics.friction || haptics.offset || haptics.magnet || haptics.tip_radius)
     throw std::invalid_argument("plane: friction, offset, magnet and tip radius need a field");
   auto snapshot = std::make_shared<HapticSnapshot>();
-  snapshot->add(std::make_unique<PlaneStage>(), "always");
+  snapshot->add("plane", std::make_unique<PlaneStage>(), "always");
   // Without a limit nothing is a fault: what is looked for is how the loop itself ends.
   const bool limited = std::isfinite(haptics.force_limit);
   snapshot->base = baseMaterial(haptics);

@@ -24,7 +24,6 @@ class ProxyStage final : public ForceStage {
   ProxyStage(const FieldSampler& sampler, double iso, double steepness = 1, bool curved = false);
 
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "contact"; }
 
  private:
   bool enter(const Vec3& x, const Vec3& from, const ContactMemory& memory, Contact& contact,

@@ -21,7 +21,6 @@ class RayStage final : public ForceStage {
   // iso [m]: the tip's radius plus the offset (K12).
   RayStage(const FieldSampler& sampler, double iso);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "contact"; }
 
  private:
   FieldSampler sampler_;

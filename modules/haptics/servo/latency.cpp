@@ -46,9 +46,8 @@ void wakeUp(Wakeups& wakeups, std::int64_t period_ns) noexcept {
 
 Latency measureLatency(double seconds, double rate_hz) {
   const std::int64_t period_ns = periodNs(rate_hz);
-  if (!(seconds > 0 && seconds <= 3600)) {
+  if (!(seconds > 0 && seconds <= 3600))
     throw std::invalid_argument("latency measurement takes more than 0 and at most 3600 s");
-  }
   const double count = std::max(1.0, seconds * rate_hz);
   Wakeups wakeups(static_cast<std::size_t>(count));
   std::thread thread([&] { wakeUp(wakeups, period_ns); });

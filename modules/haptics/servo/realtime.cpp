@@ -31,9 +31,8 @@ std::int64_t monotonicNs() noexcept {
 }
 
 std::int64_t periodNs(double rate_hz) {
-  if (!(rate_hz >= 100 && rate_hz <= 10000)) {
+  if (!(rate_hz >= 100 && rate_hz <= 10000))
     throw std::invalid_argument("servo rate must be between 100 and 10000 Hz");
-  }
   return static_cast<std::int64_t>(static_cast<double>(kSecond) / rate_hz);
 }
 

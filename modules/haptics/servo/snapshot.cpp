@@ -28,9 +28,8 @@ constexpr double kMaxVelocity = 1e6; // [m/s]; beyond it the tip was set, not mo
 void checkField(const SurfaceField* field, const HapticProperties& haptics, double relief,
                 double roughness) {
   if (!field) throw std::invalid_argument("compileStages: no field");
-  if (field->sample.size() != field->blockCount()) {
+  if (field->sample.size() != field->blockCount())
     throw std::invalid_argument("compileStages: the field has no sample layer");
-  }
   const double band = feltReach(haptics, relief + roughness).band(field->grid.voxel);
   if (band > field->band) {
     std::string what;
@@ -50,9 +49,8 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics, doub
 std::size_t bytesRead(const SurfaceField& field) {
   std::size_t bytes = 0;
   for (const LayerBytes& layer : field.layerBytes()) {
-    if (layer.name == "top" || layer.name == "sample" || layer.name == "coarse") {
+    if (layer.name == "top" || layer.name == "sample" || layer.name == "coarse")
       bytes += layer.bytes;
-    }
   }
   return bytes;
 }
@@ -83,9 +81,9 @@ std::string namesOf(const PaintedRange& range) {
 
 } // namespace
 
-void HapticSnapshot::add(std::unique_ptr<const ForceStage> stage, std::string reason,
-                         std::size_t bytes) {
-  why.push_back({std::string(stage->name()), std::move(reason), bytes});
+void HapticSnapshot::add(const char* name, std::unique_ptr<const ForceStage> stage,
+                         std::string reason, std::size_t bytes) {
+  why.push_back({name, std::move(reason), bytes});
   stages.push_back(std::move(stage));
 }
 
@@ -95,8 +93,7 @@ FeltReach feltReach(const HapticProperties& haptics, double raised) {
 }
 
 double raisedBy(std::span<const FeltObject> objects) {
-  const Shell shell = shellOf(paintedRange({}, objects));
-  return shell.whole();
+  return shellOf(paintedRange({}, objects)).whole();
 }
 
 StabiliserPlan planOf(const Scene& scene, std::span<const FeltObject> objects) {
@@ -137,18 +134,19 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   const bool leans = shell.whole() > 0 && scene.relief.form == ForceForm::conservative;
   const std::string why = haptics.tip_radius ? "tip.radius = " + formatNumber(radius) : "always";
   if (haptics.contact == HapticProperties::Contact::ray)
-    snapshot->add(std::make_unique<RayStage>(sampler, iso), why, bytesRead(*field));
+    snapshot->add("contact", std::make_unique<RayStage>(sampler, iso), why, bytesRead(*field));
   else
-    snapshot->add(std::make_unique<ProxyStage>(sampler, iso, range.baked ? kBakedSteepness : 1,
+    snapshot->add("contact",
+                  std::make_unique<ProxyStage>(sampler, iso, range.baked ? kBakedSteepness : 1,
                                                slopes || leans),
                   why, bytesRead(*field));
   if (haptics.offset)
-    snapshot->add(std::make_unique<OffsetStage>(sampler),
+    snapshot->add("offset", std::make_unique<OffsetStage>(sampler),
                   "offset = " + formatNumber(*haptics.offset));
   MagnetRelief raised;
   raised.leans = scene.relief.form == ForceForm::conservative;
   if (objects.size() > 1 && (range.any() || shell.relief + shell.layer > 0)) {
-    snapshot->add(std::make_unique<OwnerStage>(sampler, objects),
+    snapshot->add("owner", std::make_unique<OwnerStage>(sampler, objects),
                   std::to_string(objects.size()) + " objects, some painted");
     if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(sampler, objects);
   }
@@ -156,28 +154,34 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
     std::size_t bytes = 0;
     for (const FeltObject& object : objects)
       bytes += object.material ? object.material->bytes() : 0;
-    snapshot->add(std::make_unique<MaterialStage>(objects, slopes), namesOf(range), bytes);
+    snapshot->add("material", std::make_unique<MaterialStage>(objects, slopes), namesOf(range),
+                  bytes);
   }
   if (shell.relief > 0) raised.reliefs = std::make_shared<const Reliefs>(sampler, objects);
   if (range.texture_stiffness > 0)
-    snapshot->add(std::make_unique<TextureStiffnessStage>(raised.reliefs, slopes),
+    snapshot->add("texture stiffness",
+                  std::make_unique<TextureStiffnessStage>(raised.reliefs, slopes),
                   "textures of up to " + formatNumber(range.texture_stiffness) + " N/m");
   if (plan.lateral) {
     snapshot->add(
+        "lateral coupling",
         std::make_unique<LateralStage>(raised.reliefs, objects, shell.whole(), *plan.lateral),
         plan.lateral_why);
   }
   if (raised.reliefs)
-    snapshot->add(std::make_unique<ReliefStage>(raised.reliefs, shell.relief, scene.relief.form),
+    snapshot->add("relief",
+                  std::make_unique<ReliefStage>(raised.reliefs, shell.relief, scene.relief.form),
                   "relief up to " + formatLength(shell.relief), raised.reliefs->bytes());
   if (shell.roughness > 0)
     snapshot->add(
+        "roughness",
         std::make_unique<RoughnessStage>(sampler, objects, shell.roughness, scene.relief.form),
         "roughness up to " + formatLength(range.most.roughness) + " rms");
   if (shell.layer > 0) {
     auto layers = std::make_shared<const Reliefs>(sampler, objects, &FeltObject::layer);
     const std::size_t bytes = layers->bytes();
-    snapshot->add(std::make_unique<TextureLayerStage>(std::move(layers), shell.layer,
+    snapshot->add("texture layer",
+                  std::make_unique<TextureLayerStage>(std::move(layers), shell.layer,
                                                       *haptics.texture_gain, scene.relief.form),
                   "texture.gain = " + formatNumber(*haptics.texture_gain), bytes);
   }
@@ -185,10 +189,10 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
       std::max(range.most.static_friction, range.most.dynamic_friction) > 0 && range.any();
   if (haptics.friction || painted_friction) {
     const Friction friction = scene.haptics.friction.value_or(Friction{});
-    snapshot->add(std::make_unique<FrictionStage>(sampler, iso, friction, shell.whole() > 0),
-                  haptics.friction
-                      ? "friction.static = " + formatNumber(friction.static_coefficient)
-                      : "friction is painted");
+    snapshot->add(
+        "friction", std::make_unique<FrictionStage>(sampler, iso, friction, shell.whole() > 0),
+        haptics.friction ? "friction.static = " + formatNumber(friction.static_coefficient)
+                         : "friction is painted");
   }
   std::unique_ptr<const ForceStage> magnet;
   if (haptics.magnet) {

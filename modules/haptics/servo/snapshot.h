@@ -27,7 +27,8 @@ struct HapticSnapshot {
   StabiliserPlan stabilisers; // what of it is present is a stage; coupling->stiffness is k_c
   Material base;              // what a contact is made of where nothing is painted
 
-  void add(std::unique_ptr<const ForceStage> stage, std::string reason, std::size_t bytes = 0);
+  void add(const char* name, std::unique_ptr<const ForceStage> stage, std::string reason,
+           std::size_t bytes = 0);
 };
 
 // Only the stages that the scene needs: absent value -> absent stage. The magnitude limit is never

@@ -55,9 +55,8 @@ double wallLoad(const LocalStiffness& at, const LoopLimits& limits) {
   const double along = 1 / std::sqrt(std::max(limits.damped, least));
   const Eigen::Matrix3d normal = at.normal * at.normal.transpose();
   const Eigen::Matrix3d scale = across * (Eigen::Matrix3d::Identity() - normal) + along * normal;
-  const Eigen::VectorXcd eigenvalues = eigenvaluesOf(scale * at.matrix * scale);
   double load = 0;
-  for (const std::complex<double>& eigenvalue : eigenvalues)
+  for (const std::complex<double>& eigenvalue : eigenvaluesOf(scale * at.matrix * scale))
     load = std::max(load, loadOf(eigenvalue, limits.whirl));
   return load;
 }

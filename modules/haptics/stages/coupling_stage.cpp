@@ -30,10 +30,11 @@ Vec3 heldBack(const Contact& contact) noexcept {
 
 void CouplingStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (contact.touching) {
-    contact.stiffness = inSeries(contact.material.stiffness, coupling_);
+    contact.stiffness = inSeries(contact.material.stiffness, plan_.stiffness);
     contact.force = contact.stiffness * (contact.vcp - contact.tip);
   }
-  const double damping = std::max(damping_, std::min(contact.material.damping, most_damping_));
+  const double damping =
+      std::max(plan_.damping, std::min(contact.material.damping, plan_.most_damping));
   dampWalls(contact, damping, magnetic_);
   if (contact.touching && memory.coupling.touched && !(contact.stick_radius > 0))
     contact.force -= damping * heldBack(contact);

@@ -1,6 +1,7 @@
 // Virtual coupling: what keeps a surface of any stiffness quiet (F13, MATH 2.3).
 #pragma once
 
+#include "haptics/stability/stabilisers.h"
 #include "haptics/stages/stage.h"
 
 namespace patina {
@@ -20,15 +21,11 @@ struct CouplingMemory {
 // keeps back a share s of the tip's motion; s = d / (R + d) in a bowl, 0 on a plane.
 class CouplingStage final : public ForceStage {
  public:
-  CouplingStage(double coupling, double damping, double most_damping, bool magnetic = false)
-      : coupling_(coupling), damping_(damping), most_damping_(most_damping), magnetic_(magnetic) {}
+  CouplingStage(const CouplingPlan& plan, bool magnetic) : plan_(plan), magnetic_(magnetic) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "coupling"; }
 
  private:
-  double coupling_; // k_c [N/m]
-  double damping_;  // B [N s/m]
-  double most_damping_;
+  CouplingPlan plan_;
   bool magnetic_;
 };
 

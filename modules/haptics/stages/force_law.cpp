@@ -19,7 +19,8 @@ void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
   };
   const bool pulls = magnet != nullptr;
   const auto addMagnet = [&] {
-    if (pulls) snapshot.add(std::move(magnet), says("magnet.range", haptics.magnet->range));
+    if (pulls)
+      snapshot.add("magnet", std::move(magnet), says("magnet.range", haptics.magnet->range));
   };
 
   LimitSpec limit{haptics.force_limit, pulls ? haptics.magnet->strength : 0.0, range.most.damping,
@@ -28,24 +29,25 @@ void addForceLaw(HapticSnapshot& snapshot, const HapticProperties& haptics,
     const CouplingPlan& coupling = *plan.coupling;
     addMagnet();
     limit.damping = std::max(coupling.damping, std::min(range.most.damping, coupling.most_damping));
-    snapshot.add(std::make_unique<CouplingStage>(coupling.stiffness, coupling.damping,
-                                                 coupling.most_damping, pulls),
-                 plan.why);
+    snapshot.add("coupling", std::make_unique<CouplingStage>(coupling, pulls), plan.why);
   } else {
-    snapshot.add(std::make_unique<SpringStage>(), says("stiffness", haptics.stiffness));
+    snapshot.add("spring", std::make_unique<SpringStage>(), says("stiffness", haptics.stiffness));
     addMagnet();
     const bool painted = range.has(MaterialChannel::damping);
     if (haptics.damping_cutoff && (haptics.damping || painted))
-      snapshot.add(std::make_unique<VelocityFilterStage>(*haptics.damping_cutoff),
+      snapshot.add("velocity filter",
+                   std::make_unique<VelocityFilterStage>(*haptics.damping_cutoff),
                    says("damping.cutoff", *haptics.damping_cutoff));
     if (haptics.damping || painted)
-      snapshot.add(std::make_unique<DampingStage>(pulls),
+      snapshot.add("damping", std::make_unique<DampingStage>(pulls),
                    painted ? "damping is painted" : says("damping", *haptics.damping));
   }
   if (slopes)
-    snapshot.add(std::make_unique<StiffnessSlopeStage>(*slopes), "material.force = conservative");
-  if (plan.passivity) snapshot.add(std::make_unique<PassivityStage>(*plan.passivity), plan.why);
-  snapshot.add(std::make_unique<LimitStage>(limit), "always");
+    snapshot.add("stiffness slope", std::make_unique<StiffnessSlopeStage>(*slopes),
+                 "material.force = conservative");
+  if (plan.passivity)
+    snapshot.add("passivity", std::make_unique<PassivityStage>(*plan.passivity), plan.why);
+  snapshot.add("limit", std::make_unique<LimitStage>(limit), "always");
   snapshot.stabilisers = std::move(plan);
 }
 

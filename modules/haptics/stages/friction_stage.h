@@ -40,7 +40,6 @@ class FrictionStage final : public ForceStage {
                 bool raised);
 
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "friction"; }
 
  private:
   Vec3 againstMotion(const Contact& contact, FrictionMemory::Grip& grip) const noexcept;

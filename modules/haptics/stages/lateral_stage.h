@@ -37,7 +37,6 @@ class LateralStage final : public ForceStage {
   LateralStage(std::shared_ptr<const Reliefs> reliefs, std::span<const FeltObject> objects,
                double shell, const LateralPlan& plan);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "lateral coupling"; }
 
  private:
   struct Height;

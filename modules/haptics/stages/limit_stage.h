@@ -49,7 +49,6 @@ class LimitStage final : public ForceStage {
  public:
   explicit LimitStage(const LimitSpec& spec) : spec_(spec) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "limit"; }
 
  private:
   bool jumped(const Contact& contact, const LimitMemory& memory) const noexcept;

@@ -33,7 +33,6 @@ class MagnetStage final : public ForceStage {
   MagnetStage(const FieldSampler& sampler, double tip_radius, const Magnet& magnet,
               MagnetRelief relief);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "magnet"; }
 
  private:
   FieldSampler sampler_;

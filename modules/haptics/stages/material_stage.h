@@ -20,7 +20,6 @@ class OwnerStage final : public ForceStage {
   OwnerStage(const FieldSampler& sampler, std::span<const FeltObject> objects)
       : sampler_(sampler), objects_(objects) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "owner"; }
   std::int32_t ownerAt(const Vec3& p) const noexcept; // 0 where nothing is known
 
  private:
@@ -34,7 +33,6 @@ class MaterialStage final : public ForceStage {
  public:
   MaterialStage(std::span<const FeltObject> objects, bool gradients);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "material"; }
 
  private:
   std::vector<std::optional<MaterialReader>> readers_; // of each object
@@ -48,7 +46,6 @@ class TextureStiffnessStage final : public ForceStage {
   TextureStiffnessStage(std::shared_ptr<const Reliefs> reliefs, bool gradients)
       : reliefs_(std::move(reliefs)), gradients_(gradients) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "texture stiffness"; }
 
  private:
   std::shared_ptr<const Reliefs> reliefs_;
@@ -67,7 +64,6 @@ class StiffnessSlopeStage final : public ForceStage {
  public:
   explicit StiffnessSlopeStage(const FieldSampler& sampler) : sampler_(sampler) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "stiffness slope"; }
 
  private:
   FieldSampler sampler_;

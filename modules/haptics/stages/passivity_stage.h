@@ -35,7 +35,6 @@ class PassivityStage final : public ForceStage {
   static constexpr double kRounding = 1e-12; // [J]
   explicit PassivityStage(const PassivitySpec& spec) : spec_(spec) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "passivity"; }
 
  private:
   PassivitySpec spec_;

@@ -55,6 +55,14 @@ double steepnessOf(const Contact& contact) noexcept {
   settle(contact, contact.depth / steepness - gap, slope, steepness);
 }
 
+// Where no surface is to be read; the shell is taken off all the same.
+bool isBare(Contact& contact, double shell, TextureMemory& memory) noexcept {
+  if (contact.touching && !contact.normal.isZero(0)) return false;
+  memory.last.reset();
+  if (contact.touching) lower(contact, shell, Vec3::Zero());
+  return true;
+}
+
 // By how much the relief itself has moved the VCP since the last tick, at most.
 void announceStep(Contact& contact, TextureMemory& memory, double height,
                   const Vec3& slope) noexcept {
@@ -112,11 +120,7 @@ std::size_t Reliefs::bytes() const {
 }
 
 void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  if (!contact.touching || contact.normal.isZero(0)) {
-    memory.relief.last.reset();
-    if (contact.touching) lower(contact, shell_, Vec3::Zero());
-    return;
-  }
+  if (isBare(contact, shell_, memory.relief)) return;
   const ReliefAt at = reliefs_->at(contact.object, contact.surface + contact.aside, memory.walk);
   const Vec3 slope = form_ == ForceForm::literal
                          ? Vec3::Zero()
@@ -126,11 +130,7 @@ void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
 }
 
 void TextureLayerStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
-  if (!contact.touching || contact.normal.isZero(0)) {
-    memory.layer.last.reset();
-    if (contact.touching) lower(contact, shell_, Vec3::Zero());
-    return;
-  }
+  if (isBare(contact, shell_, memory.layer)) return;
   const ReliefAt at = reliefs_->at(contact.object, contact.surface, memory.walk);
   const double low = at.texture.of ? at.texture.of->value.low : 0,
                height = at.height - at.texture.share * low, steepness = steepnessOf(contact),

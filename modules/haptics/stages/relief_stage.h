@@ -85,7 +85,6 @@ class ReliefStage final : public ForceStage {
   ReliefStage(std::shared_ptr<const Reliefs> reliefs, double shell, ForceForm form)
       : reliefs_(std::move(reliefs)), shell_(shell), form_(form) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "relief"; }
 
  private:
   std::shared_ptr<const Reliefs> reliefs_;
@@ -104,7 +103,6 @@ class TextureLayerStage final : public ForceStage {
                     ForceForm form)
       : reliefs_(std::move(reliefs)), shell_(shell), gain_(gain), form_(form) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "texture layer"; }
 
  private:
   std::shared_ptr<const Reliefs> reliefs_;
@@ -126,7 +124,6 @@ class RoughnessStage final : public ForceStage {
                  ForceForm form)
       : sampler_(sampler), objects_(objects), shell_(shell), form_(form) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "roughness"; }
 
  private:
   FieldSampler sampler_;

@@ -25,6 +25,9 @@ void VelocityFilterStage::apply(Contact& contact, ContactMemory& memory) const n
   contact.velocity = filtered;
 }
 
+namespace {
+
+// While the VCP sticks, adds a tangential damper's force as far as sticking can bear.
 void dampSticking(Contact& contact, const Vec3& damper) noexcept {
   if (!(contact.stick_radius > 0)) return;
   const Vec3& n = contact.normal;
@@ -36,8 +39,6 @@ void dampSticking(Contact& contact, const Vec3& damper) noexcept {
   const double magnitude = tangential.norm();
   if (magnitude > bearable) contact.force -= (1 - bearable / magnitude) * tangential;
 }
-
-namespace {
 
 // What of a damper's force is left where the walls that hold the tip only push: the nearest to the
 // sum with the spring's that they can bear, less the spring's.

@@ -9,7 +9,6 @@ namespace patina {
 class SpringStage final : public ForceStage {
  public:
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "spring"; }
 };
 
 struct VelocityFilterMemory {
@@ -22,15 +21,10 @@ class VelocityFilterStage final : public ForceStage {
  public:
   explicit VelocityFilterStage(double cutoff_hz);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "velocity filter"; }
 
  private:
   double time_; // [s]
 };
-
-// While the VCP sticks, adds a tangential damper's force [N] as far as sticking can bear
-// (MATH 2.6).
-void dampSticking(Contact& contact, const Vec3& damper) noexcept;
 
 // Damps the tip's motion across the walls that hold its contact point: F -= B v as far as these can
 // bear the whole of it, so that none pulls (K08) and the damper's part is at most B |v|, however
@@ -45,7 +39,6 @@ class DampingStage final : public ForceStage {
  public:
   explicit DampingStage(bool magnetic = false) : magnetic_(magnetic) {}
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
-  std::string_view name() const noexcept override { return "damping"; }
 
  private:
   bool magnetic_;

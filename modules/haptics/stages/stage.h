@@ -2,8 +2,6 @@
 // Field and objects are the snapshot's: a stage views them.
 #pragma once
 
-#include <string_view>
-
 #include "haptics/contact/contact.h"
 
 namespace patina {
@@ -15,7 +13,6 @@ class ForceStage {
   virtual ~ForceStage() = default;
   // Servo thread: no lock, allocation, throw.
   virtual void apply(Contact& contact, ContactMemory& memory) const noexcept = 0;
-  virtual std::string_view name() const noexcept = 0;
 };
 
 } // namespace patina
