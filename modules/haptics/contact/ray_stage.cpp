@@ -43,20 +43,13 @@ RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n, doubl
     ++root.samples;
     // s itself, not a corrected one: what follows need not wait for this sample, which only has to
     // agree.
-    if (std::abs(f) < kRootTolerance) {
-      root.s = s;
-      root.found = true;
-      return root;
-    }
+    if (std::abs(f) < kRootTolerance) return {true, s, root.samples};
     // The reciprocal of the slope: the one division of this loop.
     const double per_slope = (s - s_last) / (f - f_last);
     double next = s - f * per_slope;
     const double variation = std::max(std::abs(per_slope - 1), kLeastVariation);
-    if (root.samples > 1 && std::abs(f) * variation < kStepTolerance && next > inside) {
-      root.s = next;
-      root.found = true;
-      return root;
-    }
+    if (root.samples > 1 && std::abs(f) * variation < kStepTolerance && next > inside)
+      return {true, next, root.samples};
     if (f < 0) {
       inside = s;
       // Not less than the distance that is known to be free, nor a leap over a thin gap.
@@ -69,11 +62,7 @@ RayRoot rayRoot(const FieldSampler& sampler, const Vec3& q, const Vec3& n, doubl
     f_last = f;
     s = next;
     if (!(s <= s_max)) return root;
-    if (s == s_last) { // the bracket has no number left inside
-      root.s = s;
-      root.found = s > 0;
-      return root;
-    }
+    if (s == s_last) return {s > 0, s, root.samples}; // the bracket has no number left inside
   }
   return root;
 }
