@@ -14,6 +14,15 @@ constexpr std::size_t kNodeRow = 9, kNodeLayer = 81;
 constexpr float kMostStretch = 4;      // of J, along any direction
 constexpr float kLeastSquare = 1e-16F; // of a difference of curvatures
 
+using Four = double __attribute__((vector_size(32)));
+using Stored = double __attribute__((vector_size(32), aligned(8)));
+
+// {0, x, y, z} as {x, y, z, 0}.
+[[gnu::always_inline]] inline void store(Float4 column, double* to) noexcept {
+  const Float4 turned = __builtin_shufflevector(column, column, 1, 2, 3, 0);
+  *reinterpret_cast<Stored*>(to) = __builtin_convertvector(turned, Four);
+}
+
 [[gnu::always_inline]] inline float sumOf(Float4 value) noexcept {
   const Float4 halves = value + __builtin_shufflevector(value, value, 2, 3, 2, 3);
   return halves[0] + halves[1];
@@ -30,11 +39,11 @@ constexpr float kLeastSquare = 1e-16F; // of a difference of curvatures
   return part < kMostStretch * by ? part / by : kMostStretch;
 }
 
-// The columns {0, x, y, z} of SurfaceJacobian, in voxels and single precision. low: the lowest of
+// The columns of SurfaceJacobian, in voxels, worked out in single precision. low: the lowest of
 // the cell's nodes; fx, fy, fz: how far along each axis the place is, 0 .. 1; the rest as of
 // SurfaceJacobian's constructor.
 void jacobianOf(const Float4* low, float fx, float fy, float fz, const double* normal, double depth,
-                double iso, Float4* columns) noexcept {
+                double iso, double* columns) noexcept {
   const Float4* high = low + kNodeLayer;
   const float ex = 1 - fx, ey = 1 - fy;
   const Float4 n0 = low[0], n1 = low[1], n2 = low[kNodeRow], n3 = low[kNodeRow + 1];
@@ -77,9 +86,9 @@ void jacobianOf(const Float4* low, float fx, float fy, float fz, const double* n
     of_plane = 0.5F * (upper + lower) - of_bend * mean;
   }
   const Float4 plane_n = of_plane * n;
-  columns[0] = of_bend * flat_x + (Float4{0, of_plane, 0, 0} - n[1] * plane_n);
-  columns[1] = of_bend * flat_y + (Float4{0, 0, of_plane, 0} - n[2] * plane_n);
-  columns[2] = of_bend * flat_z + (Float4{0, 0, 0, of_plane} - n[3] * plane_n);
+  store(of_bend * flat_x + (Float4{0, of_plane, 0, 0} - n[1] * plane_n), columns);
+  store(of_bend * flat_y + (Float4{0, 0, of_plane, 0} - n[2] * plane_n), columns + 4);
+  store(of_bend * flat_z + (Float4{0, 0, 0, of_plane} - n[3] * plane_n), columns + 8);
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -9,7 +9,7 @@
 namespace patina {
 namespace jacobian_avx2 {
 void jacobianOf(const Float4* low, float x, float y, float z, const double* n, double depth,
-                double iso, Float4* columns) noexcept; // jacobian_avx2.cpp
+                double iso, double* columns) noexcept; // jacobian_avx2.cpp
 }
 namespace {
 
@@ -28,7 +28,7 @@ SurfaceJacobian::SurfaceJacobian(const BandCell& cell, const Vec3& n, double dep
                                  double iso) noexcept {
   static const auto kJacobian = jacobianOfThisProcessor();
   kJacobian(reinterpret_cast<const Float4*>(cell.node), cell.fx, cell.fy, cell.fz, n.data(), depth,
-            iso, column_.data());
+            iso, columns_.data());
 }
 
 } // namespace patina

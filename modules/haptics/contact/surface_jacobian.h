@@ -1,8 +1,6 @@
 // How a point that lies on the surface moves with the tip.
 #pragma once
 
-#include <array>
-
 #include "core/types.h"
 #include "field/build/band_cell.h"
 
@@ -19,23 +17,12 @@ class SurfaceJacobian {
  public:
   // n: unit; lengths in voxels.
   SurfaceJacobian(const BandCell& cell, const Vec3& n, double depth, double iso) noexcept;
-  explicit SurfaceJacobian(const Eigen::Matrix3d& whole) noexcept
-      : column_{lanesOf(whole.col(0)), lanesOf(whole.col(1)), lanesOf(whole.col(2))} {}
+  explicit SurfaceJacobian(const Eigen::Matrix3d& whole) noexcept { columns_ << whole, 0, 0, 0; }
 
-  Vec3 operator*(const Vec3& v) const noexcept {
-    const Float4 sum = static_cast<float>(v.x()) * column_[0] +
-                       static_cast<float>(v.y()) * column_[1] +
-                       static_cast<float>(v.z()) * column_[2];
-    return Vec3(sum[1], sum[2], sum[3]);
-  }
+  Vec3 operator*(const Vec3& v) const noexcept { return columns_.topRows<3>() * v; }
 
  private:
-  static Float4 lanesOf(const Vec3& v) noexcept {
-    return Float4{0, static_cast<float>(v.x()), static_cast<float>(v.y()),
-                  static_cast<float>(v.z())};
-  }
-
-  std::array<Float4, 3> column_; // {0, x, y, z}
+  Eigen::Matrix<double, 4, 3> columns_; // the last row is 0: a column is one write
 };
 
 } // namespace patina
