@@ -24,7 +24,8 @@ void notTouching(Contact& contact) noexcept {
 
 // Length of n - slope.
 double steepnessOf(const Contact& contact) noexcept {
-  return std::sqrt(1 + contact.slope.squaredNorm());
+  const double square = contact.slope.squaredNorm();
+  return square > 0 ? std::sqrt(1 + square) : 1; // of the first stage it is 0
 }
 
 // `depth` becomes that along n, and the normal leans by `slope` more. n - slope is longer than 1:
@@ -56,7 +57,8 @@ double steepnessOf(const Contact& contact) noexcept {
 }
 
 // Where no surface is to be read; the shell is taken off all the same.
-bool isBare(Contact& contact, double shell, TextureMemory& memory) noexcept {
+[[gnu::always_inline]] inline bool isBare(Contact& contact, double shell,
+                                          TextureMemory& memory) noexcept {
   if (contact.touching && !contact.normal.isZero(0)) return false;
   memory.last.reset();
   if (contact.touching) lower(contact, shell, Vec3::Zero());
@@ -82,8 +84,10 @@ void announceStep(Contact& contact, TextureMemory& memory, double height,
 
 Reliefs::Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects, Part part)
     : sampler_(sampler), lost_(kLostVoxels * sampler.grid().voxel) {
-  for (const FeltObject& object : objects)
-    felt_.push_back({object.*part, object.highest, object.first_face});
+  for (const FeltObject& object : objects) {
+    felt_.push_back({object.*part, object.highest, object.first_face, {}});
+    if (const auto& surface = felt_.back().surface) felt_.back().reader.emplace(*surface);
+  }
 }
 
 // What is rare: a point that the walk has lost, and heights between texels, where a cubic

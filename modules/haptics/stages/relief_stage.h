@@ -42,13 +42,15 @@ class Reliefs {
   // bend: as of reliefAt().
   ReliefAt at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
               Eigen::Matrix3d* bend = nullptr) const noexcept {
+    ReliefAt found;
     const auto i = static_cast<std::size_t>(object);
     const ReliefSurface* surface = i < felt_.size() ? felt_[i].surface.get() : nullptr;
     if (!surface) {
       if (bend) bend->setZero();
-      return {};
+      return found;
     }
-    ReliefAt found = reliefAt(*surface, c, walk.object == object ? walk.face : -1, bend);
+    const std::int32_t near = walk.object == object ? walk.face : -1;
+    if (bend || !felt_[i].reader->read(c, near, found)) found = reliefAt(*surface, c, near, bend);
     if (found.face < 0 || found.distance > lost_ ||
         (surface->image && std::abs(found.height) > felt_[i].highest)) [[unlikely]]
       mend(felt_[i], c, found, bend);
@@ -63,6 +65,7 @@ class Reliefs {
     std::shared_ptr<const ReliefSurface> surface;
     double highest;
     std::int32_t first_face;
+    std::optional<TextureReader> reader; // with a surface
   };
   void mend(const Felt& felt, const Vec3& c, ReliefAt& at, Eigen::Matrix3d* bend) const noexcept;
 

@@ -183,7 +183,9 @@ void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
     along << by_x, by_y;
     *bend = along * bendAt(texture, x, y) * along.transpose();
   }
-  take(patch, p, h.height, h.gradient.x() * by_x + h.gradient.y() * by_y, found, bend);
+  found.height = h.height;
+  found.slope = h.gradient.x() * by_x + h.gradient.y() * by_y;
+  take(patch, p, found, bend);
 }
 
 void TexturePatches::fadeOut(const TexturePatch& patch, const Vec3& p, PatchAt& found,

@@ -46,11 +46,9 @@ class TexturePatches {
   // The same into `found`, which is PatchAt{}.
   void read(std::int32_t face, const Vec3& p, PatchAt& found,
             Eigen::Matrix3d* bend = nullptr) const noexcept;
-  // For a look that has the height and the slope of a patch's texture at p already.
-  void take(const TexturePatch& patch, const Vec3& p, double height, const Vec3& slope,
-            PatchAt& found, Eigen::Matrix3d* bend = nullptr) const noexcept {
-    found.height = height;
-    found.slope = slope;
+  // For a look that has put height and slope of the patch's texture at p into `found`.
+  void take(const TexturePatch& patch, const Vec3& p, PatchAt& found,
+            Eigen::Matrix3d* bend = nullptr) const noexcept {
     found.texture.of = patch.texture->of;
     found.texture.share = 1;
     if (patch.fade >= 0) fadeOut(patch, p, found, bend);

@@ -72,7 +72,10 @@ void lookUp(const MaterialView& view, const double* p, double* material,
                  gz = ends[1] - ends[0];
     const Four at =
         gx * load(view.by_world[0]) + gy * load(view.by_world[1]) + gz * load(view.by_world[2]);
-    __builtin_memcpy(gradients[channel.gradient], &at, 3 * sizeof(double));
+    // Not as one block of three, which would go through the stack and whole numbers.
+    const Two xy = __builtin_shufflevector(at, at, 0, 1);
+    __builtin_memcpy(gradients[channel.gradient], &xy, sizeof xy);
+    gradients[channel.gradient][2] = at[2];
   }
 }
 

@@ -28,7 +28,7 @@ MaterialLook lookOfThisProcessor() {
 } // namespace
 
 MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& object_from_world)
-    : view_{} {
+    : view_{}, look_(lookOfThisProcessor()) {
   const Eigen::Matrix3d by = samples.per_voxel * object_from_world.linear();
   const Vec3 at = samples.per_voxel * (object_from_world.translation() - samples.origin);
   const auto right = static_cast<std::int32_t>(samples.channels);
@@ -59,13 +59,6 @@ MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& objec
                             channel == MaterialChannel::stiffness   ? 0
                             : channel == MaterialChannel::roughness ? 1
                                                                     : -1};
-}
-
-void MaterialReader::read(const Vec3& p, Material& material,
-                          MaterialGradients& gradients) const noexcept {
-  static const MaterialLook kLook = lookOfThisProcessor();
-  double* const into[] = {gradients.stiffness.data(), gradients.roughness.data()};
-  kLook(view_, p.data(), &material.stiffness, into);
 }
 
 } // namespace patina

@@ -14,12 +14,16 @@ class MaterialReader {
   // Servo thread: constant time, no allocation. p in metres, world. Channels that are painted
   // somewhere come into `material`, which is the base, and into `gradients`, which are
   // MaterialGradients{}.
-  void read(const Vec3& p, Material& material, MaterialGradients& gradients) const noexcept;
+  void read(const Vec3& p, Material& material, MaterialGradients& gradients) const noexcept {
+    double* const into[] = {gradients.stiffness.data(), gradients.roughness.data()};
+    look_(view_, p.data(), &material.stiffness, into);
+  }
 
   const MaterialView& view() const noexcept { return view_; }
 
  private:
   MaterialView view_;
+  MaterialLook look_; // for this processor
 };
 
 } // namespace patina

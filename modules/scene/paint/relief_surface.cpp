@@ -10,7 +10,6 @@
 
 #include "geometry/mesh/adjacency.h"
 #include "geometry/tree/triangle_tree.h"
-#include "scene/paint/texture_look.h"
 
 namespace patina {
 namespace {
@@ -280,28 +279,19 @@ void readClosest(const ReliefSurface& relief, const Vec3& c, std::int32_t near_f
 
 } // namespace
 
+TextureReader::TextureReader(const ReliefSurface& relief)
+    : table_(relief.faces->table), textures_(relief.textures.get()), look_(textureLook()) {
+  if (table_.frames && textures_ && relief.faces->count <= textures_->table().faces)
+    faces_ = relief.faces->count;
+}
+
 ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
                   Eigen::Matrix3d* bend) noexcept {
   ReliefAt at;
-  const ReliefFaces& mesh = *relief.faces;
   if (bend) bend->setZero();
-  if (static_cast<std::size_t>(near_face) >= mesh.count) return at;
-  if (mesh.table.frames && relief.textures && !bend &&
-      mesh.count <= relief.textures->table().faces) {
-    static const TextureLook kLook = textureLook();
-    TextureFoot foot;
-    kLook(mesh.table, relief.textures->table(), c.x(), c.y(), c.z(), near_face, foot);
-    if (foot.face >= 0) {
-      at.face = foot.face;
-      at.distance = static_cast<double>(std::abs(foot.above));
-      if (foot.patch && foot.patch->texture->line.cells)
-        relief.textures->take(*foot.patch, c, foot.height, Vec3(foot.slope), at);
-      else if (foot.patch)
-        relief.textures->read(foot.face, c, at);
-      return at;
-    }
-  }
-  readClosest(relief, c, near_face, at, bend);
+  if (static_cast<std::size_t>(near_face) >= relief.faces->count) return at;
+  if (bend || !TextureReader(relief).read(c, near_face, at))
+    readClosest(relief, c, near_face, at, bend);
   return at;
 }
 

@@ -30,7 +30,7 @@ namespace patina::PATINA_KERNEL {
 }
 
 void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
-               std::int32_t near_face, TextureFoot& foot) noexcept {
+               std::int32_t near_face, TextureFoot& foot, double* told) noexcept {
   foot.face = -1;
   foot.patch = nullptr;
   constexpr Int4 kThree = {-1, -1, -1, 0};
@@ -66,8 +66,8 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
   const Four by = *reinterpret_cast<const Stored*>(patch.x),
              parts = (at - *reinterpret_cast<const Stored*>(patches.middle)) * by;
   const SeriesValue value = valueAt(line, (parts[0] + parts[1]) + (parts[2] + parts[3]));
-  foot.height = value.value;
-  *reinterpret_cast<Stored*>(foot.slope) = line.slope_scale * value.slope * by;
+  const Four slope = line.slope_scale * value.slope * by, height = {value.value, 0, 0, 0};
+  *reinterpret_cast<Stored*>(told) = __builtin_shufflevector(height, slope, 0, 4, 5, 6);
 }
 
 } // namespace patina::PATINA_KERNEL

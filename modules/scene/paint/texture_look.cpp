@@ -7,7 +7,8 @@
 namespace patina {
 namespace texture_avx2 {
 void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
-               std::int32_t near_face, TextureFoot& foot) noexcept; // texture_avx2.cpp
+               std::int32_t near_face, TextureFoot& foot,
+               double* told) noexcept; // texture_avx2.cpp
 }
 
 TextureLook textureLook() noexcept {

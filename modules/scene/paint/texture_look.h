@@ -10,15 +10,14 @@ struct TextureFoot {
   std::int32_t face;         // that the point is well over; -1: the walk has to tell
   float above;               // [m]
   const TexturePatch* patch; // null: no texture
-  // Of a line; where patch->texture has none, they are not told.
-  double height;
-  alignas(32) double slope[4];
 };
 
 // x, y, z: [m, world]; near_face: one of the table's, the point's own or one from which a few steps
-// across edges lead to it, each time the edge that the point is farthest outside of.
+// across edges lead to it, each time the edge that the point is farthest outside of. told: of a
+// line becomes its height and slope {h, x, y, z}, else it stays.
 using TextureLook = void (*)(const FaceTable& faces, const PatchTable& patches, double x, double y,
-                             double z, std::int32_t near_face, TextureFoot& foot) noexcept;
+                             double z, std::int32_t near_face, TextureFoot& foot,
+                             double* told) noexcept;
 TextureLook textureLook() noexcept; // for this processor
 
 } // namespace patina
