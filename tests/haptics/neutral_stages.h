@@ -54,12 +54,17 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   if (!pruned->stabilisers.coupling) neutral["damping"] = std::make_unique<DampingStage>();
   neutral["stiffness slope"] = std::make_unique<StiffnessSlopeStage>(sampler);
 
-  // The order of addForceLaw() and compileStages().
-  const char* const order[] = {
-      "contact",          "offset",    "owner",     "material",        "texture stiffness",
-      "lateral coupling", "relief",    "roughness", "texture layer",   "friction",
-      "spring",           "magnet",    "coupling",  "velocity filter", "damping",
-      "stiffness slope",  "passivity", "limit"};
+  // The order of compileStages() and addForceLaw().
+  std::vector<const char*> order = {"contact", "offset", "owner"};
+  const auto then = [&](std::initializer_list<const char*> names) {
+    order.insert(order.end(), names);
+  };
+  if (pruned->stabilisers.lateral)
+    then({"material", "texture stiffness", "lateral coupling", "relief"});
+  else
+    then({"lateral coupling", "relief", "material", "texture stiffness"});
+  then({"roughness", "texture layer", "friction", "spring", "magnet", "coupling", "velocity filter",
+        "damping", "stiffness slope", "passivity", "limit"});
   std::size_t taken = 0;
   for (const char* const name : order) {
     if (taken < pruned->stages.size() && pruned->why[taken].name == name)

@@ -33,10 +33,10 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics, doub
   const double band = feltReach(haptics, relief + roughness).band(field->grid.voxel);
   if (band > field->band) {
     std::string what;
-    if (haptics.tip_radius) what = "tip.radius = " + formatLength(*haptics.tip_radius);
     const auto with = [&](const char* key, double length) {
       what += (what.empty() ? "" : " with ") + (key + (" = " + formatLength(length)));
     };
+    if (haptics.tip_radius) with("tip.radius", *haptics.tip_radius);
     if (haptics.offset) with("offset", *haptics.offset);
     if (haptics.magnet) with("magnet.range", haptics.magnet->range);
     if (relief > 0) with("relief, highest", relief);
@@ -150,19 +150,22 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                   std::to_string(objects.size()) + " objects, some painted");
     if (shell.relief > 0) raised.owners = std::make_shared<OwnerStage>(sampler, objects);
   }
-  if (range.any()) {
-    std::size_t bytes = 0;
-    for (const FeltObject& object : objects)
-      bytes += object.material ? object.material->bytes() : 0;
-    snapshot->add("material", std::make_unique<MaterialStage>(objects, slopes), namesOf(range),
-                  bytes);
-  }
   if (shell.relief > 0) raised.reliefs = std::make_shared<const Reliefs>(sampler, objects);
-  if (range.texture_stiffness > 0)
-    snapshot->add("texture stiffness",
-                  std::make_unique<TextureStiffnessStage>(raised.reliefs, slopes),
-                  "textures of up to " + formatNumber(range.texture_stiffness) + " N/m");
+  const auto addMaterial = [&] {
+    if (range.any()) {
+      std::size_t bytes = 0;
+      for (const FeltObject& object : objects)
+        bytes += object.material ? object.material->bytes() : 0;
+      snapshot->add("material", std::make_unique<MaterialStage>(objects, slopes), namesOf(range),
+                    bytes);
+    }
+    if (range.texture_stiffness > 0)
+      snapshot->add("texture stiffness",
+                    std::make_unique<TextureStiffnessStage>(raised.reliefs, slopes),
+                    "textures of up to " + formatNumber(range.texture_stiffness) + " N/m");
+  };
   if (plan.lateral) {
+    addMaterial();
     snapshot->add(
         "lateral coupling",
         std::make_unique<LateralStage>(raised.reliefs, objects, shell.whole(), *plan.lateral),
@@ -172,6 +175,8 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
     snapshot->add("relief",
                   std::make_unique<ReliefStage>(raised.reliefs, shell.relief, scene.relief.form),
                   "relief up to " + formatLength(shell.relief), raised.reliefs->bytes());
+  // The force waits for the relief longest: what need not come before it is read meanwhile.
+  if (!plan.lateral) addMaterial();
   if (shell.roughness > 0)
     snapshot->add(
         "roughness",
