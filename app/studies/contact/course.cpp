@@ -22,7 +22,7 @@ template <class AnyContact> bool snapped(const AnyContact& contact) {
     return false;
 }
 
-void append(std::vector<double>& to, const std::vector<double>& from) {
+template <class T> void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
@@ -39,6 +39,7 @@ void CourseReport::add(const CourseReport& other) {
   excesses += other.excesses;
   worst_excess = std::max(worst_excess, other.worst_excess);
   append(error, other.error);
+  append(error_at, other.error_at);
   append(snap_error, other.snap_error);
   append(free_error, other.free_error);
   append(samples, other.samples);
@@ -134,6 +135,7 @@ Contact ContactJudge::feel(const Vec3& tip, CourseReport& report, double dt) {
     const bool ran = snapped(now) || answer.at_ball;
     (ran ? report.snap_error : report.error)
         .push_back((now.force - kJudgeStiffness * (answer.point - tip)).norm());
+    if (!ran) report.error_at.push_back(answer.point);
     report.free_error.push_back((now.force - kJudgeStiffness * (own_ - tip)).norm());
   }
   return now;

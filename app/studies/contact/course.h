@@ -29,6 +29,7 @@ struct CourseReport {
   double worst_excess = 0;           // [N], of |dF| beyond 2 K |dx| + K v_s dt, snaps too
   long excesses = 0;                 // ticks with more than 0.05 N of it
   std::vector<double> error;         // [N], |F - K (c - x)| with c continued from the method's own
+  std::vector<Vec3> error_at;        // [m], that c, one an error
   std::vector<double> snap_error;    // the same where either of the two ran as far as it may
   std::vector<double> free_error;    // [N], with c continued from the oracle's own
   std::vector<double> samples;       // of the field, a tick that began in contact
