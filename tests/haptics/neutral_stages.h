@@ -50,7 +50,7 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   neutral["relief"] = std::make_unique<ReliefStage>(reliefs, 0, form);
   neutral["roughness"] = std::make_unique<RoughnessStage>(sampler, objects, 0, form);
   neutral["friction"] = std::make_unique<FrictionStage>(sampler, radius, Friction{}, false);
-  neutral["magnet"] = std::make_unique<MagnetStage>(sampler, radius, Magnet{}, MagnetRelief{});
+  neutral["magnet"] = std::make_unique<MagnetStage>(sampler, radius, Magnet{}, MagnetRelief{}, 0);
   if (!pruned->stabilisers.coupling) neutral["damping"] = std::make_unique<DampingStage>();
   neutral["stiffness slope"] = std::make_unique<StiffnessSlopeStage>(sampler);
 

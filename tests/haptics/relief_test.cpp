@@ -267,6 +267,35 @@ TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
   EXPECT_FALSE(touchOnce(*snapshot, Vec3(1e-3, 0, 2.05e-3)).attracted);
 }
 
+// Over paint that it does not touch a tip that is pulled is damped as the scene says, whichever
+// stage has found that it does not touch.
+TEST(PulledRelief, OverAMagnetThePaintBeneathDoesNotDamp) {
+  const Slab& plane = fineSlab();
+  Scene scene = sceneOf(500);
+  scene.haptics.magnet = Magnet{1e-3, 300, false};
+  scene.haptics.damping = 1;
+  const FeltObject flat =
+      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 2e-3);
+  for (const bool rough : {false, true}) {
+    const auto map = coveredMap(plane.field->grid.voxel, cube(6e-3), MaterialChannel::damping,
+                                [](const Vec3&) { return 8; });
+    if (rough)
+      coveredMap(
+          plane.field->grid.voxel, cube(6e-3), MaterialChannel::roughness,
+          [](const Vec3&) { return 2e-4; }, map);
+    FeltObject object = rough ? FeltObject{} : flat;
+    object.material = feltMaterial(*map, scene).material;
+    const auto snapshot = compiledRelief(scene, object, plane.field);
+    const double foot = rough ? 0 : 1e-3; // the relief's height; the magnet knows no roughness
+    ContactMemory memory;
+    glide(*snapshot, memory, Vec3(1e-3, 0, foot + 0.9e-3));
+    glide(*snapshot, memory, Vec3(1e-3, 0, foot + 0.4e-3));
+    const Contact contact = tick(*snapshot, memory, Vec3(1e-3, 0, foot + 0.5e-3), 1e-3);
+    EXPECT_TRUE(contact.attracted);
+    EXPECT_NEAR(contact.force.z(), -300 * 0.5e-3 - 1 * 0.1, 5e-3);
+  }
+}
+
 TEST(PulledRelief, HigherThanTheBandIsRefusedWithTheRemedy) {
   const Slab& plane = fineSlab();
   const FeltObject object =

@@ -21,7 +21,7 @@ struct Contact {
   Vec3 velocity = Vec3::Zero(); // [m/s], backward difference; VelocityFilterStage: filtered
   double dt = 0;                // [s], since the last finite tip
 
-  // tick(): the snapshot's base; MaterialStage: what is painted; TextureStiffnessStage
+  // tick(): the snapshot's base; MaterialStage: what is painted; TextureStiffnessStage, MagnetStage
   Material material;
   // In the world; that of stiffness is 0 unless it is painted and the force conservative.
   MaterialGradients gradients;

@@ -202,7 +202,8 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
   std::unique_ptr<const ForceStage> magnet;
   if (haptics.magnet) {
     haptics.magnet->strength = plan.softened(haptics.magnet->strength);
-    magnet = std::make_unique<MagnetStage>(sampler, radius, *haptics.magnet, raised);
+    magnet = std::make_unique<MagnetStage>(sampler, radius, *haptics.magnet, raised,
+                                           snapshot->base.damping);
   }
   addForceLaw(*snapshot, haptics, range, plan, std::move(magnet), maxSpeed(field->grid),
               slopes ? &sampler : nullptr);

@@ -14,9 +14,10 @@ constexpr double kWholeGradient = 0.5;
 } // namespace
 
 MagnetStage::MagnetStage(const FieldSampler& sampler, double tip_radius, const Magnet& magnet,
-                         MagnetRelief relief)
+                         MagnetRelief relief, double damping)
     : sampler_(sampler), magnet_(magnet), relief_(std::move(relief)),
-      iso_(tip_radius * sampler_.perVoxel()), range_(magnet.range * sampler_.perVoxel()) {}
+      iso_(tip_radius * sampler_.perVoxel()), range_(magnet.range * sampler_.perVoxel()),
+      damping_(damping) {}
 
 void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (!contact.touching && contact.clearance < range_) {
@@ -46,6 +47,7 @@ void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
       contact.surface = contact.tip - grid.voxel * at.phi * contact.normal;
       contact.vcp = contact.surface + iso_ * grid.voxel * contact.normal;
       contact.attracted = true;
+      contact.material.damping = damping_;
     }
   }
   const bool stepped = contact.attracted != memory.magnet.attracted && !magnet_.fades;

@@ -27,19 +27,20 @@ struct MagnetMemory {
 // value at 3/4 w to zero at w. Where two parts are equally near (a groove) the blended gradient is
 // short; below half its length the pull falls with it, so that the force has no jump there. The
 // step that the paper's form makes at phi = w is announced as Contact::known_step. Over relief the
-// height above it takes phi's place, and the pull leans as contact does.
+// height above it takes phi's place, and the pull leans as contact does. Damping is the scene's.
 class MagnetStage final : public ForceStage {
  public:
   MagnetStage(const FieldSampler& sampler, double tip_radius, const Magnet& magnet,
-              MagnetRelief relief);
+              MagnetRelief relief, double damping);
   void apply(Contact& contact, ContactMemory& memory) const noexcept override;
 
  private:
   FieldSampler sampler_;
   Magnet magnet_;
   MagnetRelief relief_;
-  double iso_;   // voxels
-  double range_; // voxels
+  double iso_;     // voxels
+  double range_;   // voxels
+  double damping_; // [N s/m]
 };
 
 } // namespace patina
