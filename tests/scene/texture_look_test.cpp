@@ -99,6 +99,7 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
       double told[4] = {7, 7, 7, 7};
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot, told);
       EXPECT_EQ(foot.face, -1) << "beyond the rim, on an edge, or nowhere";
+      for (const double kept : told) EXPECT_EQ(kept, 7);
     }
 }
 
@@ -129,7 +130,7 @@ TEST(TextureLook, LeavesOtherTexturesToThoseWhoKnowThem) {
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot, told);
       EXPECT_EQ(foot.face, textured ? 0 : 1);
       ASSERT_EQ(foot.patch != nullptr, textured);
-      EXPECT_EQ(told[0], 7);
+      for (const double kept : told) EXPECT_EQ(kept, 7);
       if (!textured) continue;
       EXPECT_EQ(foot.patch->texture->line.cells, nullptr);
       EXPECT_EQ(foot.patch->texture->of, laid.library[0].get());

@@ -11,6 +11,7 @@
 #include "haptics/servo/felt_object.h"
 #include "haptics/stages/stage.h"
 #include "scene/paint/relief_settings.h"
+#include "scene/paint/texture_reader.h"
 
 namespace patina {
 
@@ -38,8 +39,7 @@ class Reliefs {
   Reliefs(const FieldSampler& sampler, std::span<const FeltObject> objects,
           Part part = &FeltObject::relief);
   // At the closest point c [m, world] of the object, cut off at `highest`; flat where the object
-  // has none. The walk over its faces goes on from walk.
-  // bend: as of reliefAt().
+  // has none. The walk over its faces goes on from walk. bend: as of reliefAt().
   ReliefAt at(std::int32_t object, const Vec3& c, ReliefWalk& walk,
               Eigen::Matrix3d* bend = nullptr) const noexcept {
     ReliefAt found;
@@ -50,7 +50,7 @@ class Reliefs {
       return found;
     }
     const std::int32_t near = walk.object == object ? walk.face : -1;
-    if (bend || !felt_[i].reader->read(c, near, found)) found = reliefAt(*surface, c, near, bend);
+    if (bend || !felt_[i].reader->read(c, near, found)) readClosest(*surface, c, near, found, bend);
     if (found.face < 0 || found.distance > lost_ ||
         (surface->image && std::abs(found.height) > felt_[i].highest)) [[unlikely]]
       mend(felt_[i], c, found, bend);

@@ -10,6 +10,7 @@
 
 #include "geometry/mesh/adjacency.h"
 #include "geometry/tree/triangle_tree.h"
+#include "scene/paint/texture_reader.h"
 
 namespace patina {
 namespace {
@@ -252,11 +253,13 @@ void readImage(const ReliefSurface& relief, const PackedFace& face, const Foot& 
   }
 }
 
-// By the closest point of all: beside edges, and where an image is read.
+} // namespace
+
 void readClosest(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face, ReliefAt& at,
                  Eigen::Matrix3d* bend) noexcept {
   const ReliefFaces& mesh = *relief.faces;
-  if (!c.allFinite()) return;
+  if (bend) bend->setZero();
+  if (static_cast<std::size_t>(near_face) >= mesh.count || !c.allFinite()) return;
   const Foot foot = walk(mesh, c - mesh.middle, near_face);
   at.face = foot.face;
   at.distance = std::sqrt(foot.squared);
@@ -277,19 +280,16 @@ void readClosest(const ReliefSurface& relief, const Vec3& c, std::int32_t near_f
   }
 }
 
-} // namespace
-
 TextureReader::TextureReader(const ReliefSurface& relief)
     : table_(relief.faces->table), textures_(relief.textures.get()), look_(textureLook()) {
-  if (table_.frames && textures_ && relief.faces->count <= textures_->table().faces)
+  if (!relief.image && table_.frames && textures_ &&
+      relief.faces->count <= textures_->table().faces)
     faces_ = relief.faces->count;
 }
 
 ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
                   Eigen::Matrix3d* bend) noexcept {
   ReliefAt at;
-  if (bend) bend->setZero();
-  if (static_cast<std::size_t>(near_face) >= relief.faces->count) return at;
   if (bend || !TextureReader(relief).read(c, near_face, at))
     readClosest(relief, c, near_face, at, bend);
   return at;

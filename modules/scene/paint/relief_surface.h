@@ -2,15 +2,12 @@
 // (K21), of Fourier textures (A24), or of both together.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 
 #include "geometry/atlas/texture_layout.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "scene/fourier/texture_patches.h"
-#include "scene/paint/texture_look.h"
 #include "scene/paint/tiled_image.h"
 
 namespace patina {
@@ -52,34 +49,8 @@ inline constexpr double kReliefOvershoot = 1.265625; // (9/8)^2
 ReliefAt reliefAt(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face,
                   Eigen::Matrix3d* bend = nullptr) noexcept;
 
-// Textures alone, away from edges: most of what a servo asks for. A view: the surface must outlive
-// it.
-class TextureReader {
- public:
-  explicit TextureReader(const ReliefSurface& relief);
-
-  // As reliefAt(), into `at`, which is ReliefAt{}; false, and `at` as it was, where that has to
-  // tell.
-  bool read(const Vec3& c, std::int32_t near_face, ReliefAt& at) const noexcept {
-    if (static_cast<std::size_t>(near_face) >= faces_) return false;
-    static_assert(offsetof(PatchAt, slope) == sizeof(double)); // what the look tells, in its order
-    TextureFoot foot;
-    look_(table_, textures_->table(), c.x(), c.y(), c.z(), near_face, foot, &at.height);
-    if (foot.face < 0) return false;
-    at.face = foot.face;
-    at.distance = static_cast<double>(std::abs(foot.above));
-    if (foot.patch && foot.patch->texture->line.cells)
-      textures_->take(*foot.patch, c, at);
-    else if (foot.patch)
-      textures_->read(foot.face, c, at);
-    return true;
-  }
-
- private:
-  FaceTable table_{};
-  std::size_t faces_ = 0; // that a look may begin at; none where there is an image
-  const TexturePatches* textures_;
-  TextureLook look_;
-};
+// The same into `at`, which is ReliefAt{}, without a look for what is quick to find.
+void readClosest(const ReliefSurface& relief, const Vec3& c, std::int32_t near_face, ReliefAt& at,
+                 Eigen::Matrix3d* bend = nullptr) noexcept;
 
 } // namespace patina
