@@ -49,10 +49,12 @@ TEST(SlideLag, AMovingContactPointIsWhereAStandingOneWouldBe) {
         const double lag = worstLag(*snapshot, radius, share * std::abs(radius), step);
         std::cout << "radius " << radius << ", depth " << share << " of it, " << step
                   << " voxel a tick: lag " << lag << " voxel\n";
-        // What a last step may leave is 5e-3; about thin limbs three looks leave more.
-        EXPECT_LE(lag, radius == 10   ? 0.13
-                       : radius == 20 ? 0.03
-                                      : 6e-3)
+        // What a last step may leave is 2e-3, and 5e-3 where a voxel's turn counts as a crease;
+        // about thin limbs three looks leave more.
+        EXPECT_LE(lag, radius == 10    ? 0.13
+                       : radius == 20  ? 0.03
+                       : radius == -20 ? 6e-3
+                                       : 2.5e-3)
             << radius << ' ' << share << ' ' << step;
       }
   }
