@@ -42,7 +42,9 @@ TEST(CompileStages, TakesANeutralValueForAnAbsentOne) {
 TEST(CompileStages, SaysWhyEachStageIsThereAndWhatItHolds) {
   const Field sphere = sphereField(0.03, 60);
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), sphere);
-  ASSERT_EQ(snapshot->why.size(), snapshot->stages.size());
+  ASSERT_EQ(snapshot->why.size(), 4u);
+  EXPECT_NE(dynamic_cast<const FrictionStage*>(snapshot->stages[1].get()), nullptr);
+  EXPECT_NE(dynamic_cast<const SpringStage*>(snapshot->stages[2].get()), nullptr);
   EXPECT_EQ(snapshot->why[1].why, "friction.static = 0.5");
   std::size_t read = 0;
   for (const LayerBytes& layer : sphere->layerBytes()) {

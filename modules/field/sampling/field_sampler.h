@@ -127,6 +127,7 @@ FieldSampler::surfaceAtGrid(const Vec3& q, double own, BandCell* seen) const noe
   }
   if (seen) {
     // One by one, as they are known: a copy of the whole waits until they are written.
+    static_assert(sizeof(BandCell) == sizeof(void*) + 4 * sizeof(float)); // three and a gap
     seen->node = cell.node;
     seen->fx = cell.fx;
     seen->fy = cell.fy;

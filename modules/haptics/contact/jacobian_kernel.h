@@ -18,7 +18,7 @@ using Four = double __attribute__((vector_size(32)));
 using Stored = double __attribute__((vector_size(32), aligned(8)));
 
 // {0, x, y, z} as {x, y, z, 0}.
-[[gnu::always_inline]] inline void store(Float4 column, double* to) noexcept {
+[[gnu::always_inline]] inline void storeColumn(Float4 column, double* to) noexcept {
   const Float4 turned = __builtin_shufflevector(column, column, 1, 2, 3, 0);
   *reinterpret_cast<Stored*>(to) = __builtin_convertvector(turned, Four);
 }
@@ -86,9 +86,9 @@ void jacobianOf(const Float4* low, float fx, float fy, float fz, const double* n
     of_plane = 0.5F * (upper + lower) - of_bend * mean;
   }
   const Float4 plane_n = of_plane * n;
-  store(of_bend * flat_x + (Float4{0, of_plane, 0, 0} - n[1] * plane_n), columns);
-  store(of_bend * flat_y + (Float4{0, 0, of_plane, 0} - n[2] * plane_n), columns + 4);
-  store(of_bend * flat_z + (Float4{0, 0, 0, of_plane} - n[3] * plane_n), columns + 8);
+  storeColumn(of_bend * flat_x + (Float4{0, of_plane, 0, 0} - n[1] * plane_n), columns);
+  storeColumn(of_bend * flat_y + (Float4{0, 0, of_plane, 0} - n[2] * plane_n), columns + 4);
+  storeColumn(of_bend * flat_z + (Float4{0, 0, 0, of_plane} - n[3] * plane_n), columns + 8);
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -12,11 +12,12 @@ constexpr double kAtRest = 3e-3;      // a step that is the last one
 constexpr double kRestError = 3e-4;   // what a step may leave undone where the surface is smooth
 constexpr double kTurnedError = 2e-3; // and before the turn of the surface is taken out of it
 constexpr double kCreaseError = 5e-3; // the same where there may be several walls
-constexpr double kCreaseStep = 0.03;  // the last one where there may be several walls
-constexpr double kMostRate = 0.8;     // of a step, that the next one takes
-constexpr double kLeastRate = 0.06;   // below it a look at the wall as it was finds it as well
-constexpr double kLeastWay = 1e-4;    // below it the turn of a normal is rounding
-constexpr double kLongWay = 1e-2;     // from where on it tells how the wall will turn
+constexpr double kLastError = 0.03;   // of the last look where the surface is smooth
+constexpr double kCreaseStep = 0.03; // a step that is the last one where there may be several walls
+constexpr double kMostRate = 0.8;    // of a step, that the next one takes
+constexpr double kLeastRate = 0.06;  // below it a look at the wall as it was finds it as well
+constexpr double kLeastWay = 1e-4;   // below it the turn of a normal is rounding
+constexpr double kLongWay = 1e-2;    // from where on it tells how the wall will turn
 constexpr double kMostStep = 0.1;
 constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
 constexpr double kFlat = 0.2, kLeastSlope = 0.3;
@@ -224,7 +225,7 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
       const bool settles = share < 1;
       const double most_left = crease                    ? kCreaseError
                                : looks + 1 < kMostSlides ? kTurnedError
-                                                         : kCreaseStep;
+                                                         : kLastError;
       last = settles && step_squared < kMostStep * kMostStep && left < most_left * most_left;
       if (settles && left > kRestError * kRestError) {
         WallPlane guess = wall;

@@ -51,9 +51,8 @@ class ProxySearch {
       : sampler_(&sampler), iso_(iso), per_steepness_(1 / steepness), curved_(curved) {}
 
   // In contact: x is the new tip, from the last (proxy.c where contact begins, and nothing pulls
-  // yet); `ball` bounds how far c goes, but for a last step
-  // out to the surface of at most .1 voxel. Leaves proxy.c on the surface, or says that contact has
-  // ended.
+  // yet); `ball` bounds how far c goes, but for a last step out to the surface of at most .1 voxel.
+  // Leaves proxy.c on the surface, or says that contact has ended.
   ProxyMove follow(const Vec3& x, const Vec3& from, double ball, Proxy& proxy) const noexcept;
 
   // Where the way from a free point to `to` first meets the surface, on its free side to 1e-5, or

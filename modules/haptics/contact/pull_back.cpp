@@ -6,10 +6,8 @@ namespace patina {
 
 SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q, const Vec3& n,
                                      double phi) noexcept {
-  BandCell cell;
-  if (!sampler.cellAt(q, cell))
-    return SurfaceJacobian(Eigen::Matrix3d::Identity() - n * n.transpose());
-  return SurfaceJacobian(cell, n, -phi, 0);
+  if (BandCell cell; sampler.cellAt(q, cell)) return SurfaceJacobian(cell, n, -phi, 0);
+  return SurfaceJacobian(Eigen::Matrix3d::Identity() - n * n.transpose());
 }
 
 SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) noexcept {
