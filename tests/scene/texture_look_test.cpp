@@ -9,6 +9,8 @@
 
 #include "scene/fourier/texture_patches.h"
 #include "scene/paint/texture_look.h"
+#include "scene/paint/texture_reader.h"
+#include "support/relief_image.h"
 
 namespace patina {
 
@@ -135,6 +137,54 @@ TEST(TextureLook, LeavesOtherTexturesToThoseWhoKnowThem) {
       EXPECT_EQ(foot.patch->texture->line.cells, nullptr);
       EXPECT_EQ(foot.patch->texture->of, laid.library[0].get());
     }
+}
+
+// What the look cannot tell is left to the closest point, and what is told stays.
+TEST(TextureReader, RefusesEdgesImagesAndFacesThatAreNone) {
+  const Square square;
+  FourierTexture texture;
+  texture.omega = 2000;
+  texture.series.a = {1e-4};
+  texture.series.b = {0};
+  texture.low = leastHeight(texture);
+  LaidTextures laid;
+  laid.library[0] = feltTexture(texture);
+  CornerUvs uvs(2);
+  for (std::int32_t f = 0; f < 2; ++f) {
+    TexturedFace face;
+    face.face = f;
+    for (std::size_t c = 0; c < 3; ++c) {
+      face.at[c] = square.mesh.corner(static_cast<std::size_t>(f), static_cast<int>(c)).head<2>();
+      uvs[static_cast<std::size_t>(f)][c] = 10 * face.at[c];
+    }
+    laid.faces.push_back(face);
+  }
+  ReliefSurface surface;
+  surface.faces = reliefFaces(square.mesh, {});
+  const ReliefSurface bare = surface;
+  surface.textures = std::make_shared<const TexturePatches>(square.mesh, laid);
+  ReliefSurface pictured = surface;
+  pictured.faces = reliefFaces(square.mesh, uvs);
+  pictured.image = test::reliefImage(64, [](double, double) { return 0.5; });
+  pictured.height = 1e-3;
+
+  const Vec3 within = kAt + Vec3(7e-3, 2e-3, 1e-4), on_edge = kAt + Vec3(5e-3, 5e-3, 0);
+  ReliefAt at;
+  ASSERT_TRUE(TextureReader(surface).read(within, 0, at));
+  EXPECT_EQ(at.face, 0);
+  EXPECT_NEAR(at.height, 1e-4 * std::cos(2000 * within.x()), 1e-15);
+  const auto refuses = [](const ReliefSurface& of, const Vec3& p, std::int32_t near_face) {
+    ReliefAt kept;
+    const bool refused = !TextureReader(of).read(p, near_face, kept);
+    return refused && kept.face == -1 && kept.height == 0 && kept.slope.isZero(0);
+  };
+  EXPECT_TRUE(refuses(surface, on_edge, 0));
+  EXPECT_TRUE(refuses(surface, within, -1));
+  EXPECT_TRUE(refuses(surface, within, 2));
+  EXPECT_TRUE(refuses(bare, within, 0));
+  EXPECT_TRUE(refuses(pictured, within, 0));
+  EXPECT_NEAR(reliefAt(surface, on_edge, 0).distance, 0, 1e-8);
+  EXPECT_EQ(reliefAt(surface, within, -1).face, -1);
 }
 
 } // namespace
