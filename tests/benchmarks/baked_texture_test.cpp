@@ -69,10 +69,11 @@ TEST(BakedTexture, ATickCostsWhatItCostsWithoutIt) {
   // The curvature is a little less; 2051 and 2048 measured.
   EXPECT_NEAR(static_cast<double>(with.samples), static_cast<double>(without.samples),
               0.01 * static_cast<double>(without.samples));
-  // The look-ups tell whether a tick does more; the time, whether each costs more: 1.00 measured,
-  // and where its blocks lie in memory is worth a few hundredths.
+  // The look-ups tell whether a tick does more; the time, whether each costs more: 1.06 to 1.08
+  // measured, as every look asks for the nodes' spread, and where its blocks lie in memory is worth
+  // a few hundredths.
   if (!test::kSanitized) {
-    EXPECT_TRUE(test::within("a pass with texture, against without", seconds[1], seconds[0], 1.1));
+    EXPECT_TRUE(test::within("a pass with texture, against without", seconds[1], seconds[0], 1.15));
   }
 }
 

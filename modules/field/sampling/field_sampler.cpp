@@ -85,19 +85,19 @@ float sumOf(Float4 value) {
 
 // The gradient's length alone does not tell: in a field with relief baked in it is not 1 on either
 // side.
-SurfaceSample FieldSampler::followCrease(BandCell cell, double own,
-                                         SurfaceSample sample) const noexcept {
+void FieldSampler::followCrease(const BandCell& cell, double own,
+                                SurfaceSample& sample) const noexcept {
   const float fx = cell.fx, fy = cell.fy, fz = cell.fz, ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
   const Layer low = layerAt(cell.node), high = layerAt(cell.node + kLayer);
   const Float4 weight = {ex * ey, fx * ey, ex * fy, fx * fy};
   const Float4 squares_low = low.gx * low.gx + low.gy * low.gy + low.gz * low.gz,
                squares_high = high.gx * high.gx + high.gy * high.gy + high.gz * high.gz;
   const float squares = sumOf(weight * (ez * squares_low + fz * squares_high));
-  if (!(squares > 0)) return sample;
+  if (!(squares > 0)) return;
   sample.spread = std::max(0.0, 1 - sample.gradient.squaredNorm() / static_cast<double>(squares));
   if (sample.spread < kAgreedSpread) sample.spread = 0;
   const double share = std::clamp((sample.spread - kAgreedSpread) / kCreaseWidth, own, 1.0);
-  if (share == 0) return sample;
+  if (share == 0) return;
   Float4 v_low = low.phi, v_high = high.phi;
   Vec3 derivative = Vec3::Zero();
   if (sampler_ == Sampler::high) {
@@ -111,7 +111,6 @@ SurfaceSample FieldSampler::followCrease(BandCell cell, double own,
   derivative += Vec3((v[1] - v[0]) * ey + (v[3] - v[2]) * fy,
                      (v[2] - v[0]) * ex + (v[3] - v[1]) * fx, sumOf(weight * (v_high - v_low)));
   sample.gradient += share * (derivative - sample.gradient);
-  return sample;
 }
 
 double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {

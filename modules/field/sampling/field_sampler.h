@@ -103,8 +103,7 @@ class FieldSampler {
   Blend blended(const BandCell& cell) const noexcept {
     return sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
   }
-  // By value: what is usual then stays in registers, which a reference would keep in memory.
-  SurfaceSample followCrease(BandCell cell, double own, SurfaceSample sample) const noexcept;
+  void followCrease(const BandCell& cell, double own, SurfaceSample& sample) const noexcept;
   GridSample beyondBand(const Vec3& q) const noexcept;
   GridSample deepSample(const Vec3& q) const noexcept;
   GridSample handOver(const Vec3& q, const GridSample& sample) const noexcept;
@@ -117,22 +116,15 @@ class FieldSampler {
   double hand_over_; // phi below which the coarse nodes are blended in
 };
 
-[[gnu::always_inline]] inline SurfaceSample
-FieldSampler::surfaceAtGrid(const Vec3& q, double own, BandCell* seen) const noexcept {
+inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own,
+                                                 BandCell* seen) const noexcept {
   SurfaceSample sample;
   BandCell cell;
   if (!findCell(*field_, last_node_, q, cell)) [[unlikely]] {
     const GridSample beyond = beyondBand(q);
     return {beyond.phi, beyond.gradient, 0, beyond.region};
   }
-  if (seen) {
-    // One by one, as they are known: a copy of the whole waits until they are written.
-    static_assert(sizeof(BandCell) == sizeof(void*) + 4 * sizeof(float)); // three and a gap
-    seen->node = cell.node;
-    seen->fx = cell.fx;
-    seen->fy = cell.fy;
-    seen->fz = cell.fz;
-  }
+  if (seen) *seen = cell;
   const Blend value = blended(cell);
   sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
   sample.region = FieldRegion::band;
@@ -140,7 +132,7 @@ FieldSampler::surfaceAtGrid(const Vec3& q, double own, BandCell* seen) const noe
       value.sum[1] * value.sum[1] + value.sum[2] * value.sum[2] + value.sum[3] * value.sum[3];
   sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
   if (std::abs(squared - 1) > kAgreedSpread || own > 0) [[unlikely]]
-    return followCrease(cell, own, sample);
+    followCrease(cell, own, sample);
   return sample;
 }
 
