@@ -187,7 +187,7 @@ TEST(TexturePatches, FadeSmoothlyAndKeepTheHeightsGradient) {
     for (int k = 0; k < 2; ++k)
       slope[k] =
           (seen(p + d * Vec3::Unit(k)).height - seen(p - d * Vec3::Unit(k)).height) / (2 * d);
-    ASSERT_LT((slope - here.slope).norm(), 2e-5) << p.transpose();
+    ASSERT_LT((slope - here.slope()).norm(), 2e-5) << p.transpose();
     (here.texture.share == 1 ? whole : here.texture.share > 0 ? faded : none) += 1;
   }
   EXPECT_GT(whole, 1000);

@@ -42,7 +42,7 @@ TEST(ReliefSurface, HeightAndSlopeConvergeWithTheTexel) {
       const ReliefAt at = reliefAt(*relief, c, topOf(plane));
       const Vec2 slope = s / kSide * waveSlope(u, v);
       worst = std::max(worst, std::abs(at.height - s * wave(u, v)));
-      worst_slope = std::max(worst_slope, (at.slope - Vec3(slope.x(), slope.y(), 0)).norm());
+      worst_slope = std::max(worst_slope, (at.slope() - Vec3(slope.x(), slope.y(), 0)).norm());
     }
     height_error.push_back(worst);
     slope_error.push_back(worst_slope);
@@ -68,9 +68,9 @@ TEST(ReliefSurface, TheSlopeIsTheDerivativeOfTheHeightAlsoOfNoise) {
     const auto h = [&](double dx, double dy) {
       return reliefAt(*relief, c + Vec3(dx, dy, 0), at.face).height;
     };
-    ASSERT_NEAR(at.slope.x(), (h(e, 0) - h(-e, 0)) / (2 * e), 1e-4);
-    ASSERT_NEAR(at.slope.y(), (h(0, e) - h(0, -e)) / (2 * e), 1e-4);
-    ASSERT_EQ(at.slope.z(), 0);
+    ASSERT_NEAR(at.slope().x(), (h(e, 0) - h(-e, 0)) / (2 * e), 1e-4);
+    ASSERT_NEAR(at.slope().y(), (h(0, e) - h(0, -e)) / (2 * e), 1e-4);
+    ASSERT_EQ(at.slope().z(), 0);
   }
 }
 
@@ -79,7 +79,7 @@ TEST(ReliefSurface, IsFlatWhereTheImageHasNoTiles) {
   const auto relief = reliefOn(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3);
   const ReliefAt at = reliefAt(*relief, Vec3(1e-3, 2e-3, 0), topOf(plane));
   EXPECT_EQ(at.height, 0);
-  EXPECT_TRUE(at.slope.isZero(0));
+  EXPECT_TRUE(at.slope().isZero(0));
   EXPECT_GE(at.face, 0);
 }
 

@@ -81,7 +81,7 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
     other += begin != own;
     for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
       TextureFoot foot;
-      double told[4] = {7, 7, 7, 7};
+      double told[2] = {7, 7};
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), begin, foot, told);
       ASSERT_EQ(foot.face, own);
       ASSERT_NEAR(static_cast<double>(foot.above), from.z(), 1e-9);
@@ -89,8 +89,6 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
       const TextureValue truth = laid.library[0]->at.at(1 + p.x());
       ASSERT_NEAR(told[0], truth.height, 1e-15);
       ASSERT_NEAR(told[1], truth.gradient.x(), 1e-11);
-      ASSERT_EQ(told[2], 0);
-      ASSERT_EQ(told[3], 0);
     }
   }
   EXPECT_GT(other, 500);
@@ -98,7 +96,7 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
   for (const Vec3& p : {Vec3(kAt + Vec3(-1e-3, 5e-3, 0)), Vec3(kAt + Vec3(5e-3, 5e-3, 0)), nowhere})
     for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
       TextureFoot foot;
-      double told[4] = {7, 7, 7, 7};
+      double told[2] = {7, 7};
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot, told);
       EXPECT_EQ(foot.face, -1) << "beyond the rim, on an edge, or nowhere";
       for (const double kept : told) EXPECT_EQ(kept, 7);
@@ -128,7 +126,7 @@ TEST(TextureLook, LeavesOtherTexturesToThoseWhoKnowThem) {
     for (const bool textured : {true, false}) {
       const Vec3 p = kAt + (textured ? Vec3(7e-3, 2e-3, 0) : Vec3(2e-3, 7e-3, 0));
       TextureFoot foot;
-      double told[4] = {7, 7, 7, 7};
+      double told[2] = {7, 7};
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot, told);
       EXPECT_EQ(foot.face, textured ? 0 : 1);
       ASSERT_EQ(foot.patch != nullptr, textured);
@@ -176,7 +174,7 @@ TEST(TextureReader, RefusesEdgesImagesAndFacesThatAreNone) {
   const auto refuses = [](const ReliefSurface& of, const Vec3& p, std::int32_t near_face) {
     ReliefAt kept;
     const bool refused = !TextureReader(of).read(p, near_face, kept);
-    return refused && kept.face == -1 && kept.height == 0 && kept.slope.isZero(0);
+    return refused && kept.face == -1 && kept.height == 0 && kept.slope().isZero(0);
   };
   EXPECT_TRUE(refuses(surface, on_edge, 0));
   EXPECT_TRUE(refuses(surface, within, -1));

@@ -43,7 +43,7 @@ LateralStage::Height LateralStage::heightAt(const Contact& contact, const Vec3& 
   if (reliefs_) {
     const ReliefAt relief = reliefs_->at(contact.object, at, walk, &height.bend);
     height.h = relief.height;
-    height.slope = relief.slope;
+    height.slope = relief.slope();
   }
   const double roughness = contact.material.roughness;
   if (roughness > 0) {

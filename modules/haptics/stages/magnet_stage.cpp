@@ -32,7 +32,7 @@ void MagnetStage::apply(Contact& contact, ContactMemory& memory) const noexcept 
       const ReliefAt raised = relief_.reliefs->at(object, c, memory.walk);
       above = std::max(0.0, above - sampler_.perVoxel() * raised.height);
       if (relief_.leans)
-        leaning = closestPointJacobian(sampler_, sampler_.toGrid(c), n, at.phi) * raised.slope;
+        leaning = closestPointJacobian(sampler_, sampler_.toGrid(c), n, at.phi) * raised.slope();
     }
     if (at.region == FieldRegion::band && slope > 0 && above < range_) {
       double pull = above;

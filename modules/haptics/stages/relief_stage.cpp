@@ -108,7 +108,7 @@ void Reliefs::mend(const Felt& felt, const Vec3& c, ReliefAt& at,
   }
   if (surface.image && std::abs(at.height) > felt.highest) {
     at.height = std::copysign(felt.highest, at.height);
-    at.slope.setZero();
+    at.rate = 0;
     if (bend) bend->setZero();
   }
 }
@@ -126,9 +126,9 @@ std::size_t Reliefs::bytes() const {
 void ReliefStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
   if (isBare(contact, shell_, memory.relief)) return;
   const ReliefAt at = reliefs_->at(contact.object, contact.surface + contact.aside, memory.walk);
-  const Vec3 slope = form_ == ForceForm::literal
-                         ? Vec3::Zero()
-                         : pulledBack(reliefs_->sampler(), contact, at.slope);
+  Vec3 slope = Vec3::Zero();
+  if (form_ == ForceForm::conservative)
+    slope = at.rate * pulledBack(reliefs_->sampler(), contact, at.along);
   lower(contact, shell_ - at.height, slope);
   announceStep(contact, memory.relief, at.height, slope);
 }
@@ -143,7 +143,7 @@ void TextureLayerStage::apply(Contact& contact, ContactMemory& memory) const noe
   Vec3 slope = Vec3::Zero();
   if (form_ == ForceForm::conservative && pressed > 0)
     slope = pressed / (rigid + pressed) *
-            pulledBack(reliefs_->sampler(), contact, at.slope - low * at.texture.slope);
+            pulledBack(reliefs_->sampler(), contact, at.slope() - low * at.texture.slope);
   settle(contact, rigid + pressed, slope, steepness);
   announceStep(contact, memory.layer, gain_ * height, slope);
 }

@@ -184,7 +184,7 @@ void TexturePatches::read(std::int32_t face, const Vec3& p, PatchAt& found,
     *bend = along * bendAt(texture, x, y) * along.transpose();
   }
   found.height = h.height;
-  found.slope = h.gradient.x() * by_x + h.gradient.y() * by_y;
+  found.setSlope(h.gradient.x() * by_x + h.gradient.y() * by_y);
   take(patch, p, found, bend);
 }
 
@@ -195,11 +195,12 @@ void TexturePatches::fadeOut(const TexturePatch& patch, const Vec3& p, PatchAt& 
   const double share = w * w * (3 - 2 * w), growth = 6 * w * (1 - w);
   found.texture.share = share;
   found.texture.slope = growth * fade.slope;
+  const Vec3 slope = found.slope();
   if (bend)
     *bend = share * *bend +
-            growth * (found.slope * fade.slope.transpose() + fade.slope * found.slope.transpose()) +
+            growth * (slope * fade.slope.transpose() + fade.slope * slope.transpose()) +
             (6 - 12 * w) * found.height * fade.slope * fade.slope.transpose();
-  found.slope = share * found.slope + found.height * found.texture.slope;
+  found.setSlope(share * slope + found.height * found.texture.slope);
   found.height *= share;
 }
 

@@ -19,9 +19,18 @@ struct TextureShare {
 };
 
 struct PatchAt {
-  double height = 0;         // [m], outward; of a texture alone, of mean zero
-  Vec3 slope = Vec3::Zero(); // its gradient over the face, dimensionless
+  double height = 0; // [m], outward; of a texture alone, of mean zero
+  // Its gradient over the face, dimensionless, in two factors: what a line's texture is read along
+  // is known before what is read, and a tick can pull it back meanwhile.
+  double rate = 0;
+  Vec3 along = Vec3::Zero();
   TextureShare texture;
+
+  Vec3 slope() const noexcept { return rate * along; }
+  void setSlope(const Vec3& slope) noexcept {
+    rate = 1;
+    along = slope;
+  }
 };
 
 // Coordinates are affine over a face, so that neighbours that agree on an edge's ends agree along

@@ -241,9 +241,9 @@ void readImage(const ReliefSurface& relief, const PackedFace& face, const Foot& 
   const double squared = normal.squaredNorm();
   // Its change along either edge, by the edges' dual vectors.
   if (squared > 0)
-    at.slope =
+    at.setSlope(
         (per_uv.dot(along1) * edge2.cross(normal) + per_uv.dot(along2) * normal.cross(edge1)) /
-        squared;
+        squared);
   if (bend && squared > 0) {
     const Vec3 dual1 = edge2.cross(normal) / squared, dual2 = normal.cross(edge1) / squared;
     const Vec3 of_u = image.width() * (along1.x() * dual1 + along2.x() * dual2);
@@ -274,7 +274,7 @@ void readClosest(const ReliefSurface& relief, const Vec3& c, std::int32_t near_f
     Eigen::Matrix3d bent;
     const PatchAt patch = relief.textures->at(foot.face, on_face, bend ? &bent : nullptr);
     at.height += patch.height;
-    at.slope += patch.slope;
+    at.setSlope(at.slope() + patch.slope());
     at.texture = patch.texture;
     if (bend) *bend += bent;
   }

@@ -66,8 +66,8 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
   const Four by = *reinterpret_cast<const Stored*>(patch.x),
              parts = (at - *reinterpret_cast<const Stored*>(patches.middle)) * by;
   const SeriesValue value = valueAt(line, (parts[0] + parts[1]) + (parts[2] + parts[3]));
-  const Four slope = line.slope_scale * value.slope * by, height = {value.value, 0, 0, 0};
-  *reinterpret_cast<Stored*>(told) = __builtin_shufflevector(height, slope, 0, 4, 5, 6);
+  told[0] = value.value;
+  told[1] = line.slope_scale * value.slope;
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -14,7 +14,7 @@ struct TextureFoot {
 
 // x, y, z: [m, world]; near_face: one of the table's, the point's own or one from which a few steps
 // across edges lead to it, each time the edge that the point is farthest outside of. told: of a
-// line becomes its height and slope {h, x, y, z}, else it stays.
+// line becomes its height [m] and how that grows [m/m of its coordinate], else it stays.
 using TextureLook = void (*)(const FaceTable& faces, const PatchTable& patches, double x, double y,
                              double z, std::int32_t near_face, TextureFoot& foot,
                              double* told) noexcept;

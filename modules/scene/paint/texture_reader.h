@@ -20,17 +20,19 @@ class TextureReader {
   bool read(const Vec3& c, std::int32_t near_face, ReliefAt& at) const noexcept {
     if (static_cast<std::size_t>(near_face) >= faces_) return false;
     // What the look tells, in its order.
-    static_assert(offsetof(PatchAt, height) == 0 && offsetof(PatchAt, slope) == sizeof(double) &&
-                  sizeof(Vec3) == 3 * sizeof(double) && std::is_standard_layout_v<PatchAt>);
+    static_assert(offsetof(PatchAt, height) == 0 && offsetof(PatchAt, rate) == sizeof(double) &&
+                  std::is_standard_layout_v<PatchAt>);
     TextureFoot foot;
     look_(table_, textures_->table(), c.x(), c.y(), c.z(), near_face, foot, &at.height);
     if (foot.face < 0) return false;
     at.face = foot.face;
     at.distance = static_cast<double>(std::abs(foot.above));
-    if (foot.patch && foot.patch->texture->line.cells)
+    if (foot.patch && foot.patch->texture->line.cells) {
+      at.along = Vec3(foot.patch->x);
       textures_->take(*foot.patch, c, at);
-    else if (foot.patch)
+    } else if (foot.patch) {
       textures_->read(foot.face, c, at);
+    }
     return true;
   }
 
