@@ -236,6 +236,13 @@ TEST_F(BadInput, OptionsOfAnotherModeAreWarnedOf) {
 #ifdef PATINA_HAS_ACQUISITION
   warned({"simulate-device", "probe", "--seconds", "0.01", "--refuse", "claim"},
          "--refuse has no effect on a probe");
+  warned({"simulate-scan", box, "-o", folder / "poses", "--seconds", "1", "--blur", "2"},
+         "--blur has no effect without --frames");
+  const std::string filmed = folder / "filmed";
+  warned({"simulate-scan", box, "-o", filmed, "--seconds", "1", "--frames", "--outliers", "0.1"},
+         "--outliers has no effect with --frames");
+  warned({"track", filmed, "-o", folder / "poses.tum", "--rate", "20"},
+         "--rate has no effect beside frames.csv");
   warned({"fit-texture", box, "-o", folder / "t.json", "--seed", "7"},
          "--seed has no effect without --kind spectrum");
 #endif

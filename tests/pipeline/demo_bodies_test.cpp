@@ -37,8 +37,6 @@ DemoObject lumpOf(const std::string& name, double flat) {
 struct DemoCase {
   const char* body;
   unsigned seed;
-  // [dB], of the worst harmonic: 2, but where the way along the path is .2 mm off.
-  double spectrum = 2;
 };
 
 DemoObject objectOf(const std::string& name) {
@@ -50,8 +48,7 @@ std::vector<DemoCase> demoCases() {
   if (!test::isLong()) return {{"loaf", 3}};
   std::vector<DemoCase> cases;
   for (const char* body : {"dinosaur", "stone", "loaf"})
-    for (const unsigned seed : {1, 2, 3, 4, 5, 6})
-      cases.push_back({body, seed, cases.size() == 3 || cases.size() == 5 ? 2.7 : 2});
+    for (const unsigned seed : {1, 2, 3, 4, 5, 6}) cases.push_back({body, seed});
   return cases;
 }
 
@@ -68,7 +65,7 @@ double placeInDeviations(const Demo& demo) {
 }
 
 TEST_P(DemoOnBodies, HoldsButForAPlaceThatIsAsUncertainAsItSays) {
-  const auto& [body, seed, spectrum] = GetParam();
+  const auto& [body, seed] = GetParam();
   const std::filesystem::path folder = test::freshFolder("demo");
   Demo demo(folder, seed, objectOf(body));
   Progress progress;
@@ -82,8 +79,7 @@ TEST_P(DemoOnBodies, HoldsButForAPlaceThatIsAsUncertainAsItSays) {
     std::printf("  %s %s: %s of %s%s\n", figure.what.c_str(), figure.of.c_str(),
                 figureText(figure.value, figure.unit).c_str(),
                 figureText(figure.most, figure.unit).c_str(), figure.holds() ? "" : " MISSED");
-    const bool of_spectrum = figure.what.starts_with("spectrum") && figure.value <= spectrum;
-    EXPECT_TRUE(figure.holds() || of_place || of_spectrum) << figure.what << " " << figure.of;
+    EXPECT_TRUE(figure.holds() || of_place) << figure.what << " " << figure.of;
   }
   std::fflush(stdout);
   std::filesystem::remove_all(folder);

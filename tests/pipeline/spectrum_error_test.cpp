@@ -58,6 +58,17 @@ TEST(SpectrumError, SeesAWrongWavelengthAndAnAbsentWave) {
   EXPECT_GT(between(waves(3e-3, 1e-4), waves(5e-3, 1e-4), 1).decibels, 20);
 }
 
+// The 25th of its harmonics is then a quarter of a harmonic away.
+TEST(SpectrumError, CountsAStretchOfTheWholeAsOneOfTheWavelengthAlone) {
+  const auto truth = waves(5e-3, 1e-4, 4e-5);
+  for (const double stretch : {0.991, 1.009}) {
+    const SpectrumError error = between(waves(stretch * 5e-3, 1e-4, 4e-5), truth, 1.5);
+    EXPECT_NEAR(error.wavelength / error.true_wavelength, stretch, 1e-3);
+    EXPECT_LT(error.decibels, 0.3);
+  }
+  EXPECT_GT(between(waves(0.96 * 5e-3, 1e-4, 4e-5), truth, 1.5).decibels, 2) << "another wave";
+}
+
 TEST(SpectrumError, IsOfLinesAndHeights) {
   const FourierTexture line = fitTexture(waves(5e-3, 1e-4), {}).texture;
   EXPECT_THROW(spectrumError(crossCorrelation(line, line), waves(5e-3, 1e-4), 8e-3, 1),

@@ -103,6 +103,10 @@ void requireNoOther(const std::filesystem::path& folder, bool frames) {
 int runSimulateScan(ScanOptions options, Console& console) {
   const std::filesystem::path& folder = options.output;
   if (isStandardStream(folder)) throw Error("--output: a scan is a folder, not a stream");
+  if (options.frames)
+    console.warnOfNoEffect({"--outliers"}, "with --frames");
+  else
+    console.warnOfNoEffect({"--camera", "--markers", "--blur", "--noise"}, "without --frames");
   requireNoOther(folder, options.frames);
   if (std::filesystem::is_directory(folder)) requireWritable(folder / "mesh.obj", {options.mesh});
   ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);

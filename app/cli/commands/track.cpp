@@ -7,6 +7,7 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/output_target.h"
 #include "core/percentiles.h"
 
 namespace patina::cli {
@@ -61,6 +62,10 @@ int runTrack(TrackOptions options, Console& console) {
   const Camera camera = readCamera(options.camera);
   const std::vector<RigMarker> rig = readMarkers(options.rig);
   requireWritable(options.output, {options.frames, options.camera, options.rig}, FileKind::poses);
+  if (const auto folder = scanFolderOf(options.frames);
+      folder && pathExists(*folder / "frames.csv"))
+    console.warnOfNoEffect({"--rate"}, "beside frames.csv");
+  if (options.frames.starts_with("camera:")) console.warnOfNoEffect({"--rate"}, "on a camera");
   const std::unique_ptr<FrameSource> frames = openFrames(options.frames, options.rate);
   const auto begin = std::chrono::steady_clock::now();
   TrackedFrames found;
