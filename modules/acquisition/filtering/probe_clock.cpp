@@ -13,6 +13,8 @@ constexpr std::size_t kCoarse = 100;  // windows of the first search
 constexpr double kFarthest = 0.5;     // [s]
 constexpr double kDifference = 5e-3;  // for derivatives by time [s]
 constexpr double kWorstOffset = 0.02; // deviation with which nothing is said [s]
+constexpr double kAlike = 0.5;        // how long errors may stay alike [s]
+constexpr double kChance = 1e-4;      // that clocks that agree are set all the same
 
 struct Window {
   double t;
@@ -90,6 +92,57 @@ double coarseOffset(const std::vector<Window>& windows, const Expected& expected
   return best;
 }
 
+// Offset, skew and the four biases.
+using ClockVector = Eigen::Matrix<double, 6, 1>;
+using ClockSquare = Eigen::Matrix<double, 6, 6>;
+
+// Normal equations about x.
+struct Equations {
+  ClockSquare normal = ClockSquare::Zero();
+  ClockVector right = ClockVector::Zero();
+  double squares = 0, count = 0; // of what is left
+  // Of the parts of `right` that come of half a second each, within which errors may stay alike.
+  ClockSquare spread = ClockSquare::Zero();
+  double blocks = 0;
+
+  void endBlock(ClockVector& block) {
+    if (block.isZero(0)) return;
+    spread += block * block.transpose();
+    blocks += 1;
+    block.setZero();
+  }
+};
+
+Equations equationsAbout(const ClockVector& x, double start, const std::vector<Window>& windows,
+                         const Expected& expected) {
+  Equations all;
+  ClockVector block = ClockVector::Zero();
+  double block_end = start + kAlike;
+  for (const Window& window : windows) {
+    const double since = window.t - start, t = window.t - x[0] - x[1] * since;
+    const auto before = expected.at(t - kDifference), now = expected.at(t),
+               after = expected.at(t + kDifference);
+    if (!before || !now || !after) continue;
+    if (window.t > block_end) {
+      all.endBlock(block);
+      block_end = window.t + kAlike;
+    }
+    for (int k = 0; k < 4; ++k) {
+      const double rate = ((*after)[k] - (*before)[k]) / (2 * kDifference);
+      ClockVector row = ClockVector::Zero();
+      row[0] = -rate, row[1] = -rate * since, row[2 + k] = 1;
+      const double residual = window.shown[k] - (*now)[k] - x[2 + k];
+      all.normal += row * row.transpose();
+      all.right += row * residual;
+      block += row * residual;
+      all.squares += residual * residual;
+      all.count += 1;
+    }
+  }
+  all.endBlock(block);
+  return all;
+}
+
 } // namespace
 
 std::optional<ProbeClock> fitClock(const CameraTrack& track,
@@ -100,47 +153,34 @@ std::optional<ProbeClock> fitClock(const CameraTrack& track,
   const Expected expected(track, probe, gravity);
   ProbeClock clock;
   clock.start = samples.front().t;
-  clock.offset = coarseOffset(windows, expected);
-  // Gauss and Newton over offset, skew and the four biases.
-  using Vector = Eigen::Matrix<double, 6, 1>;
-  using Square = Eigen::Matrix<double, 6, 6>;
-  Vector x = Vector::Zero();
-  x[0] = clock.offset;
+  // Gauss and Newton.
+  ClockVector x = ClockVector::Zero();
+  x[0] = coarseOffset(windows, expected);
   constexpr int kRounds = 6;
   bool settled = false;
   for (int round = 0; round < kRounds && !settled; ++round) {
-    Square normal = Square::Zero();
-    Vector right = Vector::Zero();
-    double squares = 0, count = 0;
-    for (const Window& window : windows) {
-      const double since = window.t - clock.start, t = window.t - x[0] - x[1] * since;
-      const auto before = expected.at(t - kDifference), now = expected.at(t),
-                 after = expected.at(t + kDifference);
-      if (!before || !now || !after) continue;
-      for (int k = 0; k < 4; ++k) {
-        const double rate = ((*after)[k] - (*before)[k]) / (2 * kDifference);
-        Vector row = Vector::Zero();
-        row[0] = -rate, row[1] = -rate * since, row[2 + k] = 1;
-        const double residual = window.shown[k] - (*now)[k] - x[2 + k];
-        normal += row * row.transpose();
-        right += row * residual;
-        squares += residual * residual;
-        count += 1;
-      }
-    }
-    const SymmetricSolver solver(normal);
-    if (count < 100 || !(solver.evenness() > 1e-12)) return std::nullopt;
-    const Vector change = solver.solve(right);
+    const Equations at = equationsAbout(x, clock.start, windows, expected);
+    const SymmetricSolver solver(at.normal);
+    if (at.count < 100 || at.blocks < 10 || !(solver.evenness() > 1e-12)) return std::nullopt;
+    const ClockVector change = solver.solve(at.right);
     x += change;
-    const Square P = squares / (count - 6) * solver.inverse();
+    const ClockSquare inverse = solver.inverse();
+    // Were all errors independent, and as the half seconds differ from one another: a stroke on
+    // which all depends has few of its own.
+    const ClockSquare even = at.squares / (at.count - 6) * inverse,
+                      alike = at.blocks / (at.blocks - 6) * inverse * at.spread * inverse;
+    const auto surprise = [both = Vec2(x.head<2>())](const ClockSquare& P) {
+      return both.dot(P.topLeftCorner<2, 2>().inverse() * both);
+    };
     clock.offset = x[0];
     clock.skew = x[1];
-    clock.offset_deviation = std::sqrt(P(0, 0));
+    clock.offset_deviation = std::sqrt(std::max(even(0, 0), alike(0, 0)));
+    clock.skew_deviation = std::sqrt(std::max(even(1, 1), alike(1, 1)));
     settled = std::abs(change[0]) < 0.1 * clock.offset_deviation;
-    clock.skew_deviation = std::sqrt(P(1, 1));
-    const Vec2 both = x.head<2>();
-    // Of chi^2 with two degrees of freedom, once in 10,000.
-    clock.differs = both.dot(P.topLeftCorner<2, 2>().inverse() * both) > 18.4;
+    // Chi squared and Hotelling's T squared, of two.
+    const double free = at.blocks - 6;
+    clock.differs = surprise(even) > -2 * std::log(kChance) &&
+                    surprise(alike) > free * (std::pow(kChance, -2 / (free - 1)) - 1);
   }
   const bool found = settled && std::abs(clock.offset) < 1.1 * kFarthest &&
                      std::abs(clock.skew) < 0.02 && clock.offset_deviation < kWorstOffset;
