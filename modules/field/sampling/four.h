@@ -8,6 +8,8 @@ namespace patina {
 
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16))); // what comparing gives: 0 or -1
+using Double4 = double __attribute__((vector_size(32)));
+using Double4At = double __attribute__((vector_size(32), aligned(8))); // where doubles lie
 using Word4 = std::uint32_t __attribute__((vector_size(16)));
 
 inline Float4 load(const float* from) {

@@ -14,13 +14,10 @@ constexpr std::size_t kNodeRow = 9, kNodeLayer = 81;
 constexpr float kMostStretch = 4;      // of J, along any direction
 constexpr float kLeastSquare = 1e-16F; // of a difference of curvatures
 
-using Four = double __attribute__((vector_size(32)));
-using Stored = double __attribute__((vector_size(32), aligned(8)));
-
 // {0, x, y, z} as {x, y, z, 0}.
 [[gnu::always_inline]] inline void storeColumn(Float4 column, double* to) noexcept {
   const Float4 turned = __builtin_shufflevector(column, column, 1, 2, 3, 0);
-  *reinterpret_cast<Stored*>(to) = __builtin_convertvector(turned, Four);
+  *reinterpret_cast<Double4At*>(to) = __builtin_convertvector(turned, Double4);
 }
 
 [[gnu::always_inline]] inline float sumOf(Float4 value) noexcept {

@@ -10,7 +10,7 @@
 namespace patina::PATINA_KERNEL {
 
 using Eight = float __attribute__((vector_size(32)));
-using Four = float __attribute__((vector_size(16)));
+using Double4 = float __attribute__((vector_size(16)));
 
 // Powers along x are summed as two polynomials of half the degree, side by side; eight along y in
 // the lanes.
@@ -33,20 +33,21 @@ PlaneValue lookInto(const ExactRing& ring, const void* cells, double x, double y
   slope += (4 * t * square) * high + fourth * high_slope;
 
   const float square_y = u * u;
-  const Four low = Four{1, u, 1, u} * Four{1, 1, square_y, square_y};
-  const Four upper = low * (square_y * square_y);
-  const Four slopes = Four{0, 1, 2, 3} * __builtin_shufflevector(low, low, 0, 0, 1, 2);
-  const Four upper_slopes = Four{4, 5, 6, 7} * __builtin_shufflevector(low, upper, 3, 4, 5, 6);
-  const Four value_low = __builtin_shufflevector(value, value, 0, 1, 2, 3);
-  const Four value_upper = __builtin_shufflevector(value, value, 4, 5, 6, 7);
-  const Four slope_low = __builtin_shufflevector(slope, slope, 0, 1, 2, 3);
-  const Four slope_upper = __builtin_shufflevector(slope, slope, 4, 5, 6, 7);
-  const Four sum = value_low * low + value_upper * upper;
-  const Four along_x = slope_low * low + slope_upper * upper;
-  const Four along_y = value_low * slopes + value_upper * upper_slopes;
-  const Four both = __builtin_shufflevector(sum, along_x, 0, 4, 1, 5) +
-                    __builtin_shufflevector(sum, along_x, 2, 6, 3, 7);
-  const Four rest = along_y + __builtin_shufflevector(along_y, along_y, 2, 3, 2, 3);
+  const Double4 low = Double4{1, u, 1, u} * Double4{1, 1, square_y, square_y};
+  const Double4 upper = low * (square_y * square_y);
+  const Double4 slopes = Double4{0, 1, 2, 3} * __builtin_shufflevector(low, low, 0, 0, 1, 2);
+  const Double4 upper_slopes =
+      Double4{4, 5, 6, 7} * __builtin_shufflevector(low, upper, 3, 4, 5, 6);
+  const Double4 value_low = __builtin_shufflevector(value, value, 0, 1, 2, 3);
+  const Double4 value_upper = __builtin_shufflevector(value, value, 4, 5, 6, 7);
+  const Double4 slope_low = __builtin_shufflevector(slope, slope, 0, 1, 2, 3);
+  const Double4 slope_upper = __builtin_shufflevector(slope, slope, 4, 5, 6, 7);
+  const Double4 sum = value_low * low + value_upper * upper;
+  const Double4 along_x = slope_low * low + slope_upper * upper;
+  const Double4 along_y = value_low * slopes + value_upper * upper_slopes;
+  const Double4 both = __builtin_shufflevector(sum, along_x, 0, 4, 1, 5) +
+                       __builtin_shufflevector(sum, along_x, 2, 6, 3, 7);
+  const Double4 rest = along_y + __builtin_shufflevector(along_y, along_y, 2, 3, 2, 3);
   const double halves = ring.stepsATurn() * (2 / kTurn); // a cell's, a radian
   return {both[0] + both[2], (both[1] + both[3]) * halves, (rest[0] + rest[1]) * halves};
 }

@@ -8,37 +8,35 @@
 
 namespace patina::PATINA_KERNEL {
 
-using Four = double __attribute__((vector_size(32)));
-using Stored = double __attribute__((vector_size(32), aligned(8)));
 using Two = double __attribute__((vector_size(16)));
 using Mask4 = std::int64_t __attribute__((vector_size(32)));
 
-[[gnu::always_inline]] inline Four load(const double (&from)[4]) noexcept {
-  return *reinterpret_cast<const Stored*>(from);
+[[gnu::always_inline]] inline Double4 load(const double (&from)[4]) noexcept {
+  return *reinterpret_cast<const Double4At*>(from);
 }
 
 // All of the first three.
 [[gnu::always_inline]] inline bool holds(Mask4 mask) noexcept {
 #if defined(__AVX2__)
-  return (__builtin_ia32_movmskpd256((Four)mask) & 7) == 7;
+  return (__builtin_ia32_movmskpd256((Double4)mask) & 7) == 7;
 #else
   return (mask[0] & mask[1] & mask[2]) != 0;
 #endif
 }
 
 // The lower and the upper layer at a node and at the one above it along y.
-[[gnu::always_inline]] inline Four fourAt(const double* low, std::int32_t up,
-                                          std::int32_t above) noexcept {
-  return Four{low[0], low[above], low[up], low[up + above]};
+[[gnu::always_inline]] inline Double4 fourAt(const double* low, std::int32_t up,
+                                             std::int32_t above) noexcept {
+  return Double4{low[0], low[above], low[up], low[up + above]};
 }
 
 void lookUp(const MaterialView& view, const double* p, double* material,
             double* const* gradients) noexcept {
-  const Four q = p[0] * load(view.node_of_world[0]) + p[1] * load(view.node_of_world[1]) +
-                 (p[2] * load(view.node_of_world[2]) + load(view.node_of_world[3]));
+  const Double4 q = p[0] * load(view.node_of_world[0]) + p[1] * load(view.node_of_world[1]) +
+                    (p[2] * load(view.node_of_world[2]) + load(view.node_of_world[3]));
   if (!holds((q >= 0) & (q < load(view.count)))) return; // NaN as well
   const Int4 whole = __builtin_convertvector(q, Int4);
-  const Four part = q - __builtin_convertvector(whole, Four);
+  const Double4 part = q - __builtin_convertvector(whole, Double4);
   Int4 block_step, step;
   __builtin_memcpy(&block_step, view.block_step, sizeof block_step);
   __builtin_memcpy(&step, view.step, sizeof step);
@@ -54,8 +52,8 @@ void lookUp(const MaterialView& view, const double* p, double* material,
   const double fx = part[0], fy = part[1], fz = part[2];
   for (std::size_t c = 0; c < view.channels; ++c, ++low) {
     // a + f (b - a) is exact for equal ends: where nothing is painted the base stays itself.
-    const Four left = fourAt(low, up, above), along_x = fourAt(low + right, up, above) - left,
-               at_x = left + fx * along_x;
+    const Double4 left = fourAt(low, up, above), along_x = fourAt(low + right, up, above) - left,
+                  at_x = left + fx * along_x;
     const Two front = __builtin_shufflevector(at_x, at_x, 0, 1),
               back = __builtin_shufflevector(at_x, at_x, 2, 3), along_y = back - front,
               ends = front + fy * along_y,
@@ -70,7 +68,7 @@ void lookUp(const MaterialView& view, const double* p, double* material,
     if (channel.gradient < 0) continue;
     const double gx = of_both[1], gy = along_y[0] + fz * (along_y[1] - along_y[0]),
                  gz = ends[1] - ends[0];
-    const Four at =
+    const Double4 at =
         gx * load(view.by_world[0]) + gy * load(view.by_world[1]) + gz * load(view.by_world[2]);
     // Not as one block of three, which would go through the stack and whole numbers.
     const Two xy = __builtin_shufflevector(at, at, 0, 1);

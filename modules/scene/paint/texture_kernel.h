@@ -34,14 +34,14 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
   foot.face = -1;
   foot.patch = nullptr;
   constexpr Int4 kThree = {-1, -1, -1, 0};
-  const Four at = {x, y, z, 0};
-  const Four on_mesh = at - *reinterpret_cast<const Stored*>(faces.middle);
+  const Double4 at = {x, y, z, 0};
+  const Double4 on_mesh = at - *reinterpret_cast<const Double4At*>(faces.middle);
   for (int crossed = 0;; ++crossed) {
     const FaceFrame& frame = faces.frames[near_face];
     Float4 corner;
     __builtin_memcpy(&corner, frame.corner, sizeof corner);
     const Float4 p =
-        __builtin_convertvector(on_mesh - __builtin_convertvector(corner, Four), Float4);
+        __builtin_convertvector(on_mesh - __builtin_convertvector(corner, Double4), Float4);
     const Float4 over = p[0] * (Float4)(frame.lanes[0] & kThree) +
                         p[1] * (Float4)(frame.lanes[1] & kThree) +
                         p[2] * (Float4)(frame.lanes[2] & kThree);
@@ -63,8 +63,8 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
   foot.patch = &patch;
   const SeriesTable& line = patch.texture->line;
   if (!line.cells) return;
-  const Four by = *reinterpret_cast<const Stored*>(patch.x),
-             parts = (at - *reinterpret_cast<const Stored*>(patches.middle)) * by;
+  const Double4 by = *reinterpret_cast<const Double4At*>(patch.x),
+                parts = (at - *reinterpret_cast<const Double4At*>(patches.middle)) * by;
   const SeriesValue value = valueAt(line, (parts[0] + parts[1]) + (parts[2] + parts[3]));
   told[0] = value.value;
   told[1] = line.slope_scale * value.slope;
