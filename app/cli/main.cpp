@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
   }
   const int code = cli::runCommandLine(argc, argv);
   // A full disk behind a redirected report must not look like success.
-  if (std::fflush(stdout) == 0) return code;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   std::fputs("patina: standard output cannot be written\n", stderr);
   return cli::kBadInput;
 }

@@ -1,5 +1,7 @@
 #include "pipeline/scan_steps.h"
 
+#include <cmath>
+
 #include <algorithm>
 
 #include "acquisition/registration/scan_options.h"
@@ -104,13 +106,17 @@ Scene texturedScene(TriangleMesh mesh, const std::string& name,
                     const std::vector<ScannedTexture>& textures) {
   Scene scene = sceneOf(std::move(mesh), name);
   LaidTextures laid;
+  double stiffness = 0, known = 0;
   for (const ScannedTexture& scanned : textures) {
     const auto number = static_cast<std::int32_t>(laid.library.size() + 1);
     std::vector<TexturedFace> faces = scanned.laid.faces;
     for (TexturedFace& face : faces) face.texture = number;
     laid.faces = laidOver(faces, laid.faces);
     laid.library[number] = feltTexture(scanned.fitted.texture);
+    stiffness += laid.library[number]->stiffness;
+    known += laid.library[number]->stiffness > 0;
   }
+  if (known > 0) scene.haptics.stiffness = std::round(stiffness / known);
   ObjectPaint paint;
   paint.textures = std::make_shared<const LaidTextures>(std::move(laid));
   scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));

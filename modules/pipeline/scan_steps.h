@@ -49,7 +49,9 @@ ScannedTexture fitScan(const SurfaceTarget& target, const ScanStreams& streams,
                        double compliance, const FitOptions1d& options, Progress& progress);
 
 // The mesh as a scene of one object with these textures on it, numbered from 1 in their order; of
-// faces that several want the later ones get them. Friction and stiffness as a scene has them.
+// faces that several want the later ones get them. What was not scanned is as stiff as what was, on
+// the mean, so that no rim of a texture is a step of stiffness that throws the tip off; all else as
+// a new scene has it.
 Scene texturedScene(TriangleMesh mesh, const std::string& name,
                     const std::vector<ScannedTexture>& textures);
 

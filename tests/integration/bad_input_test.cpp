@@ -236,6 +236,8 @@ TEST_F(BadInput, OptionsOfAnotherModeAreWarnedOf) {
 #ifdef PATINA_HAS_ACQUISITION
   warned({"simulate-device", "probe", "--seconds", "0.01", "--refuse", "claim"},
          "--refuse has no effect on a probe");
+  warned({"simulate", "--plane", "--seconds", "3", "--voxel", "1mm"},
+         "--voxel has no effect with --plane");
   warned({"simulate-scan", box, "-o", folder / "poses", "--seconds", "1", "--blur", "2"},
          "--blur has no effect without --frames");
   const std::string filmed = folder / "filmed";
@@ -246,6 +248,38 @@ TEST_F(BadInput, OptionsOfAnotherModeAreWarnedOf) {
   warned({"fit-texture", box, "-o", folder / "t.json", "--seed", "7"},
          "--seed has no effect without --kind spectrum");
 #endif
+}
+
+TEST_F(BadInput, TheVoxelIsWhatWasSaidInWhateverOrder) {
+  const Json first = runJson({"info", box, "--voxel", "2mm", "--resolution", "60"}),
+             last = runJson({"info", box, "--resolution", "60", "--voxel", "2mm"});
+  EXPECT_DOUBLE_EQ(first.at("field").at("voxel").asNumber(), 2e-3);
+  EXPECT_DOUBLE_EQ(last.at("field").at("voxel").asNumber(), 2e-3);
+}
+
+TEST_F(BadInput, VolumesWithoutAPlaceOrASizeAreRefused) {
+  const auto volume = [&](const std::string& origin, const std::string& spacing) {
+    std::string values;
+    for (int i = 0; i < 27; ++i) values += i == 13 ? "-1 " : "1 ";
+    return folder.write("v.vti",
+                        "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">"
+                        "<ImageData WholeExtent=\"0 2 0 2 0 2\" Origin=\"" +
+                            origin + "\" Spacing=\"" + spacing +
+                            "\"><Piece Extent=\"0 2 0 2 0 2\"><PointData Scalars=\"a\">"
+                            "<DataArray type=\"Float32\" Name=\"a\" format=\"ascii\">" +
+                            values + "</DataArray></PointData></Piece></ImageData></VTKFile>\n");
+  };
+  EXPECT_EQ(run({"info", volume("0 0 0", "10 10 10"), "--iso", "0"}).exit, 0);
+  for (const char* spacing : {"abc 10 10", "nan 10 10", "0 10 10", "-10 10 10", "10 10"})
+    expectOneLineError(run({"info", volume("0 0 0", spacing), "--iso", "0"}), {"v.vti", "Spacing"});
+  expectOneLineError(run({"info", volume("nan 0 0", "1 1 1"), "--iso", "0"}), {"v.vti", "Origin"});
+}
+
+TEST_F(BadInput, ModelsThatNoFileHoldsAreNotMade) {
+  for (const char* radius : {"1e308", "1e-320", "-1", "inf"})
+    expectOneLineError(run({"model", "sphere", "-o", folder / "b.ply", "--radius", radius}),
+                       {"--radius", radius});
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.ply"));
 }
 
 TEST_F(BadInput, OptionsWithoutTheirValueAndFlagsWithOneAreNamed) {

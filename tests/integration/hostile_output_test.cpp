@@ -172,6 +172,10 @@ TEST_F(HostileOutput, AnExportReplacesItsOwnFilesOnly) {
   const std::string before = fingerprint(out);
   ASSERT_EQ(run({"export", workspace, "-o", out}).exit, 0);
   EXPECT_EQ(fingerprint(out), before);
+  const std::string tip = folder.write("out/forces.csv", "t [s],x [m],y [m],z [m]\n0,0,0,1\n");
+  expectOneLineError(run({"export", workspace, "-o", out, "--path", tip}),
+                     {"forces.csv", "an input of this command"});
+  std::filesystem::remove(tip);
   folder.write("out/vertices.csv", "{\"a\": 1}");
   const std::string foreign = fingerprint(out);
   expectOneLineError(run({"export", workspace, "-o", out}), {"vertices.csv", "a JSON file"});

@@ -41,6 +41,22 @@ TEST(Interrupt, CancelsAndLeavesTheOutputAsItWas) {
   EXPECT_EQ(files, 2u) << "a temporary file was left behind";
 }
 
+// As a supervisor or a closed terminal ends it.
+TEST(Interrupt, OfOtherKindsLeavesNothingEither) {
+  const ScratchFolder folder;
+  const std::string mesh = folder / "sphere.ply";
+  ASSERT_EQ(run({"model", "sphere", "-o", mesh, "--frequency", "200"}).exit, 0);
+  for (const int number : {SIGTERM, SIGHUP}) {
+    Running field({"field", mesh, "-o", folder / "field.vti", "--resolution", "1200"},
+                  programPath());
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    ASSERT_FALSE(field.finished()) << "too quick to be interrupted";
+    field.signal(number);
+    EXPECT_EQ(field.wait().exit, 130);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  }
+}
+
 // As a shell starts what is in the background: SIGINT ignored. It comes while libraries are set up.
 TEST(Interrupt, IsNotLostBeforeMain) {
   const ScratchFolder folder;

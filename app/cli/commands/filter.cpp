@@ -226,8 +226,11 @@ void layOver(const Over& over, const std::optional<ComplianceEstimate>& presses,
 
 int runFilter(FilterOptions options, Console& console) {
   findFiles(options);
-  const std::vector<std::filesystem::path> inputs = {
-      options.input, options.probe, options.rig, options.truth, options.over, options.registration};
+  if (options.over.empty())
+    console.warnOfNoEffect({"--registration", "--tip-radius", "--unit"}, "without --over");
+  std::vector<std::filesystem::path> inputs = {options.input, options.probe, options.rig,
+                                               options.truth, options.over,  options.registration};
+  inputs.push_back(options.input.parent_path() / "frames.csv"); // of the same scan
   requireWritable(options.output, inputs, FileKind::table);
   if (options.normal && options.heights.empty())
     throw Error("--normal: is that of heights; name a file for them with --heights");

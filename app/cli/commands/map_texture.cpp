@@ -46,7 +46,7 @@ const Keys kMapKeys = {
 int runMapTexture(const MapOptions& options, Console& console) {
   if (kindOfName(options.output) != FileKind::obj)
     throw FileError(options.output.string(), 0, "only an .obj holds haptic coordinates");
-  requireWritable(options.output, {options.path, options.heights}, FileKind::obj);
+  requireWritable(options.output, {options.mesh, options.path, options.heights}, FileKind::obj);
   TexturedMesh file = kindOfName(options.mesh) == FileKind::obj
                           ? readTexturedObj(options.mesh)
                           : TexturedMesh{readMesh(options.mesh), {}};

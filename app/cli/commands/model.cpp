@@ -132,7 +132,8 @@ Argument sizeArgument(const std::string& key, const std::string& users, Sizes& s
     return {"--" + key, "N", "", users, "How fine.", inRange(1, 2000, set, NumberKind::whole)};
   return {"--" + key, "LENGTH", "m", users, "Size.", [set](const std::string& word) {
             const double value = parseLength(word);
-            if (!(value > 0)) throw Error("'" + word + "' is not a positive length");
+            if (!(value >= 1e-9 && value <= 1e6))
+              throw Error("'" + word + "' is no length from a nanometre to 1000 km");
             set(value);
           }};
 }

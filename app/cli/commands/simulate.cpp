@@ -70,6 +70,9 @@ struct Felt {
 Felt feltBy(const SimulateOptions& options, Console& console) {
   Felt felt;
   if (options.plane) {
+    console.warnOfNoEffect(
+        {"--resolution", "--voxel", "--band", "--sampler", "--unit", "--up", "--iso", "--texture"},
+        "with --plane");
     applySettings(felt.scene, options.scene.settings);
     // A limit of the force would hide where the loop ends.
     const bool limited = std::ranges::any_of(

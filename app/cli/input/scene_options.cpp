@@ -137,7 +137,11 @@ void addHapticOptions(Command& command, SceneOptions& options) {
 }
 
 void applySettings(Scene& scene, const Settings& settings) {
-  setValues(scene, settings);
+  Settings ordered = settings;
+  // Each of the two takes the other's place, but the voxel is what was said beside a resolution.
+  std::ranges::stable_partition(ordered,
+                                [](const auto& setting) { return setting.first != "voxel"; });
+  setValues(scene, ordered);
 }
 
 bool setsTipRadius(const Settings& settings) {

@@ -26,6 +26,7 @@ std::atomic<bool> interrupted{false};
 std::atomic<int> wakes{-1};      // the descriptor that wakes the impatient thread
 std::atomic<bool> ending{false}; // somebody says the last line already
 
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr std::uint64_t kInterrupt = 1, kEnd = 1ULL << 32; // what is added to it
 
 void wake(std::uint64_t what) {
@@ -47,7 +48,20 @@ extern "C" void catchInterrupt() {
   struct sigaction action = {};
   action.sa_handler = onInterrupt;
   action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
+  for (const int number : kSignals) {
+    struct sigaction before = {};
+    sigaction(number, nullptr, &before);
+    // As nohup asks for it; SIGINT is ignored by what a shell puts in the background.
+    if (number != SIGINT && before.sa_handler == SIG_IGN) continue;
+    sigaction(number, &action, nullptr);
+  }
+}
+
+void letSignalsEnd() {
+  struct sigaction now = {};
+  for (const int number : kSignals)
+    if (sigaction(number, nullptr, &now) == 0 && now.sa_handler == onInterrupt)
+      std::signal(number, SIG_DFL);
 }
 
 // Before the constructors of all libraries, which take longer than some commands: a shell starts
@@ -82,7 +96,7 @@ Console::~Console() {
   impatient_.join();
   ::close(wakes.exchange(-1));
   clearBar();
-  std::signal(SIGINT, SIG_DFL);
+  letSignalsEnd();
   interrupted_progress = nullptr;
 }
 
@@ -107,7 +121,7 @@ void Console::endWhatDoesNot() {
 
 void Console::endOnInterrupt() {
   progress_.throwIfCancelled();
-  std::signal(SIGINT, SIG_DFL);
+  letSignalsEnd();
 }
 
 int Console::fail(const std::exception& error) {

@@ -21,7 +21,8 @@ enum ExitCode { kDone = 0, kNotSolved = 1, kBadInput = 2, kCancelledByUser = 130
 
 class Console {
  public:
-  // SIGINT, which is caught from the start of the process, is its until destroyed. One a process.
+  // SIGINT, SIGTERM and SIGHUP, which are caught from the start of the process, are its until
+  // destroyed. One a process.
   Console();
   ~Console();
   Console(const Console&) = delete;

@@ -37,6 +37,7 @@ std::map<std::string, Entry> entriesIn(const std::string& whole, const std::stri
   std::size_t number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;
+    if (line.ends_with('\r')) line.pop_back();
     std::string rest = line;
     if (!listing) {
       const std::size_t colon = line.find(':');

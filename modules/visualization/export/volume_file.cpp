@@ -1,6 +1,7 @@
 #include "visualization/export/volume_file.h"
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -10,6 +11,7 @@
 #include <vtkXMLImageDataReader.h>
 
 #include "core/error.h"
+#include "core/numbers.h"
 #include "visualization/export/quiet_log.h"
 
 namespace patina {
@@ -47,6 +49,25 @@ std::string headOf(const std::filesystem::path& path) {
   return head;
 }
 
+// Three numbers of the header, which VTK takes for its own where they are none; absent: none.
+void checkThree(const std::string& head, const std::string& name, bool positive,
+                const std::filesystem::path& path) {
+  const auto at = head.find(' ' + name + "=\"");
+  if (at == std::string::npos) return;
+  const auto begin = at + name.size() + 3, end = head.find('"', begin);
+  std::istringstream words(head.substr(begin, end - begin));
+  std::size_t count = 0;
+  for (std::string word; words >> word; ++count)
+    if (const auto number = parseNumber(word);
+        !number || !std::isfinite(*number) || (positive && !(*number > 0)))
+      throw FileError(path.string(), 0,
+                      "has '" + word + "' in its " + name + ", which is no " +
+                          (positive ? "positive " : "") + "number");
+  if (count != 3)
+    throw FileError(path.string(), 0,
+                    "has " + std::to_string(count) + " numbers in its " + name + ", not three");
+}
+
 // The reader allocates whatever the header asks for, so the header is read first.
 void checkHeader(const std::filesystem::path& path) {
   const std::string head = headOf(path);
@@ -60,6 +81,8 @@ void checkHeader(const std::filesystem::path& path) {
       throw FileError(path.string(), 0, "has a WholeExtent that is not six ascending numbers");
     nodes *= high - low + 1;
   }
+  checkThree(head, "Spacing", true, path);
+  checkThree(head, "Origin", false, path);
   if (nodes > 1073741824.0)
     throw FileError(path.string(), 0, "has more than 2^30 nodes: resample it to a smaller grid");
 }
