@@ -1,8 +1,7 @@
 #include "pipeline/scan_steps.h"
 
-#include <cmath>
-
 #include <algorithm>
+#include <cmath>
 
 #include "acquisition/registration/scan_options.h"
 #include "core/error.h"
