@@ -10,6 +10,7 @@
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/utf8.h"
 
 namespace patina {
 namespace {
@@ -113,7 +114,7 @@ CsvReader::CsvReader(Source source, std::string name, const std::vector<std::str
   std::string_view line;
   if (!nextLine(line))
     throw FileError(name_, 0, "is empty: its first line must be '" + joined(expected) + "'");
-  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3); // a spreadsheet's byte order mark
+  line = withoutByteOrderMark(line);
   for (const std::string_view cell : split(line, ',')) columns_.emplace_back(cell);
   const bool right = columns_.size() >= expected.size() &&
                      std::equal(expected.begin(), expected.end(), columns_.begin());

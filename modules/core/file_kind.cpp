@@ -12,6 +12,7 @@
 #include "core/descriptor.h"
 #include "core/disk_error.h"
 #include "core/numbers.h"
+#include "core/utf8.h"
 
 namespace patina {
 namespace {
@@ -93,7 +94,7 @@ FileKind kindOf(std::string_view head, std::uint64_t size) {
     return FileKind::pnm;
   if (head.starts_with(".TH ")) return FileKind::roff;
   if (head.starts_with("\x76\x2f\x31\x01"sv)) return FileKind::exr;
-  if (head.starts_with("\xEF\xBB\xBF"sv)) head.remove_prefix(3);
+  head = withoutByteOrderMark(head);
   if (head.starts_with("ply\n"sv) || head.starts_with("ply\r"sv)) return FileKind::ply;
   if (head.starts_with("solid"sv) && head.find("facet") != head.npos) return FileKind::stl;
   if (head.starts_with("%YAML"sv)) return FileKind::yaml;

@@ -8,4 +8,9 @@ namespace patina {
 // Whether the bytes are well-formed UTF-8 without control characters.
 bool isUtf8(std::string_view text);
 
+// Without the three bytes that some editors and spreadsheets begin a file with.
+inline std::string_view withoutByteOrderMark(std::string_view bytes) {
+  return bytes.substr(0, 3) == "\xEF\xBB\xBF" ? bytes.substr(3) : bytes;
+}
+
 } // namespace patina

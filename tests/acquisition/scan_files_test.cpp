@@ -56,7 +56,8 @@ TEST_F(ScanFiles, PosesReadBackBitForBit) {
 }
 
 TEST_F(ScanFiles, PosesMayTellTheirDeviations) {
-  const auto file = readPoses(written("0 1 2 3 0 0 0 1 # one\n\n0.1 1 2 3 0 0 0 -1 1e-4 0.002\n"),
+  const auto file = readPoses(written("\xEF\xBB\xBF"
+                                      "0 1 2 3 0 0 0 1 # one\n\n0.1 1 2 3 0 0 0 -1 1e-4 0.002\n"),
                               {0.5e-3, 0.01});
   ASSERT_EQ(file.values.size(), 2u);
   EXPECT_EQ(file.values[0].sigma_position, 0.5e-3);

@@ -17,6 +17,7 @@ Pose somePose() {
 TEST(PoseFile, TextAndJsonReadBackBitForBit) {
   const Pose pose = somePose();
   EXPECT_EQ(parsePose(poseText(pose, "a"), "a").matrix(), pose.matrix());
+  EXPECT_EQ(parsePose("\xEF\xBB\xBF" + poseText(pose, "a"), "a").matrix(), pose.matrix());
   EXPECT_EQ(poseIn(Json::object().set("a", poseJson(pose)), "a").matrix(), pose.matrix());
 }
 

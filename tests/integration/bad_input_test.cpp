@@ -275,6 +275,13 @@ TEST_F(BadInput, VolumesWithoutAPlaceOrASizeAreRefused) {
   expectOneLineError(run({"info", volume("nan 0 0", "1 1 1"), "--iso", "0"}), {"v.vti", "Origin"});
 }
 
+TEST_F(BadInput, BytesThatMoveTheCursorDoNotReachTheTerminal) {
+  const std::string pose = folder.write("e.txt", "1 0 \x1b[31mX 0\n");
+  const Outcome outcome = run({"scene", "-o", folder / "w", "--add", box + "@" + pose});
+  expectOneLineError(outcome, {"e.txt:1", "?[31mX"});
+  EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
+}
+
 TEST_F(BadInput, ModelsThatNoFileHoldsAreNotMade) {
   for (const char* radius : {"1e308", "1e-320", "-1", "inf"})
     expectOneLineError(run({"model", "sphere", "-o", folder / "b.ply", "--radius", radius}),

@@ -68,6 +68,15 @@ void letSignalsEnd() {
 // what is in the background with SIGINT ignored, and until it is caught it would be lost.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const before_all)() = catchInterrupt;
 
+// What files and their names bring along must not move a terminal's cursor, nor end the line.
+std::string onOneLine(std::string text) {
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) c = c == '\n' || c == '\t' ? ' ' : '?';
+  }
+  return text;
+}
+
 // Whether the Console ended within the time (-1: any) and before the next interrupt.
 bool endsWithin(int descriptor, int milliseconds) {
   pollfd wait{descriptor, POLLIN, 0};
@@ -134,8 +143,7 @@ int Console::fail(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error)) message = "not enough memory";
   if (dynamic_cast<const std::system_error*>(&error))
     message = "the system refused what is needed: " + message;
-  for (char& c : message)
-    if (c == '\n') c = ' ';
+  message = onOneLine(message);
   if (json) {
     Json object = Json::object();
     object.set("message", message).set("exit", code);
@@ -149,7 +157,7 @@ int Console::fail(const std::exception& error) {
 
 void Console::warn(const std::string& line) {
   clearBar();
-  std::fprintf(stderr, "patina: warning: %s\n", line.c_str());
+  std::fprintf(stderr, "patina: warning: %s\n", onOneLine(line).c_str());
 }
 
 void Console::warnOfNoEffect(std::initializer_list<const char*> options, const std::string& where) {

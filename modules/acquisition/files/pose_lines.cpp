@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
+#include "core/utf8.h"
 
 namespace patina {
 namespace {
@@ -49,7 +50,7 @@ OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas
 
 OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
                               const PoseSigmas& unsaid) {
-  std::istringstream text(whole);
+  std::istringstream text{std::string(withoutByteOrderMark(whole))};
   OnFile<CameraPose> file;
   std::size_t number = 0;
   for (std::string line; std::getline(text, line);) {

@@ -17,7 +17,7 @@ class ObjParser {
   // textured: where that lies which is not null, lines of haptic coordinates are read.
   ObjParser(std::string_view bytes, const std::string& name,
             std::vector<TexturedFace>* textured = nullptr)
-      : name_(name), lines_(text::withoutByteOrderMark(bytes)), textured_(textured) {}
+      : name_(name), lines_(withoutByteOrderMark(bytes)), textured_(textured) {}
 
   TriangleMesh parse() {
     std::string_view statement;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
+#include "core/utf8.h"
 
 namespace patina {
 namespace {
@@ -51,7 +52,7 @@ std::string poseText(const Pose& pose, const std::string& frames) {
 
 Pose parsePose(const std::string& whole, const std::string& name) {
   constexpr std::size_t kNumbers = 16;
-  std::istringstream text(whole);
+  std::istringstream text{std::string(withoutByteOrderMark(whole))};
   std::vector<double> values;
   std::vector<std::size_t> line_of;
   std::size_t line_number = 0;

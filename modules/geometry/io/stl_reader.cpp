@@ -37,7 +37,7 @@ enum class Kind { binary, ascii, other_text };
 Kind kindOf(std::string_view bytes) {
   if (bytes.size() >= kHeader && binarySize(bytes) == bytes.size()) return Kind::binary;
   if (text::hasControl(bytes.substr(0, kHeader))) return Kind::binary;
-  text::Lines lines(text::withoutByteOrderMark(bytes));
+  text::Lines lines(withoutByteOrderMark(bytes));
   std::string_view line;
   std::string_view word;
   while (word.empty() && lines.next(line)) word = text::Words(line).next();
@@ -159,7 +159,7 @@ TriangleMesh parseStl(std::string_view bytes, const std::string& name) {
   case Kind::binary:
     return parseBinary(bytes, name);
   case Kind::ascii:
-    return AsciiParser(text::withoutByteOrderMark(bytes), name).parse();
+    return AsciiParser(withoutByteOrderMark(bytes), name).parse();
   case Kind::other_text:
     break;
   }

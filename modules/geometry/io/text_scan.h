@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/utf8.h"
 
 namespace patina::text {
 
@@ -30,10 +31,6 @@ inline std::string quoted(std::string_view word) {
   for (const char c : word.substr(0, kShown))
     out += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f ? '?' : c;
   return out + (word.size() > kShown ? "...'" : "'");
-}
-
-inline std::string_view withoutByteOrderMark(std::string_view bytes) {
-  return bytes.substr(0, 3) == "\xEF\xBB\xBF" ? bytes.substr(3) : bytes;
 }
 
 // Physical lines, without their ends.
