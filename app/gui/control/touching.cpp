@@ -12,6 +12,19 @@ Vec3 normalAt(const CompiledScene& scene, const Vec3& surface) {
   return size > 1e-9 ? Vec3(gradient / size) : Vec3::UnitZ();
 }
 
+double stiffnessAt(const CompiledScene& scene, const Vec3& surface) {
+  const Vec3 normal = normalAt(scene, surface);
+  const double skin = skinOf(scene.scene.haptics), raised = raisedBy(scene.snapshot->objects),
+               clear = 0.5 * scene.built.field->grid.voxel;
+  ContactMemory memory;
+  const auto at = [&](double above) {
+    return tick(*scene.snapshot, memory, surface + above * normal, 1e-3);
+  };
+  at(skin + raised + clear); // from outside, as a hand comes; then below the lowest groove
+  const Contact contact = at(skin - depthWithin(scene, surface, raised + clear));
+  return contact.stiffness > 0 ? contact.stiffness : scene.scene.haptics.stiffness;
+}
+
 double skinOf(const HapticProperties& haptics) {
   return haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
 }

@@ -22,6 +22,8 @@ constexpr int kLinger = 250; // [ms]
 constexpr std::size_t kLingerTicks = 250;
 // And so long in all, for a tip that does not follow the pointer never arrives.
 constexpr int kLongest = 5000; // [ms]
+// How fast a press gets deeper where the surface gets softer, at most.
+constexpr double kSinking = 0.05; // [m/s]
 // A tick this far from the path between samples, in radii, is a sample.
 constexpr double kOff = 0.003;
 
@@ -139,24 +141,28 @@ void PaintController::passTip(const Vec3& target) {
   at_.feel.passTarget(target, t_);
 }
 
-void PaintController::press(const Vec3& surface, double newtons) {
-  const HapticProperties& haptics = scene_->scene.haptics;
-  // By the scene's own stiffness: what is painted harder or softer is felt as another force. Relief
-  // is followed, or an engraved place would be out of reach.
+void PaintController::press(const Vec3& surface, double newtons, double seconds) {
+  // Painted relief is followed, or an engraved place would be out of reach; what a texture adds to
+  // the force is felt.
   const auto values = valuesAt(surface);
-  double depth = newtons / haptics.stiffness;
+  // By the stiffness of the place, which is no answer of the servo: nothing can swing. From hard to
+  // soft it sinks slowly, so that it does not press on what is hard ahead of the pointer.
+  const double softness = 1 / stiffnessAt(*scene_, surface);
+  const bool begins = newtons_ == 0;
+  softness_ = begins ? softness : std::min(softness, softness_ + kSinking * seconds / newtons);
+  double depth = newtons * softness_;
   // A simulated hand is a spring itself: it must reach deeper for the same force.
   depth += newtons * deviceNamed(scene_->scene.device).hand_compliance;
   const SurfaceField& field = *scene_->built.field;
   depth = std::min(depth, 0.5 * field.band * field.grid.voxel);
   aim_ = surface;
-  if (newtons_ == 0) {
+  if (begins) {
     // It comes down here, from above: on a straight way it would go through the object.
     begin_ = surface;
     leapTip(lifted());
   }
   newtons_ = newtons;
-  const double below = depth - skinOf(haptics) - (values ? values->height : 0);
+  const double below = depth - skinOf(scene_->scene.haptics) - (values ? values->height : 0);
   passTip(surface - depthWithin(*scene_, surface, below) * normalAt(*scene_, surface));
 }
 
@@ -175,6 +181,7 @@ void PaintController::lift() {
 
 void PaintController::follow(const Pointed& where) {
   if (!scene_) return;
+  const double seconds = std::max(0.0, where.t - t_);
   t_ = where.t;
   const auto raise = [this] {
     newtons_ = 0;
@@ -184,7 +191,7 @@ void PaintController::follow(const Pointed& where) {
     down_ = true;
     lingers_ = false;
     if (where.surface)
-      press(*where.surface, presets_.press * where.pressure);
+      press(*where.surface, presets_.press * where.pressure, seconds);
     else
       raise(); // beside the object: the stroke ends with its contact
   } else if (down_) {
@@ -212,7 +219,8 @@ void PaintController::send(const std::vector<StrokePiece>& pieces) {
 void PaintController::feed(const std::vector<ToolSample>& ticks) {
   if (!ticks.empty()) last_ = ticks.back();
   if (!scene_) return;
-  if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
+  if (newtons_ > 0 && (down_ || lingers_)) // the surface may have changed
+    press(aim_, newtons_, ticks.empty() ? 0 : ticks.back().t - ticks.front().t);
   if (presses_) return;
   const double near = std::max(brush().radius, 0.02 * presets_.extent());
   const bool paints = at_.bar.choice().handling == Handling::paint;

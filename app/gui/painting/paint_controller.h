@@ -38,6 +38,7 @@ class PaintController : public QObject {
   void refresh();                                  // brush cursor and what is under the pointer
   void resizeBrush(double factor);
   void softenBrush(double factor);
+  void setForce(double newtons); // with which the mouse presses the tool on
 
  signals:
   void chosen(const patina::ToolChoice& choice);
@@ -49,11 +50,10 @@ class PaintController : public QObject {
   void setBrush(const Brush& brush);
   void pickAt(const Vec3& surface);
   void follow(const Pointed& where);
-  void press(const Vec3& surface, double newtons);
-  Vec3 lifted() const; // the place over the aim
-  void lift();         // there at once
-  void setForce(double newtons);
-  void escape(); // the stroke is taken back
+  void press(const Vec3& surface, double newtons, double seconds); // since it was told so last
+  Vec3 lifted() const;                                             // the place over the aim
+  void lift();                                                     // there at once
+  void escape();                                                   // the stroke is taken back
   void moveTip(const Vec3& target);
   void leapTip(const Vec3& target); // above what it would go through
   void passTip(const Vec3& target); // when it is that event's turn
@@ -73,6 +73,7 @@ class PaintController : public QObject {
   Vec3 begin_ = Vec3::Zero(); // the aim when the tip was pressed on
   double t_ = 0;              // [s], of the pointer
   double newtons_ = 0;        // with which it is pressed there; 0: it is not
+  double softness_ = 0;       // of what it is pressed on [m/N]
   bool down_ = false, lingers_ = false;
   bool presses_ = false; // and paints nothing
   QElapsedTimer released_;

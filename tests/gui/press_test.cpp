@@ -1,0 +1,134 @@
+// The tool that presses: the force that is set is the one that is felt, however stiff the place is.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "session/edit/editor.h"
+
+namespace patina {
+namespace {
+
+constexpr double kThick = 0.01; // [m]
+
+class Press : public DrivenWindow {
+ protected:
+  static Scene plate() {
+    Scene scene;
+    SceneObject& object = scene.objects.emplace_back();
+    object.name = "plate";
+    object.mesh = std::make_shared<const TriangleMesh>(box({0.06, 0.06, kThick}, 12));
+    scene.field.resolution = 100;
+    return scene;
+  }
+  static Stroke stiff(double value, double radius) {
+    Stroke stroke;
+    stroke.brush.tool = Tool::material(MaterialChannel::stiffness);
+    stroke.brush.value = value;
+    stroke.brush.radius = radius;
+    stroke.brush.falloff = 16;
+    stroke.samples.push_back({0, Vec3(0, 0, 0.5 * kThick), 0.5});
+    return stroke;
+  }
+  // Ribs along x on what gives way by `compliance`, on all of its top.
+  static Scene ribbed(Scene scene, double amplitude, double compliance) {
+    FourierTexture ribs;
+    ribs.name = "ribs";
+    ribs.omega = 2 * M_PI / 4e-3;
+    ribs.series.a = {amplitude};
+    ribs.series.b = {0};
+    ribs.low = leastHeight(ribs);
+    ribs.compliance = compliance;
+    LaidTextures laid;
+    laid.library[1] = feltTexture(ribs);
+    const TriangleMesh& mesh = *scene.objects[0].mesh;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      TexturedFace face{static_cast<std::int32_t>(f), 1, {}};
+      bool top = true;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 corner = mesh.corner(f, k);
+        top = top && corner.z() > 0.49 * kThick;
+        face.at[static_cast<std::size_t>(k)] = corner.head<2>();
+      }
+      if (top) laid.faces.push_back(face);
+    }
+    ObjectPaint paint;
+    paint.textures = std::make_shared<const LaidTextures>(std::move(laid));
+    scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
+    return scene;
+  }
+  void show(const Scene& scene, const std::vector<Stroke>& strokes) {
+    Progress progress;
+    Editor editor(scene, progress);
+    for (const Stroke& stroke : strokes) editor.apply(stroke, progress);
+    editor.saveAs(folder_ / "plate.patina");
+    ASSERT_TRUE(open(folder_ / "plate.patina"));
+    trigger("view_+z");
+    wait(1000);
+    type(QStringLiteral("q"));
+  }
+  // What is felt on a drag through the middle, of those ticks that are in contact.
+  std::vector<ToolSample> strokeAt(double newtons, int half) {
+    auto* force = find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>();
+    force->setValue(newtons);
+    pointAt(inView({-half, 0}));
+    wait(500);
+    press();
+    wait(400);
+    feel().startLog();
+    for (int x = -half; x <= half; x += 3) pointAt(inView({x, 0}));
+    const std::vector<ToolSample> all = feel().log().samples();
+    release();
+    EXPECT_GT(all.size(), 500U);
+    EXPECT_TRUE(std::all_of(all.begin(), all.end(), [](const auto& s) { return s.contact; }));
+    return all;
+  }
+  struct Felt {
+    double mean = 0, spread = 0, most = 0;
+  };
+  static Felt of(const std::vector<ToolSample>& samples) {
+    Felt felt;
+    double square = 0;
+    for (const ToolSample& sample : samples) {
+      const double force = sample.force.norm();
+      felt.mean += force / static_cast<double>(samples.size());
+      square += force * force / static_cast<double>(samples.size());
+      felt.most = std::max(felt.most, force);
+    }
+    felt.spread = std::sqrt(std::max(0.0, square - felt.mean * felt.mean));
+    std::printf("%zu ticks: %.3f N, spread %.3f N, at most %.3f N\n", samples.size(), felt.mean,
+                felt.spread, felt.most);
+    return felt;
+  }
+};
+
+TEST_F(Press, OnPaintedStiffnessTheForceIsTheOneThatWasSet) {
+  show(plate(), {stiff(1300, 0.2)});
+  const Felt felt = of(strokeAt(0.8, 60));
+  EXPECT_NEAR(felt.mean, 0.8, 0.04);
+  EXPECT_LT(felt.most, 0.9);
+}
+
+TEST_F(Press, OnScannedStiffnessTheMeanIsTheForceThatWasSetAndRibsShow) {
+  show(ribbed(plate(), 0.1e-3, 1.0 / 2500), {});
+  const Felt felt = of(strokeAt(1, 60));
+  EXPECT_NEAR(felt.mean, 1, 0.08);
+  EXPECT_NEAR(felt.spread, 0.25 / std::sqrt(2), 0.05) << "2500 N/m times 0.1 mm";
+}
+
+TEST_F(Press, OverAnIslandOfOtherStiffnessTheForceStaysWithoutJumps) {
+  show(plate(), {stiff(2500, 0.008)});
+  const std::vector<ToolSample> all = strokeAt(1, 140);
+  const Felt felt = of(all);
+  EXPECT_NEAR(felt.mean, 1, 0.1);
+  EXPECT_LT(felt.most, 2);
+  std::vector<ToolSample> middle;
+  for (const ToolSample& sample : all)
+    if (sample.surface.head<2>().norm() < 0.004) middle.push_back(sample);
+  ASSERT_GT(middle.size(), 20U);
+  EXPECT_NEAR(of(middle).mean, 1, 0.1);
+}
+
+} // namespace
+} // namespace patina
