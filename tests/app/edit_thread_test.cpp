@@ -200,8 +200,10 @@ class SavedBall : public testing::Test {
   }
   static bool discard(Desk& desk) {
     bool done = false;
-    desk.edits.discard(
-        [&](const EditOutcome& outcome) { done = outcome.problem.empty() && !outcome.cancelled; });
+    desk.edits.discard([&](const EditOutcome& outcome) {
+      EXPECT_EQ(outcome.problem, "");
+      done = outcome.problem.empty() && !outcome.cancelled;
+    });
     return desk.waitUntil([&] { return done; });
   }
   void expectA(const Desk& desk) const {
@@ -284,6 +286,33 @@ TEST_F(SavedBall, ComesBackThoughTheHistoryHasLeftWhatWasSaved) {
   ASSERT_TRUE(desk.settle());
   ASSERT_TRUE(discard(desk));
   expectA(desk);
+}
+
+TEST_F(SavedBall, DiscardingGivesBackWhatWasToBeRedoneAndNothingElse) {
+  Desk desk(state());
+  ASSERT_TRUE(save(desk));
+  rename(desk, "b");
+  desk.edits.goTo(1);
+  bool kept = false;
+  desk.edits.save([&](const EditOutcome&) { kept = true; });
+  ASSERT_TRUE(desk.waitUntil([&] { return kept; }));
+  const std::vector<std::string> saved = desk.status.edits;
+  ASSERT_EQ(saved.size(), 2u);
+  rename(desk, "c"); // in the place of b
+  rename(desk, "d");
+  ASSERT_TRUE(desk.settle());
+  ASSERT_TRUE(discard(desk));
+  expectA(desk);
+  EXPECT_EQ(desk.status.edits, saved);
+  EXPECT_EQ(desk.status.done, 1u);
+  desk.edits.redo(); // what was saved, and journaled as ever
+  ASSERT_TRUE(desk.waitUntil([&] { return desk.status.done == 2; }));
+  EXPECT_EQ(desk.compiled->scene.objects[0].name, "b");
+  EXPECT_TRUE(desk.status.unsaved);
+  ASSERT_TRUE(discard(desk));
+  expectA(desk);
+  const OpenedWorkspace found = openWorkspace(workspace());
+  EXPECT_EQ(found.journal.size(), found.event) << "nothing of what was discarded";
 }
 
 TEST(EditThread, AFolderThatCannotBeMadeIsToldOfAndTheEditsStay) {

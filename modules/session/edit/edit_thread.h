@@ -68,7 +68,7 @@ class EditThread {
   void redo(Done done = {});
   void save(Done done = {});
   void saveAs(const std::filesystem::path& folder, Done done = {});
-  // To what was last saved, as far as the history knows it; then nothing is unsaved.
+  // To the workspace as it was last saved, its history too; then nothing is unsaved.
   void discard(Done done = {});
   void cancel(); // what is under way, and what waits
   // Nobody can be asked what becomes of edits that are not saved: the next start offers them.

@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 #include "session/edit/value_edit.h"
-#include "workspace/workspace.h"
 
 namespace patina {
 namespace {
@@ -150,13 +149,8 @@ void EditWorker::saveAs(const std::filesystem::path& folder) {
 
 void EditWorker::discard(Progress& progress) {
   if (!editor_ || !ownsFolder() || !editor_->unsaved()) return;
-  if (saved_at_) {
-    goTo(*saved_at_, progress);
-  } else { // undone, and something else was done: as an edit it is there again
-    auto saved = std::make_shared<Scene>(loadWorkspace(*editor_->folder()));
-    editor_->apply(SceneEdit{"go back to what was saved", std::move(saved)}, progress);
-  }
-  save();
+  editor_->revert(progress);
+  saved_at_ = editor_->history().undoable();
 }
 
 void EditWorker::report() {

@@ -36,6 +36,16 @@ Scene withPaint(const Scene& scene, const std::vector<std::shared_ptr<const Obje
   return result;
 }
 
+// Read from a file, meshes that are here already are these: their fields need not be built anew.
+void shareMeshes(Scene& scene, const Scene& here) {
+  for (SceneObject& object : scene.objects)
+    for (const SceneObject& other : here.objects)
+      if (object.mesh->positions == other.mesh->positions &&
+          object.mesh->triangles == other.mesh->triangles &&
+          object.mesh->corner_uvs == other.mesh->corner_uvs)
+        object.mesh = other.mesh;
+}
+
 } // namespace
 
 struct Editor::Impl {
@@ -46,6 +56,7 @@ struct Editor::Impl {
   std::vector<std::string> notes;
   bool unsaved = false;
   std::optional<std::size_t> opened_at;
+  std::size_t budget = kHistoryBudget;
   Replayer replayer;
 
   std::shared_ptr<const PaintSurface> surface; // of compiled; null until something is painted
@@ -105,6 +116,7 @@ Editor::Editor(Scene scene, Progress& progress, Listener listener, std::size_t h
   impl_->compiled = compile(scene, progress);
   impl_->history = std::make_unique<EditHistory>(std::move(scene), impl_->replayer, history_budget);
   impl_->unsaved = true;
+  impl_->budget = history_budget;
 }
 
 std::unique_ptr<Editor> Editor::open(const std::filesystem::path& folder, const OpenSpec& spec,
@@ -118,6 +130,7 @@ std::unique_ptr<Editor> Editor::open(const std::filesystem::path& folder, const 
   impl->notes = std::move(opened.notes);
   impl->unsaved = opened.unsaved;
   impl->opened_at = opened.saved_at;
+  impl->budget = spec.history_budget;
   impl->compiled = compile(impl->history->scene(), progress);
   return std::unique_ptr<Editor>(new Editor(std::move(impl)));
 }
@@ -286,6 +299,25 @@ void Editor::saveAs(const std::filesystem::path& folder) {
   impl_->replayer.lend(impl_->compiled, impl_->surface);
   impl_->link = WorkspaceLink::create(folder, *impl_->history);
   impl_->unsaved = false;
+}
+
+void Editor::revert(Progress& progress) {
+  Impl& at = *impl_;
+  at.require(at.link != nullptr, "no folder to go back to");
+  at.require(!at.painter, "a stroke is being painted");
+  const std::filesystem::path folder = at.link->folder();
+  Scene scene = loadWorkspace(folder);
+  shareMeshes(scene, at.compiled->scene);
+  auto saved = at.compiledFor(std::move(scene), progress);
+  at.link->revert();
+  at.link.reset(); // which had the journal locked
+  WorkspaceLink::Opened opened = WorkspaceLink::open(folder, at.replayer, at.budget, true, false);
+  at.history = std::move(opened.history);
+  at.link = std::move(opened.link);
+  at.compiled = std::move(saved);
+  at.surface.reset();
+  at.unsaved = false;
+  at.tell(std::nullopt);
 }
 
 std::optional<std::filesystem::path> Editor::folder() const {

@@ -76,6 +76,9 @@ class Editor {
   // another, which is then its own.
   void save();
   void saveAs(const std::filesystem::path& folder);
+  // Back to the workspace as it was saved: scene and history, and what was to be redone.
+  // invalid_argument without a folder or in a stroke; if it throws otherwise nothing has changed.
+  void revert(Progress& progress);
   std::optional<std::filesystem::path> folder() const;
 
  private:

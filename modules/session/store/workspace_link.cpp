@@ -221,4 +221,21 @@ void WorkspaceLink::save(EditHistory& history) {
   tieStates(history);
 }
 
+void WorkspaceLink::revert() {
+  const FolderLock alone(folder_);
+  const OpenedWorkspace found = openWorkspace(folder_);
+  const auto saved = found.journal.begin() + static_cast<std::ptrdiff_t>(found.event);
+  const bool writes = journal_ != nullptr;
+  journal_.reset(); // its lock is taken by what replaces it
+  try {
+    if (saved != found.journal.end())
+      saveWorkspace(found.scene, found.event, found.states, {found.journal.begin(), saved},
+                    folder_);
+  } catch (...) {
+    if (writes)
+      journal_ = std::make_unique<JournalWriter>(found.journal_file, found.journal.size());
+    throw;
+  }
+}
+
 } // namespace patina

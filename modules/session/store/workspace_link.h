@@ -47,6 +47,9 @@ class WorkspaceLink {
   void recordUndo(std::size_t steps);
   void recordRedo(std::size_t steps);
   void save(EditHistory& history); // states that are dropped are not loaded any more
+  // The folder is as it was last saved, its history too: a journal of its own begins with what that
+  // holds. Nothing can be recorded after it; open() again.
+  void revert();
 
  private:
   explicit WorkspaceLink(std::filesystem::path folder);
