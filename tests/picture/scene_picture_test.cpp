@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -6,12 +7,16 @@
 #include <unistd.h>
 
 #include <vtkCamera.h>
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRendererCollection.h>
 
 #include "core/error.h"
 #include "field/store/surface_field.h"
 #include "geometry/mesh/shapes.h"
 #include "picture/picture_support.h"
 #include "visualization/view/picture.h"
+#include "visualization/view/png.h"
 
 namespace patina {
 namespace {
@@ -188,6 +193,48 @@ TEST_F(ScenePicture, AForceArrowThatReachesBeyondTheObjectIsInThePicture) {
   EXPECT_GT(side.share(isForce), 0.003);
   EXPECT_EQ(side.share(isForce, 0, 1, 0.99, 1), 0);
   EXPECT_GT(pixels.share(isSurface), 0.2); // seen from its end it takes no room
+}
+
+// In a picture that nobody fits to it, wherever the tip is.
+TEST_F(ScenePicture, ALargeForceStaysInThePictureAndItsNumberOffTheCube) {
+  view_.showCube(true);
+  view_.showOnly({Layer::mesh, Layer::tip});
+  view_.setView(ViewPreset::minus_y);
+  const vtkNew<vtkRenderWindow> window;
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(8);
+  window->SetSize(960, 720);
+  view_.attachTo(*window);
+  view_.prepare();
+  view_.fit();
+  const std::array<std::array<double, 4>, 4> edges{
+      {{0, 1, 0.995, 1}, {0, 1, 0, 0.005}, {0, 0.004, 0, 1}, {0.996, 1, 0, 1}}};
+  const fs::path path =
+      fs::temp_directory_path() / ("large_force-" + std::to_string(getpid()) + ".png");
+  for (const double across : {-1.0, 0.0, 1.0})
+    for (const double up : {-1.0, 1.0}) {
+      ToolSample sample = pressed();
+      sample.force = Vec3(8 * across, 0, 8 * up);
+      sample.vcp = sample.surface = sample.tip =
+          Vec3(across * (kMajor + 0.5 * kMinor), -kMinor, up * kMinor);
+      view_.setTool(sample);
+      view_.prepare();
+      window->Render();
+      writeWindowPng(*window, path);
+      const Pixels pixels(path);
+      if (const char* keep = std::getenv("PATINA_KEEP_PICTURES"))
+        fs::copy_file(path,
+                      fs::path(keep) / ("large_force" + std::to_string(across).substr(0, 2) +
+                                        std::to_string(up).substr(0, 2) + ".png"),
+                      fs::copy_options::overwrite_existing);
+      EXPECT_GT(pixels.share(isForce, 0, 1, 0, 1), 0.0008) << across << " " << up;
+      for (const auto& [left, right, low, high] : edges)
+        EXPECT_EQ(pixels.share(isForce, left, right, low, high), 0) << across << " " << up;
+      EXPECT_LT(pixels.share(isForce, 0, 0.12, 0, 0.16), 1e-4) << across << " " << up;
+    }
+  fs::remove(path);
+  while (vtkRenderer* renderer = window->GetRenderers()->GetFirstRenderer())
+    window->RemoveRenderer(renderer);
 }
 
 TEST_F(ScenePicture, WithoutContactThereIsNoForceArrow) {

@@ -1,5 +1,7 @@
 #include "visualization/layers/tool_layer.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -10,17 +12,22 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
+#include <vtkRenderWindow.h>
 #include <vtkSphereSource.h>
 #include <vtkTextProperty.h>
+#include <vtkTextRenderer.h>
 
 #include "visualization/values/palette.h"
 
 namespace patina {
 namespace {
 
-constexpr double kUpright = 0.2;         // of a force across the picture, by its direction
+constexpr double kEdge = 6;      // of the picture, that arrow and number keep clear [pixels]
+constexpr int kBeside = 12;      // the number, of the arrow's end [pixels]
+constexpr double kUpright = 0.2; // of a force across the picture, by its direction
 constexpr double kSmallestForce = 0.005; // [N]; an arrow below it is a speck
 constexpr double kArrowPerNewton = 0.16; // of the picture's height
+constexpr double kLongestArrow = 0.32;   // same: what is more is said by the number
 constexpr double kPointRadius = 0.013;   // same
 
 vtkSmartPointer<vtkActor> actorOf(vtkAlgorithm* source, const palette::Color& color,
@@ -100,7 +107,7 @@ Vec3 seenContact(const ToolSample& sample) {
 }
 
 ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
-    : ball_(unitBall(palette::kTool, 1)), neck_(unitCone(palette::kTool)),
+    : overlay_(overlay), ball_(unitBall(palette::kTool, 1)), neck_(unitCone(palette::kTool)),
       shaft_(unitRod(palette::kToolShaft)), ghost_(unitBall(palette::kGhost, 0.45)),
       spring_(unitRod(palette::kGhost)), stem_(unitRod(palette::kContactPoint)),
       contact_(unitBall(palette::kContactPoint, 1)), arrow_shaft_(unitRod(palette::kForce)),
@@ -152,7 +159,59 @@ std::optional<Vec3> ToolLayer::arrowEnd() const {
   const double newtons = sample_.force.norm();
   if (!visible_ || !(newtons > kSmallestForce)) return std::nullopt;
   const Vec3 held = sample_.contact ? sample_.vcp : sample_.tip;
-  return held + sample_.force / newtons * (ballRadius() + kArrowPerNewton * newtons * length_);
+  return held + sample_.force / newtons * (ballRadius() + arrowLength(newtons));
+}
+
+double ToolLayer::arrowLength(double newtons) const {
+  return std::min(kArrowPerNewton * newtons, kLongestArrow) * length_;
+}
+
+std::optional<Vec2> ToolLayer::inPicture(const Vec3& p) const {
+  auto* window = overlay_.GetRenderWindow();
+  if (window == nullptr || window->GetSize()[0] <= 0) return std::nullopt;
+  overlay_.SetWorldPoint(p[0], p[1], p[2], 1);
+  overlay_.WorldToDisplay();
+  const double* pixel = overlay_.GetDisplayPoint();
+  return Vec2(pixel[0], pixel[1]);
+}
+
+bool ToolLayer::isOutside(const Vec3& p) const {
+  const auto pixel = inPicture(p);
+  if (!pixel) return false;
+  const int* size = overlay_.GetRenderWindow()->GetSize();
+  return pixel->minCoeff() < kEdge || pixel->x() > size[0] - kEdge || pixel->y() > size[1] - kEdge;
+}
+
+// Beyond the arrow's end, on the side that it points to, but in the picture and off its corner.
+void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newtons) {
+  label_->SetPosition(end[0], end[1], end[2]);
+  char words[32];
+  std::snprintf(words, sizeof words, " %.2f N ", newtons);
+  label_->SetInput(words);
+  const double across = direction.dot(right_); // one that is upright changes no side
+  if (std::abs(across) > kUpright) leftwards_ = across < 0;
+  vtkTextProperty* text = label_->GetTextProperty();
+  text->SetJustification(leftwards_ ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
+  int beside = leftwards_ ? -kBeside : kBeside, over = 0;
+  std::array<int, 4> box{};
+  if (const auto at = inPicture(end);
+      at && vtkTextRenderer::GetInstance()->GetBoundingBox(text, words, box.data(),
+                                                           overlay_.GetRenderWindow()->GetDPI())) {
+    const int* size = overlay_.GetRenderWindow()->GetSize();
+    const double wide = box[1] - box[0], high = box[3] - box[2];
+    const Vec2 natural = *at + Vec2(beside - (leftwards_ ? wide : 0), -0.5 * high);
+    Vec2 low(std::clamp(natural.x(), kEdge, std::max(kEdge, size[0] - kEdge - wide)),
+             std::clamp(natural.y(), kEdge, std::max(kEdge, size[1] - kEdge - high)));
+    if (low.x() != natural.x()) { // it would lie on the arrow's head
+      const auto behind = inPicture(end - 0.1 * length_ * direction);
+      const double over_it = behind && behind->y() > at->y() ? -high - kEdge : kEdge;
+      low.y() = std::clamp(at->y() + over_it, kEdge, std::max(kEdge, size[1] - kEdge - high));
+    }
+    if (low.x() < corner_ && low.y() < corner_) low.y() = corner_;
+    beside += static_cast<int>(std::lround(low.x() - natural.x()));
+    over = static_cast<int>(std::lround(low.y() - natural.y()));
+  }
+  label_->SetDisplayOffset(beside, over);
 }
 
 double ToolLayer::ballRadius() const {
@@ -184,18 +243,12 @@ void ToolLayer::place() {
     const Vec3 direction = sample_.force / newtons;
     const double head = std::min(0.045, 0.5 * kArrowPerNewton * newtons) * length_;
     const Vec3 begin = held + direction * radius;
-    const Vec3 end = begin + direction * (kArrowPerNewton * newtons * length_);
+    double length = arrowLength(newtons);
+    for (int i = 0; i < 8 && isOutside(begin + direction * length); ++i) length *= 0.8;
+    const Vec3 end = begin + direction * length;
     stretch(*arrow_shaft_, begin, end - direction * head, 0.0055 * length_);
     stretch(*arrow_head_, end - direction * head, end, 0.35 * head);
-    label_->SetPosition(end[0], end[1], end[2]);
-    // Beyond the arrow's end, on the side that it points to; one that is upright changes no side.
-    const double across = direction.dot(right_);
-    if (std::abs(across) > kUpright) leftwards_ = across < 0;
-    label_->SetDisplayOffset(leftwards_ ? -12 : 12, 0);
-    label_->GetTextProperty()->SetJustification(leftwards_ ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
-    char words[32];
-    std::snprintf(words, sizeof words, " %.2f N ", newtons);
-    label_->SetInput(words);
+    placeNumber(end, direction, newtons);
   }
   for (const auto& actor : {ball_, neck_, shaft_}) actor->SetVisibility(visible_);
   for (const auto& actor : {ghost_, spring_}) actor->SetVisibility(visible_ && sample_.contact);

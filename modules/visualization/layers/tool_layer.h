@@ -31,13 +31,21 @@ class ToolLayer {
   void faceCamera(vtkCamera& camera);
   void setVisible(bool on);
   void setLettering(const Lettering& letters);
+  // A square at the picture's lower left that the force's number keeps off [pixels].
+  void setCorner(double side) { corner_ = side; }
   // Of the force, for the camera last faced; nullopt where none is drawn.
   std::optional<Vec3> arrowEnd() const;
 
  private:
   void place();
-  double ballRadius() const; // [m]
+  double ballRadius() const;                // [m]
+  double arrowLength(double newtons) const; // [m]
+  // In its pixels, for the overlay's camera; nullopt where there is no picture.
+  std::optional<Vec2> inPicture(const Vec3& p) const;
+  bool isOutside(const Vec3& p) const;
+  void placeNumber(const Vec3& end, const Vec3& direction, double newtons);
 
+  vtkRenderer& overlay_;
   vtkSmartPointer<vtkActor> ball_, neck_, shaft_; // the proxy
   vtkSmartPointer<vtkActor> ghost_, spring_, stem_, contact_, arrow_shaft_, arrow_head_;
   vtkSmartPointer<vtkBillboardTextActor3D> label_;
@@ -47,6 +55,7 @@ class ToolLayer {
   Vec3 lean_ = Vec3(0.4, 0.7, 0.6).normalized();
   double tip_radius_ = 0;
   double length_ = 0.1; // height of the picture at the focal point [m]
+  double corner_ = 0;
   bool visible_ = false;
 };
 

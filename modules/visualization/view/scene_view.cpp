@@ -329,10 +329,10 @@ bool SceneView::prepare() {
   setLettering(*my.axes, letters);
   if (my.cube) my.cube->setGround(my.ground);
   vtkCamera* camera = my.scene->GetActiveCamera();
+  my.syncCorner();
   my.tool.faceCamera(*camera);
   my.scale.update(*camera, my.size()[1], letters);
   my.applyVisibility();
-  my.syncCorner();
   my.scene->ResetCameraClippingRange();
   const CameraPlace place = placeOf(*camera);
   const bool changed = my.dirty || place != my.drawn_from || my.size() != my.drawn_size;

@@ -185,6 +185,7 @@ void SceneView::Impl::syncCorner() {
   // Letters do not shrink with the picture: there is room for them beside the axes.
   const auto [wide, high] = size();
   const double side = std::max(0.17 * high, 8.5 * letters().pixels);
+  tool.setCorner(side);
   corner->SetViewport(0, 0, std::min(1.0, side / std::max(1, wide)),
                       std::min(1.0, side / std::max(1, high)));
   corner->ResetCameraClippingRange();
