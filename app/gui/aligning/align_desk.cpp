@@ -25,6 +25,7 @@ AlignDesk::AlignDesk(QWidget& window)
   connect(&settle_, &QTimer::timeout, this, [this] { settle(); });
   connect(&files_, &AlignFiles::said, this, &AlignDesk::said);
   connect(&files_, &AlignFiles::opened, this, &AlignDesk::setPath);
+  connect(&files_, &AlignFiles::kept, this, [this] { kept_ = alignment_.pose(); });
   connect(panel_, &AlignPanel::storeAsked, this, [this] { files_.store(name_); });
   connect(cells_, &AlignCells::dragBegun, this, [this] { held_ = alignment_.pose(); });
   connect(cells_, &AlignCells::dragged, this, [this](const Pose& motion) { move(motion * held_); });
@@ -76,6 +77,17 @@ void AlignDesk::setPath(const QString& name, const AlignedPath& aligned) {
   if (!aligned.mesh_from_path || !alignment_.isReady()) return;
   move(*aligned.mesh_from_path);
   settle();
+  kept_ = alignment_.pose();
+}
+
+bool AlignDesk::isKept() const {
+  return !alignment_.isReady() || alignment_.pose().isApprox(kept_, 1e-12);
+}
+
+bool AlignDesk::settlePlacement() {
+  if (isKept()) return true;
+  return files_.askKept(
+      tr("Where %1 was laid onto the mesh is in no file and not in the workspace.").arg(name_));
 }
 
 void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
@@ -86,6 +98,7 @@ void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
 
 void AlignDesk::begin() {
   settle_.stop();
+  kept_ = alignment_.pose();
   found_.reset();
   fits_.clear();
   setPicking(false);

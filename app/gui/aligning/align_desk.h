@@ -35,6 +35,8 @@ class AlignDesk : public QObject {
   // Not yet told by contact. A path with fewer than three samples in contact changes nothing.
   void setPath(const QString& name, const AlignedPath& aligned);
   void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: no scene is open
+  bool isKept() const;    // where the path lies, or nobody has laid it there
+  bool settlePlacement(); // kept or given up; false: the person goes on
   void cancel();
   void undo();
   void redo();
@@ -68,6 +70,7 @@ class AlignDesk : public QObject {
   std::vector<std::optional<Registration>> fits_; // by step: what was found, where one was
   double reach_ = 1;                              // of the sliders [m]
   Pose held_ = Pose::Identity();                  // as it was when a drag began
+  Pose kept_ = Pose::Identity();                  // in a file or in the workspace, or the first
   bool stale_ = false;                            // moved since it was drawn
   std::optional<Work> work_;
 };

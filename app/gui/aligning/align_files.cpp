@@ -1,6 +1,6 @@
 #include "app/gui/aligning/align_files.h"
 
-#include <QFileDialog>
+#include <QMessageBox>
 
 #include "acquisition/files/registered_file.h"
 #include "acquisition/files/scan_files.h"
@@ -14,7 +14,7 @@ namespace patina {
 AlignFiles::AlignFiles(QWidget& window, const Alignment& alignment, AlignPanel& panel)
     : window_(window), alignment_(alignment), panel_(panel) {
   connect(&panel_, &AlignPanel::openAsked, this, &AlignFiles::openDialog);
-  connect(&panel_, &AlignPanel::keepAsked, this, &AlignFiles::keepDialog);
+  connect(&panel_, &AlignPanel::keepAsked, this, [this] { keepDialog()->open(); });
   connect(&panel_, &AlignPanel::scanChosen, this, &AlignFiles::openScan);
 }
 
@@ -51,7 +51,9 @@ void AlignFiles::openScan(const QString& name) {
 }
 
 void AlignFiles::store(const QString& name) {
-  if (scene_ && alignment_.isReady()) emit storeAsked(alignedScan(name.toStdString(), alignment_));
+  if (!scene_ || !alignment_.isReady()) return;
+  emit storeAsked(alignedScan(name.toStdString(), alignment_));
+  emit kept();
 }
 
 void AlignFiles::openDialog() {
@@ -64,7 +66,7 @@ void AlignFiles::openDialog() {
   dialog->open();
 }
 
-void AlignFiles::keepDialog() {
+QFileDialog* AlignFiles::keepDialog() {
   auto* dialog =
       new QFileDialog(&window_, tr("Keep the path on the mesh"), {}, tr("Paths (*.csv)"));
   dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -73,7 +75,22 @@ void AlignFiles::keepDialog() {
   dialog->selectFile(QStringLiteral("registered.csv"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { keep(file.toStdString()); });
-  dialog->open();
+  return dialog;
+}
+
+bool AlignFiles::askKept(const QString& what) {
+  QMessageBox box(QMessageBox::Question, tr("The placement is not kept"), what,
+                  QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, &window_);
+  box.setObjectName(QStringLiteral("unkept_placement"));
+  box.setInformativeText(tr("Save keeps the path where it lies, and its pose, as files. Put into "
+                            "workspace, on the desk Align, keeps them with the scan."));
+  const int answer = box.exec();
+  if (answer != QMessageBox::Save) return answer == QMessageBox::Discard;
+  bool is_kept = false;
+  const auto hears = connect(this, &AlignFiles::kept, this, [&] { is_kept = true; });
+  keepDialog()->exec();
+  disconnect(hears);
+  return is_kept || askKept(what);
 }
 
 void AlignFiles::keep(const std::filesystem::path& file) {
@@ -82,6 +99,7 @@ void AlignFiles::keep(const std::filesystem::path& file) {
     writeRegisteredPath(file, alignment_.path(),
                         registeredAt(*alignment_.target(), alignment_.path(), alignment_.pose()));
     writeFileAtomically(pose, poseText(alignment_.pose(), "mesh_from_scan"));
+    emit kept();
     emit said({tr("The path on the mesh is in %1, its pose in %2")
                    .arg(QString::fromStdString(file.string()),
                         QString::fromStdString(pose.filename().string()))});

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 
+#include <QFileDialog>
+
 #include "app/gui/aligning/align_panel.h"
 #include "app/gui/aligning/aligned_scan.h"
 #include "app/gui/panels/message_panel.h"
@@ -20,16 +22,18 @@ class AlignFiles : public QObject {
   void openPath(const std::filesystem::path& file);
   void openScan(const QString& name); // of the scene
   void store(const QString& name);    // as a scan of the scene
+  bool askKept(const QString& what);  // kept or given up; false: the person goes on
 
  signals:
   void opened(const QString& name, const patina::AlignedPath& path);
   void said(const patina::Message& message);
   void storeAsked(const patina::SceneScan& scan); // with where it lies
+  void kept();                                    // where it lies now, in either way
 
  private:
   void open(const QString& name, const std::function<AlignedPath()>& read);
   void openDialog();
-  void keepDialog();
+  QFileDialog* keepDialog();
   void keep(const std::filesystem::path& file);
 
   QWidget& window_;

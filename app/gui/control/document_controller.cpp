@@ -128,7 +128,7 @@ void DocumentController::open(const LoadRequest& request) {
 
 void DocumentController::openAsked(const LoadRequest& request) {
   LoadRequest asked = request;
-  asked.asks = asks_ && (at_.edits.unsaved() || at_.edits.thread().busy());
+  asked.asks = asks_ && at_.saving.hasUnsaved();
   open(asked);
 }
 

@@ -122,7 +122,12 @@ void SaveController::exportNext() {
 
 bool SaveController::settleEdits() {
   edits_.settle(); // a stroke that was just painted may not be in the history yet
+bool SaveController::hasUnsaved() const {
+  return edits_.unsaved() || edits_.thread().busy() || !beside_.is_kept();
+}
+
   while (edits_.unsaved()) {
+  if (!beside_.settle()) return false;
     const bool has_folder = edits_.status().folder.has_value();
     QMessageBox box(QMessageBox::Question, tr("The edits are not saved"),
                     has_folder ? tr("%1 was edited since it was saved.").arg(name())

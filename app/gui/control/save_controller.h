@@ -26,7 +26,14 @@ class SaveController : public QObject {
   void exportDialog();                  // for ParaView, into a folder that is asked for
   void exportTo(const QString& folder); // after those that are under way
   void saveTo(const QString& folder);   // events go on until it is there; throws Error
-  bool settleEdits();                   // saved or dropped; false: the person goes on
+  // What else is lost with the scene, settled before its edits.
+  struct Beside {
+    std::function<bool()> is_kept = [] { return true; };
+    std::function<bool()> settle = [] { return true; }; // false: the person goes on
+  };
+  void setBeside(Beside beside) { beside_ = std::move(beside); }
+  bool hasUnsaved() const;
+  bool settleEdits(); // saved or dropped; false: the person goes on
 
  signals:
   void said(const patina::Message& message);
@@ -39,6 +46,7 @@ class SaveController : public QObject {
   QWidget& window_; // which questions are asked over
   EditController& edits_;
   QString name_;
+  Beside beside_;
   void exportNext();
 
   Background exports_;

@@ -209,6 +209,8 @@ void MainWindow::connectScan() {
     parts_.scan->scans().change(
         aligned.name, [aligned](const SceneScan* now) { return withAlignment(now, aligned); });
   });
+  saving_.setBeside({[align = parts_.align] { return align->isKept(); },
+                     [align = parts_.align] { return align->settlePlacement(); }});
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);

@@ -1,0 +1,97 @@
+// Where a path was laid onto the mesh is asked about before it is lost.
+#ifdef PATINA_HAS_ACQUISITION
+#include <cmath>
+
+#include <QLineEdit>
+#include <QMessageBox>
+
+#include "acquisition/files/scan_files.h"
+#include "app/gui/aligning/align_desk.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+
+namespace patina {
+namespace {
+
+class PlacementKept : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(0.03, 20), "ball.ply")));
+    std::vector<PathSample> path(200);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const double angle = 2 * M_PI * static_cast<double>(i) / 200;
+      path[i].t = 0.01 * static_cast<double>(i);
+      path[i].position = Vec3(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.05);
+      path[i].sigma = 1e-5;
+    }
+    writePath(folder_ / "path.csv", path);
+    clickAction("desk_align");
+    answerWithPath(folder_ / "path.csv");
+    clickOn("align_open");
+    ASSERT_TRUE(waitUntil([&] { return desk().alignment().isReady(); }, 10000));
+    wait(1500);
+  }
+  AlignDesk& desk() { return *window_->findChild<AlignDesk*>(); }
+  void lay() {
+    click(*find<ValueRow>("align_z")->findChild<QLineEdit*>());
+    type('a', kControl);
+    type(QStringLiteral("12.5"));
+    type(kEnter);
+    ASSERT_TRUE(waitUntil([&] { return desk().alignment().done() > 0; }, 3000));
+  }
+  void answer(QMessageBox::StandardButton button) {
+    whenAsked<QMessageBox>([this, button](QMessageBox& box) {
+      asked_.push_back(box.objectName());
+      words_ = box.text();
+      click(*box.button(button));
+    });
+  }
+  bool closes() {
+    type('q', kControl);
+    wait(1500);
+    return !window_->isVisible();
+  }
+
+  QStringList asked_;
+  QString words_;
+};
+
+TEST_F(PlacementKept, APlaceThatNobodyLaidIsNotAskedAbout) {
+  EXPECT_TRUE(closes());
+  EXPECT_TRUE(asked_.isEmpty());
+}
+
+TEST_F(PlacementKept, ClosingAsksAndNamesThePathAndCancelGoesOn) {
+  lay();
+  answer(QMessageBox::Cancel);
+  EXPECT_FALSE(closes());
+  EXPECT_EQ(asked_, QStringList(QStringLiteral("unkept_placement")));
+  EXPECT_TRUE(words_.contains(QStringLiteral("path.csv"))) << words_.toStdString();
+  EXPECT_NEAR(desk().alignment().pose().translation().z(), 0.0125, 1e-9);
+  answer(QMessageBox::Discard);
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(PlacementKept, WhatIsKeptInAFileIsNotAskedAbout) {
+  lay();
+  answerWithPath(folder_ / "kept.csv");
+  clickOn("align_keep");
+  ASSERT_TRUE(waitUntil([&] { return std::filesystem::exists(folder_ / "kept.txt"); }, 10000));
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(PlacementKept, AnotherSceneAsksTooForItEndsThePlacement) {
+  lay();
+  answer(QMessageBox::Cancel);
+  const auto before = edits().scene();
+  documents().openFile(QString::fromStdString(saved(icosphere(30, 8), "other.obj").string()));
+  ASSERT_TRUE(waitUntil([&] { return !asked_.isEmpty(); }, 10000));
+  wait(500);
+  EXPECT_EQ(edits().scene(), before);
+}
+
+} // namespace
+} // namespace patina
+#endif
