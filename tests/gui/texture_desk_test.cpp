@@ -78,10 +78,26 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   // What was made opens, and is felt.
   clickOn("feel_demo");
   ASSERT_TRUE(waitUntil([&] {
-    return window_->windowTitle().contains(QStringLiteral("workspace")) && view().isVisible();
+    return window_->windowTitle().contains(QStringLiteral("never saved")) && view().isVisible();
   }));
   wait(500);
   keepPicture("texture_felt");
+  EXPECT_TRUE(window_->isWindowModified());
+  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::press);
+  EXPECT_EQ(find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>()->value(), 1);
+  // It is in no folder that stays: saving asks for one, and says which it was.
+  for (const bool asked : {true, false}) {
+    if (asked) answerWithPath(folder_ / "toy.patina");
+    type('s', kControl);
+    const QString where = QString::fromStdString((folder_ / "toy.patina").string());
+    ASSERT_TRUE(waitUntil([&] { return !window_->isWindowModified(); }, 60000));
+    EXPECT_EQ(edits().status().folder, folder_ / "toy.patina");
+    EXPECT_TRUE(find<QLabel>("notice")->text().contains(where))
+        << find<QLabel>("notice")->text().toStdString();
+    EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("toy.patina")));
+    setRow("stiffness", asked ? 700 : 800);
+    EXPECT_TRUE(waitUntil([&] { return window_->isWindowModified(); }, 10000));
+  }
 }
 
 TEST_F(TextureDeskTest, TitleHistoryAndGuideAreThoseOfWhatIsShown) {

@@ -196,6 +196,10 @@ TEST(WindowState, TheTitleBeginsWithWhatIsOpen) {
   WindowState state = withScene();
   state.name = QStringLiteral("cup");
   EXPECT_EQ(titleOf(state), QStringLiteral("cup[*] – Patina"));
+  state.unsaved = true;
+  EXPECT_EQ(titleOf(state), QStringLiteral("cup (never saved)[*] – Patina"));
+  state.in_folder = true;
+  EXPECT_EQ(titleOf(state), QStringLiteral("cup[*] – Patina"));
 }
 
 } // namespace

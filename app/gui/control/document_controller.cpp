@@ -104,9 +104,10 @@ void DocumentController::connectLoader() {
 
 QString DocumentController::nameUnderWay() const {
   const LoadRequest& request = loader_.request();
-  return !request.place.empty() ? tr("Recovered scene")
-         : request.path.empty() ? presetOf(request).words
-                                : fileNameOf(request.path);
+  return !request.unsaved_name.isEmpty() ? request.unsaved_name
+         : !request.place.empty()        ? tr("Recovered scene")
+         : request.path.empty()          ? presetOf(request).words
+                                         : fileNameOf(request.path);
 }
 
 void DocumentController::open(const LoadRequest& request) {
@@ -155,9 +156,10 @@ void DocumentController::openDialog(bool adds) {
 void DocumentController::take(OpenedEditor& opened) {
   const LoadRequest& request = loader_.request();
   at_.saving.setName(nameUnderWay());
-  if (!request.path.empty()) recent_.add(QString::fromStdString(request.path.string()));
+  const bool unsaved = !request.unsaved_name.isEmpty();
+  if (!request.path.empty() && !unsaved) recent_.add(QString::fromStdString(request.path.string()));
   work_.reset();
-  at_.edits.thread().adopt(std::move(opened.editor), std::move(opened.autosave));
+  at_.edits.thread().adopt(std::move(opened.editor), std::move(opened.autosave), unsaved);
   for (const QString& line : opened.warnings) emit said({line, true});
   emit changed();
 }

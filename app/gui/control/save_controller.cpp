@@ -50,7 +50,9 @@ bool SaveController::save() {
     edits_.tryValues();
     edits_.waitFor([this](EditThread::Done done) { edits_.thread().save(std::move(done)); });
   };
-  return trySaving(save, name(), tr("Nothing is lost: make room, or save to another folder."));
+  const auto folder = std::filesystem::absolute(*edits_.status().folder);
+  return trySaving(save, QString::fromStdString(folder.string()),
+                   tr("Nothing is lost: make room, or save to another folder."));
 }
 
 bool SaveController::saveDialog() {
@@ -120,18 +122,18 @@ void SaveController::exportNext() {
   });
 }
 
-bool SaveController::settleEdits() {
-  edits_.settle(); // a stroke that was just painted may not be in the history yet
 bool SaveController::hasUnsaved() const {
   return edits_.unsaved() || edits_.thread().busy() || !beside_.is_kept();
 }
 
-  while (edits_.unsaved()) {
+bool SaveController::settleEdits() {
   if (!beside_.settle()) return false;
+  edits_.settle(); // a stroke that was just painted may not be in the history yet
+  while (edits_.unsaved()) {
     const bool has_folder = edits_.status().folder.has_value();
     QMessageBox box(QMessageBox::Question, tr("The edits are not saved"),
                     has_folder ? tr("%1 was edited since it was saved.").arg(name())
-                               : tr("The scene was edited and is in no workspace yet."),
+                               : tr("%1 is in no workspace yet.").arg(name()),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, &window_);
     box.setObjectName(QStringLiteral("unsaved_edits"));
     const int answer = box.exec();

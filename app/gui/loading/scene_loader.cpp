@@ -97,7 +97,7 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
   }
   Editor::OpenSpec spec;
   spec.recover = request.recover;
-  spec.own = request.own;
+  spec.own = request.own && request.unsaved_name.isEmpty();
   try {
     made.editor = Editor::open(request.path, spec, progress, listener_);
   } catch (const FileError& error) {

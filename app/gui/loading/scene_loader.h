@@ -23,6 +23,7 @@ struct LoadRequest {
   bool asks = false;        // only read: readable(), or why not, before anything is given up
   bool recover = false;     // of a workspace that is damaged what can be read
   bool own = true;          // edits go into the folder; false: it is only read
+  QString unsaved_name{};   // of what nobody has saved yet, in a folder that does not stay
   std::filesystem::path
       place{}; // of a scene that a crash left behind, see autosave.h; no path then
 };

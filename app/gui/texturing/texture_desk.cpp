@@ -51,10 +51,8 @@ TextureDesk::TextureDesk(QWidget& window)
           &TextureDesk::showProfile);
   connect(steps_, &StepList::nextAsked, this, [this] { run(false); });
   connect(steps_, &StepList::allAsked, this, [this] { run(true); });
-  connect(steps_, &StepList::feelAsked, this, [this] {
-    std::erase(scratch_.folders, folder_);
-    emit openAsked(QString::fromStdString((folder_ / "workspace").string()));
-  });
+  connect(steps_, &StepList::feelAsked, this,
+          [this] { emit openAsked(QString::fromStdString((folder_ / "workspace").string())); });
   connect(&library_, &TextureLibrary::changed, this, &TextureDesk::changed);
   connect(&library_, &TextureLibrary::said, this, &TextureDesk::said);
   connect(&library_, &TextureLibrary::chosen, this, [this](const auto& texture) {
@@ -141,8 +139,7 @@ void TextureDesk::takeStep() {
   showProfile();
   draw();
   if (demo_ && isDone(*demo_))
-    emit said({tr("Every step's files are in %1, until the window is closed; if the toy is felt "
-                  "from there, they stay")
+    emit said({tr("Every step's files are in %1, until the window is closed")
                    .arg(QString::fromStdString(folder_.string()))});
   emit changed();
 }

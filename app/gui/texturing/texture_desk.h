@@ -46,7 +46,7 @@ class TextureDesk : public QObject {
  signals:
   void changed();
   void said(const patina::Message& message);
-  void openAsked(const QString& workspace);
+  void openAsked(const QString& workspace); // which nobody has saved yet
 
  private:
   void run(bool all);
@@ -56,8 +56,8 @@ class TextureDesk : public QObject {
   void showProfile();
   void choosePage();
 
-  // Hundreds of megabytes that nobody named: they go with the desk, but for one whose workspace was
-  // opened. Outlives the job that may be writing there.
+  // Hundreds of megabytes that nobody named: they go with the desk. Outlives the job that may be
+  // writing there.
   struct Scratch {
     std::vector<std::filesystem::path> folders;
     ~Scratch();

@@ -18,7 +18,8 @@
 
 namespace patina {
 namespace {
-constexpr int kNarrow = 1100; // without room for the column
+constexpr double kFirstPress = 1; // [N], at which a scanned texture is felt whole
+constexpr int kNarrow = 1100;     // without room for the column
 // Of what a window manager draws about a window, which it says only of one that is seen.
 constexpr QSize kManagersFrame{12, 44};
 
@@ -174,9 +175,12 @@ void MainWindow::connectScan() {
   connect(parts_.texture, &TextureDesk::openAsked, &documents_, [this](const QString& folder) {
     LoadRequest request;
     request.path = folder.toStdString();
+    request.unsaved_name = tr("Scanned toy");
     if (documents_.asks() && !saving_.settleEdits()) return;
     documents_.open(request);
     desks_.choose(Desk::feel);
+    parts_.tools->choose({Handling::press, {}});
+    paint_.setForce(kFirstPress);
   });
   connect(parts_.texture, &TextureDesk::changed, this, &MainWindow::refresh);
   connect(parts_.texture, &TextureDesk::said, this, &MainWindow::say);
@@ -205,12 +209,12 @@ void MainWindow::connectScan() {
     documents_.openAsked(request);
   });
   parts_.scan->scans().setEdits(edits_.thread());
+  saving_.setBeside({[align = parts_.align] { return align->isKept(); },
+                     [align = parts_.align] { return align->settlePlacement(); }});
   connect(&parts_.align->files(), &AlignFiles::storeAsked, this, [this](const SceneScan& aligned) {
     parts_.scan->scans().change(
         aligned.name, [aligned](const SceneScan* now) { return withAlignment(now, aligned); });
   });
-  saving_.setBeside({[align = parts_.align] { return align->isKept(); },
-                     [align = parts_.align] { return align->settlePlacement(); }});
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);
@@ -231,6 +235,7 @@ WindowState MainWindow::state() const {
   state.undoable = edits_.status().done;
   state.redoable = edits_.status().edits.size() - edits_.status().done;
   state.unsaved = edits_.unsaved();
+  state.in_folder = edits_.status().folder.has_value();
   state.recording = feel_.recording();
   state.name = state.content == Content::preview ? documents_.nameUnderWay() : saving_.name();
   state.work = documents_.work() ? documents_.work() : edits_.work();

@@ -114,8 +114,10 @@ bool isEnabled(Command command, const WindowState& state) {
 
 QString titleOf(const WindowState& state) {
   if (showsSequence(state)) return tr("The toy's scan – Patina");
-  return state.name.isEmpty() ? QStringLiteral("Patina[*]")
-                              : QStringLiteral("%1[*] – Patina").arg(state.name);
+  if (state.name.isEmpty()) return QStringLiteral("Patina[*]");
+  const bool never = state.unsaved && !state.in_folder;
+  return (never ? tr("%1 (never saved)[*] – Patina") : QStringLiteral("%1[*] – Patina"))
+      .arg(state.name);
 }
 
 } // namespace patina

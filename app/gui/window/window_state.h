@@ -38,6 +38,7 @@ struct WindowState {
   GuideFacts guide;                   // how far a scan has come to a feel
   std::size_t undoable = 0, redoable = 0;
   bool unsaved = false;
+  bool in_folder = false; // of its own, where it can be saved
   bool recording = false;
   QString name; // of what is seen; empty: nothing is
   std::optional<Work> work;

@@ -154,12 +154,13 @@ Editor::Listener EditThread::listener() {
   return [this](const EditorNotice& notice) { impl_->worker.take(notice); };
 }
 
-void EditThread::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave) {
+void EditThread::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave,
+                       bool unsaved) {
   // std::function copies what it holds.
   auto carried = std::make_shared<std::pair<std::unique_ptr<Editor>, std::unique_ptr<Autosave>>>(
       std::move(editor), std::move(autosave));
-  impl_->push({"Opening", [carried](EditWorker& worker, Progress&) {
-                 worker.adopt(std::move(carried->first), std::move(carried->second));
+  impl_->push({"Opening", [carried, unsaved](EditWorker& worker, Progress&) {
+                 worker.adopt(std::move(carried->first), std::move(carried->second), unsaved);
                }});
 }
 

@@ -38,7 +38,9 @@ class EditThread {
   // How an editor that is made elsewhere reports to this thread; adopt() takes it over.
   Editor::Listener listener();
   // Takes the place of the editor that there is. `autosave`: the place of what is recovered.
-  void adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave = {});
+  // unsaved: of an editor without a folder, though nothing was edited yet.
+  void adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave = {},
+             bool unsaved = false);
 
   // A stroke; samples may come in pieces of any size. When more of them come than can be painted,
   // those are left out that change the path by no more than a hundredth of the radius. Anything

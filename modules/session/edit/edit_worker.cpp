@@ -38,12 +38,13 @@ bool EditWorker::ownsFolder() const {
   return editor_->folder() && !autosave_;
 }
 
-void EditWorker::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave) {
+void EditWorker::adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave,
+                       bool unsaved) {
   editor_.reset();
   autosave_ = std::move(autosave);
   if (autosave_) autosave_->own();
   editor_ = std::move(editor);
-  recovered_ = autosave_ != nullptr;
+  never_saved_ = unsaved || autosave_ != nullptr;
   keeps_ = true;
   tried_.reset();
   saved_at_.reset();
@@ -143,7 +144,7 @@ void EditWorker::save() {
 void EditWorker::saveAs(const std::filesystem::path& folder) {
   editor().saveAs(folder);
   autosave_.reset();
-  recovered_ = false;
+  never_saved_ = false;
   saved_at_ = editor_->history().undoable();
 }
 
@@ -160,7 +161,7 @@ void EditWorker::report() {
     if (history.undoable() > 0) keep();
     status.edits = history.descriptions();
     status.done = history.undoable();
-    status.unsaved = tried_ || (!ownsFolder() && recovered_) || saved_at_ != status.done;
+    status.unsaved = tried_ || (!ownsFolder() && never_saved_) || saved_at_ != status.done;
     if (ownsFolder()) status.folder = editor_->folder();
   }
   if (status == told_) return;

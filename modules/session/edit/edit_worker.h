@@ -20,7 +20,7 @@ class EditWorker {
              std::filesystem::path autosave_root);
 
   void take(const EditorNotice& notice); // the editor's listener
-  void adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave);
+  void adopt(std::unique_ptr<Editor> editor, std::unique_ptr<Autosave> autosave, bool unsaved);
   Editor& editor(); // throws Error without a scene
 
   void prepare(Tool tool, Progress& progress);
@@ -54,7 +54,7 @@ class EditWorker {
   std::filesystem::path autosave_root_;
   std::unique_ptr<Autosave> autosave_; // the editor's folder, as long as it has no other
   std::unique_ptr<Editor> editor_;     // destroyed before its folder
-  bool recovered_ = false;             // from an autosave: unsaved, edited or not
+  bool never_saved_ = false;           // by a person: unsaved, edited or not
   bool keeps_ = true;                  // until it failed: a full disk is told of once
   std::optional<ValueEdit> tried_;
   std::optional<std::size_t> saved_at_; // or opened; position in the history; absent: not in it
