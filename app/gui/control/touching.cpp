@@ -1,6 +1,7 @@
 #include "app/gui/control/touching.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "field/sampling/field_sampler.h"
 
@@ -12,7 +13,7 @@ Vec3 normalAt(const CompiledScene& scene, const Vec3& surface) {
   return size > 1e-9 ? Vec3(gradient / size) : Vec3::UnitZ();
 }
 
-double stiffnessAt(const CompiledScene& scene, const Vec3& surface) {
+double pressDepth(const CompiledScene& scene, const Vec3& surface, double newtons) {
   const Vec3 normal = normalAt(scene, surface);
   const double skin = skinOf(scene.scene.haptics), raised = raisedBy(scene.snapshot->objects),
                clear = 0.5 * scene.built.field->grid.voxel;
@@ -22,7 +23,12 @@ double stiffnessAt(const CompiledScene& scene, const Vec3& surface) {
   };
   at(skin + raised + clear); // from outside, as a hand comes; then below the lowest groove
   const Contact contact = at(skin - depthWithin(scene, surface, raised + clear));
-  return contact.stiffness > 0 ? contact.stiffness : scene.scene.haptics.stiffness;
+  if (!(contact.stiffness > 0)) return newtons / scene.scene.haptics.stiffness;
+  // |F|^2 = (K d)^2 + (d^2 |grad K| / 2)^2, the second along the surface.
+  const Vec3& gradient = contact.gradients.stiffness;
+  const double square = contact.stiffness * contact.stiffness,
+               across = newtons * (gradient - gradient.dot(normal) * normal).norm();
+  return newtons * std::sqrt(2 / (square + std::hypot(square, across)));
 }
 
 double skinOf(const HapticProperties& haptics) {

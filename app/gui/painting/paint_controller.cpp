@@ -147,7 +147,7 @@ void PaintController::press(const Vec3& surface, double newtons, double seconds)
   const auto values = valuesAt(surface);
   // By the stiffness of the place, which is no answer of the servo: nothing can swing. From hard to
   // soft it sinks slowly, so that it does not press on what is hard ahead of the pointer.
-  const double softness = 1 / stiffnessAt(*scene_, surface);
+  const double softness = pressDepth(*scene_, surface, newtons) / newtons;
   const bool begins = newtons_ == 0;
   softness_ = begins ? softness : std::min(softness, softness_ + kSinking * seconds / newtons);
   double depth = newtons * softness_;
