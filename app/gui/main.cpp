@@ -134,7 +134,10 @@ int run(const Arguments& arguments, int argc, char** argv) {
   if (!arguments.up && documents.asks()) request.options.up = patina::rememberedUp();
   // Where nobody sees the page, or nobody asks for it, the first preset is open.
   if (!request.path.empty() || !documents.asks() || arguments.demo) documents.open(request);
-  if (arguments.demo) window.controllers().desks.choose(patina::Desk::texture);
+  if (arguments.demo) {
+    window.controllers().desks.choose(patina::Desk::texture);
+    window.controllers().desks.open(patina::Panel::steps);
+  }
   if (arguments.log) feel.startLog();
   // Ctrl-C, kill and a lost terminal are ways to close the window: the log is still written.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})

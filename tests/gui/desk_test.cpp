@@ -160,6 +160,62 @@ TEST_F(Desks, SizesTabsAndTheDeskAreThereAtTheNextStart) {
   EXPECT_LT(column().width(), 60);
 }
 
+TEST_F(Desks, AMeshThatIsOpenedIsSeen) {
+  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+  const auto ball = saved(icosphere(20, 12), "ball.obj");
+  const auto openBall = [&] {
+    bool ready = false;
+    const auto connection =
+        QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+    answerWithPath(ball);
+    type('o', kControl);
+    EXPECT_TRUE(waitUntil([&] { return ready; }, 20000));
+    QObject::disconnect(connection);
+  };
+  for (const char* name : {"texture", "scan", "align"}) {
+    go(name);
+    openBall();
+    EXPECT_EQ(desk(), Desk::feel) << name;
+    EXPECT_TRUE(view().isVisible()) << name;
+  }
+  go("texture");
+  clickOn("tab_library");
+  openBall();
+  EXPECT_EQ(desk(), Desk::texture) << "it is seen there";
+}
+
+TEST_F(Desks, AWorkspaceThatIsOpenAlreadyComesInSight) {
+  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+  saving().saveTo(QString::fromStdString((folder_ / "work").string()));
+  ASSERT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 20000));
+  go("texture");
+  documents().open(requestFor(folder_ / "work"));
+  EXPECT_TRUE(waitUntil([&] { return desk() == Desk::feel; }, 5000));
+}
+
+TEST_F(Desks, ADeskThatIsChosenWhileAMeshIsReadStays) {
+  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+  bool ready = false;
+  QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
+  documents().open(requestFor(saved(icosphere(0.02, 12), "ball.obj")));
+  window_->controllers().desks.choose(Desk::texture);
+  ASSERT_TRUE(waitUntil([&] { return ready; }, 20000));
+  EXPECT_EQ(desk(), Desk::texture);
+}
+
+TEST_F(Desks, AWindowOfADeskWithoutAPictureBeginsAtThePage) {
+  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+  for (const Desk last : {Desk::scan, Desk::texture, Desk::align}) {
+    QSettings().setValue(QStringLiteral("window/desk"), static_cast<int>(last));
+    QSettings().setValue(QStringLiteral("desks/texture/tab"), static_cast<int>(Tab::library));
+    window_ = std::make_unique<MainWindow>();
+    window_->restorePlace();
+    window_->show();
+    EXPECT_TRUE(waitUntil([&] { return find<WelcomePage>()->isVisible(); }, 3000))
+        << static_cast<int>(last);
+  }
+}
+
 TEST_F(Desks, AWindowThatWasLargerIsAllOnThisScreenWithItsFrame) {
   QSettings().setValue(QStringLiteral("window/size"), QSize(6000, 4000));
   window_ = std::make_unique<MainWindow>();

@@ -118,12 +118,14 @@ void DocumentController::open(const LoadRequest& request) {
                        std::filesystem::equivalent(request.path, *folder, code);
   if (is_open && request.asks && !at_.saving.settleEdits()) return;
   if (is_open) { // its journal is ours: there is nothing in the folder that is not in the window
+    emit opening();
     QMetaObject::invokeMethod(this, &DocumentController::openAlready, Qt::QueuedConnection);
     return;
   }
   const QString words = (request.adds ? tr("Adding %1") : tr("Opening %1")).arg(wordsFor(request));
   work_ = Work{words, words};
   loader_.start(request);
+  if (!request.adds && !request.asks) emit opening();
   emit changed();
 }
 

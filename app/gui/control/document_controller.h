@@ -42,6 +42,7 @@ class DocumentController : public QObject {
 
  signals:
   void previewed(std::shared_ptr<const patina::TriangleMesh> mesh, const QString& name);
+  void opening(); // in the place of what is open; no question stands before it
   void openAlready();
   void abandoned(); // nothing is being loaded, or not before a question is answered; then, if so:
   void failed(const QString& message);

@@ -92,6 +92,7 @@ void MainWindow::connectFiles() {
   connect(&documents_, &DocumentController::previewed, this, &MainWindow::showPreview);
   connect(&documents_, &DocumentController::abandoned, this, &MainWindow::showAgain);
   connect(&documents_, &DocumentController::openAlready, this, &MainWindow::sceneReady);
+  connect(&documents_, &DocumentController::opening, this, &MainWindow::comeInSight);
   connect(&documents_, &DocumentController::said, this, &MainWindow::say);
   connect(&saving_, &SaveController::said, this, &MainWindow::say);
   connect(&recovery_, &RecoveryOffer::changed, this, &MainWindow::refresh);
@@ -178,7 +179,6 @@ void MainWindow::connectScan() {
     request.unsaved_name = tr("Scanned toy");
     if (documents_.asks() && !saving_.settleEdits()) return;
     documents_.open(request);
-    desks_.choose(Desk::feel);
     parts_.tools->choose({Handling::press, {}});
     paint_.setForce(kFirstPress);
   });
@@ -371,6 +371,11 @@ void MainWindow::restorePlace() {
   resize(place.size.boundedTo(screen()->availableSize() - kManagersFrame));
   if (place.maximized) setWindowState(Qt::WindowMaximized);
   desks_.restore();
+  comeInSight();
+}
+
+void MainWindow::comeInSight() {
+  if (!isSeen(state())) desks_.choose(Desk::feel);
 }
 
 void MainWindow::resizeEvent(QResizeEvent* event) {

@@ -26,6 +26,19 @@ bool isWelcome(const WindowState& state) {
   return state.content == Content::nothing && !state.open && !state.work;
 }
 
+bool isSeen(const WindowState& state) {
+  switch (state.desk) {
+  case Desk::scan:
+    return false;
+  case Desk::align:
+    return !isWelcome(state) && state.guide.samples > 0; // without a path it shows no mesh
+  case Desk::texture:
+    return !isWelcome(state) && state.tab == Tab::library;
+  default:
+    return true;
+  }
+}
+
 bool isThere(Panel panel, const WindowState& state) {
   if (panel == Panel::recovery) return state.left_behind.has_value();
   if (!has(rowOf(state.desk).panels, panel)) return false;

@@ -48,6 +48,7 @@ struct WindowState {
 // The toy of the sequence is, and not what is open: no history, no step of the guide is its.
 bool showsSequence(const WindowState& state);
 bool isWelcome(const WindowState& state);            // nothing is open, nor about to be
+bool isSeen(const WindowState& state);               // what is opened, or the page to begin from
 bool isThere(Panel panel, const WindowState& state); // the desk has it, and a use for it
 bool isShown(Panel panel, const WindowState& state); // it is in front as well
 Tab tabInFront(const WindowState& state);
