@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <vtkActor2DCollection.h>
+#include <vtkPolyDataMapper2D.h>
 
 #include "visualization/layers/scale_layer.h"
 #include "visualization/values/lettering.h"
@@ -17,6 +19,24 @@ TEST(ScaleLayer, ItsLengthIsTheLongestRoundOneThatFits) {
     const double digit = length / std::pow(10, std::floor(std::log10(length) + 1e-9));
     EXPECT_LT(std::min({std::abs(digit - 1), std::abs(digit - 2), std::abs(digit - 5)}), 1e-9);
   }
+}
+
+// A view that comes to the front is drawn by its window before it has a size of its own.
+TEST(ScaleLayer, CanBeDrawnBeforeItsPictureHasAHeight) {
+  const vtkNew<vtkRenderer> overlay;
+  const vtkNew<vtkCamera> camera;
+  ScaleLayer layer(*overlay);
+  layer.setVisible(true);
+  layer.update(*camera, 0, {});
+  vtkActor2DCollection& actors = *overlay->GetActors2D();
+  actors.InitTraversal();
+  int drawn = 0;
+  while (vtkActor2D* actor = actors.GetNextActor2D())
+    if (auto* mapper = vtkPolyDataMapper2D::SafeDownCast(actor->GetMapper())) {
+      EXPECT_NE(mapper->GetInput(), nullptr);
+      ++drawn;
+    }
+  EXPECT_GT(drawn, 0);
 }
 
 TEST(Lettering, ContrastIsThatOfWcag) {

@@ -26,6 +26,7 @@ double roundLength(double most) {
 ScaleLayer::ScaleLayer(vtkRenderer& overlay)
     : bar_(vtkSmartPointer<vtkActor2D>::New()), words_(vtkSmartPointer<vtkTextActor>::New()) {
   const vtkNew<vtkPolyDataMapper2D> mapper;
+  mapper->SetInputData(vtkNew<vtkPolyData>()); // a picture may be drawn before it has a height
   bar_->SetMapper(mapper);
   words_->GetTextProperty()->SetJustificationToCentered();
   words_->GetTextProperty()->SetVerticalJustificationToBottom();
