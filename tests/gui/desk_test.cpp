@@ -216,6 +216,22 @@ TEST_F(Desks, AWindowOfADeskWithoutAPictureBeginsAtThePage) {
   }
 }
 
+TEST_F(Desks, ANarrowWindowIsAsWideAtTheNextStart) {
+  for (const DeskRow& row : deskRows()) {
+    QSettings().setValue(QStringLiteral("window/size"), QSize(1012, 656));
+    QSettings().setValue(QStringLiteral("window/desk"), static_cast<int>(row.desk));
+    window_ = std::make_unique<MainWindow>();
+    window_->restorePlace();
+    window_->show();
+    wait(300);
+    EXPECT_EQ(window_->width(), 1012) << row.name;
+    window_->controllers().desks.choose(row.desk);
+    window_->controllers().desks.foldColumn(false);
+    wait(300);
+    EXPECT_EQ(window_->width(), 1012) << row.name;
+  }
+}
+
 TEST_F(Desks, AWindowThatWasLargerIsAllOnThisScreenWithItsFrame) {
   QSettings().setValue(QStringLiteral("window/size"), QSize(6000, 4000));
   window_ = std::make_unique<MainWindow>();

@@ -140,6 +140,18 @@ TEST_F(TextureDeskTest, AStepThatIsCancelledBeginsAnew) {
   EXPECT_TRUE(find<QPushButton>("next_step")->text().contains(QStringLiteral("Begin")));
 }
 
+TEST_F(TextureDeskTest, ANarrowWindowHasItsButtonsUntilTheyAreFoldedAway) {
+  takeSize(1024, 700);
+  clickAction("desk_texture");
+  ASSERT_TRUE(find<QPushButton>("next_step")->isVisible());
+  keepPicture("texture_narrow");
+  EXPECT_EQ(window_->width(), 1024);
+  clickOn("tab_steps");
+  EXPECT_FALSE(find<QPushButton>("next_step")->isVisible());
+  clickAction("desk_scan");
+  EXPECT_LT(find<QWidget>("column")->width(), 60) << "no other desk's";
+}
+
 } // namespace
 } // namespace patina
 #endif

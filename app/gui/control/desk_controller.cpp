@@ -59,10 +59,12 @@ void DeskController::open(Panel panel) {
 }
 
 void DeskController::foldColumn(bool folded) {
-  if (narrow_)
-    opened_ = !folded;
-  else
+  if (!narrow_)
     layouts_[desk_].column_folded = folded;
+  else if (folded)
+    opened_.erase(desk_);
+  else
+    opened_.insert(desk_);
   arrange();
   emit changed();
 }
@@ -76,13 +78,13 @@ void DeskController::foldDrawer(bool folded) {
 void DeskController::setNarrow(bool narrow) {
   if (narrow == narrow_) return;
   narrow_ = narrow;
-  opened_ = false;
+  opened_ = {Desk::texture}; // whose steps begin and go on by buttons there
   arrange();
 }
 
 void DeskController::arrange() {
   const DeskLayout& layout = layouts_[desk_];
-  at_.column.setFolded(narrow_ ? !opened_ : layout.column_folded);
+  at_.column.setFolded(narrow_ ? !opened_.contains(desk_) : layout.column_folded);
   at_.drawer.setFolded(layout.drawer_folded);
   at_.down.handle(1)->setEnabled(!at_.drawer.folded()); // it has one height then
   const int wide = at_.column.folded() ? at_.column.maximumWidth() : layout.column;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include <QActionGroup>
 #include <QObject>
@@ -52,8 +53,9 @@ class DeskController : public QObject {
   QActionGroup* group_;
   Desk desk_ = Desk::feel;
   std::map<Desk, DeskLayout> layouts_;
-  std::map<Desk, ToolChoice> tools_;     // that were last in hand there
-  bool narrow_ = false, opened_ = false; // the column, though there is no room
+  std::map<Desk, ToolChoice> tools_; // that were last in hand there
+  bool narrow_ = false;
+  std::set<Desk> opened_; // whose column is, though there is no room
   bool keeps_ = false;
 };
 
