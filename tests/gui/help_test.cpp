@@ -1,6 +1,8 @@
 // What a person who does not know the menus by heart finds.
+#include <QDialog>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QPushButton>
 #include <QTextBrowser>
 
 #include "geometry/mesh/shapes.h"
@@ -59,6 +61,23 @@ TEST_F(Help, TheGuideIsTheOneOfTheDocuments) {
   auto* text = find<QTextBrowser>("guide_text");
   EXPECT_TRUE(text->toPlainText().contains(QStringLiteral("Patina")));
   EXPECT_GT(text->toPlainText().size(), 10000);
+  ASSERT_TRUE(waitUntil([&] { return text->window()->isActiveWindow(); }, 3000));
+  type(kEscape);
+  EXPECT_TRUE(waitUntil([&] { return find<QWidget>("user_guide") == nullptr; }, 3000));
+}
+
+TEST_F(Help, MouseAndKeysFitOnASmallScreen) {
+  QSize size;
+  bool ok = false;
+  whenAsked<QDialog>([&](QDialog& dialog) {
+    size = dialog.size();
+    for (auto* button : dialog.findChildren<QPushButton*>()) ok = ok || button->isVisible();
+    type(kEscape);
+  });
+  type(kF1);
+  EXPECT_TRUE(waitUntil([&] { return ok && !QApplication::activeModalWidget(); }, 5000));
+  EXPECT_LE(size.height(), 620);
+  EXPECT_LE(size.width(), 900);
 }
 
 TEST_F(Help, AnExportIsWhatParaViewOpens) {

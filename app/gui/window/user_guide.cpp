@@ -3,6 +3,7 @@
 #include <QFile>
 #include <QLineEdit>
 #include <QRegularExpression>
+#include <QShortcut>
 #include <QTextBrowser>
 #include <QVBoxLayout>
 
@@ -34,6 +35,7 @@ class GuideWindow final : public QWidget {
       static const QRegularExpression kPicture(QStringLiteral(R"(!\[[^\]]*\]\([^)]*\))"));
       text->setMarkdown(QString::fromUtf8(file.readAll()).remove(kPicture)); // they are wide
     }
+    connect(new QShortcut(Qt::Key_Escape, this), &QShortcut::activated, this, &QWidget::close);
     auto* column = new QVBoxLayout(this);
     column->addWidget(find);
     column->addWidget(text);

@@ -1,8 +1,11 @@
 #include "app/gui/window/window_menus.h"
 
+#include <QDialogButtonBox>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QTextBrowser>
 #include <QToolBar>
+#include <QVBoxLayout>
 
 #include "app/gui/control/desk_controller.h"
 #include "app/gui/control/document_controller.h"
@@ -291,6 +294,22 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       ->setObjectName(QStringLiteral("record_button"));
 }
 
+// Longer than a small screen is high: it is scrolled.
+void showShortcuts(QMainWindow* window) {
+  auto* dialog = new QDialog(window);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(tr("Mouse and keys"));
+  auto* text = new QTextBrowser;
+  text->setHtml(shortcutsText());
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok);
+  QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
+  auto* column = new QVBoxLayout(dialog);
+  column->addWidget(text);
+  column->addWidget(buttons);
+  dialog->resize(QSize(640, 600).boundedTo(window->size()));
+  dialog->open();
+}
+
 void addHelpMenu(QMainWindow* window) {
   QMenu* help = window->menuBar()->addMenu(tr("&Help"));
   const auto tell = [window](const QString& title, const QString& words) {
@@ -304,8 +323,7 @@ void addHelpMenu(QMainWindow* window) {
       tr("&Search actions…"), window, [window] { searchActions(*window); },
       Qt::CTRL | Qt::SHIFT | Qt::Key_P);
   help->addAction(
-      tr("&Mouse and keys"), window, [tell] { tell(tr("Mouse and keys"), shortcutsText()); },
-      Qt::Key_F1);
+      tr("&Mouse and keys"), window, [window] { showShortcuts(window); }, Qt::Key_F1);
   help->addAction(tr("&About Patina"), window, [tell] {
     tell(tr("About Patina"),
          tr("<h3>Patina %1</h3><p>A mesh becomes a sampled implicit surface, and a 1 kHz servo "
