@@ -152,6 +152,40 @@ TEST_F(TextureDeskTest, ANarrowWindowHasItsButtonsUntilTheyAreFoldedAway) {
   EXPECT_LT(find<QWidget>("column")->width(), 60) << "no other desk's";
 }
 
+TEST_F(TextureDeskTest, EnterPressesTheMainButtonOrTheOneThatHasTheKeys) {
+  clickAction("desk_texture");
+  auto* messages = find<QToolButton>("page_messages");
+  messages->setFocus(Qt::TabFocusReason);
+  const int high = find<QWidget>("drawer")->height();
+  type(kEnter);
+  wait(100);
+  EXPECT_LT(find<QWidget>("drawer")->height(), high) << "folded";
+  EXPECT_FALSE(desk().work());
+  desk().cells()->setFocus();
+  type(kEnter);
+  ASSERT_TRUE(desk().work()) << "the toy's scan";
+  type(kEnter);
+  wait(100);
+  EXPECT_TRUE(find<QPushButton>("next_step")->isVisible()) << "nothing else is pressed meanwhile";
+  ASSERT_TRUE(rest());
+  type(kEnter);
+  ASSERT_TRUE(desk().work()) << "and on";
+  desk().cancel();
+}
+
+TEST_F(TextureDeskTest, TheMainButtonAndTheOneThatHasTheKeysLookDifferent) {
+  clickAction("desk_texture");
+  auto* main = find<QPushButton>("next_step");
+  auto* other = find<QPushButton>("all_steps");
+  other->setFocus();
+  wait(100);
+  const QImage unfocused = main->grab().toImage();
+  main->setFocus();
+  wait(100);
+  keepPicture("texture_keys");
+  EXPECT_NE(main->grab().toImage(), unfocused);
+}
+
 } // namespace
 } // namespace patina
 #endif

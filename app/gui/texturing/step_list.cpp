@@ -61,6 +61,7 @@ StepList::StepList(QWidget* parent)
     : QGroupBox(tr("From a scan to a feel"), parent), next_(new QPushButton(this)),
       all_(new QPushButton(tr("All that is left"), this)),
       feel_(new QPushButton(tr("Feel it"), this)) {
+  setFocusPolicy(Qt::ClickFocus); // a box without one hands the keys on
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(8);
@@ -123,12 +124,15 @@ void StepList::show(const Demo* demo, bool running) {
     row.found->setText(found);
     row.found->setVisible(!found.isEmpty());
   }
+  // A button that cannot be pressed would give the keys to whatever is next.
+  if (running && (next_->hasFocus() || all_->hasFocus())) setFocus();
   const bool ended = done_ == rows_.size();
   next_->setVisible(!ended);
   all_->setVisible(!ended);
   feel_->setVisible(ended);
   next_->setEnabled(!running);
   all_->setEnabled(!running);
+  if (!running && hasFocus()) (ended ? feel_ : next_)->setFocus();
   if (!ended)
     next_->setText(done_ == 0
                        ? tr("Begin with the toy's scan")

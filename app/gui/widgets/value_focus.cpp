@@ -1,11 +1,13 @@
 #include "app/gui/widgets/value_focus.h"
 
 #include <QAbstractButton>
+#include <QAbstractItemView>
 #include <QAbstractSpinBox>
 #include <QApplication>
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QKeyEvent>
+#include <QPushButton>
 #include <QSlider>
 
 namespace patina {
@@ -27,6 +29,17 @@ void settleText(QWidget& widget, bool keeps) {
     number->setValue(number->value());
 }
 
+bool isEnter(const QKeyEvent& event) {
+  return event.key() == Qt::Key_Return || event.key() == Qt::Key_Enter;
+}
+
+// Of the panel; in a window that is no dialog Qt presses none.
+QPushButton* mainButton(const QWidget& panel) {
+  for (QPushButton* button : panel.findChildren<QPushButton*>())
+    if (button->isDefault() && button->isVisible() && button->isEnabled()) return button;
+  return nullptr;
+}
+
 } // namespace
 
 // Panels make rows while the window lives, so that a filter on each widget would be many.
@@ -46,7 +59,11 @@ bool ValueFocus::eventFilter(QObject* receiver, QEvent* event) {
     return true;
   }
   if (type != QEvent::Polish && type != QEvent::Wheel && type != QEvent::KeyPress) return false;
-  if (widget == nullptr || !holdsValue(*widget) || !panel_.isAncestorOf(widget)) return false;
+  if (widget == nullptr) return false;
+  // What no widget takes comes to the window: a bar's buttons leave it Enter.
+  if (widget != panel_.window() && !panel_.isAncestorOf(widget)) return false;
+  if (!holdsValue(*widget))
+    return type == QEvent::KeyPress && isEnter(*static_cast<QKeyEvent*>(event)) && press();
   if (type == QEvent::Polish) {
     widget->setFocusPolicy(Qt::StrongFocus); // the wheel would give itself the focus
     return false;
@@ -56,11 +73,22 @@ bool ValueFocus::eventFilter(QObject* receiver, QEvent* event) {
     event->ignore(); // and so it goes on to what scrolls
     return true;
   }
-  const int key = static_cast<QKeyEvent*>(event)->key();
-  const bool enter = key == Qt::Key_Return || key == Qt::Key_Enter;
-  if (!enter && key != Qt::Key_Escape) return false;
+  const auto& key = *static_cast<QKeyEvent*>(event);
+  const bool enter = isEnter(key);
+  if (!enter && key.key() != Qt::Key_Escape) return false;
   settleText(*widget, enter);
   view_.setFocus(Qt::OtherFocusReason);
+  return true;
+}
+
+bool ValueFocus::press() {
+  QWidget* focused = QApplication::focusWidget();
+  if (qobject_cast<QAbstractItemView*>(focused) != nullptr) return false; // it chooses a line
+  auto* button = qobject_cast<QAbstractButton*>(focused);
+  if (button == nullptr) button = mainButton(panel_);
+  if (button == nullptr) return false;
+  button->setFocus(); // and so the next Enter is its own, too
+  button->click();
   return true;
 }
 

@@ -75,6 +75,7 @@ class FlatControls final : public QProxyStyle {
                                                           : "button"));
     painter.setPen(ink(!enabled ? "line" : by_return || is(State_HasFocus) ? "accent" : "grip"));
     painter.drawRoundedRect(frameOf(option), 3, 3);
+    if (is(State_HasFocus)) painter.drawRoundedRect(frameOf(option).adjusted(2, 2, -2, -2), 2, 2);
     painter.restore();
   }
   static void drawFrame(const QStyleOption& option, QPainter& painter, bool round) {

@@ -3,7 +3,6 @@
 #include <QEvent>
 #include <QFileInfo>
 #include <QHBoxLayout>
-#include <QKeyEvent>
 #include <QLabel>
 #include <QPushButton>
 
@@ -138,21 +137,18 @@ void WelcomePage::setRecent(const QStringList& paths) {
 void WelcomePage::setShown(bool on) {
   if (isHidden() != on) return;
   setVisible(on);
-  if (!on) return over_.setFocus();
-  raise();
-  first_->setFocus();
+  if (on) raise();
+  if (!over_.isHidden()) takeKeys(); // or they are another desk's
 }
 
-// Enter is as good as Space on what has the keys.
-void WelcomePage::keyPressEvent(QKeyEvent* event) {
-  auto* button = qobject_cast<QAbstractButton*>(focusWidget());
-  if (button == nullptr || (event->key() != Qt::Key_Return && event->key() != Qt::Key_Enter))
-    return QScrollArea::keyPressEvent(event);
-  button->click();
+void WelcomePage::takeKeys() {
+  QWidget& next = isHidden() ? over_ : *first_;
+  next.setFocus();
 }
 
 bool WelcomePage::eventFilter(QObject* receiver, QEvent* event) {
   if (receiver == &over_ && event->type() == QEvent::Resize) setGeometry(over_.rect());
+  if (receiver == &over_ && event->type() == QEvent::Show && !isHidden()) takeKeys();
   return QScrollArea::eventFilter(receiver, event);
 }
 

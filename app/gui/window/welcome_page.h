@@ -24,9 +24,9 @@ class WelcomePage : public QScrollArea {
 
  protected:
   bool eventFilter(QObject* receiver, QEvent* event) override;
-  void keyPressEvent(QKeyEvent* event) override;
 
  private:
+  void takeKeys(); // or hands them to what it covers
   void addPresets(QVBoxLayout& column);
 
   QWidget& over_;
