@@ -160,9 +160,9 @@ std::shared_ptr<const HapticSnapshot> compileStages(const Scene& scene,
                     bytes);
     }
     if (range.texture_stiffness > 0)
-      snapshot->add("texture stiffness",
-                    std::make_unique<TextureStiffnessStage>(raised.reliefs, slopes),
-                    "textures of up to " + formatNumber(range.texture_stiffness) + " N/m");
+      snapshot->add(
+          "texture stiffness", std::make_unique<TextureStiffnessStage>(raised.reliefs, slopes),
+          "textures of up to " + formatNumber(std::round(range.texture_stiffness)) + " N/m");
   };
   if (plan.lateral) {
     addMaterial();
