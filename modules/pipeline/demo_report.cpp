@@ -91,6 +91,7 @@ Json demoJson(const Demo& demo) {
     json.set("amplitude", texture.spectrum.true_amplitude)
         .set("amplitude_found", texture.spectrum.amplitude);
     json.set("harmonics_compared", texture.spectrum.compared);
+    json.set("worst_harmonic_stretched", texture.spectrum.stretched);
     json.set("faces", texture.scanned.laid.faces.size());
     json.set("true_variation", texture.felt_error.true_variation);
     materials.push(json);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr int kSamplesAWave = 8;    // of the shortest
-constexpr double kStretched = 0.01; // what is longer or shorter by more is another wave
+constexpr double kStretched = 0.01; // what is longer or shorter than that is another wave
 
 // Heights over one period through a window that is zero and level at both ends.
 class Seen {
@@ -89,21 +89,24 @@ SpectrumError spectrumError(const FourierTexture& texture, const std::vector<Pro
   const Seen real(trueHeight, length, count),
       found([&](double along) { return height(texture, along); }, length, count);
   const Peak true_peak = strongest(real, first, last), peak = strongest(found, first, last);
-  SpectrumError error{found.wavelength(peak.harmonic),
-                      real.wavelength(true_peak.harmonic),
-                      peak.amplitude,
-                      true_peak.amplitude,
-                      0,
-                      0};
+  SpectrumError error;
+  error.wavelength = found.wavelength(peak.harmonic);
+  error.true_wavelength = real.wavelength(true_peak.harmonic);
+  error.amplitude = peak.amplitude;
+  error.true_amplitude = true_peak.amplitude;
   const auto most = static_cast<int>(std::lround(true_peak.harmonic));
-  double stretch = peak.harmonic / true_peak.harmonic;
-  if (!(std::abs(stretch - 1) <= kStretched)) stretch = 1;
+  const double stretch =
+      std::clamp(peak.harmonic / true_peak.harmonic, 1 - kStretched, 1 + kStretched);
   for (int j = first; j <= last; ++j) {
     const double expected = real.amplitude(j), wavelength = real.wavelength(j);
     if (!(expected > floor * wavelength * wavelength) && j != most) continue;
     ++error.compared;
-    const double off = std::abs(20 * std::log10(found.amplitude(stretch * j) / expected));
-    if (!(off <= error.decibels)) error.decibels = std::isfinite(off) ? off : INFINITY;
+    const auto judge = [&](double& worst, double harmonic) {
+      const double off = std::abs(20 * std::log10(found.amplitude(harmonic) / expected));
+      if (!(off <= worst)) worst = std::isfinite(off) ? off : INFINITY;
+    };
+    judge(error.decibels, stretch * j);
+    judge(error.stretched, j);
   }
   return error;
 }

@@ -12,6 +12,7 @@ struct SpectrumError {
   double wavelength = 0, true_wavelength = 0; // of the strongest wave [m]
   double amplitude = 0, true_amplitude = 0;   // of it [m]
   double decibels = 0;      // the largest of those compared, without a sign; of no stretch (below)
+  double stretched = 0;     // the same, the stretch counted
   std::size_t compared = 0; // harmonics
 };
 

@@ -273,12 +273,16 @@ TEST_F(BadInput, VolumesWithoutAPlaceOrASizeAreRefused) {
   for (const char* spacing : {"abc 10 10", "nan 10 10", "0 10 10", "-10 10 10", "10 10"})
     expectOneLineError(run({"info", volume("0 0 0", spacing), "--iso", "0"}), {"v.vti", "Spacing"});
   expectOneLineError(run({"info", volume("nan 0 0", "1 1 1"), "--iso", "0"}), {"v.vti", "Origin"});
+  const std::string other = volume("0 0 0", "nan 1 1"), text = readFile(other);
+  folder.write("v.vti", std::string(text).replace(text.find(" Spacing=\"nan 1 1\""), 18,
+                                                  "\n\tSpacing='nan 1 1'"));
+  expectOneLineError(run({"info", other, "--iso", "0"}), {"v.vti", "Spacing"});
 }
 
 TEST_F(BadInput, BytesThatMoveTheCursorDoNotReachTheTerminal) {
-  const std::string pose = folder.write("e.txt", "1 0 \x1b[31mX 0\n");
+  const std::string pose = folder.write("e.txt", "1 0 \x1b[31mX\xC2\x9B 0\n");
   const Outcome outcome = run({"scene", "-o", folder / "w", "--add", box + "@" + pose});
-  expectOneLineError(outcome, {"e.txt:1", "?[31mX"});
+  expectOneLineError(outcome, {"e.txt:1", "?[31mX??"});
   EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
 }
 

@@ -16,9 +16,10 @@ namespace {
 const char* const kForceHeader =
     "t [s],x [m],y [m],z [m],fx [N],fy [N],fz [N],contact,depth [m],vcp_x [m],vcp_y [m],vcp_z "
     "[m],nx,ny,nz,step [ns],fault,held,snap";
-const char* const kSampleHeader = "x [m],y [m],z [m],phi [m],nx,ny,nz,face,cx [m],cy [m],cz "
-                                  "[m],in_band,stiffness [N/m],friction.static,friction.dynamic,damping "
-                                  "[N s/m],roughness [m],relief [m],red,green,blue,cover";
+const char* const kSampleHeader =
+    "x [m],y [m],z [m],phi [m],nx,ny,nz,face,cx [m],cy [m],cz "
+    "[m],in_band,stiffness [N/m],friction.static,friction.dynamic,damping "
+    "[N s/m],roughness [m],relief [m],red,green,blue,cover";
 
 void expectKeys(const Json& json, const std::vector<std::string>& keys) {
   for (const std::string& key : keys) EXPECT_NE(json.find(key), nullptr) << key;

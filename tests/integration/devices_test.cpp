@@ -51,7 +51,8 @@ TEST(SimulatedProbe, IsReadFromItsPortWithNothingLostOnTheWay) {
 
 TEST(SimulatedProbe, ThatIsNotThereIsOneLine) {
   const ScratchFolder folder;
-  expectOneLineError(run({"simulate-device", "telephone"}), {"it must be falcon, spacemouse or probe"});
+  expectOneLineError(run({"simulate-device", "telephone"}),
+                     {"it must be falcon, spacemouse or probe"});
 }
 #endif
 

@@ -52,6 +52,7 @@ TEST(Interrupt, OfOtherKindsLeavesNothingEither) {
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
     ASSERT_FALSE(field.finished()) << "too quick to be interrupted";
     field.signal(number);
+    field.signal(number); // no impatience
     EXPECT_EQ(field.wait().exit, 130);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   }

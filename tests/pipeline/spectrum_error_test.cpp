@@ -66,6 +66,7 @@ TEST(SpectrumError, CountsAStretchOfTheWholeAsOneOfTheWavelengthAlone) {
     EXPECT_NEAR(error.wavelength / error.true_wavelength, stretch, 1e-3);
     EXPECT_LT(error.decibels, 0.3);
   }
+  EXPECT_LT(between(waves(1.011 * 5e-3, 1e-4, 4e-5), truth, 1.5).decibels, 1) << "no cliff";
   EXPECT_GT(between(waves(0.96 * 5e-3, 1e-4, 4e-5), truth, 1.5).decibels, 2) << "another wave";
 }
 

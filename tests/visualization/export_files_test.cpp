@@ -60,6 +60,10 @@ TEST_F(ExportFiles, AToolPathIsOneLineWithItsForces) {
   EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 5);
   EXPECT_EQ(reader->GetOutput()->GetPointData()->GetArray("force [N]")->GetTuple3(3)[2], 0.7);
   writeToolPathVtp(folder_ / "empty.vtp", {});
+  writeToolPathVtp(folder_ / "p.vtp", {samples()[0]});
+  reader->Modified();
+  reader->Update();
+  EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 1);
 }
 
 TEST_F(ExportFiles, ACollectionOpensItsParts) {

@@ -19,24 +19,8 @@ const Keys kExportKeys = {{"folder", "", "folder", "", Shown::never},
                           {"files", "", "files", "in the folder", Shown::never},
                           {"stability", "", "as patina render"}};
 
-// What is exported has names of its own, and kinds that nothing else of a scene has.
-void requireNotExportedOver(const std::filesystem::path& input,
-                            const std::filesystem::path& folder) {
-  const std::string kind = input.extension().string();
-  const bool may_be = kind == ".vti" || kind == ".vtp" || kind == ".csv";
-  std::error_code unknown; // a folder that does not exist holds no input
-  if (may_be &&
-      std::filesystem::equivalent(std::filesystem::absolute(input).parent_path(), folder, unknown))
-    throw FileError(
-        folder.string(), 0,
-        "holds " + input.filename().string() +
-            ", an input of this command, which may be written over: name another folder");
-}
-
 int runExport(const ExportOptions& options, Console& console) {
   const std::filesystem::path& folder = options.output;
-  requireNotExportedOver(options.input, folder);
-  requireNotExportedOver(options.path, folder);
   std::vector<TimedTip> path;
   if (!options.path.empty()) path = readTipPath(options.path);
   const auto compiled =
@@ -45,7 +29,8 @@ int runExport(const ExportOptions& options, Console& console) {
   if (options.stability) stability = requiredStability(*compiled, console.progress());
   console.progress().throwIfCancelled();
 
-  ExportExtras extras{.warn = [&](const std::string& line) { console.warn(line); }};
+  ExportExtras extras{.inputs = {options.input, options.path},
+                      .warn = [&](const std::string& line) { console.warn(line); }};
   if (!path.empty()) extras.samples = feel(*compiled->snapshot, path, console.progress());
   if (stability) extras.stability = &*stability;
   const auto written = exportScene(*compiled, folder, extras, console.progress());

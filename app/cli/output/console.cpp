@@ -36,9 +36,10 @@ void wake(std::uint64_t what) {
   (void)unused;
 }
 
-extern "C" void onInterrupt(int) {
+extern "C" void onInterrupt(int number) {
   const int code = errno;
-  interrupted = true;
+  // A shell sends SIGHUP on after the kernel did: only a second Ctrl-C is impatience.
+  if (interrupted.exchange(true) && number != SIGINT) return;
   if (Progress* progress = interrupted_progress.load()) progress->cancel();
   wake(kInterrupt);
   errno = code;
@@ -70,9 +71,15 @@ void letSignalsEnd() {
 
 // What files and their names bring along must not move a terminal's cursor, nor end the line.
 std::string onOneLine(std::string text) {
-  for (char& c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F) c = c == '\n' || c == '\t' ? ' ' : '?';
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    if (text[i] == '\n' || text[i] == '\t')
+      text[i] = ' ';
+    else if (byte < 0x20 || byte == 0x7F)
+      text[i] = '?';
+    else if (byte == 0xC2 && next >= 0x80 && next < 0xA0) // the same in UTF-8
+      text[i] = text[i + 1] = '?';
   }
   return text;
 }
@@ -143,7 +150,6 @@ int Console::fail(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error)) message = "not enough memory";
   if (dynamic_cast<const std::system_error*>(&error))
     message = "the system refused what is needed: " + message;
-  message = onOneLine(message);
   if (json) {
     Json object = Json::object();
     object.set("message", message).set("exit", code);
@@ -151,7 +157,7 @@ int Console::fail(const std::exception& error) {
     if (file && file->line() > 0) object.set("line", file->line());
     std::fputs((Json::object().set("error", std::move(object)).dump() + "\n").c_str(), reports());
   }
-  std::fprintf(stderr, "patina: %s\n", message.c_str());
+  std::fprintf(stderr, "patina: %s\n", onOneLine(message).c_str());
   return code;
 }
 

@@ -16,8 +16,7 @@ const char* const kExitCodes[] = {
     "0    done",
     "1    the numerics did not succeed; the report is printed",
     "2    bad input or usage; one line on stderr says what and where",
-    "130  cancelled by Ctrl-C or SIGTERM; no output file was touched (what runs until then: 0)",
-    "ends with 0)",
+    "130  cancelled (Ctrl-C, SIGTERM, SIGHUP); no file was touched (what runs until then: 0)",
 };
 
 using Lines = std::vector<std::pair<std::string, std::string>>; // a name, and what it is

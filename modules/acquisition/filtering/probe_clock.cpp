@@ -96,51 +96,65 @@ double coarseOffset(const std::vector<Window>& windows, const Expected& expected
 using ClockVector = Eigen::Matrix<double, 6, 1>;
 using ClockSquare = Eigen::Matrix<double, 6, 6>;
 
-// Normal equations about x.
+// Normal equations about some x.
 struct Equations {
   ClockSquare normal = ClockSquare::Zero();
   ClockVector right = ClockVector::Zero();
-  double squares = 0, count = 0; // of what is left
-  // Of the parts of `right` that come of half a second each, within which errors may stay alike.
-  ClockSquare spread = ClockSquare::Zero();
-  double blocks = 0;
 
-  void endBlock(ClockVector& block) {
-    if (block.isZero(0)) return;
-    spread += block * block.transpose();
-    blocks += 1;
-    block.setZero();
+  void add(const ClockVector& row, double residual) {
+    normal += row * row.transpose();
+    right += row * residual;
   }
 };
 
-Equations equationsAbout(const ClockVector& x, double start, const std::vector<Window>& windows,
-                         const Expected& expected) {
+struct ClockFit {
   Equations all;
-  ClockVector block = ClockVector::Zero();
-  double block_end = start + kAlike;
+  std::vector<Equations> parts;  // what comes of half a second each, where errors may stay alike
+  double squares = 0, count = 0; // of what is left
+};
+
+ClockFit fitAbout(const ClockVector& x, double start, const std::vector<Window>& windows,
+                  const Expected& expected) {
+  ClockFit fit;
+  double part_end = -INFINITY;
   for (const Window& window : windows) {
     const double since = window.t - start, t = window.t - x[0] - x[1] * since;
     const auto before = expected.at(t - kDifference), now = expected.at(t),
                after = expected.at(t + kDifference);
     if (!before || !now || !after) continue;
-    if (window.t > block_end) {
-      all.endBlock(block);
-      block_end = window.t + kAlike;
+    if (window.t > part_end) {
+      fit.parts.emplace_back();
+      part_end = window.t + kAlike;
     }
     for (int k = 0; k < 4; ++k) {
       const double rate = ((*after)[k] - (*before)[k]) / (2 * kDifference);
       ClockVector row = ClockVector::Zero();
       row[0] = -rate, row[1] = -rate * since, row[2 + k] = 1;
       const double residual = window.shown[k] - (*now)[k] - x[2 + k];
-      all.normal += row * row.transpose();
-      all.right += row * residual;
-      block += row * residual;
-      all.squares += residual * residual;
-      all.count += 1;
+      fit.all.add(row, residual);
+      fit.parts.back().add(row, residual);
+      fit.squares += residual * residual;
+      fit.count += 1;
     }
   }
-  all.endBlock(block);
-  return all;
+  return fit;
+}
+
+// Covariance by how far it moves the solution to leave out one part after the other (the
+// jackknife): of a stroke on which all depends the others say how little they know without it.
+ClockSquare covarianceByParts(const ClockFit& fit, const ClockVector& solution) {
+  const double count = static_cast<double>(fit.parts.size());
+  ClockVector sum = ClockVector::Zero();
+  ClockSquare squares = ClockSquare::Zero();
+  for (const Equations& part : fit.parts) {
+    const ClockVector moved =
+        ClockVector(
+            SymmetricSolver(fit.all.normal - part.normal).solve(fit.all.right - part.right)) -
+        solution;
+    sum += moved;
+    squares += moved * moved.transpose();
+  }
+  return (count - 1) / count * (squares - 1 / count * sum * sum.transpose());
 }
 
 } // namespace
@@ -157,18 +171,16 @@ std::optional<ProbeClock> fitClock(const CameraTrack& track,
   ClockVector x = ClockVector::Zero();
   x[0] = coarseOffset(windows, expected);
   constexpr int kRounds = 6;
-  bool settled = false;
+  bool settled = false, told = false;
   for (int round = 0; round < kRounds && !settled; ++round) {
-    const Equations at = equationsAbout(x, clock.start, windows, expected);
-    const SymmetricSolver solver(at.normal);
-    if (at.count < 100 || at.blocks < 10 || !(solver.evenness() > 1e-12)) return std::nullopt;
-    const ClockVector change = solver.solve(at.right);
+    const ClockFit fit = fitAbout(x, clock.start, windows, expected);
+    const SymmetricSolver solver(fit.all.normal);
+    if (fit.count < 100 || fit.parts.size() < 4 || !(solver.evenness() > 1e-12))
+      return std::nullopt;
+    const ClockVector change = solver.solve(fit.all.right);
     x += change;
-    const ClockSquare inverse = solver.inverse();
-    // Were all errors independent, and as the half seconds differ from one another: a stroke on
-    // which all depends has few of its own.
-    const ClockSquare even = at.squares / (at.count - 6) * inverse,
-                      alike = at.blocks / (at.blocks - 6) * inverse * at.spread * inverse;
+    const ClockSquare even = fit.squares / (fit.count - 6) * ClockSquare(solver.inverse()),
+                      alike = covarianceByParts(fit, change);
     const auto surprise = [both = Vec2(x.head<2>())](const ClockSquare& P) {
       return both.dot(P.topLeftCorner<2, 2>().inverse() * both);
     };
@@ -177,13 +189,14 @@ std::optional<ProbeClock> fitClock(const CameraTrack& track,
     clock.offset_deviation = std::sqrt(std::max(even(0, 0), alike(0, 0)));
     clock.skew_deviation = std::sqrt(std::max(even(1, 1), alike(1, 1)));
     settled = std::abs(change[0]) < 0.1 * clock.offset_deviation;
-    // Chi squared and Hotelling's T squared, of two.
-    const double free = at.blocks - 6;
+    told = std::sqrt(even(0, 0)) < kWorstOffset;
+    // Chi squared and Hotelling's T squared, of two: both must find it strange.
+    const double free = static_cast<double>(fit.parts.size()) - 1;
     clock.differs = surprise(even) > -2 * std::log(kChance) &&
                     surprise(alike) > free * (std::pow(kChance, -2 / (free - 1)) - 1);
   }
-  const bool found = settled && std::abs(clock.offset) < 1.1 * kFarthest &&
-                     std::abs(clock.skew) < 0.02 && clock.offset_deviation < kWorstOffset;
+  const bool found =
+      settled && std::abs(clock.offset) < 1.1 * kFarthest && std::abs(clock.skew) < 0.02 && told;
   return found ? std::optional(clock) : std::nullopt;
 }
 

@@ -8,7 +8,7 @@
 namespace patina::PATINA_KERNEL {
 
 // Coefficients in kRows rows of four: of t^k, t^(k + kRows), t^(k + 2 kRows), t^(k + 3 kRows), for
-// k = 0 on. Double4 polynomials side by side: the chain of products is a quarter as long.
+// k = 0 on. Four polynomials side by side: the chain of products is a quarter as long.
 template <int kRows>
 [[gnu::always_inline]] inline SeriesValue polynomial(const double* coefficients,
                                                      double t) noexcept {

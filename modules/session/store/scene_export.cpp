@@ -129,6 +129,13 @@ std::vector<ExportedFile> exportScene(const CompiledScene& compiled,
   writeImages(compiled.scene, into, extras, files);
   writeCollectionVtm(into / "scene.vtm", blocks);
   files.push_back({"all", "scene.vtm"});
+  for (const auto& made : std::filesystem::directory_iterator(into))
+    for (const std::filesystem::path& input : extras.inputs) {
+      std::error_code unknown; // what does not exist is no input
+      const std::filesystem::path target = folder / made.path().filename();
+      if (std::filesystem::equivalent(target, input, unknown))
+        throw FileError(target.string(), 0, "cannot be written: it is an input of this command");
+    }
   progress.throwIfCancelled();
   staged.commit();
   return files;

@@ -16,6 +16,7 @@ namespace patina {
 struct ExportExtras {
   std::vector<ToolSample> samples{};              // of a tip that felt the scene
   const SurfaceStability* stability = nullptr;    // as arrays on the surface
+  std::vector<std::filesystem::path> inputs{};    // of the export: refused where it would be one
   std::function<void(const std::string&)> warn{}; // what a file cannot hold; absent: nobody hears
 };
 

@@ -91,7 +91,8 @@ void writeToolPathVtp(const std::filesystem::path& path, const std::vector<ToolS
   for (const ToolSample& sample : samples)
     lines->InsertCellPoint(points->InsertNextPoint(sample.tip.data()));
   data->SetPoints(points);
-  data->SetLines(lines);
+  // VTK reads beyond its cells where a line has one point.
+  samples.size() > 1 ? data->SetLines(lines) : data->SetVerts(lines);
   const auto time = pointArray(data, "t [s]", 1);
   const auto force = pointArray(data, "force [N]", 3);
   const auto vcp = pointArray(data, "vcp [m]", 3);

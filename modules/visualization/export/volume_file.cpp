@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -52,10 +53,10 @@ std::string headOf(const std::filesystem::path& path) {
 // Three numbers of the header, which VTK takes for its own where they are none; absent: none.
 void checkThree(const std::string& head, const std::string& name, bool positive,
                 const std::filesystem::path& path) {
-  const auto at = head.find(' ' + name + "=\"");
-  if (at == std::string::npos) return;
-  const auto begin = at + name.size() + 3, end = head.find('"', begin);
-  std::istringstream words(head.substr(begin, end - begin));
+  const std::regex attribute("\\s" + name + "\\s*=\\s*([\"'])([^\"']*)\\1");
+  std::smatch found;
+  if (!std::regex_search(head, found, attribute)) return;
+  std::istringstream words(found[2]);
   std::size_t count = 0;
   for (std::string word; words >> word; ++count)
     if (const auto number = parseNumber(word);
