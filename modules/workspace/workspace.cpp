@@ -148,7 +148,8 @@ void requireStates(const fs::path& folder, const std::vector<JournalEvent>& even
 }
 
 void replace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
-             const std::vector<JournalEvent>& events, const fs::path& folder) {
+             const std::vector<JournalEvent>& events, const fs::path& folder,
+             std::unique_ptr<JournalWriter>* writer = nullptr) {
   Manifest manifest = storeObjects(scene, folder);
   manifest.event = event;
   manifest.states = manifestStates(states, folder);
@@ -159,7 +160,20 @@ void replace(const Scene& scene, std::uint64_t event, const std::vector<StoredSt
   // Under a name of its own: the old history must not be taken for the new one's.
   const std::string name = nextJournalName(folder);
   writeFileAtomically(folder / name, text);
-  commit(std::move(manifest), name, text, folder);
+  if (!writer) return commit(std::move(manifest), name, text, folder);
+  auto next = std::make_unique<JournalWriter>(folder / name, number); // before anyone knows of it
+  try {
+    commit(std::move(manifest), name, text, folder);
+  } catch (...) {
+    // It may have been put in place, and only the folder not flushed.
+    const std::optional<Manifest> now = manifestIfReadable(folder);
+    if (!now)
+      writer->reset();
+    else if (now->journal && now->journal->file == name)
+      *writer = std::move(next);
+    throw;
+  }
+  *writer = std::move(next);
 }
 
 } // namespace
@@ -213,12 +227,13 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
 }
 
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
-                   const std::vector<JournalEvent>& journal, const fs::path& folder) {
+                   const std::vector<JournalEvent>& journal, const fs::path& folder,
+                   std::unique_ptr<JournalWriter>* writer) {
   validate(scene);
   begin(folder);
   refuseNewer(folder);
-  const auto lock = lockOld(folder);
-  replace(scene, event, states, journal, folder);
+  const auto lock = writer && *writer ? nullptr : lockOld(folder);
+  replace(scene, event, states, journal, folder, writer);
 }
 
 void saveWorkspace(const Scene& scene, const fs::path& folder) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,9 +63,12 @@ void saveWorkspace(const Scene& scene, const std::filesystem::path& folder);
 // history is written with into another folder. Its StoredSceneEdits name states that storeState()
 // has put there. One atomic step, too. The caller holds a FolderLock from before it stores the
 // first of them (the other two take it): another program's saving would remove what nothing names
-// yet.
+// yet. `writer`: that of the journal in place, or null; it becomes the one of the new journal, and
+// no other program can have either between. If this throws it is still that of the journal which
+// workspace.json names, and null where that cannot be told.
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
-                   const std::vector<JournalEvent>& journal, const std::filesystem::path& folder);
+                   const std::vector<JournalEvent>& journal, const std::filesystem::path& folder,
+                   std::unique_ptr<JournalWriter>* writer = nullptr);
 
 bool isWorkspace(const std::filesystem::path& path);
 // What a saver that was killed left of a new one: not to be opened, and free to be replaced.

@@ -305,13 +305,10 @@ void Editor::revert(Progress& progress) {
   Impl& at = *impl_;
   at.require(at.link != nullptr, "no folder to go back to");
   at.require(!at.painter, "a stroke is being painted");
-  const std::filesystem::path folder = at.link->folder();
-  Scene scene = loadWorkspace(folder);
+  Scene scene = loadWorkspace(at.link->folder());
   shareMeshes(scene, at.compiled->scene);
   auto saved = at.compiledFor(std::move(scene), progress);
-  at.link->revert();
-  at.link.reset(); // which had the journal locked
-  WorkspaceLink::Opened opened = WorkspaceLink::open(folder, at.replayer, at.budget, true, false);
+  WorkspaceLink::Opened opened = at.link->revert(at.replayer, at.budget);
   at.history = std::move(opened.history);
   at.link = std::move(opened.link);
   at.compiled = std::move(saved);

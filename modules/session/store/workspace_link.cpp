@@ -62,6 +62,23 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
                                           EditHistory::Replay replay, std::size_t budget,
                                           bool keep_journal, bool recover) {
   OpenedWorkspace found = openWorkspace(folder, recover);
+  const bool has_history = !found.states.empty();
+  Opened opened = openedFrom(folder, found, std::move(replay), budget);
+  if (!keep_journal) {
+    opened.link = nullptr;
+  } else if (has_history) {
+    opened.link->journal_ =
+        std::make_unique<JournalWriter>(found.journal_file, found.journal.size());
+  } else if (recover) { // what could not be read may still be mended by hand
+    opened.link = nullptr;
+    opened.notes.push_back(folder.string() + ": stays as it is; save the scene to another folder");
+  }
+  return opened;
+}
+
+WorkspaceLink::Opened WorkspaceLink::openedFrom(const std::filesystem::path& folder,
+                                                OpenedWorkspace& found, EditHistory::Replay replay,
+                                                std::size_t budget) {
   Opened opened;
   opened.notes = std::move(found.notes);
   opened.events = found.journal.size();
@@ -72,7 +89,8 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
     const std::size_t position = fold.position_at[state.event];
     if (stillThere(fold, state.event, position)) state_at[position] = state.file;
   }
-  const WorkspaceLink place(folder);
+  opened.link.reset(new WorkspaceLink(folder));
+  WorkspaceLink& place = *opened.link;
   const auto first = state_at.find(0);
   Scene start = first == state_at.end() ? found.scene : loadState(folder, first->second);
   opened.history = std::make_unique<EditHistory>(std::move(start), std::move(replay), budget);
@@ -94,22 +112,13 @@ WorkspaceLink::Opened WorkspaceLink::open(const std::filesystem::path& folder,
   opened.unsaved = saved_event < found.journal.size() && !(kept && fold.position == saved);
   if (opened.unsaved || opened.history->undoable() != fold.position)
     opened.history->place(fold.position, opened.history->sceneAt(fold.position));
-  if (!keep_journal) return opened;
-  if (found.states.empty() && recover) { // what could not be read may still be mended by hand
-    opened.notes.push_back(folder.string() + ": stays as it is; save the scene to another folder");
-    return opened;
-  }
   if (found.states.empty()) { // of a version without history, which begins with the first edit
-    opened.link.reset(new WorkspaceLink(folder));
-    opened.link->without_history_ = opened.history.get();
+    place.without_history_ = opened.history.get();
     return opened;
   }
-  auto link = std::unique_ptr<WorkspaceLink>(new WorkspaceLink(folder));
-  link->journal_ = std::make_unique<JournalWriter>(found.journal_file, found.journal.size());
-  link->states_ = std::move(found.states);
-  link->event_of_.push_back(0);
-  for (const FoldedJournal::Step& step : fold.steps) link->event_of_.push_back(step.number);
-  opened.link = std::move(link);
+  place.states_ = std::move(found.states);
+  place.event_of_.push_back(0);
+  for (const FoldedJournal::Step& step : fold.steps) place.event_of_.push_back(step.number);
   return opened;
 }
 
@@ -159,29 +168,35 @@ std::unique_ptr<WorkspaceLink> WorkspaceLink::write(const std::filesystem::path&
   for (const std::size_t position : history.landmarks(kLandmarkCost))
     link->states_.push_back({position, storeState(history.sceneAt(position), position, folder)});
   if (history.redoable() > 0) journal.emplace_back(UndoEvent{static_cast<int>(history.redoable())});
-  saveWorkspace(history.scene(), journal.size(), link->states_, journal, folder);
-  link->journal_ =
-      std::make_unique<JournalWriter>(openWorkspace(folder).journal_file, journal.size());
+  saveWorkspace(history.scene(), journal.size(), link->states_, journal, folder, &link->journal_);
   for (const auto& [index, state] : scenes) history.store(index, link->loader(state));
   link->tieStates(history);
   return link;
 }
 
 void WorkspaceLink::beginHistory() {
-  if (journal_) return;
+  if (journal_ || !without_history_) return;
   const FolderLock alone(folder_);
   if (!openWorkspace(folder_).states.empty())
     throw FileError(folder_.string(), 0, "another program has begun to edit it: open it again");
   *this = std::move(*write(folder_, *without_history_));
 }
 
+JournalWriter& WorkspaceLink::journal() const {
+  if (!journal_)
+    throw FileError(folder_.string(), 0,
+                    "its history cannot be written any more: save to another folder");
+  return *journal_;
+}
+
 void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after, std::int64_t time) {
   beginHistory();
+  JournalWriter& journal = this->journal();
   // What is on disk must be known here: no memory is taken after that.
   if (event_of_.capacity() <= position_after) event_of_.reserve(2 * position_after + 1);
   const auto append = [&](JournalEvent event) {
     event.time = time;
-    journal_->append(std::move(event));
+    journal.append(std::move(event));
   };
   if (const auto* stroke = std::get_if<Stroke>(&edit)) {
     append(*stroke);
@@ -189,22 +204,23 @@ void WorkspaceLink::recordEdit(const Edit& edit, std::size_t position_after, std
     append(*values);
   } else {
     const SceneEdit& whole = std::get<SceneEdit>(edit);
-    append(StoredSceneEdit{whole.what, storeState(*whole.scene, journal_->events() + 1, folder_)});
+    append(StoredSceneEdit{whole.what, storeState(*whole.scene, journal.events() + 1, folder_)});
   }
   event_of_.resize(position_after);
-  event_of_.push_back(journal_->events());
+  event_of_.push_back(journal.events());
 }
 
 void WorkspaceLink::recordUndo(std::size_t steps) {
-  journal_->append(UndoEvent{static_cast<int>(steps)});
+  journal().append(UndoEvent{static_cast<int>(steps)});
 }
 
 void WorkspaceLink::recordRedo(std::size_t steps) {
-  journal_->append(RedoEvent{static_cast<int>(steps)});
+  journal().append(RedoEvent{static_cast<int>(steps)});
 }
 
 void WorkspaceLink::save(EditHistory& history) {
   beginHistory();
+  const std::uint64_t events = journal().events();
   std::vector<StoredState> states;
   if (!states_.empty() && states_.front().event == 0) states.push_back(states_.front());
   for (const std::size_t position : history.landmarks(kLandmarkCost)) {
@@ -216,26 +232,32 @@ void WorkspaceLink::save(EditHistory& history) {
             ? *stored
             : StoredState{event, storeState(history.sceneAt(position), event, folder_)});
   }
-  saveWorkspace(history.scene(), journal_->events(), states, folder_);
+  saveWorkspace(history.scene(), events, states, folder_);
   states_ = std::move(states);
   tieStates(history);
 }
 
-void WorkspaceLink::revert() {
+WorkspaceLink::Opened WorkspaceLink::revert(EditHistory::Replay replay, std::size_t budget) {
   const FolderLock alone(folder_);
-  const OpenedWorkspace found = openWorkspace(folder_);
-  const auto saved = found.journal.begin() + static_cast<std::ptrdiff_t>(found.event);
-  const bool writes = journal_ != nullptr;
-  journal_.reset(); // its lock is taken by what replaces it
+  OpenedWorkspace found = openWorkspace(folder_);
+  if (found.journal.size() != (journal_ ? journal_->events() : 0))
+    throw FileError(folder_.string(), 0, "another program has edited it: open it again");
+  const bool more = found.event < found.journal.size();
+  found.journal.erase(found.journal.begin() + static_cast<std::ptrdiff_t>(found.event),
+                      found.journal.end());
+  // All that may fail comes before the step on disk.
+  Opened saved = openedFrom(folder_, found, std::move(replay), budget);
+  const JournalWriter* const old = journal_.get();
   try {
-    if (saved != found.journal.end())
-      saveWorkspace(found.scene, found.event, found.states, {found.journal.begin(), saved},
-                    folder_);
+    if (more)
+      saveWorkspace(found.scene, found.event, saved.link->states_, found.journal, folder_,
+                    &journal_);
   } catch (...) {
-    if (writes)
-      journal_ = std::make_unique<JournalWriter>(found.journal_file, found.journal.size());
-    throw;
+    if (!journal_ || journal_.get() == old) throw;
+    // It was done: only a loss of power now may bring the old workspace back.
   }
+  saved.link->journal_ = std::move(journal_);
+  return saved;
 }
 
 } // namespace patina

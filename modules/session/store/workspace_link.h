@@ -48,20 +48,26 @@ class WorkspaceLink {
   void recordRedo(std::size_t steps);
   void save(EditHistory& history); // states that are dropped are not loaded any more
   // The folder is as it was last saved, its history too: a journal of its own begins with what that
-  // holds. Nothing can be recorded after it; open() again.
-  void revert();
+  // holds. What is returned takes the place of this, which can record nothing any more; the journal
+  // is locked throughout.
+  Opened revert(EditHistory::Replay replay, std::size_t budget);
 
  private:
   explicit WorkspaceLink(std::filesystem::path folder);
+  // Of what was found there, whose states it takes; the link has no journal yet.
+  static Opened openedFrom(const std::filesystem::path& folder, OpenedWorkspace& found,
+                           EditHistory::Replay replay, std::size_t budget);
   // The folder is there and locked.
   static std::unique_ptr<WorkspaceLink> write(const std::filesystem::path& folder,
                                               EditHistory& history);
   void beginHistory();
+  JournalWriter& journal() const; // FileError if it has none
   EditHistory::Load loader(const std::string& state) const;
   void tieStates(EditHistory& history) const;
 
   std::filesystem::path folder_;
-  std::unique_ptr<JournalWriter> journal_; // null while there is no history on disk
+  // Null while there is no history on disk, or if it is not known which journal is in place.
+  std::unique_ptr<JournalWriter> journal_;
   EditHistory* without_history_ = nullptr; // whose beginning that will be
   std::vector<std::uint64_t> event_of_; // by position: the event after which the scene is that one
   std::vector<StoredState> states_;     // on disk
