@@ -36,16 +36,6 @@ Scene withPaint(const Scene& scene, const std::vector<std::shared_ptr<const Obje
   return result;
 }
 
-// Read from a file, meshes that are here already are these: their fields need not be built anew.
-void shareMeshes(Scene& scene, const Scene& here) {
-  for (SceneObject& object : scene.objects)
-    for (const SceneObject& other : here.objects)
-      if (object.mesh->positions == other.mesh->positions &&
-          object.mesh->triangles == other.mesh->triangles &&
-          object.mesh->corner_uvs == other.mesh->corner_uvs)
-        object.mesh = other.mesh;
-}
-
 } // namespace
 
 struct Editor::Impl {
@@ -305,9 +295,7 @@ void Editor::revert(Progress& progress) {
   Impl& at = *impl_;
   at.require(at.link != nullptr, "no folder to go back to");
   at.require(!at.painter, "a stroke is being painted");
-  Scene scene = loadWorkspace(at.link->folder());
-  shareMeshes(scene, at.compiled->scene);
-  auto saved = at.compiledFor(std::move(scene), progress);
+  auto saved = at.compiledFor(loadWorkspace(at.link->folder()), progress);
   WorkspaceLink::Opened opened = at.link->revert(at.replayer, at.budget);
   at.history = std::move(opened.history);
   at.link = std::move(opened.link);
