@@ -1,11 +1,15 @@
 // The tool that presses: the force that is set is the one that is felt, however stiff the place is.
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <cstdio>
 
+#include "app/gui/control/touching.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
+#include "scene/surface_pick.h"
 #include "session/edit/editor.h"
+#include "visualization/view/camera.h"
 
 namespace patina {
 namespace {
@@ -68,8 +72,18 @@ class Press : public DrivenWindow {
     wait(1000);
     type(QStringLiteral("q"));
   }
+  // How far to the right of the middle a place of the drag is [m].
+  double along(int x) {
+    const double high = view().height();
+    const QPoint pixel = middle() + QPoint(x, 0);
+    const Ray ray =
+        rayThrough(*view().view().renderer().GetActiveCamera(),
+                   (pixel.x() - 0.5 * view().width()) / high, (0.5 * high - pixel.y()) / high);
+    return firstSurfaceAlong(*edits().scene()->built.field, ray.origin, ray.direction).value().x();
+  }
   // What is felt on a drag through the middle, of those ticks that are in contact.
-  std::vector<ToolSample> strokeAt(double newtons, int half) {
+  // It rests at `rests`.
+  std::vector<ToolSample> strokeAt(double newtons, int half, int rests = INT_MAX) {
     auto* force = find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>();
     force->setValue(newtons);
     pointAt(inView({-half, 0}));
@@ -77,7 +91,10 @@ class Press : public DrivenWindow {
     press();
     wait(400);
     feel().startLog();
-    for (int x = -half; x <= half; x += 3) pointAt(inView({x, 0}));
+    for (int x = -half; x <= half; x += 3) {
+      pointAt(inView({x, 0}));
+      if (x == rests) wait(500);
+    }
     const std::vector<ToolSample> all = feel().log().samples();
     release();
     EXPECT_GT(all.size(), 500U);
@@ -128,6 +145,41 @@ TEST_F(Press, OverAnIslandOfOtherStiffnessTheForceStaysWithoutJumps) {
     if (sample.surface.head<2>().norm() < 0.004) middle.push_back(sample);
   ASSERT_GT(middle.size(), 20U);
   EXPECT_NEAR(of(middle).mean, 1, 0.1);
+}
+
+// However long it rests where the ground is hard, it sinks no faster where the ground is soft.
+TEST_F(Press, OffAnIslandAfterARestTheForceStaysWithoutJumps) {
+  show(plate(), {stiff(2500, 0.008)});
+  int rim = 0;                         // the last place on the island
+  for (int x = -140; x <= 140; x += 3) // as the drag goes
+    if (along(x) < 0.0078) rim = x;
+  ASSERT_GT(rim, 9);
+  const Felt felt = of(strokeAt(1, 140, rim));
+  EXPECT_LT(felt.most, 1.5);
+}
+
+TEST_F(Press, APenThatOnlyTouchesIsAtTheSurfaceAndPressesWhenItIsPressed) {
+  show(plate(), {stiff(1300, 0.2)});
+  const auto pen = [&](QEvent::Type type, double pressure) {
+    QTabletEvent event(type, middle(), view().mapToGlobal(middle()), QTabletEvent::Stylus,
+                       QTabletEvent::Pen, pressure, 0, 0, 0, 0, 0, Qt::NoModifier, 1,
+                       Qt::LeftButton, Qt::LeftButton);
+    QApplication::sendEvent(&view(), &event);
+    wait(300);
+  };
+  pen(QEvent::TabletPress, 0);
+  ASSERT_TRUE(view().target().allFinite());
+  const HapticProperties& haptics = edits().scene()->scene.haptics;
+  EXPECT_NEAR(view().target().z(), 0.5 * kThick + skinOf(haptics), 1e-5);
+  EXPECT_NEAR(feel().sample().force.norm(), 0, 0.02);
+  pen(QEvent::TabletMove, 0.5);
+  const double half = feel().sample().force.norm();
+  EXPECT_GT(half, 0.1);
+  pen(QEvent::TabletMove, 0);
+  EXPECT_TRUE(view().target().allFinite());
+  EXPECT_NEAR(feel().sample().force.norm(), 0, 0.02);
+  pen(QEvent::TabletMove, 1);
+  EXPECT_NEAR(feel().sample().force.norm(), 2 * half, 0.1 * half);
 }
 
 } // namespace

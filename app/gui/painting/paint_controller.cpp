@@ -23,7 +23,8 @@ constexpr std::size_t kLingerTicks = 250;
 // And so long in all, for a tip that does not follow the pointer never arrives.
 constexpr int kLongest = 5000; // [ms]
 // How fast a press gets deeper where the surface gets softer, at most.
-constexpr double kSinking = 0.05; // [m/s]
+constexpr double kSinking = 0.05;     // [m/s]
+constexpr double kLongestStep = 0.03; // [s], also after a time in which nothing was followed
 // A tick this far from the path between samples, in radii, is a sample.
 constexpr double kOff = 0.003;
 
@@ -141,15 +142,22 @@ void PaintController::passTip(const Vec3& target) {
   at_.feel.passTarget(target, t_);
 }
 
-void PaintController::press(const Vec3& surface, double newtons, double seconds) {
+void PaintController::press(const Vec3& surface, double newtons) {
   // Painted relief is followed, or an engraved place would be out of reach; what a texture adds to
   // the force is felt.
   const auto values = valuesAt(surface);
   // By the stiffness of the place, which is no answer of the servo: nothing can swing. From hard to
   // soft it sinks slowly, so that it does not press on what is hard ahead of the pointer.
-  const double softness = pressDepth(*scene_, surface, newtons) / newtons;
-  const bool begins = newtons_ == 0;
-  softness_ = begins ? softness : std::min(softness, softness_ + kSinking * seconds / newtons);
+  // Pointer and ticks both come here, so the time is neither's own: it must not count twice.
+  const bool begins = newtons_ == 0, presses = newtons > 0; // a pen may only touch
+  const double softness = presses ? pressDepth(*scene_, surface, newtons) / newtons : 0;
+  const double seconds =
+      pressed_.isValid()
+          ? std::min(1e-9 * static_cast<double>(pressed_.nsecsElapsed()), kLongestStep)
+          : 0;
+  pressed_.start();
+  softness_ =
+      begins || !presses ? softness : std::min(softness, softness_ + kSinking * seconds / newtons);
   double depth = newtons * softness_;
   // A simulated hand is a spring itself: it must reach deeper for the same force.
   depth += newtons * deviceNamed(scene_->scene.device).hand_compliance;
@@ -181,7 +189,6 @@ void PaintController::lift() {
 
 void PaintController::follow(const Pointed& where) {
   if (!scene_) return;
-  const double seconds = std::max(0.0, where.t - t_);
   t_ = where.t;
   const auto raise = [this] {
     newtons_ = 0;
@@ -191,7 +198,7 @@ void PaintController::follow(const Pointed& where) {
     down_ = true;
     lingers_ = false;
     if (where.surface)
-      press(*where.surface, presets_.press * where.pressure, seconds);
+      press(*where.surface, presets_.press * where.pressure);
     else
       raise(); // beside the object: the stroke ends with its contact
   } else if (down_) {
@@ -219,8 +226,7 @@ void PaintController::send(const std::vector<StrokePiece>& pieces) {
 void PaintController::feed(const std::vector<ToolSample>& ticks) {
   if (!ticks.empty()) last_ = ticks.back();
   if (!scene_) return;
-  if (newtons_ > 0 && (down_ || lingers_)) // the surface may have changed
-    press(aim_, newtons_, ticks.empty() ? 0 : ticks.back().t - ticks.front().t);
+  if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
   if (presses_) return;
   const double near = std::max(brush().radius, 0.02 * presets_.extent());
   const bool paints = at_.bar.choice().handling == Handling::paint;

@@ -50,10 +50,10 @@ class PaintController : public QObject {
   void setBrush(const Brush& brush);
   void pickAt(const Vec3& surface);
   void follow(const Pointed& where);
-  void press(const Vec3& surface, double newtons, double seconds); // since it was told so last
-  Vec3 lifted() const;                                             // the place over the aim
-  void lift();                                                     // there at once
-  void escape();                                                   // the stroke is taken back
+  void press(const Vec3& surface, double newtons);
+  Vec3 lifted() const; // the place over the aim
+  void lift();         // there at once
+  void escape();       // the stroke is taken back
   void moveTip(const Vec3& target);
   void leapTip(const Vec3& target); // above what it would go through
   void passTip(const Vec3& target); // when it is that event's turn
@@ -74,6 +74,7 @@ class PaintController : public QObject {
   double t_ = 0;              // [s], of the pointer
   double newtons_ = 0;        // with which it is pressed there; 0: it is not
   double softness_ = 0;       // of what it is pressed on [m/N]
+  QElapsedTimer pressed_;     // since that was followed last
   bool down_ = false, lingers_ = false;
   bool presses_ = false; // and paints nothing
   QElapsedTimer released_;
