@@ -182,5 +182,33 @@ TEST_F(Press, APenThatOnlyTouchesIsAtTheSurfaceAndPressesWhenItIsPressed) {
   EXPECT_NEAR(feel().sample().force.norm(), 2 * half, 0.1 * half);
 }
 
+// On a steep rim the pull along the surface is a good part of the force; a coupling softens both.
+TEST_F(Press, BehindACouplingTheDepthIsThatOfTheForce) {
+  Scene scene = plate();
+  scene.stabilisers = Stabilisers{true, false};
+  Stroke rim = stiff(2500, 0.008);
+  rim.brush.falloff = 2;
+  Progress progress;
+  Editor editor(scene, progress);
+  editor.apply(rim, progress);
+  const CompiledScene& compiled = *editor.compiled();
+  const double skin = skinOf(scene.haptics);
+  double most_pull = 0;
+  for (double x = 0.001; x < 0.008; x += 0.0005) {
+    const Vec3 surface(x, 0.0002, 0.5 * kThick);
+    const double depth = pressDepth(compiled, surface, 1);
+    ContactMemory memory;
+    Contact contact;
+    for (int i = -20; i < 200; ++i) // down, and at rest
+      contact = tick(*compiled.snapshot, memory,
+                     surface + (skin - depth * std::min(1.0, 0.05 * i)) * Vec3::UnitZ(), 1e-3);
+    ASSERT_TRUE(contact.touching);
+    EXPECT_LT(contact.stiffness, 0.9 * contact.material.stiffness) << "the coupling";
+    EXPECT_NEAR(contact.force.norm(), 1, 0.02) << x;
+    most_pull = std::max(most_pull, contact.force.head<2>().norm());
+  }
+  EXPECT_GT(most_pull, 0.3);
+}
+
 } // namespace
 } // namespace patina

@@ -24,8 +24,10 @@ double pressDepth(const CompiledScene& scene, const Vec3& surface, double newton
   at(skin + raised + clear); // from outside, as a hand comes; then below the lowest groove
   const Contact contact = at(skin - depthWithin(scene, surface, raised + clear));
   if (!(contact.stiffness > 0)) return newtons / scene.scene.haptics.stiffness;
-  // |F|^2 = (K d)^2 + (d^2 |grad K| / 2)^2, the second along the surface.
-  const Vec3& gradient = contact.gradients.stiffness;
+  // |F|^2 = (K d)^2 + (d^2 |grad K| / 2)^2, the second along the surface. In series with a coupling
+  // K = k c / (k + c), and grad K = (K / k)^2 grad k.
+  const double softened = contact.stiffness / contact.material.stiffness;
+  const Vec3 gradient = softened * softened * contact.gradients.stiffness;
   const double square = contact.stiffness * contact.stiffness,
                across = newtons * (gradient - gradient.dot(normal) * normal).norm();
   return newtons * std::sqrt(2 / (square + std::hypot(square, across)));
