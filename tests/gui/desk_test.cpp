@@ -1,4 +1,6 @@
 // Desks: what is at hand on each, and that a person's arrangement stays.
+#include <fstream>
+
 #include <QScreen>
 #include <QSettings>
 #include <QSplitter>
@@ -200,6 +202,30 @@ TEST_F(Desks, ADeskThatIsChosenWhileAMeshIsReadStays) {
   documents().open(requestFor(saved(icosphere(0.02, 12), "ball.obj")));
   window_->controllers().desks.choose(Desk::texture);
   ASSERT_TRUE(waitUntil([&] { return ready; }, 20000));
+  EXPECT_EQ(desk(), Desk::texture);
+}
+
+TEST_F(Desks, WhatComesToNothingLeavesTheDesk) {
+  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+  go("texture");
+  std::ofstream(folder_ / "bad.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999\n";
+  bool failed = false, cancelled = false, previewed = false;
+  QObject::connect(&documents(), &DocumentController::failed, [&] { failed = true; });
+  documents().open(requestFor(folder_ / "bad.obj"));
+  ASSERT_TRUE(waitUntil([&] { return failed; }, 20000));
+  EXPECT_EQ(desk(), Desk::texture);
+  wait(200);
+  if (QWidget* box = QApplication::activeModalWidget()) box->close();
+  // And of what is seen before it is cancelled.
+  QObject::connect(&documents(), &DocumentController::cancelled, [&] { cancelled = true; });
+  QObject::connect(&documents(), &DocumentController::previewed, window_.get(), [&] {
+    previewed = true;
+    EXPECT_EQ(desk(), Desk::feel) << "its mesh is seen";
+    documents().cancel();
+  });
+  documents().open(requestFor(saved(icosphere(0.02, 40), "ball.obj")));
+  ASSERT_TRUE(waitUntil([&] { return cancelled; }, 20000));
+  EXPECT_TRUE(previewed);
   EXPECT_EQ(desk(), Desk::texture);
 }
 

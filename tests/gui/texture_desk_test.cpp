@@ -140,6 +140,23 @@ TEST_F(TextureDeskTest, AStepThatIsCancelledBeginsAnew) {
   EXPECT_TRUE(find<QPushButton>("next_step")->text().contains(QStringLiteral("Begin")));
 }
 
+TEST_F(TextureDeskTest, AToyThatCannotBeOpenedLeavesDeskToolAndForce) {
+  clickAction("desk_texture");
+  const ToolChoice tool = find<ToolBar>()->choice();
+  const auto force = [&] {
+    return find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>()->value();
+  };
+  const double before = force();
+  ASSERT_NE(before, 1);
+  bool failed = false;
+  QObject::connect(&documents(), &DocumentController::failed, [&] { failed = true; });
+  emit desk().openAsked(QString::fromStdString((folder_ / "gone").string()));
+  ASSERT_TRUE(waitUntil([&] { return failed; }, 20000));
+  EXPECT_EQ(window_->controllers().desks.desk(), Desk::texture);
+  EXPECT_TRUE(find<ToolBar>()->choice() == tool);
+  EXPECT_EQ(force(), before);
+}
+
 TEST_F(TextureDeskTest, ANarrowWindowHasItsButtonsUntilTheyAreFoldedAway) {
   takeSize(1024, 700);
   clickAction("desk_texture");

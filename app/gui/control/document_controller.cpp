@@ -156,13 +156,15 @@ void DocumentController::openDialog(bool adds) {
 }
 
 void DocumentController::take(OpenedEditor& opened) {
-  const LoadRequest& request = loader_.request();
+  const LoadRequest request = loader_.request();
+  emit openedNow(); // before the work is over: what is seen depends on it
   at_.saving.setName(nameUnderWay());
   const bool unsaved = !request.unsaved_name.isEmpty();
   if (!request.path.empty() && !unsaved) recent_.add(QString::fromStdString(request.path.string()));
   work_.reset();
   at_.edits.thread().adopt(std::move(opened.editor), std::move(opened.autosave), unsaved);
   for (const QString& line : opened.warnings) emit said({line, true});
+  if (request.then) request.then();
   emit changed();
 }
 

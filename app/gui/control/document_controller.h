@@ -42,7 +42,8 @@ class DocumentController : public QObject {
 
  signals:
   void previewed(std::shared_ptr<const patina::TriangleMesh> mesh, const QString& name);
-  void opening(); // in the place of what is open; no question stands before it
+  void opening();   // in the place of what is open; no question stands before it
+  void openedNow(); // what was being opened is
   void openAlready();
   void abandoned(); // nothing is being loaded, or not before a question is answered; then, if so:
   void failed(const QString& message);

@@ -1,6 +1,7 @@
 // Opening a scene without holding up the window: behind it, signals back.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include <QObject>
@@ -25,7 +26,8 @@ struct LoadRequest {
   bool own = true;          // edits go into the folder; false: it is only read
   QString unsaved_name{};   // of what nobody has saved yet, in a folder that does not stay
   std::filesystem::path
-      place{}; // of a scene that a crash left behind, see autosave.h; no path then
+      place{};                  // of a scene that a crash left behind, see autosave.h; no path then
+  std::function<void()> then{}; // called by the window when it is open, and only then
 };
 
 struct Preset;

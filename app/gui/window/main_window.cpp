@@ -5,6 +5,7 @@
 #include <QCloseEvent>
 #include <QScreen>
 
+#include "app/gui/control/opening_desk.h"
 #include "app/gui/control/touching.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/widgets/words.h"
@@ -88,11 +89,12 @@ MainWindow::MainWindow(QWidget* parent)
 }
 
 void MainWindow::connectFiles() {
+  new OpeningDesk(
+      documents_, desks_, [this] { return isSeen(state()); }, this);
   connect(&documents_, &DocumentController::changed, this, &MainWindow::refresh);
   connect(&documents_, &DocumentController::previewed, this, &MainWindow::showPreview);
   connect(&documents_, &DocumentController::abandoned, this, &MainWindow::showAgain);
   connect(&documents_, &DocumentController::openAlready, this, &MainWindow::sceneReady);
-  connect(&documents_, &DocumentController::opening, this, &MainWindow::comeInSight);
   connect(&documents_, &DocumentController::said, this, &MainWindow::say);
   connect(&saving_, &SaveController::said, this, &MainWindow::say);
   connect(&recovery_, &RecoveryOffer::changed, this, &MainWindow::refresh);
@@ -177,10 +179,13 @@ void MainWindow::connectScan() {
     LoadRequest request;
     request.path = folder.toStdString();
     request.unsaved_name = tr("Scanned toy");
+    request.then = [this] {
+      if (desks_.desk() != Desk::feel) return; // one that was chosen meanwhile stays
+      parts_.tools->choose({Handling::press, {}});
+      paint_.setForce(kFirstPress);
+    };
     if (documents_.asks() && !saving_.settleEdits()) return;
     documents_.open(request);
-    parts_.tools->choose({Handling::press, {}});
-    paint_.setForce(kFirstPress);
   });
   connect(parts_.texture, &TextureDesk::changed, this, &MainWindow::refresh);
   connect(parts_.texture, &TextureDesk::said, this, &MainWindow::say);

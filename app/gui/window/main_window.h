@@ -45,7 +45,7 @@ class MainWindow : public QMainWindow {
   void say(const Message& message);
   WindowState state() const;
   void refresh();     // shows the state
-  void comeInSight(); // to a desk that shows what is opened, or else the page to begin from
+  void comeInSight(); // to a desk that shows what is open, or else the page to begin from
   void clear();
   void showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name);
   void showAgain(); // what was open before a load that came to nothing
