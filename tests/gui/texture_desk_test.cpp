@@ -190,6 +190,33 @@ TEST_F(TextureDeskTest, EnterPressesTheMainButtonOrTheOneThatHasTheKeys) {
   desk().cancel();
 }
 
+TEST_F(TextureDeskTest, EnterThatIsHeldOrTypedIntoTextPressesNothing) {
+  clickAction("desk_texture");
+  const auto enter = [](QWidget& to, bool again) {
+    QKeyEvent event(QEvent::KeyPress, Qt::Key_Return, Qt::NoModifier, QStringLiteral("\r"), again);
+    QApplication::sendEvent(&to, &event);
+  };
+  auto* next = find<QPushButton>("next_step");
+  next->setFocus();
+  enter(*next, true);
+  EXPECT_FALSE(desk().work());
+  desk().cells()->setFocus();
+  enter(*desk().cells(), true);
+  EXPECT_FALSE(desk().work());
+  auto* line = new QLineEdit(next->parentWidget());
+  line->show();
+  line->setFocus();
+  int taken = 0;
+  QObject::connect(line, &QLineEdit::returnPressed, [&] { ++taken; });
+  type(kEnter);
+  EXPECT_EQ(taken, 1);
+  EXPECT_FALSE(desk().work());
+  next->setFocus();
+  enter(*next, false);
+  EXPECT_TRUE(desk().work());
+  desk().cancel();
+}
+
 TEST_F(TextureDeskTest, TheMainButtonAndTheOneThatHasTheKeysLookDifferent) {
   clickAction("desk_texture");
   auto* main = find<QPushButton>("next_step");

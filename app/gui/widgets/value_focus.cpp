@@ -7,8 +7,11 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QKeyEvent>
+#include <QLineEdit>
+#include <QPlainTextEdit>
 #include <QPushButton>
 #include <QSlider>
+#include <QTextEdit>
 
 namespace patina {
 namespace {
@@ -17,6 +20,13 @@ bool holdsValue(const QWidget& widget) {
   return qobject_cast<const QAbstractSpinBox*>(&widget) != nullptr ||
          qobject_cast<const QSlider*>(&widget) != nullptr ||
          qobject_cast<const QComboBox*>(&widget) != nullptr;
+}
+
+// It has an Enter of its own, which a line edit leaves to its parents all the same.
+bool isText(const QWidget* widget) {
+  return qobject_cast<const QLineEdit*>(widget) != nullptr ||
+         qobject_cast<const QTextEdit*>(widget) != nullptr ||
+         qobject_cast<const QPlainTextEdit*>(widget) != nullptr;
 }
 
 // Text that is not taken yet would be when the focus goes.
@@ -62,8 +72,11 @@ bool ValueFocus::eventFilter(QObject* receiver, QEvent* event) {
   if (widget == nullptr) return false;
   // What no widget takes comes to the window: a bar's buttons leave it Enter.
   if (widget != panel_.window() && !panel_.isAncestorOf(widget)) return false;
-  if (!holdsValue(*widget))
-    return type == QEvent::KeyPress && isEnter(*static_cast<QKeyEvent*>(event)) && press();
+  if (!holdsValue(*widget)) {
+    if (type != QEvent::KeyPress) return false;
+    const auto& pressed = *static_cast<QKeyEvent*>(event);
+    return isEnter(pressed) && press(pressed.isAutoRepeat());
+  }
   if (type == QEvent::Polish) {
     widget->setFocusPolicy(Qt::StrongFocus); // the wheel would give itself the focus
     return false;
@@ -81,13 +94,15 @@ bool ValueFocus::eventFilter(QObject* receiver, QEvent* event) {
   return true;
 }
 
-bool ValueFocus::press() {
+bool ValueFocus::press(bool again) {
   QWidget* focused = QApplication::focusWidget();
   if (qobject_cast<QAbstractItemView*>(focused) != nullptr) return false; // it chooses a line
+  if (isText(focused)) return false;
   auto* button = qobject_cast<QAbstractButton*>(focused);
   if (button == nullptr) button = mainButton(panel_);
   if (button == nullptr) return false;
-  button->setFocus(); // and so the next Enter is its own, too
+  if (again) return true; // Qt would press it by each: a key that is held is one press
+  button->setFocus();     // and so the next Enter is its own, too
   button->click();
   return true;
 }

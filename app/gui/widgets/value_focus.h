@@ -1,7 +1,8 @@
 // How the number fields, sliders and choices of a panel take wheel and keys: the wheel scrolls the
 // panel unless it is over what is being edited, and Enter (takes what was typed) or Escape (drops
 // it) hands the keys back to the 3D view, whose shortcuts are single letters. Space on a button is
-// the button's, and so is Enter; where nothing else takes it, Enter is the main button's.
+// the button's, and so is Enter; where nothing else takes it, Enter is the main button's. A list
+// and a field of text have their own.
 #pragma once
 
 #include <QObject>
@@ -18,7 +19,8 @@ class ValueFocus : public QObject {
   bool eventFilter(QObject* receiver, QEvent* event) override;
 
  private:
-  bool press(); // the button that has the keys, or the main one
+  // The button that has the keys, or the main one; not again while the key is held.
+  bool press(bool again);
 
   QWidget& panel_;
   QWidget& view_;
