@@ -7,6 +7,7 @@
 
 #include "acquisition/files/scan_files.h"
 #include "app/gui/aligning/align_desk.h"
+#include "app/gui/scanning/scan_desk.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 
@@ -90,6 +91,61 @@ TEST_F(PlacementKept, AnotherSceneAsksTooForItEndsThePlacement) {
   ASSERT_TRUE(waitUntil([&] { return !asked_.isEmpty(); }, 10000));
   wait(500);
   EXPECT_EQ(edits().scene(), before);
+}
+
+TEST_F(PlacementKept, AnotherPathAsksToo) {
+  lay();
+  writePath(folder_ / "other.csv", desk().alignment().path());
+  const auto openOther = [&] {
+    asked_.clear();
+    answerWithPath(folder_ / "other.csv");
+    clickOn("align_open");
+  };
+  answer(QMessageBox::Cancel);
+  openOther();
+  ASSERT_TRUE(waitUntil([&] { return !asked_.isEmpty(); }, 10000));
+  wait(300);
+  EXPECT_EQ(desk().name(), QStringLiteral("path.csv"));
+  EXPECT_NEAR(desk().alignment().pose().translation().z(), 0.0125, 1e-9);
+  answer(QMessageBox::Discard);
+  openOther();
+  ASSERT_TRUE(waitUntil([&] { return desk().name() == QStringLiteral("other.csv"); }, 10000));
+  EXPECT_EQ(asked_.size(), 1);
+  EXPECT_TRUE(desk().isKept());
+}
+
+TEST_F(PlacementKept, AScanThatIsFilteredAnewAsksToo) {
+  lay();
+  answer(QMessageBox::Cancel);
+  emit window_->findChild<ScanDesk*>()->pathMade(QStringLiteral("stroke"),
+                                                 desk().alignment().path());
+  EXPECT_EQ(asked_.size(), 1);
+  EXPECT_EQ(desk().name(), QStringLiteral("path.csv"));
+}
+
+TEST_F(PlacementKept, AnEditOfTheSceneLeavesThePathWhereItLies) {
+  lay();
+  const Pose place = desk().alignment().pose();
+  const auto target = desk().alignment().target();
+  const auto distance = [&] {
+    return residualsOf(*desk().alignment().target(), desk().alignment().points(), place).mean;
+  };
+  const double before = distance();
+  SceneObject object;
+  object.name = "block";
+  object.mesh = std::make_shared<const TriangleMesh>(box({0.05, 0.05, 0.07}, 4));
+  edits().addObjects({object}, [](const EditOutcome&) {});
+  ASSERT_TRUE(waitUntil([&] { return desk().alignment().target() != target; }, 20000));
+  EXPECT_EQ(desk().alignment().pose().matrix(), place.matrix());
+  EXPECT_FALSE(desk().isKept());
+  EXPECT_EQ(desk().alignment().done(), 1U);
+  EXPECT_GT(std::abs(distance() - before), 1e-4) << "from the surface as it is now";
+  const QString words = find<QLabel>("align_error")->text();
+  edits().thread().undo();
+  ASSERT_TRUE(waitUntil([&] { return std::abs(distance() - before) < 1e-9; }, 20000));
+  wait(100);
+  EXPECT_NE(find<QLabel>("align_error")->text(), words);
+  EXPECT_EQ(desk().alignment().pose().matrix(), place.matrix());
 }
 
 } // namespace

@@ -11,10 +11,11 @@
 namespace patina {
 namespace {
 
-constexpr double kFinest = 1e-3;  // of the colours' scale [mm]
-constexpr int kSettle = 350;      // after its last change a value is a step [ms]
-constexpr double kLongest = 0.06; // of the mesh, that lines are stretched to
-constexpr double kNoLine = 1e-9;  // [m]: shorter is rounding
+constexpr std::size_t kFewest = 3; // samples that can be laid
+constexpr double kFinest = 1e-3;   // of the colours' scale [mm]
+constexpr int kSettle = 350;       // after its last change a value is a step [ms]
+constexpr double kLongest = 0.06;  // of the mesh, that lines are stretched to
+constexpr double kNoLine = 1e-9;   // [m]: shorter is rounding
 
 } // namespace
 
@@ -24,7 +25,8 @@ AlignDesk::AlignDesk(QWidget& window)
   settle_.setSingleShot(true);
   connect(&settle_, &QTimer::timeout, this, [this] { settle(); });
   connect(&files_, &AlignFiles::said, this, &AlignDesk::said);
-  connect(&files_, &AlignFiles::opened, this, &AlignDesk::setPath);
+  connect(&files_, &AlignFiles::opened, this,
+          [this](const QString& name, const AlignedPath& path) { takePath(name, path, true); });
   connect(&files_, &AlignFiles::kept, this, [this] { kept_ = alignment_.pose(); });
   connect(panel_, &AlignPanel::storeAsked, this, [this] { files_.store(name_); });
   connect(cells_, &AlignCells::dragBegun, this, [this] { held_ = alignment_.pose(); });
@@ -66,7 +68,7 @@ std::map<Panel, QWidget*> AlignDesk::panels() const {
 
 void AlignDesk::setPath(const QString& name, const AlignedPath& aligned) {
   std::vector<PathSample> path = inContact(aligned.path);
-  if (path.size() < 3) {
+  if (path.size() < kFewest) {
     emit said({tr("%1 has fewer than three samples in contact").arg(name), true});
     return;
   }
@@ -78,6 +80,17 @@ void AlignDesk::setPath(const QString& name, const AlignedPath& aligned) {
   move(*aligned.mesh_from_path);
   settle();
   kept_ = alignment_.pose();
+}
+
+void AlignDesk::takePath(const QString& name, const AlignedPath& aligned, bool asks) {
+  if (!asks) return setPath(name, aligned);
+  const bool stands = offered_.has_value();
+  offered_ = {name, aligned};
+  if (stands) return; // the question is about this one from now on
+  const bool replaces = inContact(aligned.path).size() >= kFewest;
+  const bool goes_on = replaces && !settlePlacement();
+  const auto [newest, path] = *std::exchange(offered_, std::nullopt);
+  if (!goes_on) setPath(newest, path);
 }
 
 bool AlignDesk::isKept() const {
@@ -96,13 +109,26 @@ void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
   begin();
 }
 
+void AlignDesk::changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
+  if (mesh == alignment_.mesh()) return; // a fit is still of it
+  if (alignment_.steps().empty()) return setSceneMesh(std::move(mesh));
+  cancel();
+  alignment_.changeMesh(std::move(mesh));
+  showAnew();
+}
+
 void AlignDesk::begin() {
   settle_.stop();
   kept_ = alignment_.pose();
+  panel_->setPath(name_, alignment_.path().size());
+  showAnew();
+  if (alignment_.isReady()) cells_->fit();
+}
+
+void AlignDesk::showAnew() {
   found_.reset();
   fits_.clear();
   setPicking(false);
-  panel_->setPath(name_, alignment_.path().size());
   panel_->setReady(alignment_.isReady(), false);
   panel_->setFit({});
   if (alignment_.isReady()) {
@@ -110,7 +136,6 @@ void AlignDesk::begin() {
     reach_ =
         1.5 * alignment_.target()->extent() + alignment_.pose().translation().cwiseAbs().maxCoeff();
     draw();
-    cells_->fit();
     around_.look(found_);
   } else {
     cells_->showMissing(!alignment_.path().empty());
@@ -145,13 +170,13 @@ void AlignDesk::showPlace() {
 }
 
 void AlignDesk::undo() {
-  if (work_ || !alignment_.undo()) return;
+  if (work_ || !alignment_.isReady() || !alignment_.undo()) return;
   settle_.stop();
   showPlace();
 }
 
 void AlignDesk::redo() {
-  if (work_ || !alignment_.redo()) return;
+  if (work_ || !alignment_.isReady() || !alignment_.redo()) return;
   settle_.stop();
   showPlace();
 }

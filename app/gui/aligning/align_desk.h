@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 
 #include <QTimer>
 
@@ -34,7 +35,9 @@ class AlignDesk : public QObject {
 
   // Not yet told by contact. A path with fewer than three samples in contact changes nothing.
   void setPath(const QString& name, const AlignedPath& aligned);
-  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // nullptr: no scene is open
+  void takePath(const QString& name, const AlignedPath& aligned, bool asks); // for a place unkept
+  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);    // nullptr: no scene is open
+  void changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // the path stays where it lies
   bool isKept() const;    // where the path lies, or nobody has laid it there
   bool settlePlacement(); // kept or given up; false: the person goes on
   void cancel();
@@ -48,6 +51,7 @@ class AlignDesk : public QObject {
 
  private:
   void begin();                                      // another path or mesh
+  void showAnew();                                   // of which nothing is known yet
   void move(const Pose& pose);                       // while a hand moves it
   void settle(std::optional<Registration> fit = {}); // it has; nullopt: a hand has
   void showPlace();                                  // of the step that is done
@@ -66,6 +70,7 @@ class AlignDesk : public QObject {
   AroundPlace around_;
   AlignFiles files_;
   QTimer settle_;
+  std::optional<std::pair<QString, AlignedPath>> offered_; // while a question stands before it
   std::optional<Registration> found_;
   std::vector<std::optional<Registration>> fits_; // by step: what was found, where one was
   double reach_ = 1;                              // of the sliders [m]

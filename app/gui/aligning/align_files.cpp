@@ -61,8 +61,10 @@ void AlignFiles::openDialog() {
       new QFileDialog(&window_, tr("Open a scan's path"), {}, tr("Paths (*.csv);;All files (*)"));
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(QFileDialog::ExistingFile);
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { openPath(file.toStdString()); });
+  // Queued: a question may follow, and the dialog is gone by then.
+  connect(
+      dialog, &QFileDialog::fileSelected, this,
+      [this](const QString& file) { openPath(file.toStdString()); }, Qt::QueuedConnection);
   dialog->open();
 }
 

@@ -106,6 +106,13 @@ void Alignment::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
   begin();
 }
 
+void Alignment::changeMesh(std::shared_ptr<const TriangleMesh> mesh) {
+  if (steps_.empty()) return setMesh(std::move(mesh));
+  target_.reset();
+  mesh_ = std::move(mesh);
+  makeTarget();
+}
+
 void Alignment::setPath(std::vector<PathSample> path) {
   path_ = std::move(path);
   std::vector<Vec3> all;
@@ -117,14 +124,17 @@ void Alignment::setPath(std::vector<PathSample> path) {
 void Alignment::begin() {
   steps_.clear();
   at_ = 0;
-  if (path_.empty() || mesh_ == nullptr) return;
-  if (target_ == nullptr) {
-    TriangleMesh clean = cleaned(*mesh_).mesh;
-    if (clean.triangles.empty()) return;
-    target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0, true);
-  }
+  makeTarget();
+  if (!isReady()) return;
   pose_ = middleOnMiddle(target_->mesh(), points_);
   steps_ = {pose_};
+}
+
+void Alignment::makeTarget() {
+  if (path_.empty() || mesh_ == nullptr || target_ != nullptr) return;
+  TriangleMesh clean = cleaned(*mesh_).mesh;
+  if (!clean.triangles.empty())
+    target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0, true);
 }
 
 Vec3 Alignment::middle() const {

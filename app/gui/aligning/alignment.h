@@ -42,9 +42,11 @@ class Alignment {
   // Either nullptr or empty: there is none. Begins anew, middle on middle. What distances need of a
   // mesh is made with the first path.
   void setMesh(std::shared_ptr<const TriangleMesh> mesh);
+  void changeMesh(std::shared_ptr<const TriangleMesh> mesh); // the path stays where it lies
   void setPath(std::vector<PathSample> path);
   bool isReady() const { return target_ != nullptr && !path_.empty(); }
 
+  const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
   const std::vector<PathSample>& path() const { return path_; }
   // So many of the path's positions, evenly, as are looked at while a hand moves it.
   const std::vector<Vec3>& points() const { return points_; }
@@ -62,6 +64,7 @@ class Alignment {
 
  private:
   void begin();
+  void makeTarget();
 
   std::shared_ptr<const TriangleMesh> mesh_;
   std::shared_ptr<const SurfaceTarget> target_;

@@ -201,7 +201,7 @@ void MainWindow::connectScan() {
   connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
   connect(parts_.scan, &ScanDesk::pathMade, parts_.align,
           [this](const QString& name, const std::vector<PathSample>& path) {
-            parts_.align->setPath(name, {path, {}});
+            parts_.align->takePath(name, {path, {}}, documents_.asks());
             const ScanFiles* files = parts_.scan->scan().files();
             const auto mesh =
                 files != nullptr ? files->folder / "mesh.obj" : std::filesystem::path();
@@ -333,7 +333,10 @@ void MainWindow::showScene(const SceneChange& change) {
   parts_.scan->setScene(scene);
   parts_.align->files().setScene(scene);
   parts_.texture->library().setScene(change.scene);
-  if (change.surface) parts_.align->setSceneMesh(change.scene->mesh);
+  if (change.step == SceneChange::Step::another)
+    parts_.align->setSceneMesh(change.scene->mesh);
+  else if (change.surface)
+    parts_.align->changeSceneMesh(change.scene->mesh);
 #endif
   if (change.surface) felt_ = 0;
   if (change.device) {
