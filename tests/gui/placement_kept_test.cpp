@@ -148,6 +148,36 @@ TEST_F(PlacementKept, AnEditOfTheSceneLeavesThePathWhereItLies) {
   EXPECT_EQ(desk().alignment().pose().matrix(), place.matrix());
 }
 
+TEST_F(PlacementKept, WhatIsPutIntoTheWorkspaceIsKeptWhenItIsThere) {
+  lay();
+  find<QPushButton>("align_store")->click();
+  EXPECT_FALSE(desk().isKept()) << "the edit is not done yet";
+  answer(QMessageBox::Discard); // of the edits
+  EXPECT_TRUE(closes()) << "it is waited for";
+  EXPECT_EQ(asked_, QStringList(QStringLiteral("unsaved_edits")));
+  EXPECT_TRUE(desk().isKept());
+}
+
+TEST_F(PlacementKept, WhatTheWorkspaceDoesNotTakeIsNotKept) {
+  lay();
+  SceneScan other = alignedScan("path.csv", desk().alignment());
+  std::vector<PathSample> path = desk().alignment().path();
+  path[0].position.x() += 1e-3;
+  other.files["path.csv"] = std::make_shared<const std::string>(pathText(path));
+  edits().thread().apply("attach", [other](const CompiledScene& now) {
+    return std::make_shared<const Scene>(withScan(now.scene, other));
+  });
+  ASSERT_TRUE(waitUntil([&] { return !edits().scene()->scene.scans.empty(); }, 10000));
+  bool told = false;
+  whenAsked<QDialog>([&](QDialog& dialog) {
+    told = true;
+    dialog.reject();
+  });
+  clickOn("align_store");
+  ASSERT_TRUE(waitUntil([&] { return told; }, 10000));
+  EXPECT_FALSE(desk().isKept());
+}
+
 } // namespace
 } // namespace patina
 #endif

@@ -27,7 +27,7 @@ AlignDesk::AlignDesk(QWidget& window)
   connect(&files_, &AlignFiles::said, this, &AlignDesk::said);
   connect(&files_, &AlignFiles::opened, this,
           [this](const QString& name, const AlignedPath& path) { takePath(name, path, true); });
-  connect(&files_, &AlignFiles::kept, this, [this] { kept_ = alignment_.pose(); });
+  connect(&files_, &AlignFiles::kept, this, [this](const Pose& pose) { kept_ = pose; });
   connect(panel_, &AlignPanel::storeAsked, this, [this] { files_.store(name_); });
   connect(cells_, &AlignCells::dragBegun, this, [this] { held_ = alignment_.pose(); });
   connect(cells_, &AlignCells::dragged, this, [this](const Pose& motion) { move(motion * held_); });

@@ -52,8 +52,10 @@ void AlignFiles::openScan(const QString& name) {
 
 void AlignFiles::store(const QString& name) {
   if (!scene_ || !alignment_.isReady()) return;
-  emit storeAsked(alignedScan(name.toStdString(), alignment_));
-  emit kept();
+  const SceneScan aligned = alignedScan(name.toStdString(), alignment_);
+  emit storeAsked(
+      aligned.name, [aligned](const SceneScan* now) { return withAlignment(now, aligned); },
+      [this, pose = alignment_.pose()] { emit kept(pose); });
 }
 
 void AlignFiles::openDialog() {
@@ -101,7 +103,7 @@ void AlignFiles::keep(const std::filesystem::path& file) {
     writeRegisteredPath(file, alignment_.path(),
                         registeredAt(*alignment_.target(), alignment_.path(), alignment_.pose()));
     writeFileAtomically(pose, poseText(alignment_.pose(), "mesh_from_scan"));
-    emit kept();
+    emit kept(alignment_.pose());
     emit said({tr("The path on the mesh is in %1, its pose in %2")
                    .arg(QString::fromStdString(file.string()),
                         QString::fromStdString(pose.filename().string()))});

@@ -23,12 +23,15 @@ class AlignFiles : public QObject {
   void openScan(const QString& name); // of the scene
   void store(const QString& name);    // as a scan of the scene
   bool askKept(const QString& what);  // kept or given up; false: the person goes on
+  using Change = std::function<SceneScan(const SceneScan* now)>; // see SceneScans
 
  signals:
   void opened(const QString& name, const patina::AlignedPath& path);
   void said(const patina::Message& message);
-  void storeAsked(const patina::SceneScan& scan); // with where it lies
-  void kept();                                    // where it lies now, in either way
+  // `stored` is called when the scene's scan is so, and only then.
+  void storeAsked(const std::string& name, const patina::AlignFiles::Change& change,
+                  const std::function<void()>& stored);
+  void kept(const patina::Pose& pose); // in either way
 
  private:
   void open(const QString& name, const std::function<AlignedPath()>& read);

@@ -127,6 +127,7 @@ bool SaveController::hasUnsaved() const {
 }
 
 bool SaveController::settleEdits() {
+  edits_.settle(); // what keeps the rest may be under way
   if (!beside_.settle()) return false;
   edits_.settle(); // a stroke that was just painted may not be in the history yet
   while (edits_.unsaved()) {

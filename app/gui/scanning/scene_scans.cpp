@@ -95,20 +95,27 @@ void SceneScans::refresh() {
   setVisible(count > 0 || (scan_ && scene_ != nullptr));
 }
 
-void SceneScans::apply(const std::string& what, std::function<Scene(const Scene&)> edit) {
+void SceneScans::apply(const std::string& what, std::function<Scene(const Scene&)> edit,
+                       std::function<void()> done) {
   if (edits_ == nullptr) return;
-  edits_->edit(what, std::move(edit), [this](const std::string& problem) {
-    emit failed(QString::fromStdString(problem));
-  });
+  edits_->edit(
+      what, std::move(edit),
+      [this](const std::string& problem) { emit failed(QString::fromStdString(problem)); },
+      std::move(done));
 }
 
 // `before` is what the scan is once all is done that was asked for so far, as far as is known here.
-SceneScan SceneScans::ask(const std::string& name, const SceneScan* before, const Change& change) {
+SceneScan SceneScans::ask(const std::string& name, const SceneScan* before, const Change& change,
+                          std::function<void()> done) {
   SceneScan after = change(before);
   const std::string words = wordsFor(before, after);
   if (!words.empty())
-    apply(words,
-          [name, change](const Scene& now) { return withScan(now, change(findScan(now, name))); });
+    apply(
+        words,
+        [name, change](const Scene& now) { return withScan(now, change(findScan(now, name))); },
+        std::move(done));
+  else if (done)
+    done(); // it is so already
   return after;
 }
 
@@ -119,11 +126,11 @@ void SceneScans::tellLost(const SceneScan* before, const SceneScan& after) {
                    .arg(QString::fromStdString(after.name), QString::fromStdString(lost))});
 }
 
-void SceneScans::change(const std::string& name, const Change& change) {
+void SceneScans::change(const std::string& name, const Change& change, std::function<void()> done) {
   if (scene_ == nullptr) return;
   try {
     const SceneScan* before = findScan(*scene_, name);
-    tellLost(before, ask(name, before, change));
+    tellLost(before, ask(name, before, change, std::move(done)));
   } catch (const Error& error) {
     emit failed(QString::fromStdString(error.what()));
   }

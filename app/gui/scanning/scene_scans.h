@@ -22,9 +22,9 @@ class SceneScans : public QWidget {
   // Each as it is after one more step, which becomes an edit if it changes something.
   void put(const std::vector<SceneScan>& steps);
   // What the scene's scan becomes, of what it is when the edit's turn comes; nullptr: there is
-  // none. Throws Error why it becomes nothing.
+  // none. Throws Error why it becomes nothing. `done` is called when it is so in the scene.
   using Change = std::function<SceneScan(const SceneScan* now)>;
-  void change(const std::string& name, const Change& change);
+  void change(const std::string& name, const Change& change, std::function<void()> done = {});
   const Scene* scene() const { return scene_.get(); }
 
  signals:
@@ -34,10 +34,12 @@ class SceneScans : public QWidget {
   void said(const patina::Message& message);
 
  private:
-  SceneScan ask(const std::string& name, const SceneScan* before, const Change& change);
+  SceneScan ask(const std::string& name, const SceneScan* before, const Change& change,
+                std::function<void()> done = {});
   void tellLost(const SceneScan* before, const SceneScan& after);
   const SceneScan* chosen() const;
-  void apply(const std::string& what, std::function<Scene(const Scene&)> edit);
+  void apply(const std::string& what, std::function<Scene(const Scene&)> edit,
+             std::function<void()> done = {});
   void refresh();
 
   EditThread* edits_ = nullptr;

@@ -12,7 +12,6 @@
 #include "app/gui/window/window_menus.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
-#include "app/gui/aligning/aligned_scan.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #endif
@@ -216,10 +215,8 @@ void MainWindow::connectScan() {
   parts_.scan->scans().setEdits(edits_.thread());
   saving_.setBeside({[align = parts_.align] { return align->isKept(); },
                      [align = parts_.align] { return align->settlePlacement(); }});
-  connect(&parts_.align->files(), &AlignFiles::storeAsked, this, [this](const SceneScan& aligned) {
-    parts_.scan->scans().change(
-        aligned.name, [aligned](const SceneScan* now) { return withAlignment(now, aligned); });
-  });
+  connect(&parts_.align->files(), &AlignFiles::storeAsked, &parts_.scan->scans(),
+          &SceneScans::change);
   connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
   connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);

@@ -230,15 +230,16 @@ void EditThread::apply(const std::string& what, Change change, bool replaces, Do
 }
 
 void EditThread::edit(const std::string& what, std::function<Scene(const Scene&)> change,
-                      std::function<void(const std::string&)> failed) {
+                      std::function<void(const std::string&)> failed, std::function<void()> done) {
   apply(
       what,
       [change = std::move(change)](const CompiledScene& now) {
         return std::make_shared<const Scene>(change(now.scene));
       },
       false,
-      [failed = std::move(failed)](const EditOutcome& outcome) {
-        if (!outcome.problem.empty()) failed(outcome.problem);
+      [failed = std::move(failed), done = std::move(done)](const EditOutcome& outcome) {
+        if (!outcome.problem.empty()) return failed(outcome.problem);
+        if (!outcome.cancelled && done) done();
       });
 }
 

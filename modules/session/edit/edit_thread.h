@@ -62,9 +62,11 @@ class EditThread {
   // `replaces` it. Null: nothing to do.
   using Change = std::function<std::shared_ptr<const Scene>(const CompiledScene& present)>;
   void apply(const std::string& what, Change change, bool replaces = false, Done done = {});
-  // The same of the scene's own values; `failed` hears why it could not be, and of no cancel.
+  // The same of the scene's own values; `failed` hears why it could not be, `done` that it is, and
+  // neither of a cancel.
   void edit(const std::string& what, std::function<Scene(const Scene&)> change,
-            std::function<void(const std::string& problem)> failed);
+            std::function<void(const std::string& problem)> failed,
+            std::function<void()> done = {});
   void goTo(std::size_t position, Done done = {}); // undo or redo until so many edits are done
   void undo(Done done = {});
   void redo(Done done = {});
