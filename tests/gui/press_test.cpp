@@ -89,6 +89,7 @@ class Press : public DrivenWindow {
     pointAt(inView({-half, 0}));
     wait(500);
     press();
+    EXPECT_TRUE(waitUntil([&] { return feel().sample().contact; }));
     wait(400);
     feel().startLog();
     for (int x = -half; x <= half; x += 3) {

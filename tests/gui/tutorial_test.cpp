@@ -208,8 +208,9 @@ void Tutorial::ownMesh() {
   type('o', kControl);
   ASSERT_TRUE(soon([&] { return ready; }));
   QObject::disconnect(connection);
+  wait(500); // until the window has laid itself out anew
   clickOn("tab_object");
-  EXPECT_TRUE(find<ObjectPanel>()->isVisible());
+  EXPECT_TRUE(soon([&] { return find<ObjectPanel>()->isVisible(); }));
   bool defect = false;
   for (const auto* label : find<ObjectPanel>()->findChildren<QLabel*>())
     defect = defect || label->text() == QStringLiteral("Boundary edges");
