@@ -81,5 +81,23 @@ TEST_F(SaveState, OfAWorkspaceThatAnotherProgramHasOpen) {
   EXPECT_TRUE(window_->close()) << "there is nothing to ask";
 }
 
+// The edit's thread rests before the window hears of it.
+TEST_F(SaveState, WhatIsDoneIsHeardOfBeforeClosingAsks) {
+  ASSERT_TRUE(open(saved(icosphere(0.03, 8), "ball.ply")));
+  wait(300);
+  SceneObject object;
+  object.name = "block";
+  object.mesh = std::make_shared<const TriangleMesh>(box({0.01, 0.01, 0.01}, 4));
+  bool heard = false;
+  edits().addObjects({object}, [&](const EditOutcome&) { heard = true; });
+  for (int i = 0; i < 2000 && edits().thread().busy(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_FALSE(edits().thread().busy());
+  ASSERT_FALSE(heard);
+  edits().settle();
+  EXPECT_TRUE(heard);
+  EXPECT_TRUE(edits().unsaved());
+}
+
 } // namespace
 } // namespace patina

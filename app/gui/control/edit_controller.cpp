@@ -186,7 +186,8 @@ void EditController::waitFor(const std::function<void(EditThread::Done)>& ask) {
 }
 
 void EditController::settle() {
-  if (!scene_ || !thread_.busy()) return;
+  if (!scene_) return;
+  if (!thread_.busy()) return takeEvents(); // of what is done and was not heard of
   try {
     waitFor([this](EditThread::Done done) {
       thread_.apply(
