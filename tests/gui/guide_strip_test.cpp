@@ -46,8 +46,10 @@ TEST(GuideSteps, AreDoneWithAFigureEach) {
     EXPECT_EQ(steps[i].figure, figures[i]) << steps[i].figure.toStdString();
   }
   // A fit that may as well lie elsewhere is none to build on.
-  const GuideStep doubtful = guideSteps({0, 0, 1203, 70e-6, 0, 0, true})[2];
+  const QString why = QStringLiteral("Not unique: another place fits as well");
+  const GuideStep doubtful = guideSteps({0, 0, 1203, 70e-6, 0, 0, why})[2];
   EXPECT_FALSE(doubtful.done);
+  EXPECT_EQ(doubtful.tip, why);
   EXPECT_EQ(doubtful.figure, QStringLiteral("0.07\u00a0mm off, not sure"));
   // A force on a surface without a texture is not what the job is about.
   EXPECT_FALSE(guideSteps({0, 0, 0, {}, 0, 0.8})[4].done);

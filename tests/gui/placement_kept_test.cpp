@@ -8,11 +8,24 @@
 #include "acquisition/files/scan_files.h"
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/scan_desk.h"
+#include "core/progress.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
+#include "session/edit/editor.h"
 
 namespace patina {
 namespace {
+
+std::vector<PathSample> circle() {
+  std::vector<PathSample> path(200);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const double angle = 2 * M_PI * static_cast<double>(i) / 200;
+    path[i].t = 0.01 * static_cast<double>(i);
+    path[i].position = Vec3(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.05);
+    path[i].sigma = 1e-5;
+  }
+  return path;
+}
 
 class PlacementKept : public DrivenWindow {
  protected:
@@ -20,14 +33,7 @@ class PlacementKept : public DrivenWindow {
     DrivenWindow::SetUp();
     if (IsSkipped()) return;
     ASSERT_TRUE(open(saved(icosphere(0.03, 20), "ball.ply")));
-    std::vector<PathSample> path(200);
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      const double angle = 2 * M_PI * static_cast<double>(i) / 200;
-      path[i].t = 0.01 * static_cast<double>(i);
-      path[i].position = Vec3(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.05);
-      path[i].sigma = 1e-5;
-    }
-    writePath(folder_ / "path.csv", path);
+    writePath(folder_ / "path.csv", circle());
     clickAction("desk_align");
     answerWithPath(folder_ / "path.csv");
     clickOn("align_open");
@@ -176,6 +182,32 @@ TEST_F(PlacementKept, WhatTheWorkspaceDoesNotTakeIsNotKept) {
   clickOn("align_store");
   ASSERT_TRUE(waitUntil([&] { return told; }, 10000));
   EXPECT_FALSE(desk().isKept());
+}
+
+class PlacementOpened : public DrivenWindow {};
+
+TEST_F(PlacementOpened, IsSeenWhereItsWorkspaceHasIt) {
+  const auto ball = std::make_shared<const TriangleMesh>(icosphere(0.03, 20));
+  const Pose place(Eigen::Translation3d(0.001, -0.002, 0.0125));
+  Alignment laid;
+  laid.setMesh(ball);
+  laid.setPath(circle());
+  laid.setPose(place);
+  Scene scene;
+  scene.objects.push_back({"ball", ball, Pose::Identity(), {}});
+  scene.scans = {alignedScan("stroke", laid)};
+  Progress progress;
+  Editor(scene, progress).saveAs(folder_ / "kept.patina");
+
+  ASSERT_TRUE(open(folder_ / "kept.patina"));
+  const auto& desk = *window_->findChild<AlignDesk*>();
+  wait(300);
+  EXPECT_TRUE(desk.alignment().path().empty()) << "nobody has looked yet";
+  clickAction("desk_align");
+  ASSERT_TRUE(waitUntil([&] { return desk.alignment().isReady(); }, 10000));
+  EXPECT_EQ(desk.name(), QStringLiteral("stroke"));
+  EXPECT_TRUE(desk.alignment().pose().isApprox(place, 1e-12));
+  EXPECT_TRUE(desk.isKept());
 }
 
 } // namespace

@@ -1,5 +1,8 @@
 // From a scan to a feel by pointer alone, as a person who reads nothing does it.
 #ifdef PATINA_HAS_ACQUISITION
+#include <QMenu>
+
+#include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
@@ -33,6 +36,21 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   clickOn("next_step");
   ASSERT_TRUE(rest());
   EXPECT_TRUE(found("track").contains(QStringLiteral("poses")));
+  // Frames and markers are looked at on the desk Scan, of each scan.
+  auto* look = find<QPushButton>("look_at_scan");
+  ASSERT_EQ(look->menu()->actions().size(), 4);
+  whenThere([&] { return look->menu(); },
+            [this](QMenu& menu) {
+              release();
+              choose(menu, menu.actions()[1]->text());
+            });
+  clickOn("look_at_scan");
+  auto* scan = window_->findChild<ScanDesk*>();
+  ASSERT_TRUE(waitUntil([&] { return scan->isOpen() && scan->cells()->isVisible(); }, 60000));
+  EXPECT_FALSE(scan->scan().files()->frames.empty());
+  EXPECT_FALSE(scan->scan().files()->poses.empty());
+  keepPicture("texture_frames");
+  clickAction("desk_texture");
   clickOn("all_steps");
   ASSERT_TRUE(waitUntil([&] { return find<QPushButton>("feel_demo")->isVisible(); }, 240000));
   ASSERT_TRUE(rest());

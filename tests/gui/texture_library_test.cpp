@@ -5,6 +5,7 @@
 
 #include "app/gui/control/desk_controller.h"
 #include "app/gui/texturing/texture_desk.h"
+#include "app/gui/texturing/texture_edits.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 #include "workspace/texture_file.h"
@@ -148,6 +149,59 @@ TEST_F(TextureLibraryTest, WithoutPenOrTextureTheHandTurnsThePictureAndWithoutAS
   EXPECT_EQ(edits().status().done, done);
   clickOn("texture_scan");
   EXPECT_TRUE(find<QLabel>("texture_hint")->text().contains(QStringLiteral("desk Scan")));
+}
+
+// Three faces have a texture, one of them two.
+TEST(TexturedParts, EachFaceIsOfTheChosenTextureOrOfTheRest) {
+  Scene scene;
+  scene.objects.push_back({"ball",
+                           std::make_shared<const TriangleMesh>(icosphere(0.03, 4)),
+                           Pose(Eigen::Translation3d(0.1, 0, 0)),
+                           {}});
+  const TriangleMesh& mesh = *scene.objects[0].mesh;
+  EXPECT_EQ(texturedParts(scene, {}).meant, nullptr);
+  auto laid = std::make_shared<LaidTextures>();
+  for (const auto& [face, number] : {std::pair{7, 1}, {7, 2}, {3, 1}, {5, 2}}) {
+    TexturedFace on;
+    on.face = face;
+    on.texture = number;
+    laid->faces.push_back(on);
+  }
+  auto paint = std::make_shared<ObjectPaint>();
+  paint->textures = laid;
+  scene.objects[0].paint = paint;
+  const auto middles = [](const std::shared_ptr<const TriangleMesh>& part) {
+    std::vector<double> sums;
+    if (part)
+      for (const Triangle& t : part->triangles)
+        sums.push_back((part->positions[index(t[0])] + part->positions[index(t[1])] +
+                        part->positions[index(t[2])])
+                           .sum());
+    return sums;
+  };
+  const auto faces = [&](std::initializer_list<int> numbers) {
+    std::vector<double> sums;
+    for (const int f : numbers) {
+      const Triangle& t = mesh.triangles[index(f)];
+      sums.push_back((mesh.positions[index(t[0])] + mesh.positions[index(t[1])] +
+                      mesh.positions[index(t[2])] + Vec3(0.3, 0, 0))
+                         .sum());
+    }
+    return sums;
+  };
+  const auto expect = [&](std::optional<std::int32_t> number, std::initializer_list<int> meant,
+                          std::initializer_list<int> rest) {
+    const TexturedParts parts = texturedParts(scene, number);
+    for (const auto& [part, those] : {std::pair{parts.meant, meant}, {parts.rest, rest}}) {
+      const auto found = middles(part), wanted = faces(those);
+      ASSERT_EQ(found.size(), wanted.size());
+      for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-12);
+    }
+  };
+  expect(1, {3, 7}, {5});
+  expect(2, {5, 7}, {3});
+  expect({}, {3, 5, 7}, {});
+  expect(9, {3, 5, 7}, {}); // read, and laid nowhere yet
 }
 
 } // namespace

@@ -105,6 +105,7 @@ bool AlignDesk::settlePlacement() {
 
 void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
   cancel();
+  unseen_ = true;
   alignment_.setMesh(std::move(mesh));
   begin();
 }
@@ -283,6 +284,10 @@ void AlignDesk::pick(const Ray& sight, double reach) {
 }
 
 void AlignDesk::refresh() {
+  if (unseen_ && cells_->isVisible()) {
+    unseen_ = false;
+    if (alignment_.path().empty()) files_.openFirstScan();
+  }
   if (stale_) draw();
   cells_->refresh();
 }

@@ -36,7 +36,8 @@ class AlignDesk : public QObject {
   // Not yet told by contact. A path with fewer than three samples in contact changes nothing.
   void setPath(const QString& name, const AlignedPath& aligned);
   void takePath(const QString& name, const AlignedPath& aligned, bool asks); // for a place unkept
-  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);    // nullptr: no scene is open
+  // nullptr: no scene is open. Where no path is laid yet its first scan's is, once it is seen.
+  void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);
   void changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // the path stays where it lies
   bool isKept() const;    // where the path lies, or nobody has laid it there
   bool settlePlacement(); // kept or given up; false: the person goes on
@@ -77,6 +78,7 @@ class AlignDesk : public QObject {
   Pose held_ = Pose::Identity();                  // as it was when a drag began
   Pose kept_ = Pose::Identity();                  // in a file or in the workspace, or the first
   bool stale_ = false;                            // moved since it was drawn
+  bool unseen_ = false;                           // the scene, here
   std::optional<Work> work_;
 };
 

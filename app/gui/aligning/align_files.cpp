@@ -38,16 +38,24 @@ void AlignFiles::openPath(const std::filesystem::path& file) {
 
 void AlignFiles::setScene(std::shared_ptr<const Scene> scene) {
   scene_ = std::move(scene);
+  panel_.setScans(scansWithPath());
+}
+
+QStringList AlignFiles::scansWithPath() const {
   QStringList names;
   if (scene_)
     for (const SceneScan& scan : scene_->scans)
       if (scan.text("path.csv")) names.push_back(QString::fromStdString(scan.name));
-  panel_.setScans(names);
+  return names;
 }
 
 void AlignFiles::openScan(const QString& name) {
   const SceneScan* scan = scene_ ? findScan(*scene_, name.toStdString()) : nullptr;
   if (scan != nullptr) open(name, [&] { return alignedPathOf(*scan); });
+}
+
+void AlignFiles::openFirstScan() {
+  if (const QStringList names = scansWithPath(); !names.isEmpty()) openScan(names.front());
 }
 
 void AlignFiles::store(const QString& name) {

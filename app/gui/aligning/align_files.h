@@ -21,6 +21,7 @@ class AlignFiles : public QObject {
   void setScene(std::shared_ptr<const Scene> scene); // whose paths can be chosen
   void openPath(const std::filesystem::path& file);
   void openScan(const QString& name); // of the scene
+  void openFirstScan();               // of those that have a path, if there is one
   void store(const QString& name);    // as a scan of the scene
   bool askKept(const QString& what);  // kept or given up; false: the person goes on
   using Change = std::function<SceneScan(const SceneScan* now)>; // see SceneScans
@@ -35,6 +36,7 @@ class AlignFiles : public QObject {
 
  private:
   void open(const QString& name, const std::function<AlignedPath()>& read);
+  QStringList scansWithPath() const;
   void openDialog();
   QFileDialog* keepDialog();
   void keep(const std::filesystem::path& file);

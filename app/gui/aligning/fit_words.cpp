@@ -9,23 +9,35 @@
 #include "app/gui/widgets/words.h"
 
 namespace patina {
+namespace {
+
+QString countWords(const Registration& found) {
+  const auto count = std::count(found.counts.begin(), found.counts.end(), true);
+  return QObject::tr("rms %1 of the %2 samples that count, %3 left out")
+      .arg(inWords(found.rms))
+      .arg(count)
+      .arg(static_cast<std::ptrdiff_t>(found.counts.size()) - count);
+}
+
+} // namespace
+
+QString doubtWords(const Registration& found) {
+  if (!found.converged)
+    return QObject::tr("No fit explains the path from here: ") + countWords(found);
+  if (!isDoubtful(found)) return {};
+  return QObject::tr("Not unique: ") + QString::fromStdString(inWords(*found.rivals));
+}
 
 QString fitWords(const Registration& found) {
-  if (!found.converged) return QObject::tr("No fit explains the path from here");
-  const auto count = std::count(found.counts.begin(), found.counts.end(), true);
-  const auto left_out = static_cast<std::ptrdiff_t>(found.counts.size()) - count;
+  const QString doubt = doubtWords(found);
+  if (!found.converged) return doubt;
   const auto deviation = [&](int from) {
     return std::sqrt(found.covariance.block<3, 3>(from, from).trace() / 3);
   };
-  QString words = QObject::tr("Fitted: rms %1 of the %2 samples that count, %3 left out; place "
-                              "known to %4 and %5°")
-                      .arg(inWords(found.rms))
-                      .arg(count)
-                      .arg(left_out)
-                      .arg(inWords(deviation(3)))
+  QString words = QObject::tr("Fitted: %1; place known to %2 and %3°")
+                      .arg(countWords(found), inWords(deviation(3)))
                       .arg(deviation(0) * 180 / M_PI, 0, 'g', 2);
-  if (isDoubtful(found))
-    words += QObject::tr("; not unique: ") + QString::fromStdString(inWords(*found.rivals));
+  if (!doubt.isEmpty()) words += QStringLiteral(". ") + doubt;
   for (const FreeMotion& motion : found.free)
     words += QStringLiteral("; ") + QString::fromStdString(inWords(motion));
   return words;

@@ -7,6 +7,8 @@
 
 namespace patina {
 
+// Why the path may lie elsewhere; empty: it is sure.
+QString doubtWords(const Registration& found);
 QString fitWords(const Registration& found);
 
 } // namespace patina

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <QGridLayout>
+#include <QMenu>
 #include <QVBoxLayout>
 
 #include "app/gui/widgets/words.h"
@@ -60,7 +61,8 @@ QString countsOf(const Demo& demo, const std::string& step) {
 StepList::StepList(QWidget* parent)
     : QGroupBox(tr("From a scan to a feel"), parent), next_(new QPushButton(this)),
       all_(new QPushButton(tr("All that is left"), this)),
-      feel_(new QPushButton(tr("Feel it"), this)) {
+      feel_(new QPushButton(tr("Feel it"), this)),
+      look_(new QPushButton(tr("Look at the frames"), this)) {
   setFocusPolicy(Qt::ClickFocus); // a box without one hands the keys on
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
@@ -94,10 +96,23 @@ StepList::StepList(QWidget* parent)
   feel_->setToolTip(tr("Opens the workspace that was made, to be touched and painted"));
   for (QPushButton* button : {next_, all_, feel_}) column->addWidget(button);
   column->addLayout(grid);
+  look_->setObjectName(QStringLiteral("look_at_scan"));
+  look_->setToolTip(tr("Opens a scan of the toy on the desk Scan: frames, markers, path"));
+  look_->setMenu(new QMenu(look_));
+  column->addWidget(look_);
   connect(next_, &QPushButton::clicked, this, &StepList::nextAsked);
   connect(all_, &QPushButton::clicked, this, &StepList::allAsked);
   connect(feel_, &QPushButton::clicked, this, &StepList::feelAsked);
   show(nullptr, false);
+}
+
+void StepList::offerScans(const Demo* demo) {
+  look_->menu()->clear();
+  if (demo == nullptr || done_ == 0) return;
+  for (const DemoScan& scan : demo->scans) {
+    const QString name = QString::fromStdString(scan.name);
+    look_->menu()->addAction(name, this, [this, name] { emit lookAsked(name); });
+  }
 }
 
 void StepList::show(const Demo* demo, bool running) {
@@ -130,6 +145,9 @@ void StepList::show(const Demo* demo, bool running) {
   next_->setVisible(!ended);
   all_->setVisible(!ended);
   feel_->setVisible(ended);
+  look_->setVisible(done_ > 0);
+  look_->setEnabled(!running);
+  if (!running) offerScans(demo);
   next_->setEnabled(!running);
   all_->setEnabled(!running);
   if (!running && hasFocus()) (ended ? feel_ : next_)->setFocus();

@@ -23,14 +23,17 @@ class StepList : public QGroupBox {
   void nextAsked();
   void allAsked(); // steps to the end
   void feelAsked();
+  void lookAsked(const QString& scan); // at its frames
 
  private:
+  void offerScans(const Demo* demo);
+
   struct Row {
     QLabel *mark, *words, *found;
   };
   std::vector<Row> rows_;
   std::size_t done_ = 0;
-  QPushButton *next_, *all_, *feel_;
+  QPushButton *next_, *all_, *feel_, *look_;
 };
 
 } // namespace patina

@@ -53,6 +53,9 @@ TextureDesk::TextureDesk(QWidget& window)
   connect(steps_, &StepList::allAsked, this, [this] { run(true); });
   connect(steps_, &StepList::feelAsked, this,
           [this] { emit openAsked(QString::fromStdString((folder_ / "workspace").string())); });
+  connect(steps_, &StepList::lookAsked, this, [this](const QString& scan) {
+    emit scanAsked(QString::fromStdString((folder_ / ("scan-" + scan.toStdString())).string()));
+  });
   connect(&library_, &TextureLibrary::changed, this, &TextureDesk::changed);
   connect(&library_, &TextureLibrary::said, this, &TextureDesk::said);
   connect(&library_, &TextureLibrary::chosen, this, [this](const auto& texture) {

@@ -47,6 +47,7 @@ class TextureDesk : public QObject {
   void changed();
   void said(const patina::Message& message);
   void openAsked(const QString& workspace); // which nobody has saved yet
+  void scanAsked(const QString& folder);
 
  private:
   void run(bool all);

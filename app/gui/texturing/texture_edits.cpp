@@ -1,6 +1,7 @@
 #include "app/gui/texturing/texture_edits.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/error.h"
 #include "geometry/mesh/mesh_report.h"
@@ -100,21 +101,35 @@ Scene withoutTexture(const Scene& scene, std::int32_t number) {
   return made;
 }
 
-std::shared_ptr<const TriangleMesh> texturedFacesOf(const Scene& scene) {
-  auto mesh = std::make_shared<TriangleMesh>();
+TexturedParts texturedParts(const Scene& scene, std::optional<std::int32_t> number) {
+  TriangleMesh all;
+  std::vector<bool> has;
   for (const SceneObject& object : scene.objects) {
     const LaidTextures* laid = texturesOn(object);
     if (laid == nullptr) continue;
-    const auto first = static_cast<std::int32_t>(mesh->positions.size());
+    const auto first = static_cast<std::int32_t>(all.positions.size());
     for (const Vec3& p : object.mesh->positions)
-      mesh->positions.push_back(object.world_from_object * p);
-    for (const TexturedFace& face : laid->faces) {
-      Triangle triangle = object.mesh->triangles[static_cast<std::size_t>(face.face)];
+      all.positions.push_back(object.world_from_object * p);
+    std::map<std::int32_t, bool> faces; // several textures may lie on one
+    for (const TexturedFace& face : laid->faces)
+      faces[face.face] = faces[face.face] || face.texture == number;
+    for (const auto& [face, is_meant] : faces) {
+      Triangle triangle = object.mesh->triangles[static_cast<std::size_t>(face)];
       for (std::int32_t& corner : triangle) corner += first;
-      mesh->triangles.push_back(triangle);
+      all.triangles.push_back(triangle);
+      has.push_back(is_meant);
     }
   }
-  return mesh->triangles.empty() ? nullptr : mesh;
+  const bool lies = std::find(has.begin(), has.end(), true) != has.end();
+  const auto part = [&](bool meant) {
+    auto mesh = std::make_shared<TriangleMesh>();
+    for (std::size_t i = 0; i < has.size(); ++i)
+      if ((has[i] || !lies) == meant) mesh->triangles.push_back(all.triangles[i]);
+    if (mesh->triangles.empty()) return std::shared_ptr<const TriangleMesh>();
+    mesh->positions = all.positions;
+    return std::shared_ptr<const TriangleMesh>(mesh);
+  };
+  return {part(true), part(false)};
 }
 
 } // namespace patina

@@ -1,6 +1,9 @@
 // What is done to the textures of a scene, as plain functions: each makes another scene. No Qt.
 #pragma once
 
+#include <memory>
+#include <optional>
+
 #include "acquisition/texture/lay_texture.h"
 #include "app/gui/texturing/texture_card.h"
 #include "scene/scene.h"
@@ -18,7 +21,11 @@ Scene withLaid(const Scene& scene, std::size_t object, const std::vector<PathOnM
 Scene withSwapped(const Scene& scene, std::int32_t number,
                   std::shared_ptr<const FeltTexture> texture);
 Scene withoutTexture(const Scene& scene, std::int32_t number);
-// Textured faces of all objects, world frame; nullptr: there are none.
-std::shared_ptr<const TriangleMesh> texturedFacesOf(const Scene& scene);
+// Textured faces of all objects, world frame, each in one of the two: those that have the texture
+// that is meant, and the rest. Where it lies nowhere all are meant. nullptr: there are none.
+struct TexturedParts {
+  std::shared_ptr<const TriangleMesh> meant, rest;
+};
+TexturedParts texturedParts(const Scene& scene, std::optional<std::int32_t> number);
 
 } // namespace patina

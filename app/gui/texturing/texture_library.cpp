@@ -34,6 +34,7 @@ TextureLibrary::TextureLibrary(QWidget& window) : QObject(&window), window_(wind
   });
   connect(card_, &TextureCard::chosenChanged, this, [this] {
     const TextureRow* row = card_->chosen();
+    unmarked_ = true;
     emit chosen(row ? row->texture : nullptr);
   });
   connect(&job_, &Background::progressed, this, [this](double fraction, const QString&) {
@@ -47,7 +48,9 @@ ScanView* TextureLibrary::view() {
   if (view_ != nullptr) return view_;
   view_ = new ScanView;
   view_->setObjectName(QStringLiteral("lay_view"));
-  view_->setToolTip(tr("The scene, and in orange the faces that have a texture"));
+  view_->setToolTip(
+      tr("The scene, and in orange the faces that have the chosen texture; those of others are "
+         "paler"));
   pen_ = new PathPen(*view_);
   connect(pen_, &PathPen::drawn, this, &TextureLibrary::lay);
   connect(pen_, &PathPen::left, this, [this] {
@@ -77,16 +80,25 @@ void TextureLibrary::showScene() {
   if (view_ == nullptr || scene_ == nullptr) return;
   stale_ = false;
   pen_->setScene(scene_->scene);
-  view_->picture().setHighlight(texturedFacesOf(scene_->scene));
+  markFaces();
   if (scene_->mesh == shown_) return;
   shown_ = scene_->mesh;
   view_->picture().setMesh(shown_);
   view_->lookAtAll(Vec3::UnitZ());
 }
 
+void TextureLibrary::markFaces() {
+  unmarked_ = false;
+  const TextureRow* row = card_->chosen();
+  const auto [meant, rest] =
+      texturedParts(scene_->scene, row ? std::optional(row->number) : std::nullopt);
+  view_->picture().setHighlight(meant, rest);
+}
+
 void TextureLibrary::refresh() {
   if (view_ == nullptr || !view_->isVisible()) return;
   if (stale_) showScene();
+  if (unmarked_ && scene_) markFaces();
   view_->refresh();
 }
 

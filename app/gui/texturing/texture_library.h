@@ -41,6 +41,7 @@ class TextureLibrary : public QObject {
  private:
   void list();
   void showScene();
+  void markFaces(); // of the chosen texture
   void readDialog(bool swaps);
   void keepDialog();
   void lay(int object, const std::vector<Vec3>& points);
@@ -61,7 +62,8 @@ class TextureLibrary : public QObject {
   std::shared_ptr<const TriangleMesh> shown_; // mesh
   std::vector<TextureRow> read_;
   std::optional<Work> work_;
-  bool stale_ = false;
+  bool stale_ = false;    // the scene has changed since it was drawn
+  bool unmarked_ = false; // the choice has
 };
 
 } // namespace patina

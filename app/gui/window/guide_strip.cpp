@@ -26,11 +26,14 @@ std::vector<GuideStep> guideSteps(const GuideFacts& facts) {
       {Desk::scan, tr("Path"), tr("Its frames are tracked and its poses filtered to a path"),
        counted(facts.samples, tr("samples")), facts.samples > 0},
       {Desk::align, tr("Place"),
-       tr("Lay the path onto the mesh, and fit it: rms distance of the samples that count"),
+       facts.off && !facts.doubt.isEmpty()
+           ? facts.doubt
+           : tr("Lay the path onto the mesh, and fit it: rms distance of the samples that count"),
        facts.off
-           ? tr("%1 off%2").arg(inWords(*facts.off), facts.doubt ? tr(", not sure") : QString())
+           ? tr("%1 off%2")
+                 .arg(inWords(*facts.off), facts.doubt.isEmpty() ? QString() : tr(", not sure"))
            : QString(),
-       facts.off && !facts.doubt},
+       facts.off && facts.doubt.isEmpty()},
       {Desk::texture, tr("Texture"),
        tr("Make a texture of the scan, or lay one along a path that you draw"),
        counted(facts.faces, tr("faces")), facts.faces > 0},

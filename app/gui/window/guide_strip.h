@@ -20,7 +20,7 @@ struct GuideFacts {
   std::optional<double> off;         // rms of what counts from the mesh, where a fit put it [m]
   std::size_t faces = 0;             // that have a texture
   double force = 0;                  // the greatest that was felt [N]
-  bool doubt = false;                // the fit itself says that the path may lie elsewhere
+  QString doubt{};                   // why the fit is not sure of the place; empty: it is
   bool operator==(const GuideFacts&) const = default;
 };
 

@@ -12,14 +12,14 @@
 #include "app/gui/window/window_menus.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
+#include "app/gui/aligning/fit_words.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #endif
 
 namespace patina {
 namespace {
-constexpr double kFirstPress = 1; // [N], at which a scanned texture is felt whole
-constexpr int kNarrow = 1100;     // without room for the column
+constexpr int kNarrow = 1100; // without room for the column
 // Of what a window manager draws about a window, which it says only of one that is seen.
 constexpr QSize kManagersFrame{12, 44};
 
@@ -33,7 +33,7 @@ GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, doub
   facts.samples = aligned.path().size();
   if (const auto& found = parts.align->found()) {
     facts.off = found->rms;
-    facts.doubt = isDoubtful(*found);
+    facts.doubt = doubtWords(*found);
   }
   if (scene != nullptr)
     for (const SceneObject& object : scene->scene.objects)
@@ -161,68 +161,6 @@ void MainWindow::connectTools() {
     if (layer == Layer::stability) askStability();
   });
 }
-
-#ifdef PATINA_HAS_ACQUISITION
-void MainWindow::connectScan() {
-  connect(parts_.scan, &ScanDesk::openAsked, &documents_, [this](const QString& folder) {
-    LoadRequest request;
-    request.path = folder.toStdString();
-    documents_.open(request);
-  });
-  connect(parts_.scan, &ScanDesk::opened, &desks_, [this] { desks_.choose(Desk::scan); });
-  connect(parts_.scan, &ScanDesk::changed, this, &MainWindow::refresh);
-  connect(parts_.scan, &ScanDesk::said, this, &MainWindow::say);
-  connect(parts_.load_bar, &LoadBar::cancelled, parts_.scan, &ScanDesk::cancel);
-  connect(&timer_, &QTimer::timeout, parts_.scan, &ScanDesk::refresh);
-  connect(parts_.texture, &TextureDesk::openAsked, &documents_, [this](const QString& folder) {
-    LoadRequest request;
-    request.path = folder.toStdString();
-    request.unsaved_name = tr("Scanned toy");
-    request.then = [this] {
-      if (desks_.desk() != Desk::feel) return; // one that was chosen meanwhile stays
-      parts_.tools->choose({Handling::press, {}});
-      paint_.setForce(kFirstPress);
-    };
-    if (documents_.asks() && !saving_.settleEdits()) return;
-    documents_.open(request);
-  });
-  connect(parts_.texture, &TextureDesk::changed, this, &MainWindow::refresh);
-  connect(parts_.texture, &TextureDesk::said, this, &MainWindow::say);
-  connect(parts_.load_bar, &LoadBar::cancelled, parts_.texture, &TextureDesk::cancel);
-  connect(&timer_, &QTimer::timeout, parts_.texture, &TextureDesk::refresh);
-  parts_.texture->library().setSources(edits_.thread(), [this] {
-    if (const auto& found = parts_.align->found(); found && isDoubtful(*found))
-      say({tr("The fit is not sure where the path lies, and so is the texture that is made of it: "
-              "see the desk Align"),
-           true});
-    return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
-  });
-  connect(parts_.guide, &GuideStrip::chosen, &desks_, &DeskController::choose);
-  connect(parts_.scan, &ScanDesk::pathMade, parts_.align,
-          [this](const QString& name, const std::vector<PathSample>& path) {
-            parts_.align->takePath(name, {path, {}}, documents_.asks());
-            const ScanFiles* files = parts_.scan->scan().files();
-            const auto mesh =
-                files != nullptr ? files->folder / "mesh.obj" : std::filesystem::path();
-            parts_.align->cells()->offerMesh(
-                std::filesystem::exists(mesh) ? mesh : std::filesystem::path());
-          });
-  connect(parts_.align->cells(), &AlignCells::meshAsked, &documents_, [this](const QString& file) {
-    LoadRequest request;
-    request.path = file.toStdString();
-    documents_.openAsked(request);
-  });
-  parts_.scan->scans().setEdits(edits_.thread());
-  saving_.setBeside({[align = parts_.align] { return align->isKept(); },
-                     [align = parts_.align] { return align->settlePlacement(); }});
-  connect(&parts_.align->files(), &AlignFiles::storeAsked, &parts_.scan->scans(),
-          &SceneScans::change);
-  connect(parts_.align, &AlignDesk::changed, this, &MainWindow::refresh);
-  connect(parts_.align, &AlignDesk::said, this, &MainWindow::say);
-  connect(parts_.load_bar, &LoadBar::cancelled, parts_.align, &AlignDesk::cancel);
-  connect(&timer_, &QTimer::timeout, parts_.align, &AlignDesk::refresh);
-}
-#endif
 
 WindowState MainWindow::state() const {
   WindowState state;

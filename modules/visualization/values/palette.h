@@ -40,6 +40,7 @@ inline constexpr Color kOffsetBand{0.92, 0.70, 0.10};
 inline constexpr Color kMagnetBand{0.80, 0.12, 0.62};
 
 inline constexpr Color kTool{0.95, 0.55, 0.12};
+inline constexpr Color kToolPale{0.87, 0.74, 0.47};
 inline constexpr Color kToolShaft = kLight.shaft;
 inline constexpr Color kGhost{0.45, 0.35, 0.62};
 inline constexpr Color kContactPoint{0.10, 0.11, 0.14};

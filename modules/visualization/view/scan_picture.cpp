@@ -71,6 +71,7 @@ struct ScanPicture::Impl {
   bool has_scale = false;
   vtkSmartPointer<vtkActor> mesh = surfaceActor(palette::kSurface);
   vtkSmartPointer<vtkActor> highlight = surfaceActor(palette::kTool);
+  vtkSmartPointer<vtkActor> pale = surfaceActor(palette::kToolPale);
   vtkSmartPointer<vtkActor> frustum = lineActor(palette::kToolShaft, 1.6);
   vtkSmartPointer<vtkActor> shaft = lineActor(palette::kToolShaft, 3);
   vtkSmartPointer<vtkActor> ball = surfaceActor(palette::kTool);
@@ -138,7 +139,7 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   ball->Update();
   setData(*my.ball, ball->GetOutput());
   for (std::size_t i = 0; i < 3; ++i) my.axes[i] = lineActor(kAxisColors[i], 3);
-  for (const auto& actor : {my.mesh, my.highlight, my.frustum}) my.scene->AddActor(actor);
+  for (const auto& actor : {my.mesh, my.highlight, my.pale, my.frustum}) my.scene->AddActor(actor);
   for (const auto& actor : {my.shaft, my.ball, my.axes[0], my.axes[1], my.axes[2]})
     my.overlay->AddActor(actor);
   my.overlay->SetLayer(1);
@@ -148,7 +149,7 @@ ScanPicture::ScanPicture() : impl_(std::make_unique<Impl>()) {
   my.corner->SetLayer(1);
   my.corner->InteractiveOff();
   my.corner->AddActor(my.corner_axes);
-  for (const auto& each : {my.mesh, my.highlight, my.frustum}) each->SetVisibility(false);
+  for (const auto& each : {my.mesh, my.highlight, my.pale, my.frustum}) each->SetVisibility(false);
   setProbe(std::nullopt);
 }
 
@@ -191,10 +192,13 @@ void ScanPicture::setMeshValues(const std::vector<float>& values) {
   my.mesh_data->Modified();
 }
 
-void ScanPicture::setHighlight(std::shared_ptr<const TriangleMesh> faces) {
+void ScanPicture::setHighlight(const std::shared_ptr<const TriangleMesh>& faces,
+                               const std::shared_ptr<const TriangleMesh>& pale) {
   Impl& my = *impl_;
-  my.highlight->SetVisibility(faces != nullptr);
-  setData(*my.highlight, faces ? surfaceData(*faces) : vtkSmartPointer<vtkPolyData>::New());
+  for (const auto& [actor, mesh] : {std::pair{my.highlight, faces}, std::pair{my.pale, pale}}) {
+    actor->SetVisibility(mesh != nullptr);
+    setData(*actor, mesh ? surfaceData(*mesh) : vtkSmartPointer<vtkPolyData>::New());
+  }
   my.dirty = true;
 }
 
@@ -307,7 +311,8 @@ void ScanPicture::Impl::sinkMesh() {
   const Vec3 behind = 0.01 * mesh_box.diagonal().norm() * viewDirection(*scene->GetActiveCamera());
   mesh->SetPosition(behind.x(), behind.y(), behind.z());
   const Vec3 before = 0.75 * behind; // the mesh, and behind the path
-  highlight->SetPosition(before.x(), before.y(), before.z());
+  for (const auto& actor : {highlight, pale})
+    actor->SetPosition(before.x(), before.y(), before.z());
 }
 
 std::optional<double> ScanPicture::timeAt(double x, double y, double reach) const {

@@ -44,8 +44,9 @@ class ScanPicture {
   // One a vertex of the mesh, in the unit and the colours of the path; not finite: none there.
   // Empty: the mesh has its own colour.
   void setMeshValues(const std::vector<float>& values);
-  // Faces that lie on the mesh, in another colour; nullptr: none.
-  void setHighlight(std::shared_ptr<const TriangleMesh> faces);
+  // Faces that lie on the mesh, in another colour, and others in a paler one; nullptr: none.
+  void setHighlight(const std::shared_ptr<const TriangleMesh>& faces,
+                    const std::shared_ptr<const TriangleMesh>& pale = nullptr);
   void setPath(const DrawnPath& path);
   void setMarks(const std::vector<DrawnMark>& marks);
   void setCamera(const std::optional<DrawnCamera>& camera);
