@@ -103,6 +103,39 @@ TEST_F(TextureLibraryTest, ATextureIsLaidAlongWhatIsDrawnAndUndone) {
   ASSERT_TRUE(waitUntil([&] { return laid() != nullptr && laid()->faces.size() == faces; }, 10000));
 }
 
+TEST_F(TextureLibraryTest, TheFacesOfTheChosenOneStandOut) {
+  const auto orange = [this](bool right) { // of the picture's halves
+    cell().refresh();
+    const QImage picture = cell().grabFramebuffer();
+    int count = 0;
+    for (int y = 0; y < picture.height(); ++y)
+      for (int x = right ? picture.width() / 2 : 0; x < picture.width() / (right ? 1 : 2); ++x) {
+        const QColor color = picture.pixelColor(x, y);
+        count += std::abs(color.hue() - 30) < 10 && color.saturation() > 185;
+      }
+    return count;
+  };
+  read("ribs.json");
+  clickOn("texture_draw");
+  ASSERT_TRUE(draw(at(-0.2, 0.1), at(-0.2, -0.1)));
+  clickOn("texture_draw");
+  read("felt.json");
+  clickOn("texture_draw");
+  ASSERT_TRUE(draw(at(0.2, 0.1), at(0.2, -0.1)));
+  clickOn("texture_draw");
+  wait(300);
+  keepPicture("texture_chosen");
+  EXPECT_GT(orange(true), 200);
+  EXPECT_LT(orange(false), 20);
+  list().setFocus();
+  constexpr std::uint32_t kUp = 0xff52;
+  type(kUp);
+  ASSERT_EQ(list().currentRow(), 0);
+  wait(300);
+  EXPECT_GT(orange(false), 200);
+  EXPECT_LT(orange(true), 20);
+}
+
 TEST_F(TextureLibraryTest, AnotherTakesItsPlaceOnEveryFaceAndItIsTakenOff) {
   read("ribs.json");
   clickOn("texture_draw");

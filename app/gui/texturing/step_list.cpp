@@ -85,6 +85,7 @@ StepList::StepList(QWidget* parent)
     grid->addWidget(row.mark, line, 0, Qt::AlignTop);
     grid->addWidget(row.words, line, 1);
     grid->addWidget(row.found, line + 1, 1);
+    if (rows_.empty()) grid->addWidget(look_, line + 2, 1, Qt::AlignLeft);
     rows_.push_back(row);
   }
   next_->setObjectName(QStringLiteral("next_step"));
@@ -99,7 +100,6 @@ StepList::StepList(QWidget* parent)
   look_->setObjectName(QStringLiteral("look_at_scan"));
   look_->setToolTip(tr("Opens a scan of the toy on the desk Scan: frames, markers, path"));
   look_->setMenu(new QMenu(look_));
-  column->addWidget(look_);
   connect(next_, &QPushButton::clicked, this, &StepList::nextAsked);
   connect(all_, &QPushButton::clicked, this, &StepList::allAsked);
   connect(feel_, &QPushButton::clicked, this, &StepList::feelAsked);
