@@ -1,3 +1,4 @@
+# shellcheck shell=sh disable=SC2034
 # The Debian packages this project stands on, and how they get installed. Sourced by app/run.sh and
 # tests/run.sh; the only place where they are listed.
 
@@ -28,7 +29,7 @@ need_packages() {
     cat >&2 <<TEXT
 This system has no apt-get. Install what these Debian 12 packages hold, then run this again with
 PATINA_INSTALL=no in the environment:
-  $(echo "$@")
+  $*
 TEXT
     exit 2
   fi
@@ -39,19 +40,12 @@ TEXT
   elif command -v sudo >/dev/null && sudo -n true 2>/dev/null; then
     as_root="sudo -n"
   else
-    cat >&2 <<TEXT
-Packages are missing and this user may not install them. As root, run
-  apt-get update && apt-get install --no-install-recommends $missing
-and then this script again. (Libraries of your own instead: set PATINA_INSTALL=no.)
-TEXT
+    echo "Packages are missing. As root, run this, then start again:" \
+      "apt-get update && apt-get install -y --no-install-recommends $missing" >&2
     exit 2
   fi
   say "Installing $missing"
-  if ! install_packages "$missing"; then
-    echo "apt-get could not install: $missing" >&2
-    echo "Look at its messages above; the network and /etc/apt/sources.list are the usual causes." >&2
-    exit 2
-  fi
+  install_packages "$missing" || exit 2
 }
 
 # With PATINA_INSTALL=no nothing has looked for these yet.
@@ -63,20 +57,30 @@ need_tools() {
   done
 }
 
-# $as_root and the list are meant to split into words.
-# shellcheck disable=SC2086
+# Installs a list of packages, or says in one line why apt could not. An update that fails is no
+# failure yet: the lists of before may do.
+# shellcheck disable=SC2086 # $as_root and the list are meant to split into words.
 install_packages() {
-  $as_root env DEBIAN_FRONTEND=noninteractive apt-get update -q </dev/null >&2 &&
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $1 \
-      </dev/null >&2
-}
-
-# As many compilers as there are processors, but no more than 1.2 GB of free memory each allow.
-build_jobs() {
-  jobs=$(nproc)
-  free_kb=$(awk '/MemAvailable/ {print $2}' /proc/meminfo)
-  by_memory=$((${free_kb:-4000000} / 1200000))
-  [ "$by_memory" -ge 1 ] || by_memory=1
-  [ "$by_memory" -lt "$jobs" ] && jobs=$by_memory
-  echo "$jobs"
+  log=$(mktemp)
+  {
+    $as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get update -q </dev/null
+    umask 022
+    $as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get install -q -y \
+      --no-install-recommends $1 </dev/null || echo "apt-get failed"
+  } 2>&1 | tee "$log" >&2
+  cause=
+  if [ "$(tail -n 1 "$log")" = "apt-get failed" ]; then
+    if grep -qE 'No space left|enough free space' "$log"; then
+      cause="the disk is full: free some space"
+    elif grep -qE 'Could not get lock|Unable to (acquire|lock)' "$log"; then
+      cause="another program is using apt: let it end"
+    elif grep -qE 'Failed to fetch|Temporary failure|Unable to (locate|fetch|connect)|no installation candidate' "$log"; then
+      cause="apt cannot reach what its sources name: look at the network and at /etc/apt/sources.list"
+    else
+      cause="its messages stand above"
+    fi
+    echo "The packages could not be installed: $cause; then run this again" >&2
+  fi
+  rm -f "$log"
+  [ -z "$cause" ]
 }

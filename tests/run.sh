@@ -11,6 +11,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 . "$here/app/packages.sh"
+. "$here/app/build.sh"
 cd "$here"
 
 usage() {
@@ -18,31 +19,20 @@ usage() {
   exit 2
 }
 
-# configure TREE [CMAKE ARGUMENT]...
-configure() {
-  local tree=$1
-  shift
-  cmake -S . -B "$tree" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPATINA_WERROR=ON "$@" >"$tree.log" 2>&1 ||
-    { cat "$tree.log"; return 1; }
-  rm -f "$tree.log"
-}
-
-# build TREE [TARGET]...
-build() {
-  local tree=$1
-  shift
-  cmake --build "$tree" -j "$(build_jobs)" ${1:+--target "$@"}
+# Every tree of the tests is configured alike.
+configure_tests() { # FOLDER [CMAKE ARGUMENT]...
+  configure "$@" -DBUILD_TESTING=ON -DPATINA_WERROR=ON
 }
 
 run_tests() {
   say "Building with warnings as errors"
   local peers=OFF
   [ -n "$(missing_packages $PATINA_PEER_PACKAGES)" ] || peers=ON
-  configure build -DCMAKE_UNITY_BUILD=ON -DPATINA_PEERS=$peers
-  build build
+  configure_tests "$build_folder" -DPATINA_PEERS=$peers
+  build "$build_folder"
   say "All tests"
   # One more than there are processors: many a test waits for a hand or a clock.
-  ctest --test-dir build --output-on-failure -j "$(($(nproc) + 1))" </dev/null
+  ctest --test-dir "$build_folder" --output-on-failure -j "$(($(nproc) + 1))" </dev/null
 }
 
 # LeakSanitizer needs ptrace, which some containers forbid.
@@ -65,59 +55,60 @@ address_folders() { # short or full
 
 build_address() { # short or full
   say "Building for the address and undefined-behaviour sanitizers"
-  configure build-asan -DCMAKE_UNITY_BUILD=ON -DPATINA_SANITIZE=address -DPATINA_GUI=OFF
+  configure_tests "$build_folder-asan" -DPATINA_SANITIZE=address -DPATINA_GUI=OFF
   # shellcheck disable=SC2046
-  build build-asan $(address_folders "$1" | xargs -n 1 | sed 's/$/_tests/')
+  build "$build_folder-asan" $(address_folders "$1" | xargs -n 1 | sed 's/$/_tests/')
 }
 
 run_address() { # short or full
   say "Address and undefined-behaviour sanitizers"
   local leaks folder most='*'
   [ "$1" = full ] || most='-*Signs*:Plate*:SampleLayer*:Redistance*:MergeFields*'
-  leaks=$(leak_option build-asan/bin/core_tests)
+  leaks=$(leak_option "$build_folder-asan/bin/core_tests")
   for folder in $(address_folders "$1"); do
     ASAN_OPTIONS=$leaks:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
-      timeout 1800 "build-asan/bin/${folder}_tests" --gtest_brief=1 --gtest_filter="$most" </dev/null
+      timeout 1800 "$build_folder-asan/bin/${folder}_tests" --gtest_brief=1 \
+      --gtest_filter="$most" </dev/null
   done
 }
 
 build_thread() {
   say "Building for the thread sanitizer"
-  configure build-tsan -DCMAKE_UNITY_BUILD=ON -DPATINA_SANITIZE=thread -DPATINA_GUI=OFF
-  build build-tsan core_tests haptics_tests
+  configure_tests "$build_folder-tsan" -DPATINA_SANITIZE=thread -DPATINA_GUI=OFF
+  build "$build_folder-tsan" core_tests haptics_tests
 }
 
 run_thread() {
   say "Thread sanitizer: hand-over and servo"
   # gcc 12's runtime stops where the kernel spreads addresses too widely; a fixed layout helps.
   local run=()
-  if ! build-tsan/bin/core_tests --gtest_list_tests >/dev/null 2>&1; then
+  if ! "$build_folder-tsan/bin/core_tests" --gtest_list_tests >/dev/null 2>&1; then
     run=(setarch "$(uname -m)" -R)
-    if ! "${run[@]}" build-tsan/bin/core_tests --gtest_list_tests >/dev/null 2>&1; then
+    if ! "${run[@]}" "$build_folder-tsan/bin/core_tests" --gtest_list_tests >/dev/null 2>&1; then
       echo "ThreadSanitizer cannot run on this kernel (address layout): skipped" >&2
       return 0
     fi
   fi
-  "${run[@]}" build-tsan/bin/core_tests --gtest_brief=1 \
+  "${run[@]}" "$build_folder-tsan/bin/core_tests" --gtest_brief=1 \
     --gtest_filter='Ring.*:SnapshotExchange.*' </dev/null
   # Debian's TBB is not instrumented, so that whatever its workers wrote looks like a race. On one
   # processor it starts none; races are found by order, not by chance, so one is enough.
   local processor
   processor=$(taskset -cp $$ | sed 's/.*: *//; s/[^0-9].*//')
-  timeout 900 taskset -c "$processor" "${run[@]}" build-tsan/bin/haptics_tests --gtest_brief=1 \
+  timeout 900 taskset -c "$processor" "${run[@]}" "$build_folder-tsan/bin/haptics_tests" --gtest_brief=1 \
     --gtest_filter='*Servo*:*TipTarget*:*Mouse*' </dev/null
 }
 
 run_benchmarks() {
   say "Benchmarks, long form"
-  configure build
-  build build benchmarks_tests contact_tests
-  PATINA_LONG=1 build/bin/benchmarks_tests </dev/null
-  PATINA_LONG=1 build/bin/contact_tests --gtest_filter='ContactCourse.*' </dev/null
+  configure_tests "$build_folder"
+  build "$build_folder" benchmarks_tests contact_tests
+  PATINA_LONG=1 "$build_folder/bin/benchmarks_tests" </dev/null
+  PATINA_LONG=1 "$build_folder/bin/contact_tests" --gtest_filter='ContactCourse.*' </dev/null
   if [ -z "$(missing_packages $PATINA_PEER_PACKAGES)" ]; then
-    configure build -DPATINA_PEERS=ON
-    build build peers_tests
-    build/bin/peers_tests </dev/null
+    configure_tests "$build_folder" -DPATINA_PEERS=ON
+    build "$build_folder" peers_tests
+    "$build_folder/bin/peers_tests" </dev/null
   else
     say "Without $PATINA_PEER_PACKAGES: no comparison with it"
   fi
@@ -128,17 +119,17 @@ build_fuzz() { # short or full
   say "Building the fuzzers"
   local unity=ON
   [ "$1" = short ] || unity=OFF
-  configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_UNITY_BUILD=$unity \
+  configure_tests "$build_folder-fuzz" -DPATINA_FUZZ=ON -DCMAKE_UNITY_BUILD=$unity \
     -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
-  build build-fuzz
+  build "$build_folder-fuzz"
 }
 
 run_fuzz() { # seconds each
   say "Fuzzing each reader for $1 s, those of a wire for 20 s at least"
   local program reader seeds each
-  for program in build-fuzz/bin/*_fuzz; do
+  for program in "$build_folder-fuzz"/bin/*_fuzz; do
     reader=$(basename "$program" _fuzz)
-    mkdir -p "build-fuzz/found/$reader"
+    mkdir -p "$build_folder-fuzz/found/$reader"
     seeds=tests/fuzz/corpus/$reader
     [ -d "$seeds" ] || seeds=
     # A finding is a file that the reader must survive: keep it as a seed when it is mended.
@@ -147,13 +138,14 @@ run_fuzz() { # seconds each
     falcon | spacemouse | probe | probe_packets) [ "$each" -ge 20 ] || each=20 ;;
     esac
     if ! "$program" -max_total_time="$each" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-      -artifact_prefix="build-fuzz/found/$reader-" "build-fuzz/found/$reader" ${seeds:+"$seeds"} \
-      </dev/null >"build-fuzz/$reader.log" 2>&1; then
-      tail -n 60 "build-fuzz/$reader.log"
-      echo "the $reader reader does not survive a file; it is kept in build-fuzz/found/"
+      -artifact_prefix="$build_folder-fuzz/found/$reader-" "$build_folder-fuzz/found/$reader" \
+      ${seeds:+"$seeds"} \
+      </dev/null >"$build_folder-fuzz/$reader.log" 2>&1; then
+      tail -n 60 "$build_folder-fuzz/$reader.log"
+      echo "the $reader reader does not survive a file; it is kept in $build_folder-fuzz/found/"
       return 1
     fi
-    echo "$reader: $(awk '/number_of_executed_units/ {print $2}' "build-fuzz/$reader.log") inputs survived"
+    echo "$reader: $(awk '/number_of_executed_units/ {print $2}' "$build_folder-fuzz/$reader.log") inputs survived"
   done
 }
 
