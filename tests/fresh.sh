@@ -83,7 +83,8 @@ sources() {
     sort -u | while read -r uri suite component; do
       case "$suite:$component" in
       "$host_release:main" | "$host_release-updates:main" | "$host_release-security:main")
-        echo "deb $uri ${suite/#$host_release/$release} main"
+        echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $uri" \
+          "${suite/#$host_release/$release} main"
         ;;
       esac
     done
@@ -92,9 +93,9 @@ sources() {
 make_system() {
   root=$(mktemp -d "${TMPDIR:-/var/tmp}/patina-fresh-XXXXXX")
   chmod 755 "$root"
-  local lines
-  lines=$(sources)
-  mmdebstrap --quiet --variant=minbase "$release" "$root" ${lines:+- <<<"$lines"}
+  sources >"$root.list"
+  mmdebstrap --quiet --variant=minbase "$release" "$root" "$root.list"
+  rm "$root.list"
   # A system that is thrown away need not survive a power cut.
   echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fresh"
   cp /etc/resolv.conf /etc/hosts "$root/etc/"

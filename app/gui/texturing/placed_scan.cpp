@@ -20,6 +20,7 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
   placed.probe = scan.files()->rig->probe;
   placed.gravity = scan.files()->rig->gravity;
   placed.mesh_from_scan = scene.objects[0].world_from_object.inverse() * align.alignment().pose();
+  if (align.found()) placed.compliance = align.found()->compliance;
   return placed;
 }
 

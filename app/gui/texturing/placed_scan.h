@@ -1,6 +1,8 @@
 // The scan that is open, with where the desk Align has laid its path.
 #pragma once
 
+#include <optional>
+
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/open_scan.h"
 #include "pipeline/scan_steps.h"
@@ -14,6 +16,9 @@ struct PlacedScan {
   ProbeModel probe;
   Vec3 gravity = Vec3::Zero();            // in the camera's frame [m/s^2]
   Pose mesh_from_scan = Pose::Identity(); // mesh: of the scene's one object
+  // The surface's compliance that the registration found [m/N]; nullopt if the path was placed by
+  // hand, so that no registration has estimated it.
+  std::optional<double> compliance;
 };
 
 // Throws Error that says what is missing, and where to get it.

@@ -213,12 +213,17 @@ void TextureLibrary::takeFromScan() {
       FitOptions1d options;
       options.cutoff = kShape;
       ScannedTexture found = fitScan(target, scan.streams, scan.probe, scan.gravity,
-                                     scan.mesh_from_scan, 0, options, progress);
+                                     scan.mesh_from_scan, scan.compliance.value_or(0), options, progress);
       found.fitted.texture.name = scan.name;
       const auto felt = feltTexture(std::move(found.fitted.texture));
-      deliver(true, [this, felt, number, rings, stroke = found.stroke] {
+      // Without a registration the texture is as stiff as the scene; the user is told so.
+      const QString hint =
+          scan.compliance ? QString()
+                          : tr("The texture has no stiffness of its own: its scan was placed by "
+                               "hand. Fit the path on the desk Align to estimate it.");
+      deliver(true, [this, felt, number, rings, hint, stroke = found.stroke] {
         work_.reset();
-        card_->setHint({});
+        card_->setHint(hint);
         apply("lay " + felt->value.name, [felt, number, rings, stroke](const Scene& scene) {
           const Progress quiet;
           return withLaid(scene, 0, {stroke}, {number, felt, 0}, rings, quiet);
