@@ -3,7 +3,7 @@
 #   app/run.sh [MESH or WORKSPACE] [--unit mm|cm|m|in|fit]
 # With no argument: from a scan to a feel on a toy, step by step in the window. With no display the
 # same job runs without a window and leaves pictures and tables in out/.
-#   The first time takes about 10 minutes on two cores and 3 GB of disk: 2 GB of packages and 0.5 GB
+#   The first time takes about 10 minutes on two cores and 4 GB of disk: 3 GB of packages and 1 GB
 #   in build/. A run that was stopped goes on where it was.
 #   PATINA_BUILD=FOLDER   builds there instead of in build/
 #   PATINA_OUT=FOLDER     writes there instead of into out/
@@ -56,7 +56,7 @@ fi
 say "Building (the first time takes some minutes)"
 if [ ! -f "$build_folder/build.ninja" ]; then
   mkdir -p "$build_folder"
-  need_disk "$build_folder" 600
+  need_disk "$build_folder" 1100
   configure "$build_folder" -DBUILD_TESTING=OFF -DPATINA_WERROR="${PATINA_WERROR:-OFF}"
 fi
 build "$build_folder" patina patina-gui

@@ -18,7 +18,7 @@ apt-cache depends --recurse --installed --no-recommends --no-suggests --no-confl
 # What the compiler read stands in the dependencies that ninja keeps, what the linker was given in
 # the rules.
 libraries() {
-  grep -oE '/[^ :|$]*\.(so|a)(\.[0-9]+)*( |$)' "$build/build.ninja" | tr -d ' '
+  grep -oE '[ =]/[^ :|$]*\.(so|a)(\.[0-9]+)*( |$)' "$build/build.ninja" | tr -d ' ='
   grep -oE ' -l[A-Za-z0-9_+.-]+' "$build/build.ninja" | sed 's/ -l//' | sort -u |
     while read -r name; do g++ -print-file-name="lib$name.so"; done
 }
