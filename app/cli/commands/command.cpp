@@ -30,6 +30,22 @@ const Command& commandNamed(const std::vector<Command>& commands, const std::str
               suggestion(name, known, "; see patina --help"));
 }
 
+const Keys& commonKeys() {
+  static const Keys keys = {{"program",
+                             "",
+                             "",
+                             "what made the report",
+                             Shown::never,
+                             {{"version", "", ""}, {"commit", "", ""}}},
+                            {"inputs",
+                             "",
+                             "",
+                             "files that the command line names, as they were before",
+                             Shown::never,
+                             {{"path", "", ""}, {"sha256", "", ""}}}};
+  return keys;
+}
+
 std::vector<Argument> commonArguments(const Command& command) {
   const Setter seen = [](const std::string&) {}; // the parser looks for them itself
   std::vector<Argument> all = {{"-h,--help", "", "", "", "Print this help.", seen}};
@@ -42,6 +58,11 @@ std::vector<Argument> commonArguments(const Command& command) {
 }
 
 Setter into(std::filesystem::path& target) {
+  return {[&target](const std::string& text) { target = text; },
+          [](const std::string& text) { return std::vector<std::filesystem::path>{text}; }};
+}
+
+Setter outInto(std::filesystem::path& target) {
   return [&target](const std::string& text) { target = text; };
 }
 
@@ -49,8 +70,8 @@ Setter into(bool& flag) {
   return [&flag](const std::string&) { flag = true; };
 }
 
-Setter into(std::vector<std::string>& list) {
-  return [&list](const std::string& text) { list.push_back(text); };
+Setter into(std::vector<std::string>& list, FilesIn files) {
+  return {[&list](const std::string& text) { list.push_back(text); }, std::move(files)};
 }
 
 Setter into(std::optional<double>& number) {
@@ -81,12 +102,12 @@ Argument sceneInput(std::filesystem::path& target, const std::string& name) {
 
 Argument outputTo(std::filesystem::path& target, const std::string& value,
                   const std::string& caption) {
-  return {"-o,--output", value, "", "", caption, into(target), Times::once, true};
+  return {"-o,--output", value, "", "", caption, outInto(target), Times::once, true};
 }
 
 Argument writtenTo(std::filesystem::path& target, const std::string& names,
                    const std::string& value, const std::string& caption) {
-  return {names, value, "", "", caption, into(target), Times::at_most_once, true};
+  return {names, value, "", "", caption, outInto(target), Times::at_most_once, true};
 }
 
 Vec3 parsePoint(const std::string& text) {

@@ -311,7 +311,8 @@ int runRegister(RegisterOptions options, Console& console) {
   if (joint) addJoint(*joint, report);
   path.resize(static_cast<std::size_t>(own));
   writeRegisteredPath(options.output, path, found);
-  if (!options.report.empty()) writeFileAtomically(options.report, report.json().dump() + "\n");
+  if (!options.report.empty())
+    writeFileAtomically(options.report, console.published(report).dump() + "\n");
   if (!found.converged)
     console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
                                          "noise lets expect");
