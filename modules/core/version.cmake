@@ -8,7 +8,7 @@ find_program(GIT git)
 if(GIT AND EXISTS ${SOURCE}/.git)
   # git refuses a folder that another user owns unless it is named as safe.
   execute_process(COMMAND ${GIT} -c safe.directory=${SOURCE} -C ${SOURCE}
-                          describe --always --dirty --tags --abbrev=12
+                          describe --always --dirty --tags --long --abbrev=12
                   OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 elseif(EXISTS ${SOURCE}/.git_archival.txt)
   # `git archive` has put the commit into this file (.gitattributes).

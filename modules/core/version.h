@@ -9,10 +9,11 @@
 namespace patina {
 
 std::string_view programVersion(); // "0.2.0"
-// What `git describe` says of the source: "c5c750d41e2f", with "-dirty" where a file differs from
-// that commit; "unknown" where the source came with neither git nor its archive's mark.
+// What `git describe` says of the source: "c5c750d622b3" or "v0.2.0-3-gc5c750d622b3", with "-dirty"
+// where a file differs from that commit; "unknown" where the source came with neither git nor its
+// archive's mark.
 std::string_view programCommit();
-std::string versionText(); // "0.2.0 (commit c5c750d41e2f)"
+std::string versionText(); // "0.2.0 (commit c5c750d622b3)"
 
 // Both for a file or a report: {"version", "commit"}.
 Json programDescription();

@@ -17,6 +17,10 @@ double numberIn(const std::string& text) {
   return *value;
 }
 
+std::vector<std::filesystem::path> itself(const std::string& text) {
+  return {text};
+}
+
 } // namespace
 
 const Command& commandNamed(const std::vector<Command>& commands, const std::string& name) {
@@ -31,18 +35,19 @@ const Command& commandNamed(const std::vector<Command>& commands, const std::str
 }
 
 const Keys& commonKeys() {
-  static const Keys keys = {{"program",
-                             "",
-                             "",
-                             "what made the report",
-                             Shown::never,
-                             {{"version", "", ""}, {"commit", "", ""}}},
-                            {"inputs",
-                             "",
-                             "",
-                             "files that the command line names, as they were before",
-                             Shown::never,
-                             {{"path", "", ""}, {"sha256", "", ""}}}};
+  static const Keys keys = {
+      {"program",
+       "",
+       "",
+       "what made the report",
+       Shown::never,
+       {{"version", "", ""}, {"commit", "", ""}}},
+      {"inputs",
+       "",
+       "",
+       "files that the command line names, as they were before",
+       Shown::never,
+       {{"path", "", ""}, {"sha256", "", ""}, {"digest", "", "", "of a folder of pictures"}}}};
   return keys;
 }
 
@@ -58,8 +63,11 @@ std::vector<Argument> commonArguments(const Command& command) {
 }
 
 Setter into(std::filesystem::path& target) {
-  return {[&target](const std::string& text) { target = text; },
-          [](const std::string& text) { return std::vector<std::filesystem::path>{text}; }};
+  return {[&target](const std::string& text) { target = text; }, itself};
+}
+
+Setter into(std::vector<std::filesystem::path>& list) {
+  return {[&list](const std::string& text) { list.emplace_back(text); }, itself};
 }
 
 Setter outInto(std::filesystem::path& target) {

@@ -72,9 +72,10 @@ const Keys& commonKeys();
 std::vector<Argument> commonArguments(const Command& command);
 
 // Targets must outlive the parse.
-Setter into(std::filesystem::path& target);    // of a file or folder that is read
-Setter outInto(std::filesystem::path& target); // of one that is only written
-Setter into(bool& flag);                       // true
+Setter into(std::filesystem::path& target);            // of a file or folder that is read
+Setter into(std::vector<std::filesystem::path>& list); // of several
+Setter outInto(std::filesystem::path& target);         // of a file or folder that is only written
+Setter into(bool& flag);                               // true
 Setter into(std::vector<std::string>& list, FilesIn files = nullptr);
 Setter into(std::optional<double>& number);
 // In a range, its ends included; a length may carry its unit.

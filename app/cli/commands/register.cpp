@@ -27,7 +27,7 @@ enum class Method { distance, loop, literal };
 
 struct RegisterOptions {
   std::filesystem::path mesh, path, output, report, initial, truth;
-  std::vector<std::string> also;
+  std::vector<std::filesystem::path> also;
   std::optional<PoseValues> align;
   MeshUnit unit = MeshUnit::mm;
   Method method = Method::distance;
@@ -261,7 +261,7 @@ int runRegister(RegisterOptions options, Console& console) {
   const double length = bounds(mesh).diagonal().norm();
   std::vector<PathSample> path = readTouching(options.path, length, console);
   const auto own = static_cast<std::ptrdiff_t>(path.size());
-  for (const std::string& file : options.also) {
+  for (const std::filesystem::path& file : options.also) {
     const std::vector<PathSample> other = readTouching(file, length, console);
     path.insert(path.end(), other.begin(), other.end());
   }
