@@ -8,7 +8,7 @@ PATINA_BUILD_PACKAGES="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev
 # For a machine without a display.
 PATINA_HEADLESS_PACKAGES="xvfb xauth libgl1-mesa-dri"
 PATINA_TEST_PACKAGES="$PATINA_HEADLESS_PACKAGES libgtest-dev libgmock-dev libbenchmark-dev
-  libxcb-xtest0-dev openbox dbus-daemon clang-14 libclang-rt-14-dev python3 zsh umockdev"
+  libxcb-xtest0-dev openbox dbus-daemon clang-14 libclang-rt-14-dev git python3 zsh umockdev"
 # Only for the comparison with other programs; the tests pass without them.
 PATINA_PEER_PACKAGES="libopenvdb-dev libembree-dev libapriltag-dev"
 

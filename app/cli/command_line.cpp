@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <sstream>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/input_files.h"
 #include "app/cli/input/suggestion.h"
 #include "app/cli/output/help.h"
 #include "core/error.h"
 #include "core/output_target.h"
+#include "core/version.h"
 
 namespace patina::cli {
 
@@ -139,6 +142,20 @@ void checkFiles(const Command& command, const Given& given, Console& console) {
     throw Error("'-' is given " + std::to_string(written) + " times: standard output is one");
 }
 
+// The files and folders that the words name to be read.
+std::vector<std::filesystem::path> filesRead(const Command& command, const Given& given) {
+  std::vector<std::filesystem::path> files;
+  for (const Argument& argument : command.arguments) {
+    const auto found = given.find(argument.name());
+    if (found == given.end()) continue;
+    const Words& values = found->second; // only the last counts, unless it may be repeated
+    for (auto value = argument.isRepeated() ? values.begin() : values.end() - 1;
+         value != values.end(); ++value)
+      std::ranges::copy(argument.set.filesIn(*value), std::back_inserter(files));
+  }
+  return files;
+}
+
 int run(const Words& words, Console& console) {
   const std::vector<Command> commands = allCommands();
   const auto only_inputs = std::ranges::find(words, "--");
@@ -152,7 +169,7 @@ int run(const Words& words, Console& console) {
     return kDone;
   }
   if (asked("--version") || words == Words{"-V"}) {
-    console.print("patina " PATINA_VERSION "\n");
+    console.print("patina " + versionText() + "\n");
     return kDone;
   }
   console.json = asked("--json");
@@ -162,6 +179,9 @@ int run(const Words& words, Console& console) {
   const Given given = parse(command, {words.begin() + 1, words.end()});
   checkFiles(command, given, console);
   for (const auto& [name, values] : given) console.given.insert(name);
+  // Before the command runs, because it may change what it reads.
+  if (console.json || given.contains("--report"))
+    console.inputs = describeInputs(filesRead(command, given));
   return command.run(console);
 }
 

@@ -22,6 +22,7 @@
 #include "app/gui/window/tour.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/version.h"
 #include "visualization/view/display.h"
 
 namespace {
@@ -173,7 +174,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (arguments.version) {
-      std::cout << "patina " << PATINA_VERSION << '\n';
+      std::cout << "patina " << versionText() << '\n';
       return 0;
     }
     return run(arguments, argc, argv);

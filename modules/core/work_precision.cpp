@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
+#include "core/version.h"
 
 namespace patina {
 namespace {
@@ -44,6 +45,7 @@ std::vector<std::string> header(const WorkPrecisionTable& table) {
   names.emplace_back("ns");
   names.emplace_back("bytes");
   for (std::string& name : moreNames(table)) names.push_back(std::move(name));
+  names.emplace_back("program");
   return names;
 }
 
@@ -63,6 +65,7 @@ std::vector<std::string> cells(const WorkPrecisionTable& table, const WorkPrecis
       if (key == name) cell = formatNumber(value);
     line.push_back(std::move(cell));
   }
+  line.push_back(versionText());
   return line;
 }
 
@@ -107,7 +110,8 @@ Json toJson(const WorkPrecisionTable& table) {
   }
   Json json = Json::object();
   json.set("study", table.study).set("title", table.title).set("error_unit", table.error_unit);
-  json.set("machine", machineDescription()).set("rows", std::move(rows));
+  json.set("program", programDescription()).set("machine", machineDescription());
+  json.set("rows", std::move(rows));
   json.set("order_fitted", table.order_fitted ? Json(*table.order_fitted) : Json());
   json.set("order_expected", table.order_expected ? Json(*table.order_expected) : Json());
   return json;

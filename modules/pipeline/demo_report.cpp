@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
+#include "core/version.h"
 
 namespace patina {
 namespace {
@@ -109,6 +110,7 @@ Json demoJson(const Demo& demo) {
                      .set("holds", figure.holds()));
   }
   Json json = Json::object();
+  json.set("program", programDescription());
   json.set("seed", static_cast<std::int64_t>(demo.seed)).set("steps", steps);
   json.set("scans", scans).set("materials", materials).set("figures", figures);
   return json.set("holds", all);
@@ -119,7 +121,8 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
                      "A toy dinosaur of 200 mm with three materials, scanned by a simulated hand. "
                      "Every figure is an error\nagainst what the simulation knows; forces are "
                      "compared with those of the true surface, found by looking at\nits heights "
-                     "and not by our field, contact or textures.\n\n## Steps\n\n";
+                     "and not by our field, contact or textures.\n\nMade by patina " +
+                     versionText() + ", seed " + std::to_string(demo.seed) + ".\n\n## Steps\n\n";
   text += row({"step", "", "time [s]"}) + "|---|---|---|\n";
   for (std::size_t i = 0; i < demo.seconds.size(); ++i)
     text += row({demoSteps()[i].name, demoSteps()[i].about,

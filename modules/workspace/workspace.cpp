@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/folder_lock.h"
 #include "core/unfinished.h"
+#include "core/version.h"
 #include "workspace/content_files.h"
 #include "workspace/history_files.h"
 #include "workspace/stored_objects.h"
@@ -115,7 +116,9 @@ void commit(Manifest manifest, const std::string& journal, std::string_view jour
   manifest.journal = ManifestJournal{journal, checkOf(lines, manifest.event)};
   if (manifest.journal->check.empty())
     throw std::invalid_argument("saveWorkspace: the journal has fewer events");
-  writeFileAtomically(folder / kManifestName, toJson(manifest).dump() + "\n");
+  // Not in a state, whose name holds its hash: the same edits give the same states.
+  const Json json = toJson(manifest).set("program", programDescription());
+  writeFileAtomically(folder / kManifestName, json.dump() + "\n");
   removeUnused(folder, manifest, lines);
 }
 

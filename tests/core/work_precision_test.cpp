@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/file.h"
+#include "core/version.h"
 
 namespace patina {
 namespace {
@@ -46,6 +47,7 @@ TEST(WorkPrecision, JsonHasTheContractsKeys) {
   EXPECT_EQ(row.at("ns").asNumber(), 48);
   EXPECT_EQ(row.at("bytes").asNumber(), 2.5e7);
   EXPECT_EQ(row.at("cold [ns]").asNumber(), 210);
+  EXPECT_EQ(json.at("program").at("commit").asString(), programCommit());
   EXPECT_TRUE(json.at("order_fitted").isNull());
 }
 
@@ -59,8 +61,9 @@ TEST(WorkPrecision, CsvHoldsEveryRowInFullPrecision) {
   const std::string text = readFile(path);
   std::filesystem::remove(path);
   EXPECT_TRUE(text.starts_with(
-      "sampler,resolution,error [m],error_max [m],ns,bytes,cold [ns]\n\"a, \"\"b\"\"\",50,"
+      "sampler,resolution,error [m],error_max [m],ns,bytes,cold [ns],program\n\"a, \"\"b\"\"\",50,"
       "0.3333333333333333,"));
+  EXPECT_NE(text.find("," + versionText() + "\n"), std::string::npos) << text;
 }
 
 TEST(WorkPrecision, TheMachineIsDescribed) {

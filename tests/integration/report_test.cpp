@@ -2,12 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 #include <sstream>
+#include <sys/stat.h>
 
 #include "core/csv.h"
 #include "core/numbers.h"
+#include "core/sha256.h"
+#include "core/version.h"
 #include "integration/program.h"
+#include "session/store/attach_scan.h"
 
 namespace patina::test {
 namespace {
@@ -76,6 +81,79 @@ TEST_F(Reports, HaveNoKeyThatTheHelpOfTheirCommandLacks) {
       EXPECT_TRUE(known.contains(key)) << call.front() << ": " << key;
   }
 }
+
+TEST_F(Reports, NameTheProgramThatMadeThem) {
+  for (const auto& call : {std::vector<std::string>{"info", box, "--no-field"}, {"devices"}}) {
+    const Json program = runJson(call).at("program");
+    EXPECT_EQ(program.at("version").asString(), programVersion());
+    EXPECT_EQ(program.at("commit").asString(), programCommit());
+  }
+}
+
+// The paths of a report's inputs, each of whose hashes is asked to be that of the file.
+std::vector<std::string> pathsOf(const Json& report) {
+  std::vector<std::string> paths;
+  for (const Json& input : report.at("inputs").asArray()) {
+    const std::string path = input.at("path").asString();
+    EXPECT_EQ(input.at("sha256").asString(), sha256OfFile(path)) << path;
+    paths.push_back(path);
+  }
+  return paths;
+}
+
+TEST_F(Reports, HoldTheHashesOfTheFilesThatWereRead) {
+  using Paths = std::vector<std::string>;
+  EXPECT_EQ(pathsOf(runJson({"info", box, "--no-field"})), Paths{box});
+  EXPECT_EQ(pathsOf(runJson({"feel", box, "-o", folder / "f.csv", "--path", tips})),
+            (Paths{box, tips}));
+  EXPECT_TRUE(pathsOf(runJson({"model", "box", "-o", folder / "b.ply"})).empty());
+  const std::string pose = folder.write("pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 1\n0 0 0 1\n");
+  EXPECT_EQ(pathsOf(runJson({"scene", "-o", folder / "new", "--add", box + "@" + pose})),
+            (Paths{box, pose}));
+  EXPECT_EQ(pathsOf(runJson({"info", scene, "--no-field"})),
+            (Paths{scene + "/workspace.json", scene + "/journal-1.jsonl"}));
+}
+
+TEST_F(Reports, HoldTheHashesOfAWorkspaceAsItWasBeforeItsEdit) {
+  const std::string before = sha256OfFile(scene + "/workspace.json");
+  const Json report = runJson({"scene", "-o", scene, "--set", "stiffness=700"});
+  const Json& first = report.at("inputs").asArray().at(0);
+  EXPECT_EQ(first.at("path").asString(), scene + "/workspace.json");
+  EXPECT_EQ(first.at("sha256").asString(), before);
+  EXPECT_NE(sha256OfFile(scene + "/workspace.json"), before);
+}
+
+TEST_F(Reports, SayThatWhatIsNoFileHasNoHash) {
+  const std::string fifo = folder / "fifo";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  Running reader({"sample", box, "--points", fifo, "-o", folder / "s.csv", "--json"},
+                 programPath());
+  std::ofstream(fifo) << "x [m],y [m],z [m]\n0,0,0.03\n";
+  const Outcome outcome = reader.wait();
+  ASSERT_EQ(outcome.exit, 0) << outcome.err;
+  const Json inputs = parseJson(outcome.out, "report").at("inputs");
+  EXPECT_EQ(inputs.asArray().at(1).at("path").asString(), fifo);
+  EXPECT_TRUE(inputs.asArray().at(1).at("sha256").isNull());
+}
+
+#ifdef PATINA_HAS_ACQUISITION
+TEST_F(Reports, OfAScanFolderHoldEachFileAndADigestOfItsFrames) {
+  const std::string seen = folder / "seen";
+  ASSERT_EQ(run({"simulate-scan", box, "-o", seen, "--frames", "--seconds", "1"}).exit, 0);
+  const Json tracked = runJson({"track", "replay:" + seen, "-o", folder / "poses.tum"});
+  std::vector<std::string> names;
+  for (const Json& input : tracked.at("inputs").asArray()) {
+    const std::filesystem::path path = input.at("path").asString();
+    names.push_back(path.filename());
+    if (names.back() == "frames")
+      EXPECT_EQ(input.at("digest").asString(), framesDigest(seen));
+    else
+      EXPECT_EQ(input.at("sha256").asString(), sha256OfFile(path)) << path;
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"frames.csv", "probe.csv", "truth.json", "camera.yml",
+                                             "rig.json", "frames"}));
+}
+#endif
 
 TEST_F(Reports, OfInfoSumsUpWhatIsHeld) {
   const std::string two = folder / "two";

@@ -26,6 +26,7 @@ TEST(Studies, WriteTablesWithTheMachineTheyWereMeasuredOn) {
     if (path.ends_with(".json")) {
       const Json table = parseJson(text, path);
       EXPECT_NE(table.find("machine"), nullptr);
+      EXPECT_NE(table.find("program"), nullptr);
       rows += table.at("rows").asArray().size();
       ++tables;
     } else if (path.ends_with(".csv")) {

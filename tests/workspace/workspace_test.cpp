@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/version.h"
 #include "workspace/workspace_support.h"
 
 namespace patina {
@@ -33,6 +34,20 @@ TEST_F(WorkspaceTest, AScenesEveryValueComesBack) {
   const Scene scene = sceneWithObjects(0.05);
   saveWorkspace(scene, folder);
   EXPECT_TRUE(isWorkspace(folder));
+  EXPECT_TRUE(same(loadWorkspace(folder), scene));
+}
+
+// Workspaces of before do not name it.
+TEST_F(WorkspaceTest, ItNamesTheProgramThatSavedItAndOpensWithoutThatName) {
+  const Scene scene = sceneWithObjects(0.05);
+  saveWorkspace(scene, folder);
+  const fs::path path = folder / "workspace.json";
+  Json json = parseJson(readFile(path), path.string());
+  EXPECT_EQ(json.at("program").dump(), programDescription().dump());
+  Json older = Json::object();
+  for (const auto& [key, value] : json.asObject())
+    if (key != "program") older.set(key, value);
+  writeFileAtomically(path, older.dump());
   EXPECT_TRUE(same(loadWorkspace(folder), scene));
 }
 

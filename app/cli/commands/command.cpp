@@ -17,6 +17,10 @@ double numberIn(const std::string& text) {
   return *value;
 }
 
+std::vector<std::filesystem::path> itself(const std::string& text) {
+  return {text};
+}
+
 } // namespace
 
 const Command& commandNamed(const std::vector<Command>& commands, const std::string& name) {
@@ -28,6 +32,23 @@ const Command& commandNamed(const std::vector<Command>& commands, const std::str
   const bool option = name.starts_with("-");
   throw Error("unknown " + (option ? "option " + name : "command '" + name + "'") +
               suggestion(name, known, "; see patina --help"));
+}
+
+const Keys& commonKeys() {
+  static const Keys keys = {
+      {"program",
+       "",
+       "",
+       "what made the report",
+       Shown::never,
+       {{"version", "", ""}, {"commit", "", ""}}},
+      {"inputs",
+       "",
+       "",
+       "files that the command line names, as they were before",
+       Shown::never,
+       {{"path", "", ""}, {"sha256", "", ""}, {"digest", "", "", "of a folder of pictures"}}}};
+  return keys;
 }
 
 std::vector<Argument> commonArguments(const Command& command) {
@@ -42,6 +63,14 @@ std::vector<Argument> commonArguments(const Command& command) {
 }
 
 Setter into(std::filesystem::path& target) {
+  return {[&target](const std::string& text) { target = text; }, itself};
+}
+
+Setter into(std::vector<std::filesystem::path>& list) {
+  return {[&list](const std::string& text) { list.emplace_back(text); }, itself};
+}
+
+Setter outInto(std::filesystem::path& target) {
   return [&target](const std::string& text) { target = text; };
 }
 
@@ -49,8 +78,8 @@ Setter into(bool& flag) {
   return [&flag](const std::string&) { flag = true; };
 }
 
-Setter into(std::vector<std::string>& list) {
-  return [&list](const std::string& text) { list.push_back(text); };
+Setter into(std::vector<std::string>& list, FilesIn files) {
+  return {[&list](const std::string& text) { list.push_back(text); }, std::move(files)};
 }
 
 Setter into(std::optional<double>& number) {
@@ -81,12 +110,12 @@ Argument sceneInput(std::filesystem::path& target, const std::string& name) {
 
 Argument outputTo(std::filesystem::path& target, const std::string& value,
                   const std::string& caption) {
-  return {"-o,--output", value, "", "", caption, into(target), Times::once, true};
+  return {"-o,--output", value, "", "", caption, outInto(target), Times::once, true};
 }
 
 Argument writtenTo(std::filesystem::path& target, const std::string& names,
                    const std::string& value, const std::string& caption) {
-  return {names, value, "", "", caption, into(target), Times::at_most_once, true};
+  return {names, value, "", "", caption, outInto(target), Times::at_most_once, true};
 }
 
 Vec3 parsePoint(const std::string& text) {

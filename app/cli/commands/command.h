@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/output/console.h"
@@ -12,7 +13,23 @@
 
 namespace patina::cli {
 
-using Setter = std::function<void(const std::string&)>; // throws Error on a bad value
+// The files and folders that the text of an argument names.
+using FilesIn = std::function<std::vector<std::filesystem::path>(const std::string&)>;
+
+// Takes over an argument's value; throws Error on a bad one.
+class Setter {
+ public:
+  template <typename Set>
+  Setter(Set set, FilesIn files = nullptr) : set_(std::move(set)), files_(std::move(files)) {}
+  void operator()(const std::string& text) const { set_(text); }
+  std::vector<std::filesystem::path> filesIn(const std::string& text) const {
+    return files_ ? files_(text) : std::vector<std::filesystem::path>();
+  }
+
+ private:
+  std::function<void(const std::string&)> set_;
+  FilesIn files_; // null: the value is a word or a number
+};
 
 // How often an argument is given.
 enum class Times { at_most_once, once, any, at_least_once };
@@ -48,14 +65,18 @@ struct Command {
 // Throws Error for a name that none has, with the one that may be meant.
 const Command& commandNamed(const std::vector<Command>& commands, const std::string& name);
 
+// What the report of every command has besides its own keys.
+const Keys& commonKeys();
 // What every command has: --json where there are keys, --no-clobber where something is written, and
 // --help.
 std::vector<Argument> commonArguments(const Command& command);
 
 // Targets must outlive the parse.
-Setter into(std::filesystem::path& target);
-Setter into(bool& flag); // true
-Setter into(std::vector<std::string>& list);
+Setter into(std::filesystem::path& target);            // of a file or folder that is read
+Setter into(std::vector<std::filesystem::path>& list); // of several
+Setter outInto(std::filesystem::path& target);         // of a file or folder that is only written
+Setter into(bool& flag);                               // true
+Setter into(std::vector<std::string>& list, FilesIn files = nullptr);
 Setter into(std::optional<double>& number);
 // In a range, its ends included; a length may carry its unit.
 enum class NumberKind { plain, whole, length };

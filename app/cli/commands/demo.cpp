@@ -103,7 +103,7 @@ Command demoCommand() {
       .examples = {"patina demo", "patina demo -o demo --seed 7 --json"},
       .keys = kDemoKeys,
       .arguments = {{"-o,--output", "FOLDER", "", "patina-demo", "Made if it is missing.",
-                     into(options->output), Times::at_most_once, true},
+                     outInto(options->output), Times::at_most_once, true},
                     {"--seed", "N", "", "1", "Another hand, another noise.",
                      inRange(
                          0, 1e6,

@@ -22,7 +22,7 @@ namespace {
 
 struct PaintOptions {
   std::filesystem::path input, output;
-  std::vector<std::string> strokes;
+  std::vector<std::filesystem::path> strokes;
   std::optional<Seed> seed; // of all strokes, whatever they say
   OpenOptions open;
 };
@@ -165,7 +165,7 @@ int report(const PaintOptions& options, const Editor& editor, std::size_t stroke
 
 int runPaint(const PaintOptions& options, Console& console) {
   std::vector<ScriptStroke> script;
-  for (const std::string& path : options.strokes)
+  for (const std::filesystem::path& path : options.strokes)
     for (ScriptStroke& one : readScript(path, console)) {
       if (options.seed) one.stroke.brush.seed = *options.seed;
       script.push_back(std::move(one));

@@ -4,6 +4,7 @@
 
 #include "acquisition/recording/recorder.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/input_files.h"
 #include "app/cli/input/scan_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
@@ -89,7 +90,7 @@ int runRecord(RecordOptions options, Console& console) {
 Command recordCommand() {
   auto options = std::make_shared<RecordOptions>();
   const auto text = [](std::string& target) {
-    return parsedInto(target, [](const std::string& word) { return word; });
+    return Setter([&target](const std::string& word) { target = word; }, filesOfSource);
   };
   return {
       .name = "record",

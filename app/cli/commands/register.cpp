@@ -27,7 +27,7 @@ enum class Method { distance, loop, literal };
 
 struct RegisterOptions {
   std::filesystem::path mesh, path, output, report, initial, truth;
-  std::vector<std::string> also;
+  std::vector<std::filesystem::path> also;
   std::optional<PoseValues> align;
   MeshUnit unit = MeshUnit::mm;
   Method method = Method::distance;
@@ -261,7 +261,7 @@ int runRegister(RegisterOptions options, Console& console) {
   const double length = bounds(mesh).diagonal().norm();
   std::vector<PathSample> path = readTouching(options.path, length, console);
   const auto own = static_cast<std::ptrdiff_t>(path.size());
-  for (const std::string& file : options.also) {
+  for (const std::filesystem::path& file : options.also) {
     const std::vector<PathSample> other = readTouching(file, length, console);
     path.insert(path.end(), other.begin(), other.end());
   }
@@ -311,7 +311,8 @@ int runRegister(RegisterOptions options, Console& console) {
   if (joint) addJoint(*joint, report);
   path.resize(static_cast<std::size_t>(own));
   writeRegisteredPath(options.output, path, found);
-  if (!options.report.empty()) writeFileAtomically(options.report, report.json().dump() + "\n");
+  if (!options.report.empty())
+    writeFileAtomically(options.report, console.published(report).dump() + "\n");
   if (!found.converged)
     console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
                                          "noise lets expect");

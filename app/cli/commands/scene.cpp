@@ -172,23 +172,24 @@ Command sceneCommand() {
                    "patina scene -o cup --scan scans/rim", "patina scene -o mended --recover cup"},
       .keys = kSceneKeys,
       .arguments =
-          {outputTo(options->workspace, "WORKSPACE", "The folder."),
+          {{"-o,--output", "WORKSPACE", "", "", "The folder.", into(options->workspace),
+            Times::once, true}, // what it holds already is read
            {"--recover", "DAMAGED", "", "", "Read a damaged workspace as far as it can be read.",
             into(options->recovered)},
            {"--add", "MESH[@POSE.txt]", "", "", "Put a mesh into the scene, where the pose says.",
-            into(edits.added), Times::any},
-           {"--move", "NAME@POSE.txt", "", "", "Put an object elsewhere.", into(edits.moved),
-            Times::any},
+            into(edits.added, filesToAdd), Times::any},
+           {"--move", "NAME@POSE.txt", "", "", "Put an object elsewhere.",
+            into(edits.moved, fileToMoveBy), Times::any},
            {"--remove", "NAME", "", "", "Take an object out.", into(edits.removed), Times::any},
            {"--scan", "DIR[@NAME]", "", "", "Attach a scan folder, or renew the scan of its name.",
-            into(edits.scans), Times::any},
+            into(edits.scans, folderOfScan), Times::any},
            {"--remove-scan", "NAME", "", "", "Take a scan out; its folder stays.",
             into(edits.unscans), Times::any},
            {"--set", "KEY=VALUE", "", "", "Change a value.",
             [&edits](const std::string& text) { edits.settings.push_back(parseSetting(text)); },
             Times::any},
            {"--image", "OBJECT=FILE[,color|relief][,mapped|x|y|z]", "", "",
-            "Lay a picture onto an object.", into(edits.images), Times::any}},
+            "Lay a picture onto an object.", into(edits.images, fileOfImage), Times::any}},
       .run = [options](Console& console) { return runScene(*options, console); }};
   addTextureOption(command, edits.textures);
   addOpenOptions(command, options->open);

@@ -84,7 +84,7 @@ Command simulateDeviceCommand() {
            {"--seconds", "S", "s", "", "How long.",
             inRange(1e-3, 1e6, [options](double s) { options->seconds = s; })},
            {"--bus", "DIR", "", "", "Of falcon and spacemouse: the bus's folder. [a new one]",
-            into(options->usb.bus)},
+            outInto(options->usb.bus)},
            {"--unplug", "S", "s", "",
             "Of falcon and spacemouse: pulled out for half a second after each S.",
             inRange(0.01, 1e6, [options](double s) { options->usb.unplug = s; })},
@@ -120,7 +120,7 @@ Command simulateDeviceCommand() {
        part(probe.corrupt)},
       {"--skew", "PPM", "ppm", "0", "By which its clock runs faster.",
        inRange(-5000, 5000, [options](double ppm) { options->probe.skew = 1e-6 * ppm; })},
-      {"--link", "FILE", "", "", "A link to the port, while it is there.", into(options->link)},
+      {"--link", "FILE", "", "", "A link to the port, while it is there.", outInto(options->link)},
       {"--seed", "N", "", "1", "Of what is lost and spoilt.",
        inRange(
            0, 4294967295.,

@@ -3,6 +3,7 @@
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/track_frames.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/input_files.h"
 #include "app/cli/input/scan_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
@@ -133,10 +134,10 @@ Command trackCommand() {
            "patina track pictures --rate 30 --camera camera.yml --rig rig.json -o poses.tum",
            "patina track hand.mp4 --camera camera.yml --rig rig.json -o poses.tum"},
       .keys = kTrackKeys,
-      .arguments = {input(
-                        "FRAMES",
-                        "Scan folder, folder of pictures, video, camera:N or replay:SCAN.",
-                        parsedInto(options->frames, [](const std::string& text) { return text; })),
+      .arguments = {input("FRAMES",
+                          "Scan folder, folder of pictures, video, camera:N or replay:SCAN.",
+                          Setter([options](const std::string& text) { options->frames = text; },
+                                 filesOfSource)),
                     outputTo(options->output, "POSES.tum", "The poses, with deviations."),
                     {"--camera", "CAMERA.yml", "", "FRAMES/camera.yml",
                      "What the camera's calibration says.", into(options->camera)},

@@ -1,6 +1,7 @@
 #include "app/cli/input/scene_edits.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "authoring/images/lay_image.h"
 #include "core/error.h"
@@ -17,22 +18,28 @@ namespace patina::cli {
 
 namespace {
 
-// "MESH" or "MESH@POSE.txt"; a file whose own name has an '@' wins.
+// "FILE" or "FILE@NAME"; a file whose own name has an '@' wins.
+struct FileAndName {
+  std::string file;
+  std::optional<std::string> name;
+};
+FileAndName fileAndName(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos || std::filesystem::exists(text)) return {text, {}};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+// "MESH" or "MESH@POSE.txt".
 SceneObject readObject(const std::string& text, const OpenOptions& open, Console& console) {
-  std::string mesh = text, pose;
-  if (const std::size_t at = text.rfind('@');
-      at != std::string::npos && !std::filesystem::exists(text)) {
-    mesh = text.substr(0, at);
-    pose = text.substr(at + 1);
-    if (pose.empty())
-      throw Error("--add: '" + text + "' is not MESH@POSE.txt: no pose after the '@'");
-  }
+  const auto [mesh, pose] = fileAndName(text);
+  if (pose && pose->empty())
+    throw Error("--add: '" + text + "' is not MESH@POSE.txt: no pose after the '@'");
   if (std::filesystem::is_directory(mesh))
     throw Error("--add: " + mesh + " is a folder; add a mesh or a volume");
   OpenedScene opened = openScene(mesh, open);
   for (const std::string& warning : opened.warnings) console.warn(warning);
   SceneObject object = opened.scene.objects.front();
-  if (!pose.empty()) object.world_from_object = readPose(pose);
+  if (pose) object.world_from_object = readPose(*pose);
   return object;
 }
 
@@ -96,16 +103,8 @@ bool setWord(ImageEdit& image, const std::string& word) {
   return false;
 }
 
-// Words are taken from the end, so that a file's own commas do no harm.
-ImageEdit imageOf(const Scene& scene, const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw Error("--image: '" + text + "' is not OBJECT=FILE[,color|relief][,mapped|x|y|z]");
-  ImageEdit image;
-  image.object = indexOf(scene, text.substr(0, equals), "--image");
-  const TriangleMesh& mesh = *scene.objects[image.object].mesh;
-  if (mesh.corner_uvs.size() == mesh.triangles.size()) image.projection = Projection::mapped;
-  std::string file = text.substr(equals + 1);
+// Takes off the words after the file's name, from the end, so that its own commas do no harm.
+std::string withoutWords(std::string file, ImageEdit& image) {
   std::vector<std::string> words;
   for (std::size_t comma = file.rfind(','); comma != std::string::npos; comma = file.rfind(',')) {
     ImageEdit trial = image;
@@ -114,7 +113,18 @@ ImageEdit imageOf(const Scene& scene, const std::string& text) {
     file.resize(comma);
   }
   for (auto word = words.rbegin(); word != words.rend(); ++word) setWord(image, *word);
-  image.file = file;
+  return file;
+}
+
+ImageEdit imageOf(const Scene& scene, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw Error("--image: '" + text + "' is not OBJECT=FILE[,color|relief][,mapped|x|y|z]");
+  ImageEdit image;
+  image.object = indexOf(scene, text.substr(0, equals), "--image");
+  const TriangleMesh& mesh = *scene.objects[image.object].mesh;
+  if (mesh.corner_uvs.size() == mesh.triangles.size()) image.projection = Projection::mapped;
+  image.file = withoutWords(text.substr(equals + 1), image);
   return image;
 }
 
@@ -149,17 +159,12 @@ std::string nameOnly(const std::string& text) {
   return std::filesystem::path(text.substr(0, text.find('@'))).stem().string();
 }
 
-// "DIR" or "DIR@NAME"; a folder whose own name has an '@' wins.
+// "DIR" or "DIR@NAME".
 SceneScan readScanOf(const std::string& text, Console& console) {
-  std::filesystem::path folder = text;
-  std::string name;
-  if (const std::size_t at = text.rfind('@');
-      at != std::string::npos && !std::filesystem::exists(text)) {
-    folder = text.substr(0, at);
-    name = text.substr(at + 1);
-    if (name.empty()) throw Error("--scan: '" + text + "' is not DIR@NAME: no name after the '@'");
-  }
-  SceneScan scan = scanIn(folder, name.empty() ? scanNameOf(folder) : name);
+  const auto [folder, name] = fileAndName(text);
+  if (name && name->empty())
+    throw Error("--scan: '" + text + "' is not DIR@NAME: no name after the '@'");
+  SceneScan scan = scanIn(folder, name ? *name : scanNameOf(folder));
 #ifdef PATINA_HAS_ACQUISITION
   readScanFolder(folder, console.progress()); // refuses what could not be opened again
 #else
@@ -182,6 +187,28 @@ Scene withFolder(const Scene& scene, SceneScan scan, Console& console) {
 }
 
 } // namespace
+
+std::vector<std::filesystem::path> filesToAdd(const std::string& added) {
+  const auto [mesh, pose] = fileAndName(added);
+  std::vector<std::filesystem::path> files{mesh};
+  if (pose) files.emplace_back(*pose);
+  return files;
+}
+
+std::vector<std::filesystem::path> fileToMoveBy(const std::string& moved) {
+  const std::size_t at = moved.find('@');
+  if (at == std::string::npos) return {};
+  return {moved.substr(at + 1)};
+}
+
+std::vector<std::filesystem::path> folderOfScan(const std::string& scan) {
+  return {fileAndName(scan).file};
+}
+
+std::vector<std::filesystem::path> fileOfImage(const std::string& image) {
+  ImageEdit unused;
+  return {withoutWords(image.substr(image.find('=') + 1), unused)};
+}
 
 Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& given,
              Console& console) {

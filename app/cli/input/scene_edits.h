@@ -26,6 +26,12 @@ struct SceneEdits {
   }
 };
 
+// The files that one of these texts names: FilesIn of its option.
+std::vector<std::filesystem::path> filesToAdd(const std::string& added);
+std::vector<std::filesystem::path> fileToMoveBy(const std::string& moved);
+std::vector<std::filesystem::path> folderOfScan(const std::string& scan);
+std::vector<std::filesystem::path> fileOfImage(const std::string& image);
+
 // Removals first, then moves, additions, textures, settings, images. Throws Error; `scene` is only
 // read.
 Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& open,

@@ -85,9 +85,16 @@ void addOpenOptions(Command& command, OpenOptions& open) {
 
 void addTextureOption(Command& command, TextureTable& textures) {
   command.arguments.push_back(
-      {"--texture", "ID=T.json", "", "",
+      {"--texture",
+       "ID=T.json",
+       "",
+       "",
        "A Fourier texture for the faces that an OBJ or a workspace gives this number.",
-       [&textures](const std::string& text) { addTexture(text, textures); }, Times::any});
+       {[&textures](const std::string& text) { addTexture(text, textures); },
+        [](const std::string& text) {
+          return std::vector<std::filesystem::path>{text.substr(text.find('=') + 1)};
+        }},
+       Times::any});
 }
 
 void addFieldOptions(Command& command, SceneOptions& options) {

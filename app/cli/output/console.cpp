@@ -15,6 +15,7 @@
 #include "app/cli/commands/command.h"
 #include "core/error.h"
 #include "core/unfinished.h"
+#include "core/version.h"
 
 namespace patina::cli {
 
@@ -171,8 +172,13 @@ void Console::warnOfNoEffect(std::initializer_list<const char*> options, const s
     if (given.contains(option)) warn(std::string(option) + " has no effect " + where);
 }
 
+Json Console::published(const Report& report) const {
+  Json object = report.json();
+  return object.set("program", programDescription()).set("inputs", inputs);
+}
+
 int Console::report(const Report& report, ExitCode code, const std::string& below) {
-  print(json ? report.json().dump() + "\n" : report.text() + below);
+  print(json ? published(report).dump() + "\n" : report.text() + below);
   reported_ = code;
   return code;
 }

@@ -44,6 +44,10 @@ class Console {
   std::set<std::string> given;
   // Of these options, each that was given: "--load has no effect without --wire".
   void warnOfNoEffect(std::initializer_list<const char*> options, const std::string& where);
+  // The list of the input files for published(): describeInputs().
+  Json inputs = Json::array();
+  // The report's object with `program` and `inputs` (commonKeys), as --json prints it.
+  Json published(const Report& report) const;
   // The object with --json, else the rows, and below them what else is for people. The last that a
   // command says: returns the code, with which it ends even if Ctrl-C comes while it frees memory.
   int report(const Report& report, ExitCode code = kDone, const std::string& below = "");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/version.h"
+
 namespace patina::cli {
 
 namespace {
@@ -80,9 +82,11 @@ Lines linesOf(const Command& command, bool inputs) {
   return lines;
 }
 
-Lines linesOf(const Keys& keys) {
+Lines linesOfKeys(const Command& command) {
   Lines lines;
-  for (const Key& key : keys) lines.emplace_back(nameOf(key), textOf(key));
+  if (command.keys.empty()) return lines;
+  for (const Keys* keys : {&command.keys, &commonKeys()})
+    for (const Key& key : *keys) lines.emplace_back(nameOf(key), textOf(key));
   return lines;
 }
 
@@ -148,8 +152,8 @@ std::string manHeader(const std::string& page, const std::string& summary) {
   std::string upper = page;
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return ".TH " + roff(upper) + " 1 \"\" \"patina " PATINA_VERSION "\" \"Patina\"\n.SH NAME\n" +
-         roff(page) + " \\- " + roff(summary) + "\n";
+  return ".TH " + roff(upper) + " 1 \"\" \"patina " + std::string(programVersion()) +
+         "\" \"Patina\"\n.SH NAME\n" + roff(page) + " \\- " + roff(summary) + "\n";
 }
 
 std::string manList(const Lines& rows) {
@@ -187,7 +191,7 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t col
 std::string programHelp(const std::vector<Command>& commands) {
   Lines rows;
   for (const Command& command : commands) rows.emplace_back(command.name, command.summary);
-  return "patina " PATINA_VERSION "\n" + wrapped(kAbout, 0, 0) +
+  return "patina " + std::string(programVersion()) + "\n" + wrapped(kAbout, 0, 0) +
          "\n\nUsage: patina COMMAND INPUT... -o OUTPUT [options]\n\nCommands:\n" + table(rows) +
          "\n" + wrapped(kUnits, 0, 0) + "\n\nOptions:\n" +
          table({{"-h, --help", "Print this help; after a command, that of the command."},
@@ -201,7 +205,7 @@ std::string commandHelp(const Command& command) {
   for (const std::string& paragraph : paragraphs(command.description))
     out += "\n" + wrapped(paragraph, 0, 0) + "\n";
   out += section("Input", linesOf(command, true)) + section("Options", linesOf(command, false)) +
-         section("Keys of --json", linesOf(command.keys));
+         section("Keys of --json", linesOfKeys(command));
   out += "\n" + wrapped(kUnits, 0, 0) + "\n";
   out += command.examples.size() > 1 ? "\nExamples:\n" : "\nExample:\n";
   for (const std::string& example : command.examples) out += "  " + example + "\n";
@@ -225,7 +229,7 @@ std::string commandManPage(const Command& command) {
     out += roff(paragraph) + "\n.PP\n";
   out += roff(kUnits) + "\n.SH OPTIONS\n" + manList(linesOf(command, true)) +
          manList(linesOf(command, false));
-  if (!command.keys.empty()) out += ".SH KEYS OF JSON\n" + manList(linesOf(command.keys));
+  if (!command.keys.empty()) out += ".SH KEYS OF JSON\n" + manList(linesOfKeys(command));
   out += ".SH EXAMPLES\n.nf\n";
   for (const std::string& example : command.examples) out += roff(example) + "\n";
   return out + ".fi\n" + manExitCodes() + ".SH SEE ALSO\n.BR patina (1)\n";

@@ -18,6 +18,7 @@
 #include "app/gui/window/action_search.h"
 #include "app/gui/window/theme.h"
 #include "app/gui/window/user_guide.h"
+#include "core/version.h"
 #include "visualization/view/camera.h"
 #ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
@@ -328,7 +329,7 @@ void addHelpMenu(QMainWindow* window) {
     tell(tr("About Patina"),
          tr("<h3>Patina %1</h3><p>A mesh becomes a sampled implicit surface, and a 1 kHz servo "
             "feels it.</p><p>BSD-3-Clause. Built on VTK, Qt, Eigen, OpenMesh and TBB.</p>")
-             .arg(QStringLiteral(PATINA_VERSION)));
+             .arg(QString::fromStdString(versionText())));
   });
 }
 

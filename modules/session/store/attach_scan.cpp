@@ -10,6 +10,27 @@ namespace patina {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// A line "NAME SIZE" for each entry of the folder, sorted.
+std::string namesAndSizes(const fs::path& folder) {
+  std::vector<std::string> lines;
+  std::error_code code;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end;
+       entry.increment(code)) {
+    std::error_code none; // an entry that cannot be looked at counts as empty
+    const auto size = fs::file_size(entry->path(), none);
+    lines.push_back(entry->path().filename().string() + " " + std::to_string(none ? 0 : size) +
+                    "\n");
+  }
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+} // namespace
+
 SceneScan scanIn(const fs::path& folder, const std::string& name) {
   std::error_code code;
   if (!fs::is_directory(folder, code)) throw FileError(folder.string(), 0, "is no scan folder");
@@ -27,20 +48,15 @@ SceneScan scanIn(const fs::path& folder, const std::string& name) {
   return scan;
 }
 
+std::string picturesDigest(const fs::path& folder) {
+  const std::string text = namesAndSizes(folder);
+  return text.empty() ? "" : sha256(text);
+}
+
 std::string framesDigest(const fs::path& folder) {
-  std::vector<std::string> lines;
+  std::string text = namesAndSizes(folder / "frames");
+  if (text.empty()) return "";
   std::error_code code;
-  for (fs::directory_iterator entry(folder / "frames", code), end; !code && entry != end;
-       entry.increment(code)) {
-    std::error_code none; // a frame that cannot be looked at counts as empty
-    const auto size = fs::file_size(entry->path(), none);
-    lines.push_back(entry->path().filename().string() + " " + std::to_string(none ? 0 : size) +
-                    "\n");
-  }
-  if (lines.empty()) return "";
-  std::sort(lines.begin(), lines.end());
-  std::string text;
-  for (const std::string& line : lines) text += line;
   const fs::path times = folder / "frames.csv";
   if (fs::exists(times, code)) text += readFile(times);
   return sha256(text);

@@ -9,6 +9,8 @@ namespace patina {
 // scan in it, a file that cannot be read.
 SceneScan scanIn(const std::filesystem::path& folder, const std::string& name);
 
+// SHA-256 over the sorted lines "NAME SIZE" of what lies in the folder; empty: nothing does.
+std::string picturesDigest(const std::filesystem::path& folder);
 // SHA-256 over names and sizes of the frames and their times' table; empty: there are none. Tells
 // another recording or a frame that is missing, not a frame that was retouched to the same size.
 std::string framesDigest(const std::filesystem::path& folder);

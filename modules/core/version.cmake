@@ -1,0 +1,51 @@
+# Writes built_from.h, the version and the commit of the source. Each build runs this script, because
+# only then is it known whether a file differs from the commit; the header is left alone if it says
+# the same already, so that nothing is compiled again.
+#   cmake -D SOURCE=DIR -D VERSION=0.2.0 -D OUTPUT=built_from.h -P version.cmake
+file(REAL_PATH ${SOURCE} SOURCE)
+set(commit "")
+find_program(GIT git)
+# Reads the commit that HEAD names without git, which a new machine may not have.
+function(head_of folder)
+  file(READ ${folder}/HEAD head)
+  string(STRIP "${head}" head)
+  if(head MATCHES "^ref: (.*)$")
+    set(name ${CMAKE_MATCH_1})
+    set(head "")
+    if(EXISTS ${folder}/${name})
+      file(READ ${folder}/${name} head)
+    elseif(EXISTS ${folder}/packed-refs)
+      file(STRINGS ${folder}/packed-refs lines REGEX " ${name}$")
+      list(GET lines 0 head)
+    endif()
+  endif()
+  string(SUBSTRING "${head}" 0 12 head)
+  set(commit ${head} PARENT_SCOPE)
+endfunction()
+if(GIT AND EXISTS ${SOURCE}/.git)
+  # git refuses a folder that another user owns unless it is named as safe.
+  execute_process(COMMAND ${GIT} -c safe.directory=${SOURCE} -C ${SOURCE}
+                          describe --always --dirty --tags --long --abbrev=12
+                  OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()
+if(NOT commit AND EXISTS ${SOURCE}/.git/HEAD)
+  head_of(${SOURCE}/.git)
+endif()
+if(NOT commit AND EXISTS ${SOURCE}/.git_archival.txt)
+  # `git archive` has put the commit into this file (.gitattributes).
+  file(READ ${SOURCE}/.git_archival.txt text)
+  if(text MATCHES "commit: ([0-9a-f]+)")
+    string(SUBSTRING ${CMAKE_MATCH_1} 0 12 commit)
+  endif()
+endif()
+if(NOT commit MATCHES "^[A-Za-z0-9._/+-]+$")
+  set(commit "unknown")
+endif()
+set(text "#define PATINA_VERSION \"${VERSION}\"\n#define PATINA_COMMIT \"${commit}\"\n")
+set(old "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} old)
+endif()
+if(NOT text STREQUAL old)
+  file(WRITE ${OUTPUT} "${text}")
+endif()
