@@ -104,6 +104,32 @@ TEST_F(SceneScansTest, EachStepIsUndoneAndTheScanOpensAgainFromTheWorkspace) {
   EXPECT_NE(scene().scans.at(0).text("registered.txt")->find("mesh_from_scan"), std::string::npos);
 }
 
+TEST_F(SceneScansTest, ATextureOfAFittedScanYieldsAsTheFitFound) {
+  openWorkspace(icosphere(0.04, 12));
+  clickAction("desk_scan");
+  ASSERT_TRUE(openScan());
+  clickOn("put_scan");
+  ASSERT_TRUE(waitForEdits(3));
+  clickAction("desk_align");
+  find<QComboBox>("align_scan")->setFocus();
+  type(0xff54), wait(100); // down: the only scan
+  auto& align = *window_->findChild<AlignDesk*>();
+  ASSERT_TRUE(waitUntil([&] { return align.alignment().isReady(); }, 10000));
+  clickOn("align_fit");
+  ASSERT_TRUE(waitUntil([&] { return align.found() && !align.work(); }, 60000));
+  const double compliance = align.found()->compliance;
+  ASSERT_GT(compliance, 0);
+  clickAction("desk_texture");
+  clickOn("tab_library");
+  clickOn("texture_scan");
+  ASSERT_TRUE(waitUntil([&] { return status().done == 4; }, 60000))
+      << find<QLabel>("texture_hint")->text().toStdString();
+  const auto& paint = scene().objects.at(0).paint;
+  ASSERT_TRUE(paint && paint->textures);
+  EXPECT_DOUBLE_EQ(paint->textures->library.at(1)->value.compliance, compliance);
+  EXPECT_EQ(find<QLabel>("texture_hint")->text(), QString());
+}
+
 // The second is asked for before the first is done.
 TEST_F(SceneScansTest, AStoredPlaceOutlivesAScanThatIsPutInAtOnce) {
   const TriangleMesh ball = icosphere(0.04, 12);
