@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (arguments.version) {
-      std::cout << "patina " << versionText() << '\n';
+      std::cout << "patina " << patina::versionText() << '\n';
       return 0;
     }
     return run(arguments, argc, argv);
