@@ -120,7 +120,7 @@ build_fuzz() { # short or full
   local unity=ON
   [ "$1" = short ] || unity=OFF
   configure_tests "$build_folder-fuzz" -DPATINA_FUZZ=ON -DCMAKE_UNITY_BUILD=$unity \
-    -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
+    -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++
   build "$build_folder-fuzz"
 }
 

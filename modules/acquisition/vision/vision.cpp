@@ -1,16 +1,17 @@
 #include "acquisition/vision/vision.h"
 
 #include <algorithm>
-#include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
+
+#include "acquisition/vision/aruco.h"
 
 namespace patina {
 namespace {
 
 struct Named {
   const char* name;
-  cv::aruco::PREDEFINED_DICTIONARY_NAME value;
+  int value;
 };
 constexpr Named kFamilies[] = {{"4x4_50", cv::aruco::DICT_4X4_50},
                                {"4x4_100", cv::aruco::DICT_4X4_100},
@@ -59,13 +60,13 @@ const Named& familyNamed(const std::string& name) {
 
 std::string family(const std::string& name, MarkerFamily& out) {
   return guarded([&]() -> std::string {
-    const auto dictionary = cv::aruco::getPredefinedDictionary(familyNamed(name).value);
+    const cv::aruco::Dictionary dictionary = arucoFamily(familyNamed(name).value);
     out.name = name;
-    out.side = dictionary->markerSize;
+    out.side = dictionary.markerSize;
     out.code.clear();
-    for (int id = 0; id < dictionary->bytesList.rows; ++id) {
+    for (int id = 0; id < dictionary.bytesList.rows; ++id) {
       const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
-          dictionary->bytesList.rowRange(id, id + 1), dictionary->markerSize);
+          dictionary.bytesList.rowRange(id, id + 1), dictionary.markerSize);
       std::uint64_t code = 0;
       for (int i = 0; i < out.side * out.side; ++i)
         code = code << 1 | bits.at<std::uint8_t>(i / out.side, i % out.side);
@@ -94,12 +95,9 @@ std::string markers(const GreyFrame& image, const std::string& name, VisionRefin
         cv::aruco::CORNER_REFINE_CONTOUR, cv::aruco::CORNER_REFINE_APRILTAG};
     found.clear();
     const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
-    const auto parameters = cv::aruco::DetectorParameters::create();
-    parameters->cornerRefinementMethod = kMethods[static_cast<int>(refinement)];
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;
-    cv::aruco::detectMarkers(view, cv::aruco::getPredefinedDictionary(familyNamed(name).value),
-                             corners, ids, parameters);
+    findAruco(view, familyNamed(name).value, kMethods[static_cast<int>(refinement)], corners, ids);
     for (std::size_t i = 0; i < ids.size(); ++i) {
       found.push_back({ids[i], {}});
       for (std::size_t k = 0; k < 4; ++k)

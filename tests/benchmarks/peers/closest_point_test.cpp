@@ -9,7 +9,11 @@
 #include <string>
 #include <vector>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <gtest/gtest.h>
 
 #include "geometry/mesh/shapes.h"

@@ -3,11 +3,11 @@
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>
 #include <cmath>
-#include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/lens.h"
+#include "acquisition/vision/aruco.h"
 #include "support/least_time.h"
 #include "support/rendered_rig.h"
 #include "support/shared_data.h"
@@ -72,12 +72,9 @@ class AprilTag {
 
 Corners findByAruco(const GreyFrame& image, int refinement) {
   const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
-  static const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_APRILTAG_36h11);
-  const auto parameters = cv::aruco::DetectorParameters::create();
-  parameters->cornerRefinementMethod = refinement;
   std::vector<std::vector<cv::Point2f>> found;
   std::vector<int> ids;
-  cv::aruco::detectMarkers(view, dictionary, found, ids, parameters);
+  findAruco(view, cv::aruco::DICT_APRILTAG_36h11, refinement, found, ids);
   Corners corners;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     std::array<Vec2, 4> pixel;
@@ -190,12 +187,9 @@ TEST(MarkerPeers, MarkersOfTheSharedBoardLieOnAPlane) {
       ours.push_back(marker.corner[i].straight);
     }
   const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
-  const auto parameters = cv::aruco::DetectorParameters::create();
-  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
   std::vector<std::vector<cv::Point2f>> found;
   std::vector<int> ids;
-  cv::aruco::detectMarkers(view, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250), found,
-                           ids, parameters);
+  findAruco(view, cv::aruco::DICT_6X6_250, cv::aruco::CORNER_REFINE_SUBPIX, found, ids);
   for (std::size_t m = 0; m < ids.size(); ++m)
     for (std::size_t i = 0; i < 4; ++i) {
       theirs_board.push_back(cornerOn(ids[m], i));
