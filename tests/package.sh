@@ -63,7 +63,9 @@ for file in bin/patina bin/patina-gui include/patina_device.h lib/udev/rules.d/7
   share/mime/packages/patina.xml share/zsh/vendor-completions/_patina; do
   [ -s "$work/files/usr/$file" ] || fail "usr/$file is missing or empty"
 done
-for command in $("$build/bin/patina" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]\{1,\}\)  .*/\1/p'); do
+commands=$("$build/bin/patina" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]\{1,\}\)  .*/\1/p')
+[ -n "$commands" ] || fail "patina --help lists no command"
+for command in $commands; do
   gzip -dc "$share/man/man1/patina-$command.1.gz" | grep -q '^\.SH NAME' ||
     fail "there is no manual page of patina $command"
 done
