@@ -1,16 +1,19 @@
 # shellcheck shell=sh disable=SC2034
-# The Debian packages this project stands on, and how they get installed. Sourced by app/run.sh and
-# tests/run.sh; the only place where they are listed.
+# The Debian packages this project stands on, and how they get installed. Sourced by app/run.sh,
+# tests/run.sh and tests/package.sh; the only place where they are listed.
 
+# The last two are only read when the Debian package is made.
 PATINA_BUILD_PACKAGES="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libopenmesh-dev
- nlohmann-json3-dev libssl-dev libusb-1.0-0-dev libvtk9-qt-dev qtbase5-dev
-  libopenimageio-dev libopencv-contrib-dev libopencv-videoio-dev"
+  nlohmann-json3-dev libssl-dev libusb-1.0-0-dev libvtk9-qt-dev qtbase5-dev
+  libopenimageio-dev libopencv-contrib-dev libopencv-videoio-dev dpkg-dev file"
 # For a machine without a display.
 PATINA_HEADLESS_PACKAGES="xvfb xauth libgl1-mesa-dri"
 PATINA_TEST_PACKAGES="$PATINA_HEADLESS_PACKAGES libgtest-dev libgmock-dev libbenchmark-dev
-  libxcb-xtest0-dev openbox dbus-daemon clang libclang-rt-dev git python3 zsh umockdev"
+  libxcb-xtest0-dev openbox dbus-daemon clang libclang-rt-dev git python3 zsh fish umockdev"
 # Only for the comparison with other programs; the tests pass without them.
 PATINA_PEER_PACKAGES="libopenvdb-dev libembree-dev libapriltag-dev"
+# For checking the Debian package.
+PATINA_PACKAGE_PACKAGES="dpkg-dev file lintian appstream desktop-file-utils"
 
 say() { printf '\n== %s\n' "$*" >&2; }
 

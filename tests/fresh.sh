@@ -5,6 +5,7 @@
 #   tests/fresh.sh                     app/run.sh as an ordinary user, after root has installed what it
 #                                      names; then, in a second system, app/run.sh as root
 #   tests/fresh.sh --tests [--quick]   app/run.sh as an ordinary user, then tests/run.sh as root
+#   tests/fresh.sh --package FILE.deb  installs Debian's own way and uses what is installed
 #   --release bookworm|trixie          the Debian that is tried; this machine's unless told
 #   --keep                             leaves the system where it is and says where
 # Each part prints its time. What the build has read must be what is declared (tests/declared.sh).
@@ -23,8 +24,13 @@ while [ $# -gt 0 ]; do
   --release) release=${2:?--release needs a name}; shift ;;
   --tests) mode=tests ;;
   --quick) quick=--quick ;;
+  --package)
+    mode=package
+    package=$(realpath -e "${2:?--package needs a file}")
+    shift
+    ;;
   --keep) keep=yes ;;
-  *) sed -n '2,10s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,11s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
   esac
   shift
 done
@@ -38,7 +44,8 @@ need_packages mmdebstrap
 # Mounts and processes live in namespaces of their own: both are gone when this script is.
 if [ "${PATINA_FRESH_INSIDE:-}" != yes ]; then
   words=(--release "$release")
-  [ $mode = twice ] || words+=(--tests)
+  [ $mode != tests ] || words+=(--tests)
+  [ $mode != package ] || words+=(--package "$package")
   [ -z "$quick" ] || words+=("$quick")
   [ $keep = no ] || words+=(--keep)
   PATINA_FRESH_INSIDE=yes exec unshare --mount --pid --fork --kill-child --mount-proc "$0" "${words[@]}"
@@ -63,7 +70,7 @@ finish() {
   elif [ -n "$root" ]; then
     remove_system
   fi
-  [ $code -eq 0 ] || say "FAILED: README's commands do not hold on a bare $release"
+  [ $code -eq 0 ] || say "FAILED: this does not hold on a bare $release"
   exit $code
 }
 trap finish EXIT
@@ -159,6 +166,34 @@ first_command_as_person() {
   timed "What the build has read" in_system root tests/declared.sh
 }
 
+use_package() {
+  cp "$package" "$root/package.deb"
+  in_system root "
+    export DEBIAN_FRONTEND=noninteractive
+    apt-get -q update && apt-get -q -y install /package.deb" >"$root/tmp/apt.log" 2>&1 ||
+    { tail -n 20 "$root/tmp/apt.log"; return 1; }
+  in_system $person '
+    cd ~
+    patina --version
+    patina devices | tee devices.txt
+    ! grep -i example devices.txt
+    patina model plate -o plate.ply
+    patina scene --add plate.ply -o relief \
+      --image plate=/usr/share/icons/hicolor/128x128/apps/patina.png,relief,z
+    xvfb-run -a patina render relief -o relief.png
+    xvfb-run -a patina gui --first-picture-time
+    xvfb-run -a patina demo -o demo
+    test -s relief.png -a -s demo/report.md
+    bash -c ". /usr/share/bash-completion/completions/patina && complete -p patina"'
+  in_system root "apt-get -q -y purge patina && test ! -e /usr/lib/patina" >/dev/null
+}
+
+if [ $mode = package ]; then
+  timed "A bare $release" make_system
+  timed "The package, installed and used" use_package
+  say "The package holds on a bare $release"
+  exit 0
+fi
 first_command_as_person
 if [ $mode = tests ]; then
   timed "tests/run.sh as root" in_system root "tests/run.sh $quick"

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <QApplication>
+#include <QIcon>
 #include <QSurfaceFormat>
 #include <QTimer>
 
@@ -112,6 +113,8 @@ int run(const Arguments& arguments, int argc, char** argv) {
   QApplication application(argc, argv);
   QApplication::setApplicationName(QStringLiteral("patina"));
   QApplication::setOrganizationName(QStringLiteral("patina"));
+  QApplication::setDesktopFileName(QStringLiteral("local.patina.Patina")); // app/package has it
+  QApplication::setWindowIcon(QIcon(QStringLiteral(":/patina.png")));
   const patina::SystemTheme theme(application);
   patina::MainWindow window;
   patina::DocumentController& documents = window.controllers().documents;

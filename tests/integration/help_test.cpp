@@ -194,6 +194,29 @@ zpty -d z
     EXPECT_NE(text.find("    " + command + ")\n"), std::string::npos) << command;
 }
 
+// By fish itself, which lists the candidates, each with its caption.
+TEST(Help, FishCompletesCommandsOptionsAndTheirWords) {
+  const ScratchFolder folder;
+  const std::string script = folder.write("patina.fish", run({"completion", "fish"}).out);
+  const auto completed = [&](const std::string& line) {
+    const Outcome outcome =
+        Running({"--no-config", "-c",
+                 "source $argv[1]; complete -C $argv[2] | string split -f 1 \\t", script, line},
+                "fish")
+            .wait();
+    EXPECT_EQ(outcome.exit, 0) << outcome.err << ": is fish installed?";
+    return outcome.out;
+  };
+  EXPECT_EQ(completed("patina fee"), "feel\n");
+  EXPECT_EQ(completed("patina man comp"), "completion\n");
+  EXPECT_EQ(completed("patina man --mark"), "--markdown\n");
+  EXPECT_EQ(completed("patina feel --stiff"), "--stiffness\n");
+  EXPECT_EQ(completed("patina feel s.ply --unit c"), "cm\n");
+  const std::string all = "\n" + completed("patina feel --");
+  for (const std::string& option : options("feel"))
+    EXPECT_NE(all.find("\n" + option + "\n"), std::string::npos) << option;
+}
+
 TEST(Help, VersionIsOneLine) {
   for (const auto& words : {std::vector<std::string>{"--version"}, {"-V"}, {"info", "--version"}}) {
     const Outcome version = run(words);

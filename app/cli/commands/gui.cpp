@@ -54,31 +54,32 @@ Command guiCommand() {
   return {
       .name = "gui",
       .summary = "the window",
-      .description =
-          "Starts patina-gui, which stands beside this program. It needs a display; on a machine "
-          "without one: xvfb-run -a patina gui --tour FOLDER.",
+      .description = "Starts patina-gui, which stands beside this program and has the same "
+                     "options. It needs a display; on a machine without one: xvfb-run -a patina "
+                     "gui --tour FOLDER.",
       .examples = {"patina gui bunny.ply --unit cm", "patina gui workspace --log session.csv"},
       .keys = {},
-      .arguments = {input(
-                        "INPUT",
-                        "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, a page to "
-                        "begin from, or with --tour or --log the toy dinosaur.",
-                        into(options->input), Times::at_most_once),
-                    {"--unit", "mm|cm|m|in|fit", "", "mm", "Unit of a mesh file.",
-                     pass("--unit", parseMeshUnit)},
-                    {"--up", "z|y", "", "", "Axis of a mesh file that points upwards.",
-                     pass("--up", parseUpAxis)},
-                    {"--iso", "VALUE", "", "",
-                     "Value at which a volume (.vti) from elsewhere is a surface.",
-                     pass("--iso", number)},
-                    {"--log", "FORCES.csv", "", "",
-                     "Record every tick; written when the window closes.", pass("--log", anything)},
-                    {"--tour", "FOLDER", "", "",
-                     "A scripted session: pictures and forces into the folder, then quit.",
-                     pass("--tour", anything)},
-                    {"--first-picture-time", "", "", "",
-                     "Print the seconds from start to the first picture.",
-                     pass("--first-picture-time", anything)}},
+      .arguments =
+          {input("INPUT",
+                 "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, a page to "
+                 "begin from, or with --tour or --log the toy dinosaur.",
+                 into(options->input), Times::at_most_once),
+           {"--unit", "mm|cm|m|in|fit", "", "mm", "Unit of a mesh file.",
+            pass("--unit", parseMeshUnit)},
+           {"--up", "z|y", "", "", "Axis of a mesh file that points upwards.",
+            pass("--up", parseUpAxis)},
+           {"--iso", "VALUE", "", "", "Value at which a volume (.vti) from elsewhere is a surface.",
+            pass("--iso", number)},
+           {"--log", "FORCES.csv", "", "", "Record every tick; written when the window closes.",
+            pass("--log", anything)},
+           {"--tour", "FOLDER", "", "",
+            "A scripted session: pictures and forces into the folder, then quit.",
+            pass("--tour", anything)},
+           {"--demo", "", "", "", "From a scan to a feel on the toy, step by step in the window.",
+            pass("--demo", anything)},
+           {"--first-picture-time", "", "", "",
+            "Print the seconds from start to the first picture.",
+            pass("--first-picture-time", anything)}},
       .run = [options](Console& console) {
         console.endOnInterrupt();
         return runGui(*options);

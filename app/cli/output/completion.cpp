@@ -47,6 +47,16 @@ std::string quoted(const std::string& text) {
   return out;
 }
 
+// Between single quotes of fish, where only a quote and a backslash are escaped.
+std::string fishQuoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "'";
+}
+
 } // namespace
 
 std::string bashCompletion(const std::vector<Command>& commands) {
@@ -135,6 +145,33 @@ std::string zshCompletion(const std::vector<Command>& commands) {
          "(( CURRENT -= 1 ))\n"
          "case $command in\n" +
          cases + "esac\n";
+}
+
+std::string fishCompletion(const std::vector<Command>& commands) {
+  std::string names, options;
+  for (const Command& command : commands) {
+    names += "complete -c patina -n '__patina_command_is \"\" help man' -f -a " + command.name +
+             " -d " + fishQuoted(command.summary) + "\n";
+    for (const Argument& argument : argumentsOf(command)) {
+      if (argument.isInput()) continue;
+      options += "complete -c patina -n '__patina_command_is " + command.name + "'";
+      for (const std::string& name : split(argument.names, ','))
+        options += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+      if (const Words words = choices(argument); !words.empty())
+        options += " -x -a " + fishQuoted(joined(words, " "));
+      else if (!argument.isFlag())
+        options += " -r";
+      options += " -d " + fishQuoted(argument.caption) + "\n";
+    }
+  }
+  return "# fish completion of patina; made by: patina completion fish\n"
+         "# Succeeds if the word after patina is one of the arguments; \"\" stands for no word "
+         "yet.\n"
+         "function __patina_command_is\n"
+         "  set -l words (commandline -opc) \"\"\n"
+         "  contains -- $words[2] $argv\n"
+         "end\n" +
+         names + options;
 }
 
 } // namespace patina::cli

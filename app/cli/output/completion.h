@@ -12,5 +12,7 @@ namespace patina::cli {
 std::string bashCompletion(const std::vector<Command>& commands);
 // As _patina in a folder of zsh's fpath.
 std::string zshCompletion(const std::vector<Command>& commands);
+// As patina.fish in a folder of fish's completions.
+std::string fishCompletion(const std::vector<Command>& commands);
 
 } // namespace patina::cli

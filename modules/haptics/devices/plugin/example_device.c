@@ -1,6 +1,9 @@
 // An example of a plug-in, and a device without a device: 100 g in a hand that holds it where it
 // began with a spring of 150 N/m and a damper. plugin:example:X,Y,Z says where that is, in metres.
-#include "haptics/devices/plugin/patina_device.h"
+// An installed Patina has this file for reading; build and try it with
+//   cc -std=c99 -shared -fPIC -o patina_device_example.so example_device.c
+//   PATINA_DEVICES=. patina devices
+#include "patina_device.h"
 
 #include <stdio.h>
 #include <stdlib.h>
