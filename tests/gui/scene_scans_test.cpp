@@ -126,7 +126,7 @@ TEST_F(SceneScansTest, ATextureOfAFittedScanYieldsAsTheFitFound) {
       << find<QLabel>("texture_hint")->text().toStdString();
   const auto& paint = scene().objects.at(0).paint;
   ASSERT_TRUE(paint && paint->textures);
-  EXPECT_DOUBLE_EQ(paint->textures->library.at(1)->value.compliance, compliance);
+  EXPECT_EQ(paint->textures->library.at(1)->value.compliance, compliance);
   EXPECT_EQ(find<QLabel>("texture_hint")->text(), QString());
 }
 
