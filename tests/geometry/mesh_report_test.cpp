@@ -205,7 +205,8 @@ TEST(MeshReport, SidesOfOneBoxThatAreDividedDifferentlyAreClosed) {
   int parts = 1;
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
     for (const double side : {-1.0, 1.0}) {
-      const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), side * axis);
+      const Eigen::Quaterniond turned =
+          Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), side * axis);
       Eigen::Affine3d placed = Eigen::Affine3d::Identity();
       placed.linear() = turned.toRotationMatrix().array().round().matrix();
       placed.translation() = side * axis;

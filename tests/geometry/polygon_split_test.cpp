@@ -42,8 +42,8 @@ Outline comb(int teeth) {
 }
 
 Outline spiral() {
-  return {{0, 0}, {9, 0}, {9, 9}, {1, 9}, {1, 3}, {6, 3}, {6, 6}, {4, 6}, {4, 5}, {5, 5},
-          {5, 4}, {2, 4}, {2, 8}, {8, 8}, {8, 1}, {0, 1}};
+  return {{0, 0}, {9, 0}, {9, 9}, {1, 9}, {1, 3}, {6, 3}, {6, 6}, {4, 6},
+          {4, 5}, {5, 5}, {5, 4}, {2, 4}, {2, 8}, {8, 8}, {8, 1}, {0, 1}};
 }
 
 // A square with a square hole, cut open along an edge that is run along twice.
@@ -70,7 +70,14 @@ std::vector<Outline> outlines() {
       {{0, 0}, {4, 0}, {4, 3}, {3, 3}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, // U
       {{0, 2}, {1, 2}, {1, 0}, {2, 0}, {2, 2}, {3, 2}, {3, 3}, {0, 3}}, // T
       {{0, 0}, {5, 0}, {5, 5}, {3, 5}, {3, 2}, {3, 5}, {0, 5}},         // a slit without width
-      keyhole(), spiral(), star(5), star(30), comb(3), comb(40), regular(4), regular(17)};
+      keyhole(),
+      spiral(),
+      star(5),
+      star(30),
+      comb(3),
+      comb(40),
+      regular(4),
+      regular(17)};
   for (unsigned seed = 0; seed < 30; ++seed) all.push_back(randomStar(seed));
   return all;
 }
@@ -147,8 +154,8 @@ TEST(PolygonSplit, KeepsEveryOutlineFromEveryCorner) {
 }
 
 TEST(PolygonSplit, KeepsTheAreaTurnedTheOtherWayAndFarFromTheOrigin) {
-  Eigen::Affine3d placed = Eigen::Translation3d(4.5e6, -5.2e6, 300) *
-                           Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized());
+  Eigen::Affine3d placed =
+      Eigen::Translation3d(4.5e6, -5.2e6, 300) * Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized());
   for (Outline outline : outlines()) {
     std::reverse(outline.begin(), outline.end());
     TriangleMesh mesh = fanOf(inSpace(outline, placed));
@@ -176,8 +183,8 @@ double worstFold(const TriangleMesh& mesh) { // cosine; over pairs with a common
     for (std::size_t t = s + 1; t < mesh.triangles.size(); ++t) {
       int common = 0;
       for (const std::int32_t v : mesh.triangles[s])
-        common += static_cast<int>(
-            std::count(mesh.triangles[t].begin(), mesh.triangles[t].end(), v));
+        common +=
+            static_cast<int>(std::count(mesh.triangles[t].begin(), mesh.triangles[t].end(), v));
       if (common == 2) worst = std::min(worst, faceNormal(mesh, s).dot(faceNormal(mesh, t)));
     }
   return worst;
@@ -238,8 +245,8 @@ TEST(PolygonSplit, FoldsALargerPolygonAlongItsRidge) {
 }
 
 TEST(PolygonSplit, CountsOutlinesThatCrossAndKeepsThemAsTriangles) {
-  TriangleMesh bow = fanOf({Vec3(0, 0, 0), Vec3(2, 2, 0), Vec3(3, 0, 0), Vec3(0, 1, 0),
-                            Vec3(-3, -1, 0)});
+  TriangleMesh bow =
+      fanOf({Vec3(0, 0, 0), Vec3(2, 2, 0), Vec3(3, 0, 0), Vec3(0, 1, 0), Vec3(-3, -1, 0)});
   TriangleMesh pentagram = fanOf(inSpace(regular(5), Eigen::Affine3d::Identity()));
   std::swap(pentagram.positions[1], pentagram.positions[2]);
   std::swap(pentagram.positions[2], pentagram.positions[4]);

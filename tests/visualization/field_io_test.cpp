@@ -315,8 +315,7 @@ template <class Array, class Value> void writeWhole(const fs::path& path, const 
     for (int j = 0; j < kNodes; ++j)
       for (int i = 0; i < kNodes; ++i) {
         const bool rim = std::min({i, j, k}) == 0 || std::max({i, j, k}) == kNodes - 1;
-        numbers->InsertNextValue(
-            static_cast<typename Array::ValueType>(rim ? -4 : value(i, j, k)));
+        numbers->InsertNextValue(static_cast<typename Array::ValueType>(rim ? -4 : value(i, j, k)));
       }
   image->GetPointData()->AddArray(numbers);
   const vtkNew<vtkXMLImageDataWriter> writer;

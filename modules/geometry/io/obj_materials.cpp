@@ -113,24 +113,25 @@ std::filesystem::path besideFile(const std::filesystem::path& from, const std::s
   return std::filesystem::exists(bare, ignored) ? bare : folder / name;
 }
 
-std::string picturesLeftOut(const std::filesystem::path& path,
+std::string picturesLeftOut(const std::filesystem::path& path, const std::string& keyword,
                             const std::vector<std::string>& pictures,
                             bool has_texture_coordinates) {
   constexpr std::size_t kShown = 3;
+  const bool one = pictures.size() == 1;
   std::string names;
   for (std::size_t i = 0; i < std::min(pictures.size(), kShown); ++i)
-    names += (i == 0 ? "" : ", ") + text::quoted(pictures[i], 200);
+    names += (i == 0 ? "" : ", ") + text::shown(pictures[i]);
   if (pictures.size() > kShown) names += ", ...";
   const std::string what =
-      (pictures.size() == 1 ? "the picture " : formatCount(pictures.size()) + " pictures: ") +
-      names + (pictures.size() == 1 ? " is" : ", are") + " not shown";
-  if (!has_texture_coordinates) return what + ": the mesh has no texture coordinates that are kept";
+      one ? "the picture of " + keyword + " " + names + " is not shown"
+          : formatCount(pictures.size()) + " pictures of " + keyword + " are not shown: " + names;
+  if (!has_texture_coordinates) return what + "; the mesh has no texture coordinates that are kept";
   const std::filesystem::path file = besideFile(path, pictures.front());
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return what + " and not beside the mesh";
+  if (!std::filesystem::exists(file, ignored))
+    return what + "; " + (one ? "it" : "the first") + " is not beside the mesh";
   return what + "; patina scene WORKSPACE --image " + text::shown(path.stem().string()) + "=" +
-         text::shown(file.string()) + ",color,mapped shows " +
-         (pictures.size() == 1 ? "it" : "the first");
+         text::shown(file.string()) + ",color,mapped shows " + (one ? "it" : "the first");
 }
 
 void addMaterialWarnings(const ObjMaterials& materials, const std::filesystem::path& path,
@@ -161,7 +162,7 @@ void addMaterialWarnings(const ObjMaterials& materials, const std::filesystem::p
       pictures.push_back(material.picture);
   }
   if (!pictures.empty())
-    warnings.push_back(picturesLeftOut(path, pictures, !mesh.corner_uvs.empty()));
+    warnings.push_back(picturesLeftOut(path, "map_Kd", pictures, !mesh.corner_uvs.empty()));
   if (hasColors(seen)) warnings.push_back(text::colorsLeftOut("materials"));
 }
 

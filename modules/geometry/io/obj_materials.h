@@ -31,8 +31,9 @@ std::vector<MtlMaterial> parseMtl(std::string_view bytes);
 // is not there is left out.
 std::filesystem::path besideFile(const std::filesystem::path& from, const std::string& written);
 
-// The line for pictures that a mesh file names but that are not shown, with the option for them.
-std::string picturesLeftOut(const std::filesystem::path& path,
+// The line for pictures that a mesh file names, after `keyword`, but that are not shown, with the
+// option for them.
+std::string picturesLeftOut(const std::filesystem::path& path, const std::string& keyword,
                             const std::vector<std::string>& pictures, bool has_texture_coordinates);
 
 // Reads the libraries beside `path` and adds one line for each kind of thing that is left out:

@@ -18,10 +18,10 @@ constexpr std::int64_t kMostIndices = std::numeric_limits<std::int32_t>::max();
 class ObjParser {
  public:
   // textured: where that lies which is not null, lines of haptic coordinates are read.
-  ObjParser(std::string_view bytes, const std::string& name,
-            std::vector<std::string>* warnings, std::vector<TexturedFace>* textured = nullptr)
-      : name_(name), lines_(withoutByteOrderMark(bytes)), warnings_(warnings),
-        textured_(textured) {}
+  ObjParser(std::string_view bytes, const std::string& name, std::vector<std::string>* warnings,
+            std::vector<TexturedFace>* textured = nullptr)
+      : name_(name), lines_(withoutByteOrderMark(bytes)), warnings_(warnings), textured_(textured) {
+  }
 
   TriangleMesh parse() {
     std::string_view statement;

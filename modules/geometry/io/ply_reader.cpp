@@ -13,7 +13,7 @@ namespace {
 constexpr int kUnused = -1;
 constexpr int kU = 3; // roles of vertex properties: 0..2 position, 3..4 texture
 constexpr int kIndices = 0;
-constexpr int kTexture = 1;          // roles of face properties
+constexpr int kTexture = 1;           // roles of face properties
 constexpr std::int32_t kRestart = -1; // in a list of strips: the next one begins
 
 int vertexRole(const PlyProperty& p) {
@@ -91,7 +91,8 @@ template <typename Source> class PlyParser {
     if (hasColors(vertices)) warnings_->push_back(text::colorsLeftOut("vertices"));
     if (faces_ && hasColors(*faces_)) warnings_->push_back(text::colorsLeftOut("faces"));
     if (!header_.pictures.empty())
-      warnings_->push_back(picturesLeftOut(name_, header_.pictures, !mesh_.corner_uvs.empty()));
+      warnings_->push_back(
+          picturesLeftOut(name_, "TextureFile", header_.pictures, !mesh_.corner_uvs.empty()));
   }
 
   const PlyElement* element(const char* wanted) const {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMaxCorners = 20'000;      // the time grows with the square of the corners
 constexpr std::size_t kMaxExchangeCorners = 128; // the exchange of edges grows faster still
-constexpr double kMaxHeight = 1e-5;                   // of a flat polygon, over its size
+constexpr double kMaxHeight = 1e-5;              // of a flat polygon, over its size
 constexpr double kThin = 1e-12; // twice the area over the square of the longest edge
 constexpr double kLessFold = 1e-9;
 
@@ -149,7 +149,7 @@ class PolygonSplitter {
     std::size_t at = 0;
     for (std::size_t left = n; left > 3; --left) {
       if (!findEar(at, left, Ear::sound) && !findEar(at, left, Ear::without_area))
-        findEar(at, left, Ear::any); // the outline crosses itself; else one of them is there
+        findEar(at, left, Ear::any); // only an outline that crosses itself gets here
       const std::size_t a = previous_[at], c = next_[at];
       triangles_.push_back({a, at, c});
       next_[a] = c;

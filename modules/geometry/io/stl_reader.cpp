@@ -63,9 +63,9 @@ TriangleMesh parseBinary(std::string_view bytes, const std::string& name,
                         std::to_string(bytes.size()) + " bytes");
   if (count == 0) throw FileError(name, 0, "the file has no triangle (count at byte 80)");
   if (const std::size_t left = bytes.size() - kHeader - count * kRecord; left > 0)
-    warnings.push_back(bytesText(left) + " after the last triangle are left out" +
+    warnings.push_back(bytesText(left) + " after the last triangle: left out" +
                        (left < kRecord ? std::string()
-                                       : ": " + formatCount(left / kRecord) +
+                                       : ", though they could be " + formatCount(left / kRecord) +
                                              " triangles more than the header says"));
   if (bytes.substr(0, 80).find("COLOR=") != bytes.npos)
     warnings.push_back(text::colorsLeftOut("triangles"));

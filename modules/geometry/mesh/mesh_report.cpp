@@ -88,12 +88,12 @@ void markDuplicates(std::size_t vertices, const std::vector<Triangle>& triangles
   forEach([&](const Triangle& v, std::int32_t) { by_lowest.count(v[0]); });
   by_lowest.startFilling();
   forEach([&](const Triangle& v, std::int32_t t) { by_lowest.file(v[0], {v[1], v[2], t}); });
-  by_lowest.forEachSortedRun([&](std::int32_t, const SameVertices* first,
-                                 const SameVertices* last) {
-    for (const SameVertices* item = first + 1; item < last; ++item)
-      if (item[-1].middle == item->middle && item[-1].high == item->high)
-        faults[static_cast<std::size_t>(item->triangle)] = Fault::duplicate;
-  });
+  by_lowest.forEachSortedRun(
+      [&](std::int32_t, const SameVertices* first, const SameVertices* last) {
+        for (const SameVertices* item = first + 1; item < last; ++item)
+          if (item[-1].middle == item->middle && item[-1].high == item->high)
+            faults[static_cast<std::size_t>(item->triangle)] = Fault::duplicate;
+      });
 }
 
 struct DirectedUse {
@@ -116,22 +116,22 @@ void countEdges(std::size_t vertices, std::size_t edges, const ForEachEdge& forE
   by_lower.startFilling();
   forEach([&](std::int32_t low, const DirectedUse& use) { by_lower.file(low, use); });
   border.clear();
-  by_lower.forEachSortedRun([&](std::int32_t low, const DirectedUse* first,
-                                const DirectedUse* last) {
-    while (first < last) {
-      const DirectedUse* next = first + 1;
-      while (next < last && next->high == first->high) ++next;
-      const auto uses = next - first;
-      if (uses == 1)
-        border.push_back(first->upwards ? BorderEdge{low, first->high}
-                                        : BorderEdge{first->high, low});
-      else if (uses > 2)
-        ++report.non_manifold_edges;
-      else if (first[0].upwards == first[1].upwards)
-        ++report.misoriented_edges;
-      first = next;
-    }
-  });
+  by_lower.forEachSortedRun(
+      [&](std::int32_t low, const DirectedUse* first, const DirectedUse* last) {
+        while (first < last) {
+          const DirectedUse* next = first + 1;
+          while (next < last && next->high == first->high) ++next;
+          const auto uses = next - first;
+          if (uses == 1)
+            border.push_back(first->upwards ? BorderEdge{low, first->high}
+                                            : BorderEdge{first->high, low});
+          else if (uses > 2)
+            ++report.non_manifold_edges;
+          else if (first[0].upwards == first[1].upwards)
+            ++report.misoriented_edges;
+          first = next;
+        }
+      });
 }
 
 std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& triangles,

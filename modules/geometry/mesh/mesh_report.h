@@ -9,8 +9,8 @@
 
 namespace patina {
 
-// Share of the longest side of a mesh's bounds: corners on its border that are no farther apart, and
-// no farther than a quarter of the shortest border edge at them, count as one in the report.
+// Share of the longest side of a mesh's bounds: corners on its border that are no farther apart,
+// and no farther than a quarter of the shortest border edge at them, count as one in the report.
 inline constexpr double kWeldTolerance = 1e-3;
 
 struct MeshReport {

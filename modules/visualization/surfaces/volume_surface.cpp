@@ -49,8 +49,8 @@ template <class Visit> void withValues(vtkDataArray* scalars, const Visit& visit
 
 // Where every value is whole and some are the iso-value, the surface would run through nodes:
 // triangles without area, parts that meet in a point. Such nodes count as above, as for any value
-// between the last whole number and this one, so that the surface is taken half a step lower; half a
-// step higher where nothing is lower. An iso-value that differs by rounding gives the same.
+// between the last whole number and this one, so that the surface is taken half a step lower; half
+// a step higher where nothing is lower. An iso-value that differs by rounding gives the same.
 double withoutTies(vtkDataArray* scalars, double iso) {
   constexpr double kRounding = 1e-6; // of a step between whole numbers
   const double whole = std::round(iso);
