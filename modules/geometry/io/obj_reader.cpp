@@ -6,9 +6,9 @@
 #include "core/file.h"
 #include "geometry/io/mesh_file_type.h"
 #include "geometry/io/obj_materials.h"
-#include "geometry/io/polygon_split.h"
 #include "geometry/io/text_scan.h"
 #include "geometry/io/textured_obj.h"
+#include "geometry/mesh/polygon_split.h"
 
 namespace patina {
 namespace {

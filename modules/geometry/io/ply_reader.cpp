@@ -5,7 +5,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/obj_materials.h"
 #include "geometry/io/ply_source.h"
-#include "geometry/io/polygon_split.h"
+#include "geometry/mesh/polygon_split.h"
 
 namespace patina {
 namespace {

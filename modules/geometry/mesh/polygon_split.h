@@ -1,4 +1,4 @@
-// Splits polygons of OBJ and PLY faces into triangles. Internal to the readers.
+// Splits polygons into triangles, as readers of polygons need it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-#include "geometry/io/polygon_split.h"
+#include "geometry/mesh/polygon_split.h"
 
 #include <algorithm>
 #include <cmath>
