@@ -20,12 +20,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// What follows a word of `line`; the word is a view into it.
+// Returns the text after a word of `line`; the word must be a view into it.
 std::string_view after(std::string_view line, std::string_view word) {
   return trimmed(line.substr(static_cast<std::size_t>(word.data() + word.size() - line.data())));
 }
 
-// What follows the options of a map statement, such as `-s 2 2 1 -clamp on`.
+// Returns the text after the options of a map statement, such as `-s 2 2 1 -clamp on`.
 std::string_view withoutMapOptions(std::string_view rest) {
   while (rest.starts_with('-')) {
     text::Words words(rest);
@@ -45,7 +45,7 @@ std::string_view withoutMapOptions(std::string_view rest) {
   return rest;
 }
 
-// Two or more colours, or one that is not grey.
+// Returns true for two or more colours, or for one that is not grey.
 bool hasColors(const std::vector<const MtlMaterial*>& materials) {
   std::set<std::vector<double>> colors;
   for (const MtlMaterial* material : materials)
@@ -55,7 +55,7 @@ bool hasColors(const std::vector<const MtlMaterial*>& materials) {
   return c[0] != c[1] || c[1] != c[2];
 }
 
-// The libraries of one mtllib: one name that contains blanks, or several names.
+// Splits the argument of mtllib, which is one name with blanks or several names.
 std::vector<std::string> librariesOf(const std::string& written,
                                      const std::filesystem::path& path) {
   if (std::error_code ignored; std::filesystem::exists(besideFile(path, written), ignored))

@@ -1,4 +1,4 @@
-// The materials of an OBJ file: which libraries it names and which it uses. Internal to the reader.
+// Reads the materials of an OBJ file for its warnings. Internal to the readers.
 #pragma once
 
 #include <filesystem>
@@ -27,12 +27,12 @@ struct MtlMaterial {
 // Statements that are unknown or broken are skipped: a material never refuses its mesh.
 std::vector<MtlMaterial> parseMtl(std::string_view bytes);
 
-// The file that `written` names beside `from`: backslashes separate folders too, and a folder that
-// is not there is left out.
+// Returns the file that `written` names beside `from`. Backslashes separate folders too; a folder
+// that does not exist is ignored.
 std::filesystem::path besideFile(const std::filesystem::path& from, const std::string& written);
 
-// The line for pictures that a mesh file names, after `keyword`, but that are not shown, with the
-// option for them.
+// Returns the line for pictures that a mesh file names after `keyword`. They are not shown; the
+// line names the option that shows them.
 std::string picturesLeftOut(const std::filesystem::path& path, const std::string& keyword,
                             const std::vector<std::string>& pictures, bool has_texture_coordinates);
 

@@ -37,12 +37,12 @@ inline std::string quoted(std::string_view word, std::size_t most = 32) {
   return "'" + shown(word.substr(0, most)) + (word.size() > most ? "...'" : "'");
 }
 
-// The cause where a file has vertices but no face.
+// Returns the cause for a file that has vertices but no face.
 std::string pointCloud(std::size_t points, const char* why);
-// The warning for colours "of its vertices", "of its faces".
+// Returns the warning for the colours of "vertices", "faces" or others that `whose` names.
 std::string colorsLeftOut(const char* whose);
 
-// '\r' for text of old Macs, which has no '\n'.
+// Returns '\r' for text of old Macs, which contains no '\n'.
 inline char lineEndOf(std::string_view bytes) {
   return bytes.find('\n') == bytes.npos && bytes.find('\r') != bytes.npos ? '\r' : '\n';
 }

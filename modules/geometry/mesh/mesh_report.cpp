@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-// closed_up: two corners are one after the weld.
+// A triangle is closed_up if the weld made two of its corners one.
 enum class Fault : std::uint8_t { none, non_finite, degenerate, duplicate, closed_up };
 
 Fault faultOf(const TriangleMesh& mesh, std::size_t t) {
@@ -166,7 +166,8 @@ std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& t
   return components;
 }
 
-// Duplicates, components and edges of triangles that may be renamed ones of the mesh.
+// Counts duplicates, components and edges; the triangles may name other vertices than the mesh's.
+// Returns the edges of one face.
 std::vector<BorderEdge> countTopology(std::size_t vertices, const std::vector<Triangle>& triangles,
                                       std::vector<Fault>& faults, MeshReport& report) {
   markDuplicates(vertices, triangles, faults);
@@ -186,8 +187,8 @@ std::vector<BorderEdge> countTopology(std::size_t vertices, const std::vector<Tr
   return border;
 }
 
-// Closes cracks between the faces at the border: corners in one place, then corners within the
-// tolerance, then corners on an edge. Faces of the field are never moved.
+// Closes cracks at the border and counts again: corners in one place, then corners within the
+// tolerance, then corners on an edge. The mesh itself does not change.
 void closeCracks(const TriangleMesh& mesh, std::vector<BorderEdge>& border,
                  std::vector<Fault>& faults, MeshReport& report) {
   Box3 box;

@@ -135,7 +135,7 @@ void openFolder(const std::filesystem::path& folder, OpenedScene& opened) {
 
 namespace {
 
-// Names every kind that can be opened, which the readers of one kind cannot do.
+// Throws a FileError that names every kind of file that can be opened.
 void requireReadable(const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 8> kClouds = {".xyz", ".pts", ".pcd", ".las",
                                                        ".laz", ".e57", ".asc", ".ptx"};

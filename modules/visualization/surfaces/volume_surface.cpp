@@ -47,10 +47,10 @@ template <class Visit> void withValues(vtkDataArray* scalars, const Visit& visit
   }
 }
 
-// Where every value is whole and some are the iso-value, the surface would run through nodes:
-// triangles without area, parts that meet in a point. Such nodes count as above, as for any value
-// between the last whole number and this one, so that the surface is taken half a step lower; half
-// a step higher where nothing is lower. An iso-value that differs by rounding gives the same.
+// Returns the value at which the surface is taken. If all values are whole and some equal `iso`,
+// the surface would pass through nodes: it would have triangles without area, and parts that meet
+// in a point. Such nodes then count as higher ones: the surface is taken half a step lower, or half
+// a step higher if no value is lower. An `iso` that differs by rounding gives the same surface.
 double withoutTies(vtkDataArray* scalars, double iso) {
   constexpr double kRounding = 1e-6; // of a step between whole numbers
   const double whole = std::round(iso);
