@@ -125,7 +125,9 @@ std::shared_ptr<const ObjectPaint> loadPaint(const ManifestObject& object, const
 SceneObject loadObject(const ManifestObject& stored, const fs::path& folder,
                        std::vector<std::string>* notes) {
   SceneObject object{stored.name, nullptr, stored.world_from_object, nullptr};
-  object.mesh = loadValue<TriangleMesh>(folder, stored.mesh, parsePly);
+  object.mesh = loadValue<TriangleMesh>(
+      folder, stored.mesh,
+      [](const std::string& bytes, const std::string& name) { return parsePly(bytes, name); });
   if (stored.paint) object.paint = loadPaint(stored, *object.mesh, folder, notes);
   return object;
 }

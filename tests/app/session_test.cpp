@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/shapes.h"
 #include "session/build/stage_cost.h"
@@ -45,6 +46,38 @@ TEST_F(Session, OpensAMeshInItsUnitUnderALegalName) {
   EXPECT_NEAR(bounds(*metres.scene.objects[0].mesh).max().z(), 20, 1);
   ASSERT_EQ(metres.warnings.size(), 1u);
   EXPECT_NE(metres.warnings[0].find("--unit"), std::string::npos);
+}
+
+std::string refusalOf(const std::filesystem::path& path) {
+  try {
+    openScene(path, {});
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Session, AKindThatCannotBeReadNamesThoseThatCan) {
+  for (const char* name : {"a.gltf", "b.step", "c", "d.xyz", "E.PCD"}) {
+    writeFileAtomically(folder / name, "x");
+    const std::string refusal = refusalOf(folder / name);
+    for (const char* kind : {".obj", ".ply", ".stl", ".vti", "workspace.json", "frames.csv"})
+      EXPECT_NE(refusal.find(kind), std::string::npos) << refusal;
+    EXPECT_EQ(refusal.find("point cloud") != std::string::npos, name[2] == 'x' || name[2] == 'P');
+  }
+  std::filesystem::create_directories(folder / "empty");
+  std::filesystem::create_directories(folder / "scan" / "frames");
+  EXPECT_NE(refusalOf(folder / "empty").find("not a workspace"), std::string::npos);
+  EXPECT_NE(refusalOf(folder / "scan").find("patina scene WORKSPACE --scan"), std::string::npos);
+}
+
+TEST_F(Session, WarnsOfWhatAFileHasAndTheMeshDoesNotKeep) {
+  writeFileAtomically(folder / "a.obj",
+                      "v 0 0 0 1 0 0\nv 50 0 0 0 1 0\nv 0 50 0 0 0 1\nv 0 0 50 1 1 "
+                      "1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const OpenedScene opened = openScene(folder / "a.obj", {});
+  ASSERT_EQ(opened.warnings.size(), 1u);
+  EXPECT_NE(opened.warnings[0].find("a.obj: the colours of its vertices"), std::string::npos);
 }
 
 TEST_F(Session, WarnsOfEveryKindOfTriangleThatIsLeftOut) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "geometry/mesh/mesh_report.h"
 
@@ -17,6 +19,13 @@ inline void checkMesh(const TriangleMesh& mesh) {
   // The report must cope with whatever was read.
   const MeshReport report = inspect(mesh);
   if (report.non_finite + report.degenerate + report.duplicate > report.triangles) std::abort();
+}
+
+// Each fits on one line.
+inline void checkWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& line : warnings)
+    for (const char c : line)
+      if (static_cast<unsigned char>(c) < 0x20) std::abort();
 }
 
 } // namespace patina::fuzz

@@ -5,13 +5,17 @@
 
 #include "check_mesh.h"
 #include "core/error.h"
+#include "geometry/io/obj_materials.h"
 #include "geometry/io/textured_obj.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  for (const patina::MtlMaterial& material : patina::parseMtl(bytes))
+    if (!material.color.empty() && material.color.size() != 3) std::abort();
   try {
     patina::fuzz::checkMesh(patina::parseObj(bytes, "fuzz"));
     const patina::TexturedMesh read = patina::parseTexturedObj(bytes, "fuzz");
+    patina::fuzz::checkWarnings(read.warnings);
     std::int32_t last = -1;
     for (const patina::TexturedFace& face : read.textured) {
       if (face.face <= last || face.texture < 0 ||

@@ -8,9 +8,11 @@
 #include "geometry/io/mesh_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  std::vector<std::string> warnings;
   try {
-    patina::fuzz::checkMesh(
-        patina::parsePly(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz"));
+    patina::fuzz::checkMesh(patina::parsePly(bytes, "fuzz", &warnings));
+    patina::fuzz::checkWarnings(warnings);
   } catch (const patina::FileError&) {
   }
   return 0;

@@ -59,16 +59,14 @@ TEST(MalformedMesh, ObjIsRefusedWithItsLine) {
           {"index_beyond_int64.obj", 4,
            "the face names vertex '99999999999999999999999', more than a file can hold"},
           {"index_zero.obj", 4, "the face names vertex 0; OBJ counts from 1"},
-          {"missing_normal.obj", 5, "the face names normal 2, but the file has 1"},
           {"negative_index_too_far.obj", 4, "the face names vertex -4, but only 3 stand before it"},
-          {"no_faces.obj", 3, "the file ends without a face"},
+          {"no_faces.obj", 3, "a point cloud of 3 points, not a mesh: it has no face"},
           {"not_quite_a_number.obj", 2,
            "'1e' is not a number; it stands where a coordinate should be"},
           {"number_too_large.obj", 2,
            "'1e999' is too large a number; it stands where a coordinate should be"},
           {"picture_named_obj.obj", 2, "binary data where OBJ text should be"},
           {"texture_without_number.obj", 4, "the line ends where a texture coordinate should be"},
-          {"truncated_in_corner.obj", 5, "the face names texture point 2, but the file has 1"},
           {"truncated_in_face.obj", 4, "a face needs 3 corners or more, this one has 2"},
           {"truncated_in_vertex.obj", 3, "the line ends where a coordinate should be"},
           {"two_coordinates.obj", 2, "the line ends where a coordinate should be"},
@@ -121,8 +119,8 @@ TEST(MalformedMesh, PlyIsRefusedWithItsLineOrByte) {
           {"more_vertices_than_bytes_binary.ply", 3,
            "the header says 4000000000 of element 'vertex', more than the 49 bytes after it can "
            "hold"},
-          {"no_face_element.ply", 7, "the header has no element 'face'"},
-          {"no_faces.ply", 7, "the file has no face"},
+          {"no_face_element.ply", 7, "a point cloud of 1 point, not a mesh: it has no face"},
+          {"no_faces.ply", 7, "a point cloud of 3 points, not a mesh: it has no face"},
           {"no_format.ply", 8, "the header names no format"},
           {"no_vertex_element.ply", 5, "the header has no element 'vertex'"},
           {"no_z.ply", 3, "the vertices have no property 'z'"},
@@ -150,9 +148,6 @@ TEST(MalformedMesh, StlIsRefusedWithItsLineOrByte) {
           {"count_too_large.stl", 0,
            "the header at byte 80 says 1000000 triangles (50000084 bytes), but the file has 134 "
            "bytes"},
-          {"count_too_small.stl", 0,
-           "the header at byte 80 says 1 triangles (134 bytes), but the file has 184 bytes"},
-          {"data_after_endsolid.stl", 10, "'garbage' where 'solid' should be"},
           {"decimal_comma.stl", 5, "'1,5' has a decimal comma; numbers need a decimal point"},
           {"empty.stl", 1, "the file is empty"},
           {"four_corners.stl", 7, "'vertex' where 'endloop' should be"},
@@ -204,9 +199,12 @@ TEST(MalformedMesh, EveryTruncationOfEveryFormatIsHandled) {
     return count;
   };
   // OBJ and PLY are whole without their last newline; OBJ already when "1" of "1/1" has come.
-  EXPECT_EQ(refusals(obj, parseObj), obj.size() - 3);
-  EXPECT_EQ(refusals(ply, parsePly), ply.size() - 1);
-  EXPECT_EQ(refusals(stl, parseStl), stl.size() - 1);
+  const auto parsed = [](auto parse) {
+    return [parse](std::string_view bytes, const char* name) { parse(bytes, name, nullptr); };
+  };
+  EXPECT_EQ(refusals(obj, parsed(parseObj)), obj.size() - 3);
+  EXPECT_EQ(refusals(ply, parsed(parsePly)), ply.size() - 1);
+  EXPECT_EQ(refusals(stl, parsed(parseStl)), stl.size() - 1);
 }
 
 } // namespace

@@ -178,7 +178,7 @@ TEST(PlyReader, PassesOverListsAndElementsAnywhere) {
                "35.0 2 1.5 2.5\r\n255 0 4 0 1 2 3\r\n"
                "0 3 2 1\r\n2 9 9 0 0 0\r\n0 0 0 1\r\n1 7 0 1 1\r\n-5\r\n",
                "t");
-  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{1, 2, 3}, {3, 0, 1}})); // the smaller fold
   EXPECT_EQ(mesh.positions[0], Vec3(1, 2, 3));
 }
 

@@ -1,6 +1,7 @@
 // Exact counts on meshes with known defects (the oracle is how they were made).
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -121,6 +122,100 @@ TEST(MeshReport, ComponentsAreConnectedThroughVertices) {
                             static_cast<std::int32_t>(one.positions.size()) + 2});
   EXPECT_EQ(inspect(mesh).components, 2u);
   EXPECT_EQ(inspect(withShrunkenTriangles(one, 0.1)).components, one.triangles.size());
+}
+
+TriangleMesh jittered(TriangleMesh mesh, double most) {
+  std::mt19937 random(3);
+  for (Vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] += most * (static_cast<double>(random()) / 4294967296.0 - 0.5);
+  return mesh;
+}
+
+TEST(MeshReport, CornersWrittenOnceForEachFaceAreOne) {
+  for (const TriangleMesh& mesh : {icosphere(1, 5), torus(1, 0.2, 9, 7), box(Vec3(1, 2, 3), 3)}) {
+    const TriangleMesh soup = withShrunkenTriangles(mesh, 0);
+    EXPECT_TRUE(inspect(soup).watertight);
+    EXPECT_EQ(inspect(soup).components, 1u);
+    EXPECT_EQ(inspect(soup).widest_crack, 0);
+    expectCounts(soup, {});
+  }
+  expectCounts(withShrunkenTriangles(sheet(1, 1, 6), 0), {.boundary = 24});
+  TriangleMesh open = withShrunkenTriangles(icosphere(1, 4), 0);
+  open.triangles.pop_back();
+  expectCounts(open, {.boundary = 3});
+}
+
+TEST(MeshReport, TellsBodiesApartWhoseCornersAreWrittenOnceForEachFace) {
+  const TriangleMesh soup = withShrunkenTriangles(icosphere(1, 3), 0);
+  const TriangleMesh two =
+      joined(soup, transformed(soup, Eigen::Affine3d(Eigen::Translation3d(2.5, 0, 0))));
+  EXPECT_EQ(inspect(two).components, 2u);
+  EXPECT_TRUE(inspect(two).watertight);
+  EXPECT_EQ(inspect(joined(soup, soup)).duplicate, soup.triangles.size());
+  EXPECT_TRUE(inspect(joined(soup, soup)).watertight);
+}
+
+TEST(MeshReport, ClosesCracksAndReportsTheWidest) {
+  for (const double scale : {1e-3, 1.0, 1e6})
+    for (const TriangleMesh& shape : {icosphere(1, 6), torus(1, 0.3, 24, 12), box(Vec3(1, 2, 3))}) {
+      const TriangleMesh mesh = transformed(shape, Eigen::Affine3d(Eigen::Scaling(scale)));
+      const double size = bounds(mesh).sizes().maxCoeff();
+      for (const double share : {1e-7, 1e-5, 3e-4}) {
+        const TriangleMesh cracked = jittered(withShrunkenTriangles(mesh, 0), share * size);
+        const MeshReport report = inspect(cracked);
+        EXPECT_TRUE(report.watertight) << share;
+        EXPECT_EQ(report.components, 1u);
+        EXPECT_GT(report.widest_crack, 0.3 * share * size);
+        EXPECT_LT(report.widest_crack, 1.75 * share * size);
+      }
+      const MeshReport wide = inspect(jittered(withShrunkenTriangles(mesh, 0), 0.02 * size));
+      EXPECT_FALSE(wide.watertight);
+    }
+}
+
+TEST(MeshReport, DoesNotWeldTheEndsOfShortEdges) {
+  TriangleMesh mesh = sheet(1, 1, 2);
+  const auto first = static_cast<std::int32_t>(mesh.positions.size());
+  for (const Vec3& p : {Vec3(5, 0, 0), Vec3(5.0001, 0, 0), Vec3(5, 0.0001, 0)})
+    mesh.positions.push_back(p);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  expectCounts(mesh, {.boundary = 11});
+  EXPECT_EQ(inspect(mesh).widest_crack, 0);
+}
+
+TEST(MeshReport, ACornerOnAnEdgeOfAnotherFaceClosesIt) {
+  // A box whose top is one pair of triangles while a side has a corner within that edge.
+  TriangleMesh mesh = box(Vec3(1, 1, 1));
+  const Triangle cut = mesh.triangles[0];
+  const Vec3 middle = (mesh.corner(0, 0) + mesh.corner(0, 1)) / 2;
+  const auto v = static_cast<std::int32_t>(mesh.positions.size());
+  mesh.positions.push_back(middle);
+  mesh.triangles[0] = {cut[0], v, cut[2]};
+  mesh.triangles.push_back({v, cut[1], cut[2]});
+  expectCounts(mesh, {});
+  EXPECT_TRUE(inspect(mesh).watertight);
+  mesh.triangles.push_back({cut[0], v, cut[1]}); // as a triangle without area, it changes nothing
+  expectCounts(mesh, {.degenerate = 1});
+  EXPECT_TRUE(inspect(mesh).watertight);
+  EXPECT_TRUE(inspect(withShrunkenTriangles(mesh, 0)).watertight);
+}
+
+TEST(MeshReport, SidesOfOneBoxThatAreDividedDifferentlyAreClosed) {
+  TriangleMesh mesh;
+  int parts = 1;
+  for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Quaterniond turned =
+          Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), side * axis);
+      Eigen::Affine3d placed = Eigen::Affine3d::Identity();
+      placed.linear() = turned.toRotationMatrix().array().round().matrix();
+      placed.translation() = side * axis;
+      append(mesh, transformed(sheet(2, 2, parts++), placed));
+    }
+  const MeshReport report = inspect(mesh);
+  EXPECT_EQ(report.boundary_edges, 0u);
+  EXPECT_TRUE(report.watertight);
+  EXPECT_EQ(report.components, 1u);
 }
 
 TEST(MeshReport, AnEmptyMeshIsNotWatertight) {

@@ -13,6 +13,7 @@
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkShortArray.h>
 #include <vtkSignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
@@ -20,6 +21,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "field/store/surface_field.h"
+#include "geometry/mesh/mesh_report.h"
 #include "support/fresh_folder.h"
 #include "support/node_values.h"
 #include "visualization/export/field_io.h"
@@ -300,6 +302,71 @@ TEST_F(FieldIo, AVolumeFromElsewhereGivesAnOutwardSurface) {
   for (const Vec3& p : mesh.positions) worst = std::max(worst, std::abs(p.norm() - 0.8));
   EXPECT_LT(worst, 0.005);
   EXPECT_NEAR(volume(mesh), 4.0 / 3.0 * M_PI * 0.512, 0.02);
+}
+
+// Whole numbers, as of a scanner: `value(i, j, k)` at each node.
+template <class Array, class Value> void writeWhole(const fs::path& path, const Value& value) {
+  const vtkNew<vtkImageData> image;
+  constexpr int kNodes = 14;
+  image->SetDimensions(kNodes, kNodes, kNodes);
+  const vtkNew<Array> numbers;
+  numbers->SetName("numbers");
+  for (int k = 0; k < kNodes; ++k)
+    for (int j = 0; j < kNodes; ++j)
+      for (int i = 0; i < kNodes; ++i) {
+        const bool rim = std::min({i, j, k}) == 0 || std::max({i, j, k}) == kNodes - 1;
+        numbers->InsertNextValue(static_cast<typename Array::ValueType>(rim ? -4 : value(i, j, k)));
+      }
+  image->GetPointData()->AddArray(numbers);
+  const vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName(path.c_str());
+  writer->Write();
+}
+
+TEST_F(FieldIo, WholeNumbersAtAWholeIsoValueGiveAClosedSurface) {
+  std::mt19937 random(7);
+  const auto ball = [](int i, int j, int k) {
+    return std::max(-3, 4 - static_cast<int>((Vec3(i, j, k) - Vec3(6, 7, 6)).norm()));
+  };
+  const auto noise = [&](int, int, int) { return static_cast<int>(random() % 6) - 3; };
+  const auto cubes = [](int i, int j, int k) { return (i / 3 + j / 3 + k / 3) % 2; };
+  int round = 0;
+  const auto check = [&](const fs::path& path) {
+    for (const double iso : {-2.0, 0.0, 1.0}) {
+      SCOPED_TRACE(testing::Message() << "volume " << round << ", iso " << iso);
+      const TriangleMesh mesh = isoSurfaceOfVolume(path, iso);
+      const MeshReport report = inspect(mesh);
+      EXPECT_EQ(report.degenerate, 0u);
+      EXPECT_TRUE(report.watertight);
+      const TriangleMesh other = isoSurfaceOfVolume(path, iso + 1e-9);
+      EXPECT_EQ(other.positions, mesh.positions);
+      EXPECT_EQ(other.triangles, mesh.triangles);
+    }
+    ++round;
+  };
+  writeWhole<vtkShortArray>(file("ball.vti"), ball);
+  writeWhole<vtkFloatArray>(file("noise.vti"), noise);
+  writeWhole<vtkSignedCharArray>(file("cubes.vti"), cubes);
+  writeWhole<vtkDoubleArray>(file("scaled.vti"), ball);
+  for (const char* name : {"ball.vti", "noise.vti", "cubes.vti", "scaled.vti"}) check(file(name));
+}
+
+TEST_F(FieldIo, TheHighestAndTheLowestWholeNumberAreSurfacesToo) {
+  writeWhole<vtkSignedCharArray>(file("mask.vti"), [](int i, int j, int k) {
+    return (Vec3(i, j, k) - Vec3(6, 6, 6)).norm() < 4 ? 1 : 0;
+  });
+  for (const double iso : {1.0, 1 + 1e-9, 0.5})
+    EXPECT_EQ(isoSurfaceOfVolume(file("mask.vti"), iso).positions,
+              isoSurfaceOfVolume(file("mask.vti"), 0.5).positions);
+  EXPECT_FALSE(isoSurfaceOfVolume(file("mask.vti"), -4).triangles.empty());
+}
+
+TEST_F(FieldIo, AnIsoValueBetweenWholeNumbersIsTakenAsItIs) {
+  writeWhole<vtkShortArray>(file("v.vti"), [](int i, int, int) { return 10 * i; });
+  double x = 99;
+  for (const Vec3& p : isoSurfaceOfVolume(file("v.vti"), 33).positions) x = std::min(x, p.x());
+  EXPECT_NEAR(x, 3.3, 1e-6); // no node has 33
 }
 
 TEST_F(FieldIo, AnIsoValueOutsideTheRangeIsExplained) {

@@ -8,13 +8,13 @@
 #include "acquisition/simulation/path_error.h"
 #include "acquisition/texture/mesh_heights.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/mesh_input.h"
 #include "app/cli/output/height_report.h"
 #include "app/cli/output/path_report.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"
-#include "geometry/io/mesh_io.h"
 #include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
@@ -201,8 +201,7 @@ std::optional<Over> readOver(const FilterOptions& options, Console& console) {
   if (options.over.empty()) return std::nullopt;
   if (options.heights.empty()) throw Error("--over: is of heights; name a file with --heights");
   if (options.normal) throw Error("--normal: over a mesh its own normals count");
-  ScaledMesh scaled = inMetres(readMesh(options.over), options.unit);
-  if (!scaled.warning.empty()) console.warn(options.over.string() + ": " + scaled.warning);
+  ScaledMesh scaled = readScaledMesh(options.over, options.unit, console);
   return std::optional<Over>(std::in_place, cleaned(std::move(scaled.mesh)).mesh,
                              options.tip_radius,
                              readPoseAt(options.registration, "mesh_from_scan"));

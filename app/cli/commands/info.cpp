@@ -50,6 +50,8 @@ const Keys kInfoKeys = {
     {"watertight", "", "watertight"},
     {"components", "", "components"},
     {"defects", "", "defects", "", Shown::always, kDefectKeys},
+    {"widest_crack", "m", "widest crack", "between corners and edges that count as joined",
+     Shown::if_any},
     {"components_sides", "", "sides", "", Shown::if_any, kSideKeys},
     {"field", "", "as patina field"},
     {"layers", "", "layer", "", Shown::always, kLayerKeys},
@@ -87,6 +89,7 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, std::size_
       formatLength(size.x()) + " x " + formatLength(size.y()) + " x " + formatLength(size.z()));
   report.set("watertight", counts.watertight).set("components", counts.components);
   describeDefects(counts, report);
+  report.set("widest_crack", counts.widest_crack);
   const auto sides = sideCounts(counts.triangles - counts.non_finite - counts.degenerate,
                                 open_triangles, scene.field.sides);
   Json list = Json::array();

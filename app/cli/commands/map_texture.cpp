@@ -47,9 +47,10 @@ int runMapTexture(const MapOptions& options, Console& console) {
   if (kindOfName(options.output) != FileKind::obj)
     throw FileError(options.output.string(), 0, "only an .obj holds haptic coordinates");
   requireWritable(options.output, {options.mesh, options.path, options.heights}, FileKind::obj);
-  TexturedMesh file = kindOfName(options.mesh) == FileKind::obj
-                          ? readTexturedObj(options.mesh)
-                          : TexturedMesh{readMesh(options.mesh), {}};
+  TexturedMesh file =
+      kindOfName(options.mesh) == FileKind::obj ? readTexturedObj(options.mesh) : TexturedMesh{};
+  if (file.mesh.triangles.empty()) file.mesh = readMesh(options.mesh, &file.warnings);
+  for (const std::string& line : file.warnings) console.warn(options.mesh.string() + ": " + line);
   ScaledMesh scaled = inMetres(file.mesh, options.unit);
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
   // Faces that nothing can lie on keep their place in the file.

@@ -8,12 +8,12 @@
 #include "acquisition/registration/joint_fit.h"
 #include "acquisition/registration/scan_options.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/mesh_input.h"
 #include "app/cli/input/scan_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
-#include "geometry/io/mesh_io.h"
 #include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
@@ -254,8 +254,7 @@ int runRegister(RegisterOptions options, Console& console) {
                                              options.noise || options.no_search || options.refine))
     throw Error("--method: --tip-radius, --compliance, --noise, --no-search and --refine are of "
                 "'distance'");
-  ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
-  if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
+  ScaledMesh scaled = readScaledMesh(options.mesh, options.unit, console);
   TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
   if (mesh.triangles.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
   const double length = bounds(mesh).diagonal().norm();

@@ -6,6 +6,7 @@
 #include "acquisition/simulation/simulated_surface.h"
 #include "acquisition/tracking/marker_code.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/mesh_input.h"
 #include "app/cli/output/mesh_output.h"
 #include "app/cli/output/reports.h"
 #include "core/decompose.h"
@@ -109,8 +110,7 @@ int runSimulateScan(ScanOptions options, Console& console) {
     console.warnOfNoEffect({"--camera", "--markers", "--blur", "--noise"}, "without --frames");
   requireNoOther(folder, options.frames);
   if (std::filesystem::is_directory(folder)) requireWritable(folder / "mesh.obj", {options.mesh});
-  ScaledMesh scaled = inMetres(readMesh(options.mesh), options.unit);
-  if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
+  ScaledMesh scaled = readScaledMesh(options.mesh, options.unit, console);
   const TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
   const Pose hand_from_mesh(turnFromTo(options.from, Vec3::UnitZ()));
   const TriangleMesh turned = transformed(mesh, Eigen::Affine3d(hand_from_mesh.matrix()));

@@ -112,6 +112,9 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
   defect(tr("Non-manifold edges"), report.non_manifold_edges, tr("Edges with three faces or more"));
   defect(tr("Misoriented edges"), report.misoriented_edges,
          tr("Edges whose two faces run the same way"));
+  if (report.widest_crack > 0)
+    row(tr("Widest crack"), inWords(report.widest_crack),
+        tr("Between corners, or a corner and an edge, that count as joined"));
 
   const FieldReport& built = scene.built.report;
   const SurfaceField& field = *scene.built.field;

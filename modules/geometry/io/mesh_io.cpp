@@ -36,18 +36,18 @@ MeshFileType meshFileType(const std::filesystem::path& path) {
                       (extension.empty() ? std::string() : ", not in '" + extension + "'"));
 }
 
-TriangleMesh readMesh(const std::filesystem::path& path) {
+TriangleMesh readMesh(const std::filesystem::path& path, std::vector<std::string>* warnings) {
   (void)meshFileType(path); // a name that says nothing is refused unread
   const std::string bytes = readFile(path);
   switch (meshFileType(path, bytes)) {
   case MeshFileType::obj:
-    return parseObj(bytes, path.string());
+    return parseObj(bytes, path.string(), warnings);
   case MeshFileType::ply:
-    return parsePly(bytes, path.string());
+    return parsePly(bytes, path.string(), warnings);
   case MeshFileType::stl:
     break;
   }
-  return parseStl(bytes, path.string());
+  return parseStl(bytes, path.string(), warnings);
 }
 
 } // namespace patina

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "geometry/mesh/triangle_mesh.h"
 
@@ -12,22 +13,31 @@ namespace patina {
 // By extension (.obj .ply .stl, any case); of a stream ("-", /dev/fd/3) by its content. Coordinates
 // are returned in the file's own unit, as doubles. Throws FileError with the line, or line 0 and
 // the byte in the cause for binary data; a file without a face is an error too.
-// - Polygons are fanned from their first corner, whatever their shape: a concave one may fold over.
-// - OBJ: v, v/vt, v//vn, v/vt/vn, negative indices, comments, CRLF and lines continued by a
-//   backslash are understood; normals, groups, materials and unknown statements are passed over.
-// - PLY: ascii and both binary orders, 1.0; elements and properties that mean nothing here, lists
-//   among them, are passed over. Counts that the bytes could not hold are refused before memory is
-//   taken, data beyond the counts is an error.
+// - Polygons are split into triangles that keep their outline (polygon_split.h).
+// - OBJ: v, v/vt, v//vn, v/vt/vn, negative indices, comments, any line end and lines continued by a
+//   backslash are read; normals, groups and unknown statements are skipped.
+// - PLY: ascii and both binary orders, 1.0; faces and triangle strips (an index of -1 begins the
+//   next one). Other elements and properties, lists among them, are skipped. Counts that the bytes
+//   cannot contain are refused before memory is allocated; data beyond the counts is an error.
 // - STL: the size decides whether a file is binary, since a binary header may begin with "solid".
-//   Corners with identical coordinates are welded (-0 is 0). Stored normals are passed over.
+//   Bytes after the last triangle or the last solid are left out; a count of 0 is replaced by the
+//   one that the size allows. Corners with identical coordinates are welded (-0 is 0). Stored
+//   normals are skipped.
 // - NaN and infinite coordinates and repeated corners are kept: cleaned() drops their faces and
-//   says so. Texture coordinates are kept where every face has them.
-TriangleMesh readMesh(const std::filesystem::path& path);
+//   reports them. Texture coordinates are kept where every face has them.
+// Appends one line to `warnings` for each kind of thing that the mesh does not keep: colours,
+// materials, texture coordinates, indices out of range, bytes left over.
+TriangleMesh readMesh(const std::filesystem::path& path,
+                      std::vector<std::string>* warnings = nullptr);
 
-// The same from memory; `name` is used in messages. These are what the fuzzers call.
-TriangleMesh parseObj(std::string_view bytes, const std::string& name);
-TriangleMesh parsePly(std::string_view bytes, const std::string& name);
-TriangleMesh parseStl(std::string_view bytes, const std::string& name);
+// The same from memory; `name` is used in messages, and warnings of materials and pictures look for
+// them beside it. These are what the fuzzers call.
+TriangleMesh parseObj(std::string_view bytes, const std::string& name,
+                      std::vector<std::string>* warnings = nullptr);
+TriangleMesh parsePly(std::string_view bytes, const std::string& name,
+                      std::vector<std::string>* warnings = nullptr);
+TriangleMesh parseStl(std::string_view bytes, const std::string& name,
+                      std::vector<std::string>* warnings = nullptr);
 
 // By extension; PLY to a stream; PLY and STL binary. Atomic. PLY stores doubles and OBJ the
 // shortest text, so both read back bit for bit; STL stores floats and no texture.

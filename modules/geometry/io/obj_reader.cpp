@@ -1,11 +1,14 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "core/file.h"
 #include "geometry/io/mesh_file_type.h"
+#include "geometry/io/obj_materials.h"
 #include "geometry/io/text_scan.h"
 #include "geometry/io/textured_obj.h"
+#include "geometry/mesh/polygon_split.h"
 
 namespace patina {
 namespace {
@@ -15,9 +18,10 @@ constexpr std::int64_t kMostIndices = std::numeric_limits<std::int32_t>::max();
 class ObjParser {
  public:
   // textured: where that lies which is not null, lines of haptic coordinates are read.
-  ObjParser(std::string_view bytes, const std::string& name,
+  ObjParser(std::string_view bytes, const std::string& name, std::vector<std::string>* warnings,
             std::vector<TexturedFace>* textured = nullptr)
-      : name_(name), lines_(withoutByteOrderMark(bytes)), textured_(textured) {}
+      : name_(name), lines_(withoutByteOrderMark(bytes)), warnings_(warnings), textured_(textured) {
+  }
 
   TriangleMesh parse() {
     std::string_view statement;
@@ -31,20 +35,29 @@ class ObjParser {
       else if (keyword == "vt")
         readTexturePoint(words);
       else if (keyword == "vn")
-        ++normals_;
+        ++normal_count_;
       else if (textured_ && keyword == "h")
         readHapticCoordinates(words);
+      else if (keyword == "mtllib" || keyword == "usemtl")
+        materials_.addStatement(keyword, statement);
       else if (text::hasControl(statement))
         fail("binary data where OBJ text should be");
     }
     if (lines_.number() == 0) throw FileError(name_, 1, "the file is empty");
-    checkHighest(highest_vertex_, static_cast<std::int64_t>(mesh_.positions.size()), "vertex");
-    checkHighest(highest_texture_, static_cast<std::int64_t>(texture_.size()), "texture point");
-    checkHighest(highest_normal_, normals_, "normal");
+    if (highest_vertex_.index > static_cast<std::int64_t>(mesh_.positions.size()))
+      throw FileError(name_, highest_vertex_.line,
+                      "the face names vertex " + std::to_string(highest_vertex_.index) +
+                          ", but the file has " + std::to_string(mesh_.positions.size()));
     line_ = lines_.number();
-    if (mesh_.triangles.empty()) fail("the file ends without a face");
+    if (mesh_.triangles.empty())
+      fail(mesh_.positions.empty() ? "the file ends without a face"
+                                   : text::pointCloud(mesh_.positions.size(), "it has no face"));
     if (haptic_lines_ > 0) checkHapticCoordinates();
-    if (all_textured_) gatherTexture();
+    texture_points_.countMissing(static_cast<std::int64_t>(texture_.size()));
+    normals_.countMissing(normal_count_);
+    if (texture_points_.missing == 0 && all_textured_) gatherTexture();
+    const PolygonFaults faults = splitPolygons(mesh_, fans_);
+    if (warnings_) addWarnings(faults);
     return std::move(mesh_);
   }
 
@@ -56,7 +69,19 @@ class ObjParser {
   };
   struct Corner {
     std::int32_t vertex = 0;
-    std::int32_t texture = -1;
+    std::int32_t texture = kNone;
+  };
+  // Indices of normals or texture points, which are no error where they are out of range.
+  struct References {
+    const char* what = "";
+    std::vector<std::int32_t> ahead{}; // indices beyond what the file had so far
+    std::size_t missing = 0;
+    std::size_t first_line = 0; // of the first index that is ahead or missing
+
+    void countMissing(std::int64_t count) {
+      missing += static_cast<std::size_t>(
+          std::count_if(ahead.begin(), ahead.end(), [&](std::int32_t i) { return i >= count; }));
+    }
   };
 
   [[noreturn]] void fail(const std::string& cause) const { throw FileError(name_, line_, cause); }
@@ -93,8 +118,10 @@ class ObjParser {
     Vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = text::number(words.next(), name_, line_, "a coordinate");
     // A weight or a colour may follow; neither is used, but it must be numbers.
-    for (auto word = words.next(); !word.empty(); word = words.next())
+    int more = 0;
+    for (auto word = words.next(); !word.empty(); word = words.next(), ++more)
       text::number(word, name_, line_, "a number");
+    if (more >= 3) ++colored_vertices_;
     if (static_cast<std::int64_t>(mesh_.positions.size()) == kMostIndices)
       fail("more vertices than this program can count");
     mesh_.positions.push_back(p);
@@ -116,10 +143,13 @@ class ObjParser {
     if (polygon_.size() > 3 && polygon_line_ == 0) polygon_line_ = line_;
     if (polygon_.size() < 3)
       fail("a face needs 3 corners or more, this one has " + std::to_string(polygon_.size()));
+    if (polygon_.size() > 3) fans_.push_back({mesh_.triangles.size(), polygon_.size()});
     for (std::size_t k = 1; k + 1 < polygon_.size(); ++k) {
       const Corner &a = polygon_[0], &b = polygon_[k], &c = polygon_[k + 1];
       mesh_.triangles.push_back({a.vertex, b.vertex, c.vertex});
-      all_textured_ = all_textured_ && a.texture >= 0 && b.texture >= 0 && c.texture >= 0;
+      const bool textured = a.texture >= 0 && b.texture >= 0 && c.texture >= 0;
+      all_textured_ = all_textured_ && textured;
+      if (!textured) ++bare_triangles_;
       if (all_textured_) corner_textures_.push_back({a.texture, b.texture, c.texture});
     }
   }
@@ -157,40 +187,56 @@ class ObjParser {
     Corner corner;
     const char* at = word.data();
     const char* end = at + word.size();
-    corner.vertex = readIndex(at, end, word, static_cast<std::int64_t>(mesh_.positions.size()),
-                              "vertex", highest_vertex_);
+    corner.vertex = readVertexIndex(at, end, word);
     if (at != end && *at == '/') {
       ++at;
       if (at != end && *at != '/')
-        corner.texture = readIndex(at, end, word, static_cast<std::int64_t>(texture_.size()),
-                                   "texture point", highest_texture_);
+        corner.texture = readReference(at, end, word, static_cast<std::int64_t>(texture_.size()),
+                                       texture_points_);
       if (at != end && *at == '/') {
         ++at;
-        if (at != end) readIndex(at, end, word, normals_, "normal", highest_normal_);
+        if (at != end) readReference(at, end, word, normal_count_, normals_);
       }
     }
     if (at != end) throwBadCorner(word);
     return corner;
   }
 
-  std::int32_t readIndex(const char*& at, const char* end, std::string_view word,
-                         std::int64_t so_far, const char* what, Highest& highest) {
+  std::int32_t readVertexIndex(const char*& at, const char* end, std::string_view word) {
+    const auto so_far = static_cast<std::int64_t>(mesh_.positions.size());
     std::int64_t index = 0;
     const auto [stop, error] = std::from_chars(at, end, index);
     if (error == std::errc::invalid_argument) throwBadCorner(word);
     if (error != std::errc() || index > kMostIndices || index < -kMostIndices)
-      fail("the face names " + std::string(what) + " " + text::quoted(word) +
-           ", more than a file can hold");
+      fail("the face names vertex " + text::quoted(word) + ", more than a file can hold");
     at = stop;
-    if (index == 0) fail(std::string("the face names ") + what + " 0; OBJ counts from 1");
+    if (index == 0) fail("the face names vertex 0; OBJ counts from 1");
     if (index < 0) {
       if (-index > so_far)
-        fail("the face names " + std::string(what) + " " + std::to_string(index) + ", but only " +
+        fail("the face names vertex " + std::to_string(index) + ", but only " +
              std::to_string(so_far) + " stand before it");
       return static_cast<std::int32_t>(so_far + index);
     }
-    if (index > highest.index) highest = {index, line_};
+    if (index > highest_vertex_.index) highest_vertex_ = {index, line_};
     return static_cast<std::int32_t>(index - 1);
+  }
+
+  // Returns kNone for an index that no file has.
+  std::int32_t readReference(const char*& at, const char* end, std::string_view word,
+                             std::int64_t so_far, References& references) {
+    std::int64_t index = 0;
+    const auto [stop, error] = std::from_chars(at, end, index);
+    if (error == std::errc::invalid_argument) throwBadCorner(word);
+    at = stop;
+    if (index < 0) index += so_far + 1;
+    if (index > 0 && index <= so_far) return static_cast<std::int32_t>(index - 1);
+    if (references.first_line == 0) references.first_line = line_;
+    if (error != std::errc() || index <= 0 || index > kMostIndices) {
+      ++references.missing;
+      return kNone;
+    }
+    references.ahead.push_back(static_cast<std::int32_t>(index - 1));
+    return references.ahead.back();
   }
 
   [[noreturn]] void throwBadCorner(std::string_view word) const {
@@ -198,11 +244,18 @@ class ObjParser {
     fail(text::quoted(word) + " is not a face's corner (v, v/t, v//n or v/t/n)");
   }
 
-  void checkHighest(const Highest& highest, std::int64_t count, const char* what) const {
-    if (highest.index <= count) return;
-    throw FileError(name_, highest.line,
-                    "the face names " + std::string(what) + " " + std::to_string(highest.index) +
-                        ", but the file has " + std::to_string(count));
+  void addWarnings(const PolygonFaults& faults) {
+    addPolygonWarnings(faults, *warnings_);
+    for (const References* references : {&texture_points_, &normals_})
+      if (references->missing > 0)
+        warnings_->push_back("line " + std::to_string(references->first_line) + ": " +
+                             formatCount(references->missing) + " of the faces' corners name a " +
+                             references->what);
+    if (texture_points_.missing == 0 && !texture_.empty() && !all_textured_)
+      warnings_->push_back("the texture coordinates are left out: " + formatCount(bare_triangles_) +
+                           " of " + formatCount(mesh_.triangles.size()) + " triangles have none");
+    if (colored_vertices_ > 0) warnings_->push_back(text::colorsLeftOut("vertices"));
+    addMaterialWarnings(materials_, name_, mesh_, *warnings_);
   }
 
   void gatherTexture() {
@@ -221,23 +274,31 @@ class ObjParser {
   std::vector<Vec2> texture_;
   std::vector<std::array<std::int32_t, 3>> corner_textures_;
   std::vector<Corner> polygon_;
-  std::int64_t normals_ = 0;
+  std::vector<PolygonFan> fans_;
+  std::int64_t normal_count_ = 0;
   bool all_textured_ = true;
+  std::size_t bare_triangles_ = 0; // triangles without texture coordinates
+  std::size_t colored_vertices_ = 0;
+  ObjMaterials materials_;
+  std::vector<std::string>* warnings_;
   std::vector<TexturedFace>* textured_;
   std::int64_t haptic_lines_ = 0;
   std::size_t polygon_line_ = 0; // of the first face with more than three corners
-  Highest highest_vertex_, highest_texture_, highest_normal_;
+  Highest highest_vertex_;
+  References texture_points_{"texture point that is not there: the texture is left out"};
+  References normals_{"normal that is not there: normals are not used"};
 };
 
 } // namespace
 
-TriangleMesh parseObj(std::string_view bytes, const std::string& name) {
-  return ObjParser(bytes, name).parse();
+TriangleMesh parseObj(std::string_view bytes, const std::string& name,
+                      std::vector<std::string>* warnings) {
+  return ObjParser(bytes, name, warnings).parse();
 }
 
 TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name) {
   TexturedMesh read;
-  read.mesh = ObjParser(bytes, name, &read.textured).parse();
+  read.mesh = ObjParser(bytes, name, &read.warnings, &read.textured).parse();
   return read;
 }
 

@@ -32,7 +32,8 @@ constexpr std::array<TypeName, 16> kTypeNames = {{{"char", PlyType::int8},
 class HeaderParser {
  public:
   HeaderParser(std::string_view bytes, const std::string& name)
-      : name_(name), bytes_(bytes), lines_(bytes) {}
+      : name_(name), bytes_(bytes),
+        lines_(bytes, text::lineEndOf(bytes.substr(0, bytes.find("end_header")))) {}
 
   PlyHeader parse() {
     if (bytes_.empty()) throw FileError(name_, 1, "the file is empty");
@@ -42,6 +43,7 @@ class HeaderParser {
       text::Words words(nextLine());
       const std::string_view keyword = words.next();
       if (keyword == "end_header") break;
+      if (keyword == "comment") addPicture(words);
       if (keyword.empty() || keyword == "comment" || keyword == "obj_info") continue;
       if (keyword == "format") {
         header_.format = format(words);
@@ -85,6 +87,14 @@ class HeaderParser {
     if (word == "binary_big_endian") return PlyFormat::big_endian;
     fail("format " + text::quoted(word) +
          " is unknown; ascii, binary_little_endian and binary_big_endian are");
+  }
+
+  void addPicture(text::Words& words) {
+    if (!text::equalIgnoringCase(words.next(), "TextureFile")) return;
+    std::string name;
+    for (auto word = words.next(); !word.empty(); word = words.next())
+      name += (name.empty() ? "" : " ") + std::string(word);
+    if (!name.empty()) header_.pictures.push_back(name);
   }
 
   void addElement(text::Words& words) {

@@ -33,9 +33,10 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  std::string_view body;     // what follows the header
-  std::size_t lines = 0;     // of the header
-  std::size_t body_byte = 0; // offset of the body in the file
+  std::vector<std::string> pictures; // of comment TextureFile
+  std::string_view body;             // what follows the header
+  std::size_t lines = 0;             // of the header
+  std::size_t body_byte = 0;         // offset of the body in the file
 };
 
 // Throws FileError. Every element's count is one that the body could hold, so that memory may be

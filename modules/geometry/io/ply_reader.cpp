@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/obj_materials.h"
 #include "geometry/io/ply_source.h"
+#include "geometry/mesh/polygon_split.h"
 
 namespace patina {
 namespace {
@@ -10,7 +13,8 @@ namespace {
 constexpr int kUnused = -1;
 constexpr int kU = 3; // roles of vertex properties: 0..2 position, 3..4 texture
 constexpr int kIndices = 0;
-constexpr int kTexture = 1; // roles of face properties
+constexpr int kTexture = 1;           // roles of face properties
+constexpr std::int32_t kRestart = -1; // in a list of strips: the next one begins
 
 int vertexRole(const PlyProperty& p) {
   if (p.count_type) return kUnused;
@@ -27,28 +31,42 @@ int faceRole(const PlyProperty& p) {
   return kUnused;
 }
 
+bool hasColors(const PlyElement& e) {
+  return e.count > 0 && std::any_of(e.properties.begin(), e.properties.end(), [](const auto& p) {
+           return p.name == "red" || p.name == "diffuse_red" || p.name == "r";
+         });
+}
+
 template <typename Source> class PlyParser {
  public:
-  PlyParser(const PlyHeader& header, const std::string& name)
-      : header_(header), name_(name), in_(header, name) {}
+  PlyParser(const PlyHeader& header, const std::string& name, std::vector<std::string>* warnings)
+      : header_(header), name_(name), in_(header, name), warnings_(warnings) {}
 
   TriangleMesh parse() {
-    const PlyElement& vertices = element("vertex");
-    const PlyElement& faces = element("face");
-    vertex_count_ = vertices.count;
-    if (vertices.count > std::numeric_limits<std::int32_t>::max())
-      fail(vertices, "more vertices than this program can count");
-    if (faces.count == 0) fail(faces, "the file has no face");
+    const PlyElement* vertices = element("vertex");
+    if (!vertices) throw FileError(name_, header_.lines, "the header has no element 'vertex'");
+    faces_ = element("face");
+    strips_ = element("tristrips");
+    vertex_count_ = vertices->count;
+    if (vertex_count_ > std::numeric_limits<std::int32_t>::max())
+      fail(*vertices, "more vertices than this program can count");
+    if (countOf(faces_) + countOf(strips_) == 0) failWithoutFaces();
     for (const PlyElement& e : header_.elements) {
-      if (&e == &vertices)
+      if (&e == vertices)
         readVertices(e);
-      else if (&e == &faces)
+      else if (&e == faces_)
         readFaces(e);
+      else if (&e == strips_)
+        readStrips(e);
       else
         skip(e);
     }
     in_.end();
+    if (mesh_.triangles.empty()) in_.fail("the file has no triangle: its strips are too short");
+    if (!face_texture_) mesh_.corner_uvs.clear();
+    const PolygonFaults faults = splitPolygons(mesh_, fans_);
     if (!face_texture_ && has_vertex_texture_) gatherVertexTexture();
+    if (warnings_) addWarnings(*vertices, faults);
     return std::move(mesh_);
   }
 
@@ -57,17 +75,34 @@ template <typename Source> class PlyParser {
     throw FileError(name_, e.line, cause);
   }
 
-  const PlyElement& element(const char* wanted) const {
+  static std::uint64_t countOf(const PlyElement* e) { return e ? e->count : 0; }
+
+  [[noreturn]] void failWithoutFaces() const {
+    const std::size_t line = faces_ ? faces_->line : header_.lines;
+    if (vertex_count_ == 0) throw FileError(name_, line, "the file has no face");
+    throw FileError(name_, line, text::pointCloud(vertex_count_, "it has no face"));
+  }
+
+  void addWarnings(const PlyElement& vertices, const PolygonFaults& faults) {
+    addPolygonWarnings(faults, *warnings_);
+    if (texture_lost_)
+      warnings_->push_back(
+          "the texture coordinates of the faces are left out: not every face has them");
+    if (hasColors(vertices)) warnings_->push_back(text::colorsLeftOut("vertices"));
+    if (faces_ && hasColors(*faces_)) warnings_->push_back(text::colorsLeftOut("faces"));
+    if (!header_.pictures.empty())
+      warnings_->push_back(
+          picturesLeftOut(name_, "TextureFile", header_.pictures, !mesh_.corner_uvs.empty()));
+  }
+
+  const PlyElement* element(const char* wanted) const {
     const PlyElement* found = nullptr;
     for (const PlyElement& e : header_.elements) {
       if (e.name != wanted) continue;
       if (found) fail(e, std::string("element '") + wanted + "' appears twice");
       found = &e;
     }
-    if (!found)
-      throw FileError(name_, header_.lines,
-                      std::string("the header has no element '") + wanted + "'");
-    return *found;
+    return found;
   }
 
   // The role of each property; a role that two properties claim is an error.
@@ -128,14 +163,21 @@ template <typename Source> class PlyParser {
     }
   }
 
-  void readFaces(const PlyElement& e) {
-    std::array<bool, 5> has{};
+  std::vector<int> faceRoles(const PlyElement& e, const char* whose,
+                             std::array<bool, 5>& has) const {
     const std::vector<int> role = roles(e, faceRole, has);
-    if (!has[kIndices]) fail(e, "the faces have no list 'vertex_indices'");
+    if (!has[kIndices]) fail(e, std::string("the ") + whose + " have no list 'vertex_indices'");
     for (std::size_t k = 0; k < role.size(); ++k)
       if (role[k] == kIndices && !isInteger(e.properties[k].type))
-        fail(e, "the faces' vertex indices must have an integer type");
-    face_texture_ = has[kTexture];
+        fail(e, std::string("the ") + whose + "' vertex indices must have an integer type");
+    return role;
+  }
+
+  void readFaces(const PlyElement& e) {
+    std::array<bool, 5> has{};
+    const std::vector<int> role = faceRoles(e, "faces", has);
+    face_texture_ = has[kTexture] && countOf(strips_) == 0;
+    texture_lost_ = has[kTexture] && !face_texture_;
     mesh_.triangles.reserve(e.count);
     if (face_texture_) mesh_.corner_uvs.reserve(e.count);
     for (std::uint64_t i = 0; i < e.count; ++i) {
@@ -154,20 +196,60 @@ template <typename Source> class PlyParser {
       in_.endItem();
       addPolygon();
     }
-    if (!face_texture_) mesh_.corner_uvs.clear();
+  }
+
+  void readStrips(const PlyElement& e) {
+    std::array<bool, 5> has{};
+    const std::vector<int> role = faceRoles(e, "strips", has);
+    for (std::uint64_t i = 0; i < e.count; ++i) {
+      in_.beginItem(e);
+      for (std::size_t k = 0; k < role.size(); ++k) {
+        const PlyProperty& p = e.properties[k];
+        if (role[k] == kIndices)
+          readList(p, true);
+        else if (p.count_type)
+          skipList(p);
+        else
+          in_.value(p.type);
+      }
+      in_.endItem();
+      addStrips();
+    }
   }
 
   void readIndices(const PlyProperty& p) {
+    readList(p, false);
+    if (polygon_.size() < 3)
+      in_.fail("a face needs 3 corners or more, this one has " + std::to_string(polygon_.size()));
+  }
+
+  void readList(const PlyProperty& p, bool restarts) {
     polygon_.clear();
     for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n) {
       const double index = in_.value(p.type);
-      if (!(index >= 0 && index < static_cast<double>(vertex_count_)) || index != std::floor(index))
+      const bool restart = restarts && index == kRestart;
+      if (!restart && (!(index >= 0 && index < static_cast<double>(vertex_count_)) ||
+                       index != std::floor(index)))
         in_.fail("the face names vertex " + formatNumber(index) + ", but the file has " +
                  std::to_string(vertex_count_) + ", counted from 0");
       polygon_.push_back(static_cast<std::int32_t>(index));
     }
-    if (polygon_.size() < 3)
-      in_.fail("a face needs 3 corners or more, this one has " + std::to_string(polygon_.size()));
+  }
+
+  // Every other triangle of a strip runs backwards. One that names a vertex twice only leads the
+  // strip elsewhere.
+  void addStrips() {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      if (polygon_[i] == kRestart) first = i + 1;
+      if (i < first + 2 || polygon_[i] == kRestart) continue;
+      const std::int32_t a = polygon_[i - 2], b = polygon_[i - 1], c = polygon_[i];
+      if (a == b || b == c || c == a) continue;
+      if ((i - first) % 2 == 0)
+        mesh_.triangles.push_back({a, b, c});
+      else
+        mesh_.triangles.push_back({b, a, c});
+    }
   }
 
   void readFaceTexture(const PlyProperty& p) {
@@ -178,7 +260,11 @@ template <typename Source> class PlyParser {
 
   void addPolygon() {
     // Texture is kept only where every face has it.
-    face_texture_ = face_texture_ && polygon_texture_.size() == 2 * polygon_.size();
+    if (face_texture_ && polygon_texture_.size() != 2 * polygon_.size()) {
+      face_texture_ = false;
+      texture_lost_ = true;
+    }
+    if (polygon_.size() > 3) fans_.push_back({mesh_.triangles.size(), polygon_.size()});
     const auto uv = [&](std::size_t k) {
       return Vec2(polygon_texture_[2 * k], polygon_texture_[2 * k + 1]);
     };
@@ -200,28 +286,34 @@ template <typename Source> class PlyParser {
   const PlyHeader& header_;
   const std::string& name_;
   Source in_;
+  std::vector<std::string>* warnings_;
   TriangleMesh mesh_;
+  const PlyElement* faces_ = nullptr; // nullptr where the file has none
+  const PlyElement* strips_ = nullptr;
   std::uint64_t vertex_count_ = 0;
   std::vector<std::int32_t> polygon_;
+  std::vector<PolygonFan> fans_;
   std::vector<double> polygon_texture_;
   std::vector<Vec2> vertex_texture_;
   bool has_vertex_texture_ = false;
   bool face_texture_ = false;
+  bool texture_lost_ = false;
 };
 
 } // namespace
 
-TriangleMesh parsePly(std::string_view bytes, const std::string& name) {
+TriangleMesh parsePly(std::string_view bytes, const std::string& name,
+                      std::vector<std::string>* warnings) {
   const PlyHeader header = parsePlyHeader(bytes, name);
   switch (header.format) {
   case PlyFormat::ascii:
-    return PlyParser<PlyAsciiSource>(header, name).parse();
+    return PlyParser<PlyAsciiSource>(header, name, warnings).parse();
   case PlyFormat::little_endian:
-    return PlyParser<PlyBinarySource<false>>(header, name).parse();
+    return PlyParser<PlyBinarySource<false>>(header, name, warnings).parse();
   case PlyFormat::big_endian:
     break;
   }
-  return PlyParser<PlyBinarySource<true>>(header, name).parse();
+  return PlyParser<PlyBinarySource<true>>(header, name, warnings).parse();
 }
 
 } // namespace patina

@@ -1,4 +1,3 @@
-#include <cctype>
 #include <cstring>
 
 #include "geometry/io/mesh_io.h"
@@ -10,6 +9,7 @@ namespace {
 
 constexpr std::size_t kHeader = 84; // 80 bytes of anything, then the count
 constexpr std::size_t kRecord = 50; // normal, three corners (floats), two bytes of anything
+constexpr std::uint32_t kUnknownCount = 0xffffffff; // of programs that write without seeking
 
 template <typename T> T littleEndian(const char* at) {
   static_assert(sizeof(T) == 4);
@@ -18,13 +18,6 @@ template <typename T> T littleEndian(const char* at) {
       static_cast<std::uint32_t>(b[0]) | static_cast<std::uint32_t>(b[1]) << 8 |
       static_cast<std::uint32_t>(b[2]) << 16 | static_cast<std::uint32_t>(b[3]) << 24;
   return std::bit_cast<T>(bits);
-}
-
-bool equalIgnoringCase(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
-           return std::tolower(static_cast<unsigned char>(x)) ==
-                  std::tolower(static_cast<unsigned char>(y));
-         });
 }
 
 std::uint64_t binarySize(std::string_view bytes) {
@@ -41,21 +34,41 @@ Kind kindOf(std::string_view bytes) {
   std::string_view line;
   std::string_view word;
   while (word.empty() && lines.next(line)) word = text::Words(line).next();
-  return equalIgnoringCase(word, "solid") ? Kind::ascii : Kind::other_text;
+  if (text::equalIgnoringCase(word, "solid")) return Kind::ascii;
+  return text::hasControl(bytes.substr(0, kHeader + kRecord)) ? Kind::binary : Kind::other_text;
 }
 
-TriangleMesh parseBinary(std::string_view bytes, const std::string& name) {
+std::string bytesText(std::size_t count) {
+  return formatCount(count) + (count == 1 ? " byte" : " bytes");
+}
+
+TriangleMesh parseBinary(std::string_view bytes, const std::string& name,
+                         std::vector<std::string>& warnings) {
   if (bytes.size() < kHeader)
     throw FileError(name, 0,
                     "not an STL file: it has " + std::to_string(bytes.size()) +
                         " bytes, fewer than a binary header");
-  const std::size_t count = littleEndian<std::uint32_t>(bytes.data() + 80);
-  if (binarySize(bytes) != bytes.size())
+  std::size_t count = littleEndian<std::uint32_t>(bytes.data() + 80);
+  const std::size_t fitting = (bytes.size() - kHeader) / kRecord;
+  if (const bool streamed = count == 0 || count == kUnknownCount; streamed && fitting > 0) {
+    warnings.push_back("the header says " + formatCount(count) + " triangles; the " +
+                       bytesText(bytes.size() - kHeader) + " after it are read as " +
+                       formatCount(fitting));
+    count = fitting;
+  }
+  if (count > fitting)
     throw FileError(name, 0,
                     "the header at byte 80 says " + std::to_string(count) + " triangles (" +
                         std::to_string(binarySize(bytes)) + " bytes), but the file has " +
                         std::to_string(bytes.size()) + " bytes");
   if (count == 0) throw FileError(name, 0, "the file has no triangle (count at byte 80)");
+  if (const std::size_t left = bytes.size() - kHeader - count * kRecord; left > 0)
+    warnings.push_back(bytesText(left) + " after the last triangle: left out" +
+                       (left < kRecord ? std::string()
+                                       : ", though they could be " + formatCount(left / kRecord) +
+                                             " triangles more than the header says"));
+  if (bytes.substr(0, 80).find("COLOR=") != bytes.npos)
+    warnings.push_back(text::colorsLeftOut("triangles"));
   TriangleMesh mesh;
   mesh.triangles.resize(count);
   VertexWeld weld(count / 2 + 3);
@@ -72,16 +85,19 @@ TriangleMesh parseBinary(std::string_view bytes, const std::string& name) {
 
 class AsciiParser {
  public:
-  AsciiParser(std::string_view bytes, const std::string& name)
-      : name_(name), lines_(bytes), weld_(bytes.size() / 500) {}
+  AsciiParser(std::string_view bytes, const std::string& name, std::vector<std::string>& warnings)
+      : name_(name), lines_(bytes), weld_(bytes.size() / 500), warnings_(warnings) {}
 
   TriangleMesh parse() {
     while (findWord()) {
+      if (!triangles_.empty() && !text::equalIgnoringCase(word_, "solid")) {
+        warnings_.push_back("line " + std::to_string(lines_.number()) +
+                            ": what follows the last solid is left out");
+        break;
+      }
       expect("solid");
       words_ = text::Words({}); // the rest of the line is a name
-      for (expectOneOf("facet", "endsolid"); equalIgnoringCase(word_, "facet");
-           expectOneOf("facet", "endsolid"))
-        readFacet();
+      while (nextIsFacet()) readFacet();
       words_ = text::Words({});
     }
     if (triangles_.empty()) throw FileError(name_, lines_.number(), "the file has no triangle");
@@ -107,15 +123,28 @@ class AsciiParser {
                       std::string("the file ends where ") + wanted + " should be");
   }
   void expect(const char* wanted) {
-    if (!equalIgnoringCase(word_, wanted)) throwUnexpected(wanted);
+    if (!text::equalIgnoringCase(word_, wanted)) throwUnexpected(wanted);
   }
   void nextMustBe(const char* wanted) {
     nextWord(wanted);
     expect(wanted);
   }
-  void expectOneOf(const char* one, const char* other) {
-    nextWord(other);
-    if (!equalIgnoringCase(word_, one)) expect(other);
+  // "endloop", or "end loop" as some programs write it.
+  void nextMustEnd(const char* wanted, const char* what) {
+    nextWord(wanted);
+    expectEnd(wanted, what);
+  }
+  void expectEnd(const char* wanted, const char* what) {
+    if (!text::equalIgnoringCase(word_, "end")) return expect(wanted);
+    nextWord(what);
+    expect(what);
+  }
+  // Else the solid has ended.
+  bool nextIsFacet() {
+    nextWord("endsolid");
+    if (text::equalIgnoringCase(word_, "facet")) return true;
+    expectEnd("endsolid", "solid");
+    return false;
   }
   [[noreturn]] void throwUnexpected(const char* wanted) const {
     const std::string found =
@@ -138,8 +167,8 @@ class AsciiParser {
       }
       corner = weld_.index(p);
     }
-    nextMustBe("endloop");
-    nextMustBe("endfacet");
+    nextMustEnd("endloop", "loop");
+    nextMustEnd("endfacet", "facet");
     triangles_.push_back(triangle);
   }
 
@@ -149,17 +178,21 @@ class AsciiParser {
   std::string_view word_;
   VertexWeld weld_;
   std::vector<Triangle> triangles_;
+  std::vector<std::string>& warnings_;
 };
 
 } // namespace
 
-TriangleMesh parseStl(std::string_view bytes, const std::string& name) {
+TriangleMesh parseStl(std::string_view bytes, const std::string& name,
+                      std::vector<std::string>* warnings) {
+  std::vector<std::string> unheard;
+  if (!warnings) warnings = &unheard;
   if (bytes.empty()) throw FileError(name, 1, "the file is empty");
   switch (kindOf(bytes)) {
   case Kind::binary:
-    return parseBinary(bytes, name);
+    return parseBinary(bytes, name, *warnings);
   case Kind::ascii:
-    return AsciiParser(withoutByteOrderMark(bytes), name).parse();
+    return AsciiParser(withoutByteOrderMark(bytes), name, *warnings).parse();
   case Kind::other_text:
     break;
   }

@@ -1,8 +1,29 @@
 #include "geometry/io/text_scan.h"
 
+#include <cctype>
 #include <charconv>
 
 namespace patina::text {
+
+bool equalIgnoringCase(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+           return std::tolower(static_cast<unsigned char>(x)) ==
+                  std::tolower(static_cast<unsigned char>(y));
+         });
+}
+
+std::string pointCloud(std::size_t points, const char* why) {
+  return "a point cloud of " + formatCount(points) + (points == 1 ? " point" : " points") +
+         ", not a mesh: " + why +
+         "; a surface reconstruction makes a mesh of it, such as Screened Poisson in MeshLab or "
+         "PoissonRecon in CloudCompare";
+}
+
+std::string colorsLeftOut(const char* whose) {
+  return std::string("the colours of its ") + whose +
+         " are left out; a picture is shown with patina scene WORKSPACE --image "
+         "NAME=FILE,color,mapped";
+}
 
 void throwNotANumber(std::string_view word, const std::string& name, std::size_t line,
                      const char* what) {

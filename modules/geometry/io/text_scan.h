@@ -24,22 +24,37 @@ inline bool hasControl(std::string_view s) {
   return std::any_of(s.begin(), s.end(), isControl);
 }
 
+bool equalIgnoringCase(std::string_view a, std::string_view b);
+
 // Fit for one line of a message, whatever the bytes are.
-inline std::string quoted(std::string_view word) {
-  constexpr std::size_t kShown = 32;
-  std::string out = "'";
-  for (const char c : word.substr(0, kShown))
+inline std::string shown(std::string_view word) {
+  std::string out;
+  for (const char c : word)
     out += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f ? '?' : c;
-  return out + (word.size() > kShown ? "...'" : "'");
+  return out;
+}
+inline std::string quoted(std::string_view word, std::size_t most = 32) {
+  return "'" + shown(word.substr(0, most)) + (word.size() > most ? "...'" : "'");
+}
+
+// Returns the cause for a file that has vertices but no face.
+std::string pointCloud(std::size_t points, const char* why);
+// Returns the warning for the colours of "vertices", "faces" or others that `whose` names.
+std::string colorsLeftOut(const char* whose);
+
+// Returns '\r' for text of old Macs, which contains no '\n'.
+inline char lineEndOf(std::string_view bytes) {
+  return bytes.find('\n') == bytes.npos && bytes.find('\r') != bytes.npos ? '\r' : '\n';
 }
 
 // Physical lines, without their ends.
 class Lines {
  public:
-  explicit Lines(std::string_view bytes) : rest_(bytes) {}
+  explicit Lines(std::string_view bytes) : Lines(bytes, lineEndOf(bytes)) {}
+  Lines(std::string_view bytes, char line_end) : rest_(bytes), line_end_(line_end) {}
   bool next(std::string_view& line) {
     if (rest_.empty()) return false;
-    const void* found = std::memchr(rest_.data(), '\n', rest_.size());
+    const void* found = std::memchr(rest_.data(), line_end_, rest_.size());
     const std::size_t length =
         found ? static_cast<std::size_t>(static_cast<const char*>(found) - rest_.data())
               : rest_.size();
@@ -53,6 +68,7 @@ class Lines {
 
  private:
   std::string_view rest_;
+  char line_end_;
   std::size_t number_ = 0;
 };
 

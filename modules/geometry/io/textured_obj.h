@@ -1,6 +1,9 @@
 // An OBJ that also says where on its faces which haptic texture lies (A26).
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/textured_face.h"
 
@@ -9,6 +12,7 @@ namespace patina {
 struct TexturedMesh {
   TriangleMesh mesh; // as of readMesh()
   std::vector<TexturedFace> textured;
+  std::vector<std::string> warnings; // as of readMesh()
 };
 
 // `h texture x1 y1 x2 y2 x3 y3`, one a face, in the order of the faces and of their corners, in the

@@ -4,11 +4,13 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "geometry/mesh/border_weld.h"
 
 namespace patina {
 namespace {
 
-enum class Fault : std::uint8_t { none, non_finite, degenerate, duplicate };
+// A triangle is closed_up if the weld made two of its corners one.
+enum class Fault : std::uint8_t { none, non_finite, degenerate, duplicate, closed_up };
 
 Fault faultOf(const TriangleMesh& mesh, std::size_t t) {
   const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
@@ -57,7 +59,7 @@ template <typename Item> class ByVertex {
       Item* first = items_.data() + ends_[v];
       Item* last = items_.data() + ends_[v + 1];
       std::sort(first, last);
-      visit(first, last);
+      visit(static_cast<std::int32_t>(v), first, last);
     }
   }
 
@@ -72,12 +74,13 @@ struct SameVertices {
   auto operator<=>(const SameVertices&) const = default;
 };
 
-void markDuplicates(const TriangleMesh& mesh, std::vector<Fault>& faults) {
-  ByVertex<SameVertices> by_lowest(mesh.positions.size(), mesh.triangles.size());
+void markDuplicates(std::size_t vertices, const std::vector<Triangle>& triangles,
+                    std::vector<Fault>& faults) {
+  ByVertex<SameVertices> by_lowest(vertices, triangles.size());
   const auto forEach = [&](auto visit) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
       if (faults[t] != Fault::none) continue;
-      Triangle v = mesh.triangles[t];
+      Triangle v = triangles[t];
       std::sort(v.begin(), v.end());
       visit(v, static_cast<std::int32_t>(t));
     }
@@ -85,11 +88,12 @@ void markDuplicates(const TriangleMesh& mesh, std::vector<Fault>& faults) {
   forEach([&](const Triangle& v, std::int32_t) { by_lowest.count(v[0]); });
   by_lowest.startFilling();
   forEach([&](const Triangle& v, std::int32_t t) { by_lowest.file(v[0], {v[1], v[2], t}); });
-  by_lowest.forEachSortedRun([&](const SameVertices* first, const SameVertices* last) {
-    for (const SameVertices* item = first + 1; item < last; ++item)
-      if (item[-1].middle == item->middle && item[-1].high == item->high)
-        faults[static_cast<std::size_t>(item->triangle)] = Fault::duplicate;
-  });
+  by_lowest.forEachSortedRun(
+      [&](std::int32_t, const SameVertices* first, const SameVertices* last) {
+        for (const SameVertices* item = first + 1; item < last; ++item)
+          if (item[-1].middle == item->middle && item[-1].high == item->high)
+            faults[static_cast<std::size_t>(item->triangle)] = Fault::duplicate;
+      });
 }
 
 struct DirectedUse {
@@ -98,40 +102,42 @@ struct DirectedUse {
   auto operator<=>(const DirectedUse&) const = default;
 };
 
-void countEdges(const TriangleMesh& mesh, const std::vector<Fault>& faults, MeshReport& report) {
-  ByVertex<DirectedUse> by_lower(mesh.positions.size(), 3 * mesh.triangles.size());
+// Adds to the report's counts; `border` receives the edges of one face.
+template <class ForEachEdge>
+void countEdges(std::size_t vertices, std::size_t edges, const ForEachEdge& forEachEdge,
+                MeshReport& report, std::vector<BorderEdge>& border) {
+  ByVertex<DirectedUse> by_lower(vertices, edges);
   const auto forEach = [&](auto visit) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (faults[t] != Fault::none) continue;
-      const Triangle& v = mesh.triangles[t];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::int32_t from = v[k], to = v[k == 2 ? 0 : k + 1];
-        visit(std::min(from, to), DirectedUse{std::max(from, to), from < to});
-      }
-    }
+    forEachEdge([&](std::int32_t from, std::int32_t to) {
+      visit(std::min(from, to), DirectedUse{std::max(from, to), from < to});
+    });
   };
   forEach([&](std::int32_t low, const DirectedUse&) { by_lower.count(low); });
   by_lower.startFilling();
   forEach([&](std::int32_t low, const DirectedUse& use) { by_lower.file(low, use); });
-  by_lower.forEachSortedRun([&](const DirectedUse* first, const DirectedUse* last) {
-    while (first < last) {
-      const DirectedUse* next = first + 1;
-      while (next < last && next->high == first->high) ++next;
-      const auto uses = next - first;
-      if (uses == 1)
-        ++report.boundary_edges;
-      else if (uses > 2)
-        ++report.non_manifold_edges;
-      else if (first[0].upwards == first[1].upwards)
-        ++report.misoriented_edges;
-      first = next;
-    }
-  });
+  border.clear();
+  by_lower.forEachSortedRun(
+      [&](std::int32_t low, const DirectedUse* first, const DirectedUse* last) {
+        while (first < last) {
+          const DirectedUse* next = first + 1;
+          while (next < last && next->high == first->high) ++next;
+          const auto uses = next - first;
+          if (uses == 1)
+            border.push_back(first->upwards ? BorderEdge{low, first->high}
+                                            : BorderEdge{first->high, low});
+          else if (uses > 2)
+            ++report.non_manifold_edges;
+          else if (first[0].upwards == first[1].upwards)
+            ++report.misoriented_edges;
+          first = next;
+        }
+      });
 }
 
-std::size_t countComponents(const TriangleMesh& mesh, const std::vector<Fault>& faults) {
-  constexpr std::int32_t kUnused = -1;
-  std::vector<std::int32_t> parent(mesh.positions.size(), kUnused);
+std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& triangles,
+                            const std::vector<Fault>& faults) {
+  constexpr std::int32_t kNoParent = -1;
+  std::vector<std::int32_t> parent(vertices, kNoParent);
   const auto find = [&](std::int32_t v) {
     while (parent[static_cast<std::size_t>(v)] != v) {
       std::int32_t& up = parent[static_cast<std::size_t>(v)];
@@ -141,11 +147,11 @@ std::size_t countComponents(const TriangleMesh& mesh, const std::vector<Fault>& 
     return v;
   };
   std::size_t components = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (faults[t] != Fault::none) continue;
-    const Triangle& v = mesh.triangles[t];
+    const Triangle& v = triangles[t];
     for (const std::int32_t vertex : v)
-      if (auto& up = parent[static_cast<std::size_t>(vertex)]; up == kUnused) {
+      if (auto& up = parent[static_cast<std::size_t>(vertex)]; up == kNoParent) {
         up = vertex;
         ++components;
       }
@@ -160,20 +166,78 @@ std::size_t countComponents(const TriangleMesh& mesh, const std::vector<Fault>& 
   return components;
 }
 
+// Counts duplicates, components and edges; the triangles may name other vertices than the mesh's.
+// Returns the edges of one face.
+std::vector<BorderEdge> countTopology(std::size_t vertices, const std::vector<Triangle>& triangles,
+                                      std::vector<Fault>& faults, MeshReport& report) {
+  markDuplicates(vertices, triangles, faults);
+  report.components = countComponents(vertices, triangles, faults);
+  report.non_manifold_edges = report.misoriented_edges = 0;
+  std::vector<BorderEdge> border;
+  countEdges(
+      vertices, 3 * triangles.size(),
+      [&](auto visit) {
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+          if (faults[t] != Fault::none) continue;
+          const Triangle& v = triangles[t];
+          for (std::size_t k = 0; k < 3; ++k) visit(v[k], v[k == 2 ? 0 : k + 1]);
+        }
+      },
+      report, border);
+  return border;
+}
+
+// Closes cracks at the border and counts again: corners in one place, then corners within the
+// tolerance, then corners on an edge. The mesh itself does not change.
+void closeCracks(const TriangleMesh& mesh, std::vector<BorderEdge>& border,
+                 std::vector<Fault>& faults, MeshReport& report) {
+  Box3 box;
+  for (std::size_t t = 0; t < faults.size(); ++t)
+    for (int k = 0; k < 3 && faults[t] != Fault::non_finite; ++k) box.extend(mesh.corner(t, k));
+  const double tolerance = kWeldTolerance * box.sizes().maxCoeff();
+  if (!std::isfinite(tolerance)) return;
+  std::vector<Triangle> triangles;
+  const auto weld = [&](const BorderWeld& found) {
+    report.widest_crack = std::max(report.widest_crack, found.widest_crack);
+    if (found.vertex_of.empty()) return;
+    if (triangles.empty()) triangles = mesh.triangles;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      Triangle& v = triangles[t];
+      for (std::int32_t& corner : v) corner = found.vertex_of[index(corner)];
+      const bool repeats = v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+      if (repeats && faults[t] == Fault::none) faults[t] = Fault::closed_up;
+    }
+    border = countTopology(mesh.positions.size(), triangles, faults, report);
+  };
+  weld(weldBorder(mesh.positions, border));
+  if (!border.empty()) weld(weldBorder(mesh.positions, border, tolerance));
+  if (border.empty()) return;
+  const SplitBorder split = splitBorder(mesh.positions, border, tolerance);
+  if (split.edges.size() == border.size()) return;
+  report.widest_crack = std::max(report.widest_crack, split.widest_crack);
+  countEdges(
+      mesh.positions.size(), split.edges.size(),
+      [&](auto visit) {
+        for (const BorderEdge& e : split.edges) visit(e.from, e.to);
+      },
+      report, border);
+}
+
 MeshReport inspect(const TriangleMesh& mesh, std::vector<Fault>& faults) {
   MeshReport report;
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.positions.size();
   faults = triangleFaults(mesh);
-  markDuplicates(mesh, faults);
+  std::vector<BorderEdge> border =
+      countTopology(mesh.positions.size(), mesh.triangles, faults, report);
+  if (!border.empty()) closeCracks(mesh, border, faults, report);
+  report.boundary_edges = border.size();
   const auto count = [&](Fault fault) {
     return static_cast<std::size_t>(std::count(faults.begin(), faults.end(), fault));
   };
   report.non_finite = count(Fault::non_finite);
   report.degenerate = count(Fault::degenerate);
   report.duplicate = count(Fault::duplicate);
-  report.components = countComponents(mesh, faults);
-  countEdges(mesh, faults, report);
   report.watertight = report.components > 0 && report.boundary_edges == 0 &&
                       report.non_manifold_edges == 0 && report.misoriented_edges == 0;
   return report;

@@ -9,17 +9,24 @@
 
 namespace patina {
 
+// Share of the longest side of a mesh's bounds: corners on its border that are no farther apart,
+// and no farther than a quarter of the shortest border edge at them, count as one in the report.
+inline constexpr double kWeldTolerance = 1e-3;
+
 struct MeshReport {
   std::size_t triangles = 0;
   std::size_t vertices = 0;
-  std::size_t components = 0; // connected through shared vertices; as for the edges below
+  std::size_t components = 0; // connected through corners; as for the edges below
   bool watertight = false;    // every edge has two faces with opposite directions
+  // Greatest distance between corners, or between a corner and an edge, that count as joined though
+  // they are apart; in the mesh's unit.
+  double widest_crack = 0;
   // Triangles:
   std::size_t non_finite = 0; // a corner is NaN or infinite
   // Twice the area is at most 1e-12 of the longest edge squared, or a vertex is repeated.
   std::size_t degenerate = 0;
-  std::size_t duplicate = 0; // same three vertices as an earlier triangle (in any order)
-  // Edges, after the triangles above are left out:
+  std::size_t duplicate = 0; // same three corners as an earlier triangle (in any order)
+  // Edges, after the triangles above are left out and the cracks at the border are closed:
   std::size_t boundary_edges = 0;     // one face
   std::size_t non_manifold_edges = 0; // three or more
   std::size_t misoriented_edges = 0;  // two faces running the same way

@@ -320,6 +320,7 @@ MeshReport sumOf(const std::vector<MeshReport>& reports) {
     sum.boundary_edges += report.boundary_edges;
     sum.non_manifold_edges += report.non_manifold_edges;
     sum.misoriented_edges += report.misoriented_edges;
+    sum.widest_crack = std::max(sum.widest_crack, report.widest_crack);
   }
   return sum;
 }

@@ -1,6 +1,7 @@
 #include "session/build/session.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <utility>
@@ -21,6 +22,10 @@
 namespace patina {
 
 namespace {
+
+constexpr const char* kReadable =
+    "what can be opened: a mesh (.obj, .ply, .stl), a volume (.vti), a workspace (a folder with "
+    "workspace.json) and, into a workspace, a scan (a folder with frames.csv)";
 
 std::string lowerExtension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -107,6 +112,12 @@ void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMe
   if (thin && !both_sides) opened.warnings.push_back(where + ": " + *thin);
 }
 
+bool isScan(const std::filesystem::path& folder) {
+  std::error_code none;
+  return std::filesystem::exists(folder / "frames.csv", none) ||
+         std::filesystem::exists(folder / "frames", none);
+}
+
 void openFolder(const std::filesystem::path& folder, OpenedScene& opened) {
   OpenedWorkspace found = openWorkspace(folder);
   const FoldedJournal fold = folded(found.journal, found.journal_file.string());
@@ -118,6 +129,29 @@ void openFolder(const std::filesystem::path& folder, OpenedScene& opened) {
   }
   opened.scene =
       WorkspaceLink::open(folder, Replayer(), kHistoryBudget, false, false).history->scene();
+}
+
+} // namespace
+
+namespace {
+
+// Throws a FileError that names every kind of file that can be opened.
+void requireReadable(const std::filesystem::path& path) {
+  constexpr std::array<std::string_view, 8> kClouds = {".xyz", ".pts", ".pcd", ".las",
+                                                       ".laz", ".e57", ".asc", ".ptx"};
+  const std::string extension = lowerExtension(path);
+  if (isStandardStream(path) || path.string().starts_with("/dev/") || extension == ".ply" ||
+      extension == ".stl")
+    return;
+  const bool cloud = std::find(kClouds.begin(), kClouds.end(), extension) != kClouds.end();
+  throw FileError(path.string(), 0,
+                  (cloud ? "a point cloud ('" + extension +
+                               "') has no surface: make a mesh of it with a surface "
+                               "reconstruction; "
+                   : extension.empty()
+                       ? std::string("a file without an ending is of no kind that can be read; ")
+                       : "a file of the kind '" + extension + "' cannot be read; ") +
+                      kReadable);
 }
 
 } // namespace
@@ -145,7 +179,13 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   };
   if (std::filesystem::is_directory(path)) {
     if (!isWorkspace(path))
-      throw FileError(path.string(), 0, "is a folder without workspace.json, not a workspace");
+      throw FileError(path.string(), 0,
+                      isScan(path)
+                          ? "is the folder of a scan: put it into a workspace with patina scene "
+                            "WORKSPACE --scan " +
+                                path.string()
+                          : std::string("is a folder without workspace.json, not a workspace; ") +
+                                kReadable);
     openFolder(path, opened);
     if (options.unit_chosen) warnOf("--unit", "workspace");
     if (options.up != UpAxis::z) warnOf("--up", "workspace");
@@ -167,8 +207,11 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   } else if (lowerExtension(path) == ".obj") {
     read = readTexturedObj(path);
   } else {
-    read.mesh = readMesh(path);
+    requireReadable(path);
+    read.mesh = readMesh(path, &read.warnings);
   }
+  for (const std::string& line : read.warnings)
+    opened.warnings.push_back(path.string() + ": " + line);
   const bool in_metres = spec.has_value();
   TriangleMesh mesh = is_volume ? std::move(read.mesh) : zUp(std::move(read.mesh), options.up);
   if (options.unit_chosen && in_metres) warnOf("--unit", "field");

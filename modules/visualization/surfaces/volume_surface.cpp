@@ -7,6 +7,7 @@
 #include <vtkImageData.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSetGet.h>
 
 #include "core/error.h"
 #include "core/numbers.h"
@@ -38,6 +39,35 @@ VolumeRange rangeOf(vtkDataArray* scalars) {
   return range;
 }
 
+// Calls visit(values, count) with the array's own type.
+template <class Visit> void withValues(vtkDataArray* scalars, const Visit& visit) {
+  const auto count = static_cast<std::size_t>(scalars->GetNumberOfTuples());
+  switch (scalars->GetDataType()) {
+    vtkTemplateMacro(visit(static_cast<const VTK_TT*>(scalars->GetVoidPointer(0)), count));
+  }
+}
+
+// Returns the value at which the surface is taken. If all values are whole and some equal `iso`,
+// the surface would pass through nodes: it would have triangles without area, and parts that meet
+// in a point. Such nodes then count as higher ones: the surface is taken half a step lower, or half
+// a step higher if no value is lower. An `iso` that differs by rounding gives the same surface.
+double withoutTies(vtkDataArray* scalars, double iso) {
+  constexpr double kRounding = 1e-6; // of a step between whole numbers
+  const double whole = std::round(iso);
+  if (!(std::abs(iso - whole) <= kRounding)) return iso;
+  bool all_whole = true, tie = false, lower = false;
+  withValues(scalars, [&](const auto* values, std::size_t count) {
+    for (std::size_t i = 0; all_whole && i < count; ++i) {
+      const auto value = static_cast<double>(values[i]);
+      all_whole = value == std::floor(value) || !std::isfinite(value);
+      tie |= value == whole;
+      lower |= value < whole;
+    }
+  });
+  if (!all_whole || !tie) return iso;
+  return lower ? whole - 0.5 : whole + 0.5;
+}
+
 } // namespace
 
 VolumeRange scalarRange(const std::filesystem::path& path) {
@@ -56,7 +86,7 @@ TriangleMesh isoSurfaceOfVolume(const std::filesystem::path& path, double iso) {
 
   const vtkNew<vtkFlyingEdges3D> contour;
   contour->SetInputData(image);
-  contour->SetValue(0, iso);
+  contour->SetValue(0, withoutTies(scalars, iso));
   contour->ComputeNormalsOff();
   contour->ComputeScalarsOff();
   contour->Update();
