@@ -81,7 +81,8 @@ constexpr Named<HapticProperties::Contact> kContacts[] = {
 constexpr Named<OpenSides> kSides[] = {{OpenSides::automatic, "auto"},
                                        {OpenSides::one, "one"},
                                        {OpenSides::two, "two"},
-                                       {OpenSides::closed, "closed"}};
+                                       {OpenSides::closed, "closed"},
+                                       {OpenSides::automatic_two, "auto-two"}};
 constexpr Named<ReliefMode> kModes[] = {{ReliefMode::pulled, "pulled"},
                                         {ReliefMode::baked, "baked"}};
 constexpr Named<ReliefFrom> kSources[] = {{ReliefFrom::painted, "painted"},

@@ -59,8 +59,8 @@ const Keys kInfoKeys = {
     {"components", "", "components"},
     {"defects", "", "defects", "", Shown::always, kDefectKeys},
     {"components_sides", "", "sides", "", Shown::if_any, kSideKeys},
-    {"parts", "", "decided", "parts with a rim and all beside them, the largest first",
-     Shown::always, kPartKeys},
+    {"parts", "", "decided", "of a mesh with a rim, its parts, the largest first", Shown::always,
+     kPartKeys},
     {"holes", "", "holes", "that are closed over, the largest first", Shown::if_any, kHoleKeys},
     {"inner_triangles", "", "left out", "triangles that are there twice inside a body",
      Shown::if_any},
@@ -135,7 +135,7 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, const Fiel
   Json list = Json::array();
   for (const SideCount& side : sides)
     list.push(Json::object().set("sides", side.sides).set("triangles", side.triangles));
-  const bool plates = built.open_triangles > 0 && scene.field.sides != OpenSides::two;
+  const bool plates = built.open_triangles > 0 && !haveTwoSides(scene.field.sides);
   report.set("components_sides", list,
              describeSides(sides) + (plates ? ": the front of a plate as thick as the band" : ""));
   describeParts(built.parts, report);
@@ -146,9 +146,10 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, const Fiel
 FieldReport sidesWithoutField(const Scene& scene) {
   Box3 box;
   for (const SceneObject& object : scene.objects) box.extend(fieldBounds(worldMesh(object)));
-  const double voxel =
-      scene.field.voxel.value_or(box.isEmpty() ? 0 : box.sizes().maxCoeff() /
-                                     std::max(1.0, scene.field.resolution - 2 * scene.field.band));
+  const double voxel = scene.field.voxel.value_or(
+      box.isEmpty()
+          ? 0
+          : box.sizes().maxCoeff() / std::max(1.0, scene.field.resolution - 2 * scene.field.band));
   FieldReport found;
   for (const SceneObject& object : scene.objects) {
     const TriangleMesh mesh = worldMesh(object);

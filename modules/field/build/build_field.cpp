@@ -134,10 +134,10 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   if (open.any()) winding = WindingNumber(closedPart(oriented, open));
   report.open_parts = open.parts;
   report.open_triangles = open.triangles;
-  report.parts = std::move(open.decided);
+  report.parts = open.decided;
   report.holes = std::move(open.holes);
 
-  const bool plates = open.any() && sides != OpenSides::two;
+  const bool plates = open.any() && !haveTwoSides(sides);
   if (plates) grid = withRoomForPlates(grid, band);
   const TriangleTree tree(sound);
   progress.throwIfCancelled();

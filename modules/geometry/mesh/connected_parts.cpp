@@ -8,8 +8,8 @@
 namespace patina {
 namespace {
 
-constexpr double kNear = 0.7; // of the reach
-constexpr std::size_t kSmallPiece = 4;                  // faces
+constexpr double kNear = 0.7;                             // of the reach
+constexpr std::size_t kSmallPiece = 4;                    // faces
 constexpr double kJoinedRim = 0.5, kJoinedSmallRim = 0.3; // shares of a rim's length
 
 // Faces as a forest; the lowest face of a tree is its root.
@@ -55,8 +55,7 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
   for (std::size_t i = 0; i < rims.size(); ++i)
     if (rims[i].joined) along[index(root[i])] += length(rims[i]);
   const auto joins = [&](std::int32_t piece) {
-    const double share =
-        faces_of[index(piece)] < kSmallPiece ? kJoinedSmallRim : kJoinedRim;
+    const double share = faces_of[index(piece)] < kSmallPiece ? kJoinedSmallRim : kJoinedRim;
     return along[index(piece)] >= share * whole[index(piece)];
   };
   for (std::size_t i = 0; i < rims.size(); ++i) rims[i].joined &= joins(root[i]);
@@ -83,8 +82,7 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   forEachEdge(
       triangles, twin, [](std::size_t) { return true; },
       [&](auto first, auto last) {
-        if (last - first == 1)
-          found.rims.push_back({{first->low, first->high}, first->face});
+        if (last - first == 1) found.rims.push_back({{first->low, first->high}, first->face});
         if (last - first == 2 && rises(first[0]) == rises(first[1])) crossed.push_back(first->face);
         for (auto use = first + 1; use != last; ++use) forest.join(first->face, use->face);
       });
@@ -113,8 +111,7 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   for (const RimEdge& rim : found.rims) ++partOf(rim.face).rim_edges;
   for (const std::int32_t f : joined) partOf(f).joined = true;
   // Where faces are doubled, which way they run is not known.
-  for (const std::int32_t f : crossed)
-    partOf(f).twisted = !doubled[index(found.part_of[index(f)])];
+  for (const std::int32_t f : crossed) partOf(f).twisted = !doubled[index(found.part_of[index(f)])];
   return found;
 }
 

@@ -18,8 +18,8 @@ struct RimEdge { // an edge with one face
 struct ConnectedPart {
   std::vector<std::int32_t> faces; // ascending
   std::size_t rim_edges = 0;
-  bool joined = false;   // made of pieces by their rims
-  bool twisted = false;  // faces beside each other do not agree: they cannot, if they were turned
+  bool joined = false;  // made of pieces by their rims
+  bool twisted = false; // faces beside each other do not agree: they cannot, if they were turned
 };
 
 struct ConnectedParts {
@@ -29,8 +29,8 @@ struct ConnectedParts {
 };
 
 // `mesh`: welded. Pieces are connected over edges. Pieces with
-// rims are joined where the middles of rim edges lie at most 0.7 `reach` apart and that holds for half
-// of both rims (three tenths, of pieces of less than four faces).
+// rims are joined where the middles of rim edges lie at most 0.7 `reach` apart and that holds for
+// half of both rims (three tenths, of pieces of less than four faces).
 ConnectedParts connectedParts(const TriangleMesh& mesh, double reach);
 
 } // namespace patina

@@ -100,8 +100,8 @@ class Loops {
         way.push_back(next);
       } else {
         const std::size_t first = place_[next];
-        visit(std::vector<std::size_t>(way.begin() + static_cast<std::ptrdiff_t>(first),
-                                       way.end()));
+        visit(
+            std::vector<std::size_t>(way.begin() + static_cast<std::ptrdiff_t>(first), way.end()));
         for (std::size_t i = first + 1; i < way.size(); ++i) place_[way[i]] = kNowhere;
         way.resize(first + 1);
       }

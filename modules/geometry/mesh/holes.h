@@ -12,7 +12,7 @@
 namespace patina {
 
 struct Hole {
-  double area = 0;           // of a surface that spans it [m^2]
+  double area = 0;            // of a surface that spans it [m^2]
   Vec3 centre = Vec3::Zero(); // centroid of that surface
   std::size_t edges = 0;
 };

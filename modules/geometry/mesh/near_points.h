@@ -17,12 +17,11 @@ class NearPoints {
     constexpr double kMostCells = 1 << 20; // along a side
     Box3 box;
     for (const Vec3& p : points) box.extend(p);
-    const double side =
-        points.empty() ? 1 : std::max(reach, box.sizes().maxCoeff() / kMostCells);
+    const double side = points.empty() ? 1 : std::max(reach, box.sizes().maxCoeff() / kMostCells);
     // An empty cell between rows, so that neighbours do not wrap.
     for (std::size_t k = 0; k < 2 && !points.empty(); ++k)
-      stride_[k + 1] = stride_[k] * (static_cast<std::uint64_t>(
-                                         box.sizes()[static_cast<int>(k)] / side) + 3);
+      stride_[k + 1] =
+          stride_[k] * (static_cast<std::uint64_t>(box.sizes()[static_cast<int>(k)] / side) + 3);
     struct Key {
       std::uint64_t cell;
       std::uint32_t point;

@@ -20,7 +20,7 @@ namespace {
 constexpr double kTells = 0.35;           // how far from 1/2 a winding number must be
 constexpr std::size_t kMostSamples = 256; // faces of a part that are asked
 constexpr double kShares[] = {0.25, 0.5, 1};
-constexpr std::size_t kFewestFaces = 4;   // that can have an inside of their own
+constexpr std::size_t kFewestFaces = 4; // that can have an inside of their own
 
 // Every edge runs as often one way as the other: no rim. By sums of the edges' hashes, so that a
 // sound mesh costs next to nothing.
@@ -187,7 +187,7 @@ std::vector<std::int32_t> nearVertices(const TriangleMesh& mesh, const Connected
 }
 
 std::vector<Hole> closedOver(const TriangleMesh& mesh, const ConnectedParts& found,
-                          const std::vector<std::uint8_t>& open, double reach) {
+                             const std::vector<std::uint8_t>& open, double reach) {
   std::vector<const RimEdge*> rims;
   for (const RimEdge& rim : found.rims)
     if (!rim.joined && (open.empty() || !open[index(rim.face)])) rims.push_back(&rim);
@@ -223,15 +223,15 @@ OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding, Open
   std::vector<Part> parts;
   for (ConnectedPart& part : found.parts)
     parts.push_back({std::move(part.faces), part.rim_edges > 0, false, part.joined});
-  if (sides == OpenSides::automatic) decide(mesh, winding, parts, reach);
+  if (decidesItself(sides)) decide(mesh, winding, parts, reach);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Part& part = parts[p];
     const bool twisted = found.parts[p].twisted && sides == OpenSides::two;
-    const bool asked = sides != OpenSides::automatic && (part.rim || twisted);
+    const bool asked = !decidesItself(sides) && (part.rim || twisted);
     if (asked) part.open = sides != OpenSides::closed;
-    const OpenSides own = !part.open                ? OpenSides::closed
-                          : sides == OpenSides::two ? OpenSides::two
-                                                    : OpenSides::one;
+    const OpenSides own = !part.open            ? OpenSides::closed
+                          : haveTwoSides(sides) ? OpenSides::two
+                                                : OpenSides::one;
     result.decided.push_back({part.faces.size(), found.parts[p].rim_edges, own, asked});
     if (!part.open) continue;
     ++result.parts;
@@ -280,7 +280,7 @@ std::vector<SideCount> sideCounts(std::size_t triangles, std::size_t open_triang
   if (triangles > open_triangles) counts.push_back({"closed", triangles - open_triangles});
   if (open_triangles > 0)
     counts.push_back(
-        {sideName(sides == OpenSides::two ? OpenSides::two : OpenSides::one), open_triangles});
+        {sideName(haveTwoSides(sides) ? OpenSides::two : OpenSides::one), open_triangles});
   return counts;
 }
 

@@ -15,14 +15,23 @@ namespace patina {
 
 // What the parts of a mesh that have a rim are to the touch. one: the front, the side from which
 // the triangles run counter-clockwise, is outside; two: both sides are; closed: the part has an
-// inside, and its holes are closed over. automatic: openParts decides for each part.
-enum class OpenSides : std::uint8_t { automatic, one, two, closed };
+// inside, and its holes are closed over. automatic: openParts decides for each part whether it is
+// closed or one-sided; automatic_two: closed or two-sided.
+enum class OpenSides : std::uint8_t { automatic, one, two, closed, automatic_two };
+
+inline bool decidesItself(OpenSides sides) {
+  return sides == OpenSides::automatic || sides == OpenSides::automatic_two;
+}
+// Of open parts.
+inline bool haveTwoSides(OpenSides sides) {
+  return sides == OpenSides::two || sides == OpenSides::automatic_two;
+}
 
 struct PartSides {
   std::size_t triangles = 0;
-  std::size_t rim_edges = 0;          // edges with one face
+  std::size_t rim_edges = 0;           // edges with one face
   OpenSides sides = OpenSides::closed; // never automatic
-  bool asked = false;                 // the caller decided, not openParts
+  bool asked = false;                  // the caller decided, not openParts
 };
 
 struct OpenParts {
@@ -38,7 +47,7 @@ struct OpenParts {
 // other at most `reach` [m] apart connect parts, too, where they are most of both rims: so loose
 // triangles that nobody has welded are one part. 0 connects none.
 //
-// automatic: a part is open, and one-sided, if it has a rim (an edge with one face) and neither the
+// automatic: a part is open if it has a rim (an edge with one face) and neither the
 // winding number of the whole mesh nor its own tells its front from its back over half its area:
 // on both sides it would have to be 0.35 off 1/2. Near the surface, and up to `reach` from it where
 // rims connect the part. A sphere is open from where less than half of it is there. So a closed
