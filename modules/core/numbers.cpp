@@ -89,6 +89,11 @@ std::string formatLength(double metres) {
   return shortNumber(metres) + " m";
 }
 
+std::string formatArea(double square_metres) {
+  return square_metres < 0.1 ? shortNumber(square_metres * 1e6) + " mm²"
+                             : shortNumber(square_metres) + " m²";
+}
+
 std::string formatCount(std::size_t count) {
   std::string text = std::to_string(count);
   for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');

@@ -19,6 +19,7 @@ std::string formatNumber(double value);
 // For people: "12.3 MB", "0.75 mm", "1,003,520".
 std::string formatBytes(double bytes);
 std::string formatLength(double metres);
+std::string formatArea(double square_metres); // "3600 mm²"
 std::string formatCount(std::size_t count);
 
 } // namespace patina

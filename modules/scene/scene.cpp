@@ -160,7 +160,7 @@ void validate(const Scene& scene) {
   validate(scene.scans);
   validate(scene.field);
   validate(scene.haptics);
-  if (scene.field.sides == OpenSides::two &&
+  if (haveTwoSides(scene.field.sides) &&
       !(scene.haptics.tip_radius.value_or(0) > 0 || scene.haptics.offset.value_or(0) > 0))
     throw Error("surface.sides = two: both sides of a sheet are felt only by what has a size; set "
                 "tip.radius or offset above 0, too");

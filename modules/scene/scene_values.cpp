@@ -78,7 +78,11 @@ constexpr Named<Friction::SlipDirection> kSlips[] = {
     {Friction::SlipDirection::displacement, "displacement"}};
 constexpr Named<HapticProperties::Contact> kContacts[] = {
     {HapticProperties::Contact::proxy, "proxy"}, {HapticProperties::Contact::ray, "ray"}};
-constexpr Named<OpenSides> kSides[] = {{OpenSides::one, "one"}, {OpenSides::two, "two"}};
+constexpr Named<OpenSides> kSides[] = {{OpenSides::automatic, "auto"},
+                                       {OpenSides::one, "one"},
+                                       {OpenSides::two, "two"},
+                                       {OpenSides::closed, "closed"},
+                                       {OpenSides::automatic_two, "auto-two"}};
 constexpr Named<ReliefMode> kModes[] = {{ReliefMode::pulled, "pulled"},
                                         {ReliefMode::baked, "baked"}};
 constexpr Named<ReliefFrom> kSources[] = {{ReliefFrom::painted, "painted"},

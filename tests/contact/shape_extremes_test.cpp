@@ -142,7 +142,7 @@ TEST(ShapeExtremes, OneTriangle) {
     expectFaultless(report, "front");
   }
   // From both sides, and off its rim.
-  scene.sides = OpenSides::two;
+  scene.sides = OpenSides::automatic_two;
   const Felt felt(scene, 1e-3);
   for (const double side : {1.0, -1.0}) {
     std::vector<Vec3> tips;
@@ -163,7 +163,8 @@ TEST(ShapeExtremes, NonManifoldFins) {
                    Vec3(0.07, 0.04, 0.05), Vec3(0.07, -0.04, 0.05)};
   fin.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
   const TriangleMesh solid = box(Vec3(0.1, 0.08, 0.06));
-  const Felt felt({"fins", {joined(solid, fin)}, {1e-3}, OpenSides::two}, 1e-3, {solid, fin});
+  const Felt felt({"fins", {joined(solid, fin)}, {1e-3}, OpenSides::automatic_two}, 1e-3,
+                  {solid, fin});
   // Down beside the fin into the corner, along it, up over its edge and down the other side.
   const CourseReport report =
       felt.along({Vec3(6e-3, 0, 0.04), Vec3(-1e-3, 0.002, 0.029), Vec3(-1e-3, 0.012, 0.029),

@@ -25,7 +25,7 @@ BuiltField build(const TriangleMesh& mesh, int resolution, double band = 3) {
   FieldSpec spec;
   spec.resolution = resolution;
   spec.band = band;
-  spec.sides = OpenSides::two; // its distances are those to the mesh alone
+  spec.sides = OpenSides::automatic_two; // its distances are those to the mesh alone
   Progress progress;
   return buildField(mesh, spec, progress);
 }

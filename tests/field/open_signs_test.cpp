@@ -37,7 +37,8 @@ TriangleMesh terrain(int cells = 100) {
   return mesh;
 }
 
-BuiltField built(const TriangleMesh& mesh, int resolution = 100, OpenSides sides = OpenSides::one) {
+BuiltField built(const TriangleMesh& mesh, int resolution = 100,
+                 OpenSides sides = OpenSides::automatic) {
   FieldSpec spec;
   spec.resolution = resolution;
   spec.sides = sides;

@@ -75,7 +75,7 @@ TEST(SceneValues, AbsentFeaturesAreNotListed) {
 TEST(SceneValues, NoneMakesAFeatureAbsent) {
   Scene scene;
   setValues(scene, withEverything());
-  setValue(scene, "surface.sides", "one");
+  setValue(scene, "surface.sides", "auto");
   for (const char* key : {"damping", "friction.static", "tip.radius", "voxel"})
     setValue(scene, key, "none");
   EXPECT_FALSE(scene.haptics.damping);
@@ -134,7 +134,7 @@ TEST(SceneValues, TwoSidesNeedATipOrAnOffset) {
         List{{"surface.sides", "both"}, {"tip.radius", "1mm"}}}) {
     Scene scene;
     EXPECT_THROW(setValues(scene, list), Error);
-    EXPECT_EQ(scene.field.sides, OpenSides::one);
+    EXPECT_EQ(scene.field.sides, OpenSides::automatic);
   }
   for (const char* size : {"tip.radius", "offset"}) {
     Scene scene;
@@ -217,7 +217,7 @@ TEST(SceneValues, TheUsualWordOfEveryKeyIsThatOfANewScene) {
 // The words that stand in journals.
 TEST(SceneValues, TheWordForWhatIsLeftOutStaysAsItWas) {
   const List words{{"contact", "proxy"},
-                   {"surface.sides", "one"},
+                   {"surface.sides", "auto"},
                    {"merge.redistance", "off"},
                    {"relief.mode", "pulled"},
                    {"relief.source", "none"},

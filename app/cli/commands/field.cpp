@@ -2,6 +2,7 @@
 #include "app/cli/input/scene_options.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
+#include "session/build/compile_warnings.h"
 #include "visualization/export/field_io.h"
 
 namespace patina::cli {
@@ -31,6 +32,9 @@ int runField(const FieldOptions& options, Console& console) {
     built.field = compiled->paint.field;
   }
   console.progress().throwIfCancelled();
+  if (scene.objects.size() == 1 && !baked)
+    for (const std::string& line : surfaceWarnings(built.report, scene.field.sides, worldMesh(scene)))
+      console.warn(line);
   writeField(options.output, *built.field);
   return console.report(fieldReport(*built.field, built.report));
 }

@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/open_parts.h"
+#include "session/build/compile_warnings.h"
 #include "session/build/stage_cost.h"
 #include "session/store/attach_scan.h"
 #include "visualization/export/field_io.h"
@@ -31,6 +32,13 @@ const Keys kDefectKeys = {{"non_finite", "", "non-finite triangles"},
                           {"non_manifold_edges", "", "non-manifold edges"},
                           {"misoriented_edges", "", "misoriented edges"}};
 const Keys kSideKeys = {{"sides", "", "", "closed, one-sided or two-sided"}, {"triangles", "", ""}};
+const Keys kPartKeys = {{"triangles", "", ""},
+                        {"boundary_edges", "", ""},
+                        {"sides", "", "", "closed, one-sided or two-sided"},
+                        {"by", "", "", "program, or user where surface.sides was set"}};
+const Keys kHoleKeys = {{"area", "m^2", "", "of a surface that spans it"},
+                        {"centre", "m", "", "of that surface"},
+                        {"edges", "", ""}};
 const Keys kObjectKeys = {{"name", "", ""}, {"triangles", "", ""}};
 const Keys kLayerKeys = {{"name", "", ""},
                          {"why", "", "", "of the one that keeps several objects apart"},
@@ -53,6 +61,11 @@ const Keys kInfoKeys = {
     {"widest_crack", "m", "widest crack", "between corners and edges that count as joined",
      Shown::if_any},
     {"components_sides", "", "sides", "", Shown::if_any, kSideKeys},
+    {"parts", "", "decided", "of a mesh with a rim, its parts, the largest first", Shown::always,
+     kPartKeys},
+    {"holes", "", "holes", "that are closed over, the largest first", Shown::if_any, kHoleKeys},
+    {"inner_triangles", "", "left out", "triangles that are there twice inside a body",
+     Shown::if_any},
     {"field", "", "as patina field"},
     {"layers", "", "layer", "", Shown::always, kLayerKeys},
     {"bytes", "B", "in all", "of the layers together: what is held of the scene", Shown::if_any},
@@ -78,7 +91,37 @@ void describeDefects(const MeshReport& mesh, Report& report) {
   report.set("defects", json, found.empty() ? "none" : joined(found));
 }
 
-void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, std::size_t open_triangles,
+constexpr std::size_t kMostListed = 100; // parts and holes
+
+void describeParts(std::vector<PartSides> parts, Report& report) {
+  std::stable_sort(parts.begin(), parts.end(), [](const PartSides& a, const PartSides& b) {
+    return a.triangles > b.triangles;
+  });
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(parts.size(), kMostListed); ++i)
+    list.push(Json::object()
+                  .set("triangles", parts[i].triangles)
+                  .set("boundary_edges", parts[i].rim_edges)
+                  .set("sides", sideName(parts[i].sides))
+                  .set("by", parts[i].asked ? "user" : "program"));
+  report.set("parts", list, describeParts(parts));
+}
+
+void describeHoles(const std::vector<Hole>& holes, Report& report) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(holes.size(), kMostListed); ++i)
+    list.push(Json::object()
+                  .set("area", holes[i].area)
+                  .set("centre", vectorJson(holes[i].centre))
+                  .set("edges", holes[i].edges));
+  report.set("holes", list,
+             holes.empty() ? ""
+                           : formatCount(holes.size()) + " closed over, the largest " +
+                                 describeHole(holes.front()));
+}
+
+// `built`: what a field of the mesh says of its sides.
+void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, const FieldReport& built,
                   const Scene& scene, Report& report) {
   const Box3 box = bounds(mesh);
   const Vec3 size = box.isEmpty() ? Vec3::Zero() : Vec3(box.sizes());
@@ -91,18 +134,44 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, std::size_
   describeDefects(counts, report);
   report.set("widest_crack", counts.widest_crack);
   const auto sides = sideCounts(counts.triangles - counts.non_finite - counts.degenerate,
-                                open_triangles, scene.field.sides);
+                                built.open_triangles, scene.field.sides);
   Json list = Json::array();
   for (const SideCount& side : sides)
     list.push(Json::object().set("sides", side.sides).set("triangles", side.triangles));
-  const bool plates = open_triangles > 0 && scene.field.sides == OpenSides::one;
+  const bool plates = built.open_triangles > 0 && !haveTwoSides(scene.field.sides);
   report.set("components_sides", list,
              describeSides(sides) + (plates ? ": the front of a plate as thick as the band" : ""));
+  describeParts(built.parts, report);
+  describeHoles(built.holes, report);
 }
 
-void describeMesh(const Scene& scene, Report& report) {
+// As a field of the scene would find it.
+FieldReport sidesWithoutField(const Scene& scene) {
+  Box3 box;
+  for (const SceneObject& object : scene.objects) box.extend(fieldBounds(worldMesh(object)));
+  const double voxel = scene.field.voxel.value_or(
+      box.isEmpty()
+          ? 0
+          : box.sizes().maxCoeff() / std::max(1.0, scene.field.resolution - 2 * scene.field.band));
+  FieldReport found;
+  for (const SceneObject& object : scene.objects) {
+    const TriangleMesh mesh = worldMesh(object);
+    const OpenParts open = openParts(mesh, scene.field.sides, voxel);
+    found.inner_triangles += open.inner_triangles;
+    found.open_triangles += open.triangles;
+    found.parts.insert(found.parts.end(), open.decided.begin(), open.decided.end());
+    found.holes.insert(found.holes.end(), open.holes.begin(), open.holes.end());
+  }
+  return found;
+}
+
+void describeMesh(const Scene& scene, Report& report, Console& console) {
   const TriangleMesh mesh = worldMesh(scene);
-  describeMesh(mesh, inspect(mesh), openParts(mesh).triangles, scene, report);
+  const FieldReport found = sidesWithoutField(scene);
+  describeMesh(mesh, inspect(mesh), found, scene, report);
+  report.set("inner_triangles", found.inner_triangles);
+  for (const std::string& line : surfaceWarnings(found, scene.field.sides, mesh))
+    console.warn(line);
 }
 
 void describeObjects(const Scene& scene, Report& report) {
@@ -171,7 +240,7 @@ void describeStages(const CompiledScene& compiled, Report& report) {
 
 void describeCompiled(const CompiledScene& compiled, Report& report, Progress& progress) {
   const FieldReport& built = compiled.built.report;
-  describeMesh(*compiled.mesh, compiled.mesh_report, built.open_triangles, compiled.scene, report);
+  describeMesh(*compiled.mesh, compiled.mesh_report, built, compiled.scene, report);
   report.set("field", fieldReport(*compiled.built.field, built));
   describeLayers(layersOf(compiled), compiled.scene, report);
   describeStages(compiled, report);
@@ -184,8 +253,9 @@ void describeCompiled(const CompiledScene& compiled, Report& report, Progress& p
 
 // What the file holds, and no stages: they would be those of another field, built anew from its
 // surface.
-void describeFieldFile(const std::filesystem::path& path, const Scene& scene, Report& report) {
-  describeMesh(scene, report);
+void describeFieldFile(const std::filesystem::path& path, const Scene& scene, Report& report,
+                       Console& console) {
+  describeMesh(scene, report, console);
   const SurfaceField field = readField(path);
   FieldReport built;
   built.blocks = field.blockCount();
@@ -221,12 +291,12 @@ int runInfo(const InfoOptions& options, Console& console) {
   }
   describeObjects(scene, report);
   if (options.no_field || scene.objects.empty()) {
-    describeMesh(scene, report);
+    describeMesh(scene, report, console);
     report.set("layers", std::vector<Report>()).set("stages", std::vector<Report>());
   } else if (is_field) {
     for (const auto& [key, value] : options.scene.settings)
       console.warn(options.input.string() + ": --" + key + " has no effect on a field");
-    describeFieldFile(options.input, scene, report);
+    describeFieldFile(options.input, scene, report, console);
   } else {
     describeCompiled(*compileFor(std::move(scene), console), report, console.progress());
   }

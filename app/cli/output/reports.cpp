@@ -27,6 +27,8 @@ const Keys& fieldKeys() {
       {"bytes", "B", "memory"},
       {"dense_bytes", "B", "memory of the whole grid", "", Shown::never},
       {"dropped_triangles", "", "left out", "triangles non-finite or without area", Shown::if_any},
+      {"inner_triangles", "", "left out", "triangles that are there twice inside a body",
+       Shown::if_any},
       {"ambiguous_signs", "", "unsure", "nodes that may be inside or outside", Shown::if_any},
       {"redistanced_nodes", "", "depths", "nodes re-measured where objects overlap",
        Shown::if_any}};
@@ -58,6 +60,9 @@ Report fieldReport(const SurfaceField& field, const FieldReport& built) {
   report.set("dense_bytes", built.dense_bytes);
   report.set("dropped_triangles", built.dropped_triangles,
              formatCount(built.dropped_triangles) + " triangles");
+  report.set("inner_triangles", built.inner_triangles,
+             formatCount(built.inner_triangles) +
+                 " triangles that are there twice, inside the body that the others bound");
   report.set("ambiguous_signs", built.ambiguous_signs,
              formatCount(built.ambiguous_signs) + " nodes may be inside or outside");
   report.set("redistanced_nodes", built.redistanced_nodes,

@@ -52,7 +52,7 @@ Scene presetScene(const std::string& name) {
     Scene scene = sceneOf(galleon(0.1), name);
     scene.haptics.stiffness = 500;
     scene.haptics.offset = 1e-3;
-    scene.field.sides = OpenSides::two;
+    scene.field.sides = OpenSides::automatic_two;
     return scene;
   }
   if (name == "ball") return sceneOf(icosphere(0.03, 22), name);

@@ -112,14 +112,14 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
   }
   made.warnings << lines(made.editor->notes());
   const Scene& scene = made.editor->scene();
-  const bool both_sides =
-      scene.field.sides == OpenSides::two || scene.haptics.tip_radius.value_or(0) > 0;
+  const bool chosen =
+      scene.field.sides != OpenSides::automatic || scene.haptics.tip_radius.value_or(0) > 0;
   for (const auto& object : made.editor->compiled()->objects) {
     const QString name = QString::fromStdString(object->object.name);
     for (const std::string& line : meshWarnings(object->mesh_report))
       made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(line));
     const auto thin = thinSheetWarning(object->mesh_report);
-    if (thin && !both_sides)
+    if (thin && !chosen)
       made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(*thin));
   }
 }

@@ -102,6 +102,15 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
                                     scene.built.report.open_triangles, scene.scene.field.sides))),
       tr("Closed parts have an inside. Open ones, such as a terrain, are the front of a plate as "
          "thick as the band, or felt from both sides with surface.sides = two and a tip radius."));
+  const FieldReport& found = scene.built.report;
+  if (!found.parts.empty())
+    row(tr("Decided"), text(describeParts(found.parts)),
+        tr("By the program, or by surface.sides: one, two or closed hold for every part with a "
+           "rim."));
+  if (!found.holes.empty())
+    row(tr("Largest hole"), text(describeHole(found.holes.front())),
+        tr("Closed over: what lies behind it is solid"),
+        true);
   const auto defect = [&](const QString& caption, std::size_t count, const QString& tip) {
     if (count > 0) row(caption, text(formatCount(count)), tip, true);
   };

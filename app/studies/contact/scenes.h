@@ -16,7 +16,7 @@ struct ContactScene {
   std::string name;
   std::vector<TriangleMesh> meshes;           // [m]; several are one solid by min (K14)
   std::vector<double> isos = {0, 1e-3, 2e-3}; // [m]; without 0 where parts have no thickness
-  OpenSides sides = OpenSides::one;           // of open parts
+  OpenSides sides = OpenSides::automatic;     // of parts with a rim
 };
 
 // All of them. The same at every call.

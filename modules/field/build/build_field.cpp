@@ -11,6 +11,7 @@
 #include "field/build/distance_blocks.h"
 #include "field/build/plate.h"
 #include "field/signs/signs.h"
+#include "geometry/mesh/inner_faces.h"
 #include "geometry/mesh/open_parts.h"
 #include "geometry/mesh/orientation.h"
 #include "geometry/tree/triangle_tree.h"
@@ -38,6 +39,21 @@ TriangleMesh onlyFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>
   for (const std::int32_t f : faces)
     sound.triangles.push_back(mesh.triangles[static_cast<std::size_t>(f)]);
   return sound;
+}
+
+// Those of `faces` that are not at the places `dropped` of it, which ascend.
+std::vector<std::int32_t> without(const std::vector<std::int32_t>& faces,
+                                  const std::vector<std::int32_t>& dropped) {
+  std::vector<std::int32_t> left;
+  left.reserve(faces.size() - dropped.size());
+  auto next = dropped.begin();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (next != dropped.end() && index(*next) == i)
+      ++next;
+    else
+      left.push_back(faces[i]);
+  }
+  return left;
 }
 
 std::vector<std::int32_t> someUsable(const TriangleMesh& mesh) {
@@ -91,11 +107,16 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   progress.throwIfCancelled();
   progress.report(0, "triangles");
 
-  const std::vector<std::int32_t> usable = someUsable(mesh);
+  std::vector<std::int32_t> usable = someUsable(mesh);
   FieldReport report;
   report.dropped_triangles = mesh.triangles.size() - usable.size();
   std::optional<TriangleMesh> reduced;
   if (report.dropped_triangles > 0) reduced = onlyFaces(mesh, usable);
+  if (const auto inner = innerFaces(reduced ? *reduced : mesh); !inner.empty()) {
+    report.inner_triangles = inner.size();
+    usable = without(usable, inner);
+    reduced = onlyFaces(mesh, usable);
+  }
   const TriangleMesh& sound = reduced ? *reduced : mesh;
 
   FieldGrid grid = grid_for(bounds(sound));
@@ -109,12 +130,14 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   }
   const TriangleMesh& oriented = turned ? *turned : sound;
   WindingNumber winding(oriented);
-  const OpenParts open = openParts(oriented, winding);
+  OpenParts open = openParts(oriented, winding, sides, grid.voxel);
   if (open.any()) winding = WindingNumber(closedPart(oriented, open));
   report.open_parts = open.parts;
   report.open_triangles = open.triangles;
+  report.parts = open.decided;
+  report.holes = std::move(open.holes);
 
-  const bool plates = open.any() && sides == OpenSides::one;
+  const bool plates = open.any() && !haveTwoSides(sides);
   if (plates) grid = withRoomForPlates(grid, band);
   const TriangleTree tree(sound);
   progress.throwIfCancelled();
@@ -129,7 +152,7 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   report.ambiguous_signs += caps.doubtful;
   signCoarse(builder);
   progress.throwIfCancelled();
-  if (report.dropped_triangles > 0) renumberFaces(builder, caps, usable);
+  if (reduced) renumberFaces(builder, caps, usable);
 
   auto field = std::make_shared<const SurfaceField>(frozen(std::move(builder)));
   report.blocks = field->blockCount();

@@ -31,6 +31,8 @@ std::vector<std::int32_t> welded(const std::vector<Vec3>& positions) {
 } // namespace
 
 bool isClosed(const TriangleMesh& mesh, const OpenParts& open) {
+  for (const PartSides& part : open.decided)
+    if (part.sides == OpenSides::closed && part.rim_edges > 0) return false;
   const std::vector<std::int32_t> vertex = welded(mesh.positions);
   std::vector<Triangle> faces;
   faces.reserve(mesh.triangles.size());

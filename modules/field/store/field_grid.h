@@ -29,7 +29,7 @@ struct FieldSpec {
   int resolution = 150;             // cells along the longest side, band included on both ends
   std::optional<double> voxel;      // [m]; takes the place of resolution
   double band = 8;                  // voxels on each side of the surface in which nodes are stored
-  OpenSides sides = OpenSides::one; // of the mesh's open parts
+  OpenSides sides = OpenSides::automatic; // of the mesh's parts with a rim
 };
 
 // `spec` with its band widened, where need be, so that `reach` [m] and `margin` voxels more lie in

@@ -11,15 +11,20 @@
 
 namespace patina {
 
-inline std::vector<Triangle> weldedTriangles(const TriangleMesh& mesh) {
+// Of the same triangles; points in the order in which they first come.
+inline TriangleMesh weldedMesh(const TriangleMesh& mesh) {
   VertexWeld weld(mesh.positions.size());
   std::vector<std::int32_t> vertex;
   vertex.reserve(mesh.positions.size());
   for (const Vec3& p : mesh.positions) vertex.push_back(weld.index(p));
-  std::vector<Triangle> result = mesh.triangles;
-  for (Triangle& t : result)
+  TriangleMesh result{weld.takePoints(), mesh.triangles, {}};
+  for (Triangle& t : result.triangles)
     for (std::int32_t& v : t) v = vertex[static_cast<std::size_t>(v)];
   return result;
+}
+
+inline std::vector<Triangle> weldedTriangles(const TriangleMesh& mesh) {
+  return weldedMesh(mesh).triangles;
 }
 
 // By face: the lowest face with the same three vertices, itself where there is no other.

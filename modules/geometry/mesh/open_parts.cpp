@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
 
+#include "geometry/mesh/connected_parts.h"
 #include "geometry/mesh/edge_uses.h"
+#include "geometry/mesh/inner_faces.h"
 #include "geometry/mesh/mesh_report.h"
+#include "geometry/mesh/near_points.h"
 #include "geometry/mesh/orientation.h"
 
 namespace patina {
@@ -15,7 +19,8 @@ namespace {
 
 constexpr double kTells = 0.35;           // how far from 1/2 a winding number must be
 constexpr std::size_t kMostSamples = 256; // faces of a part that are asked
-constexpr std::size_t kFewestFaces = 4;   // that can have an inside of their own
+constexpr double kShares[] = {0.25, 0.5, 1};
+constexpr std::size_t kFewestFaces = 4; // that can have an inside of their own
 
 // Every edge runs as often one way as the other: no rim. By sums of the edges' hashes, so that a
 // sound mesh costs next to nothing.
@@ -37,40 +42,9 @@ bool isBalanced(const std::vector<Triangle>& triangles) {
 struct Part {
   std::vector<std::int32_t> faces;
   bool rim = false, open = false;
+  bool joined = false;         // of loose pieces, whose faces overlap near the surface
   double told = 0, before = 0; // area about which an inside is told; of it, where that is in front
 };
-
-std::vector<Part> connectedParts(const std::vector<Triangle>& triangles) {
-  const std::vector<std::int32_t> twin = firstTwins(triangles);
-  std::vector<std::int32_t> root(triangles.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](std::int32_t f) {
-    while (root[index(f)] != f) f = root[index(f)] = root[index(root[index(f)])];
-    return f;
-  };
-  std::vector<std::int32_t> on_rim;
-  forEachEdge(
-      triangles, twin, [](std::size_t) { return true; },
-      [&](auto first, auto last) {
-        if (last - first == 1) on_rim.push_back(first->face);
-        for (auto use = first + 1; use != last; ++use) {
-          const std::int32_t a = find(first->face), b = find(use->face);
-          root[index(std::max(a, b))] = std::min(a, b);
-        }
-      });
-  std::vector<Part> parts;
-  std::vector<std::size_t> part_of(triangles.size());
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    const std::size_t lowest = index(find(twin[f])); // a root is its part's lowest face
-    if (lowest == f) {
-      part_of[f] = parts.size();
-      parts.emplace_back();
-    }
-    parts[part_of[lowest]].faces.push_back(static_cast<std::int32_t>(f));
-  }
-  for (const std::int32_t f : on_rim) parts[part_of[index(find(f))]].rim = true;
-  return parts;
-}
 
 struct Sample {
   std::size_t part;
@@ -79,23 +53,26 @@ struct Sample {
   bool told = false, before = false;
 };
 
+// `off`: distance from the surface to both sides.
 Sample sampleOf(const TriangleMesh& mesh, const WindingNumber& winding, std::size_t part,
-                std::int32_t face) {
+                std::int32_t face, double off) {
   const Vec3 a = mesh.corner(index(face), 0), b = mesh.corner(index(face), 1),
              c = mesh.corner(index(face), 2);
   const Vec3 normal = (b - a).cross(c - a);
   const double doubled = normal.norm();
-  const Vec3 off = 1e-3 / std::sqrt(doubled) * normal; // of the face's size
+  const Vec3 step = (off > 0 ? off / doubled : 1e-3 / std::sqrt(doubled)) * normal;
   const Vec3 centre = (a + b + c) / 3;
-  const double before = std::abs(winding.at(centre + off)) - 0.5,
-               behind = std::abs(winding.at(centre - off)) - 0.5;
-  const bool told = std::abs(before) >= kTells && std::abs(behind) >= kTells;
+  const double before = std::abs(winding.at(centre + step)) - 0.5,
+               behind = std::abs(winding.at(centre - step)) - 0.5;
+  const bool told = std::abs(before) >= kTells && std::abs(behind) >= kTells &&
+                    (!(off > 0) || (before > 0) != (behind > 0));
   return {part, face, doubled, told, told && before > 0};
 }
 
-// Of the parts asked: whether the winding number tells less than half of their area.
-void judge(const TriangleMesh& mesh, const WindingNumber& winding, std::vector<Part>& parts,
-           const std::vector<std::size_t>& asked) {
+// Of the parts asked: whether the winding number tells less than half of their area. At a distance
+// `off` [m] from the surface; 0: 1e-3 of each face's size.
+void judgeAt(double off, const TriangleMesh& mesh, const WindingNumber& winding,
+             std::vector<Part>& parts, const std::vector<std::size_t>& asked) {
   std::vector<Sample> samples;
   for (const std::size_t p : asked) {
     const auto& faces = parts[p].faces;
@@ -104,7 +81,7 @@ void judge(const TriangleMesh& mesh, const WindingNumber& winding, std::vector<P
   }
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 32), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
-      samples[i] = sampleOf(mesh, winding, samples[i].part, samples[i].face);
+      samples[i] = sampleOf(mesh, winding, samples[i].part, samples[i].face, off);
   });
   std::vector<double> area(parts.size());
   for (const std::size_t p : asked) parts[p].told = parts[p].before = 0;
@@ -114,6 +91,18 @@ void judge(const TriangleMesh& mesh, const WindingNumber& winding, std::vector<P
     if (sample.before) parts[sample.part].before += sample.area;
   }
   for (const std::size_t p : asked) parts[p].open = 2 * parts[p].told < area[p];
+}
+
+// Loose pieces overlap near the surface and tell there of themselves: farther off they tell of
+// the body. `reach`: how far at most.
+void judge(const TriangleMesh& mesh, const WindingNumber& winding, std::vector<Part>& parts,
+           std::vector<std::size_t> asked, double reach) {
+  judgeAt(0, mesh, winding, parts, asked);
+  for (const double share : kShares) {
+    std::erase_if(asked, [&](std::size_t p) { return !parts[p].joined || !parts[p].open; });
+    if (asked.empty()) return;
+    judgeAt(share * reach, mesh, winding, parts, asked);
+  }
 }
 
 // Pieces that close a body together turn the same way. Two sheets one above the other do not: of
@@ -140,24 +129,19 @@ TriangleMesh onlyFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>
   return only;
 }
 
-} // namespace
-
-OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding) {
-  OpenParts result;
-  if (isBalanced(mesh.triangles)) return result;
-  const std::vector<Triangle> triangles = weldedTriangles(mesh);
-  if (isBalanced(triangles)) return result;
-  std::vector<Part> parts = connectedParts(triangles);
+// Which of the parts with a rim have no inside.
+void decide(const TriangleMesh& mesh, const WindingNumber& winding, std::vector<Part>& parts,
+            double reach) {
   std::vector<std::size_t> asked;
   for (std::size_t p = 0; p < parts.size(); ++p)
     if (parts[p].rim) asked.push_back(p);
-  judge(mesh, winding, parts, asked);
+  judge(mesh, winding, parts, asked, reach);
   if (turnBothWays(parts, asked))
     for (const std::size_t p : asked) parts[p].open = true;
   // What else is there may hide that a part has an inside of its own: a terrain beneath it, say.
   for (const std::size_t p : asked) {
     if (!parts[p].open || parts[p].faces.size() < kFewestFaces || parts.size() == 1) continue;
-    judge(mesh, WindingNumber(onlyFaces(mesh, parts[p].faces)), parts, {p});
+    judge(mesh, WindingNumber(onlyFaces(mesh, parts[p].faces)), parts, {p}, reach);
   }
   // Or pretend it: of what is open nothing is left when the closed ones are signed.
   for (bool opened = true; opened;) {
@@ -170,27 +154,124 @@ OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding) {
     }
     opened = doubtful.size() > 0 && closed.size() < mesh.triangles.size();
     if (!opened) break;
-    judge(mesh, WindingNumber(onlyFaces(mesh, closed)), parts, doubtful);
+    judge(mesh, WindingNumber(onlyFaces(mesh, closed)), parts, doubtful, reach);
     opened =
         std::any_of(doubtful.begin(), doubtful.end(), [&](std::size_t p) { return parts[p].open; });
   }
-  for (const Part& part : parts) {
+}
+
+// By vertex: the lowest of those that joined rims bring together, at most `reach` apart.
+std::vector<std::int32_t> nearVertices(const TriangleMesh& mesh, const ConnectedParts& found,
+                                       const std::vector<const RimEdge*>& rims, double reach) {
+  std::vector<std::int32_t> lowest(mesh.positions.size());
+  std::iota(lowest.begin(), lowest.end(), 0);
+  std::vector<std::int32_t> vertices;
+  for (const RimEdge* rim : rims)
+    if (found.parts[index(found.part_of[index(rim->face)])].joined)
+      vertices.insert(vertices.end(), rim->vertices.begin(), rim->vertices.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<Vec3> points;
+  for (const std::int32_t v : vertices) points.push_back(mesh.positions[index(v)]);
+  const auto find = [&](std::int32_t v) {
+    while (lowest[index(v)] != v) v = lowest[index(v)];
+    return v;
+  };
+  NearPoints(points, reach).forPairs([&](std::uint32_t i, std::uint32_t j) {
+    const std::int32_t a = find(vertices[i]), b = find(vertices[j]);
+    lowest[index(std::max(a, b))] = std::min(a, b);
+    return false;
+  });
+  for (const std::int32_t v : vertices) lowest[index(v)] = find(v);
+  return lowest;
+}
+
+std::vector<Hole> closedOver(const TriangleMesh& mesh, const ConnectedParts& found,
+                             const std::vector<std::uint8_t>& open, double reach) {
+  std::vector<const RimEdge*> rims;
+  for (const RimEdge& rim : found.rims)
+    if (!rim.joined && (open.empty() || !open[index(rim.face)])) rims.push_back(&rim);
+  if (rims.empty()) return {};
+  const std::vector<std::int32_t> vertex = nearVertices(mesh, found, rims, reach);
+  std::vector<std::int32_t> point_of(mesh.positions.size(), -1);
+  std::vector<Vec3> points;
+  std::vector<std::array<std::int32_t, 2>> edges;
+  for (const RimEdge* rim : rims) {
+    std::array<std::int32_t, 2> edge{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      std::int32_t& point = point_of[index(vertex[index(rim->vertices[k])])];
+      if (point < 0) {
+        point = static_cast<std::int32_t>(points.size());
+        points.push_back(mesh.positions[index(vertex[index(rim->vertices[k])])]);
+      }
+      edge[k] = point;
+    }
+    if (edge[0] != edge[1]) edges.push_back(edge);
+  }
+  return holesOf(points, edges);
+}
+
+} // namespace
+
+OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding, OpenSides sides,
+                    double reach) {
+  OpenParts result;
+  if (isBalanced(mesh.triangles)) return result;
+  const TriangleMesh welded = weldedMesh(mesh);
+  if (isBalanced(welded.triangles)) return result;
+  ConnectedParts found = connectedParts(welded, reach);
+  std::vector<Part> parts;
+  for (ConnectedPart& part : found.parts)
+    parts.push_back({std::move(part.faces), part.rim_edges > 0, false, part.joined});
+  if (decidesItself(sides)) decide(mesh, winding, parts, reach);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    Part& part = parts[p];
+    const bool twisted = found.parts[p].twisted && sides == OpenSides::two;
+    const bool asked = !decidesItself(sides) && (part.rim || twisted);
+    if (asked) part.open = sides != OpenSides::closed;
+    const OpenSides own = !part.open            ? OpenSides::closed
+                          : haveTwoSides(sides) ? OpenSides::two
+                                                : OpenSides::one;
+    result.decided.push_back({part.faces.size(), found.parts[p].rim_edges, own, asked});
     if (!part.open) continue;
     ++result.parts;
     result.triangles += part.faces.size();
     result.open.resize(mesh.triangles.size());
     for (const std::int32_t f : part.faces) result.open[index(f)] = 1;
   }
+  result.holes = closedOver(welded, found, result.open, reach);
   return result;
 }
 
-OpenParts openParts(const TriangleMesh& mesh) {
+OpenParts openParts(const TriangleMesh& mesh, OpenSides sides, double reach) {
   TriangleMesh sound = onlyFaces(mesh, usableTriangles(mesh));
+  const std::vector<std::int32_t> inner = innerFaces(sound);
+  if (!inner.empty()) {
+    for (const std::int32_t f : inner) sound.triangles[index(f)] = {-1, -1, -1};
+    std::erase(sound.triangles, Triangle{-1, -1, -1});
+  }
   for (const std::int32_t f : misorientedTriangles(sound)) {
     Triangle& t = sound.triangles[index(f)];
     std::swap(t[1], t[2]);
   }
-  return openParts(sound, WindingNumber(sound));
+  OpenParts result = openParts(sound, WindingNumber(sound), sides, reach);
+  result.inner_triangles = inner.size();
+  return result;
+}
+
+const char* sideName(OpenSides sides) {
+  return sides == OpenSides::two ? "two-sided" : sides == OpenSides::one ? "one-sided" : "closed";
+}
+
+std::string describeParts(const std::vector<PartSides>& parts) {
+  std::map<std::pair<bool, OpenSides>, std::size_t> counts;
+  for (const PartSides& part : parts) ++counts[{!part.asked, part.sides}];
+  std::string line;
+  for (const auto& [kind, count] : counts)
+    line += (line.empty() ? "" : ", ") + std::to_string(count) +
+            (count == 1 ? " part " : " parts ") + sideName(kind.second) +
+            (kind.first ? " by the program" : " as asked");
+  return line.empty() ? "all closed by the program: no edge has one triangle" : line;
 }
 
 std::vector<SideCount> sideCounts(std::size_t triangles, std::size_t open_triangles,
@@ -198,7 +279,8 @@ std::vector<SideCount> sideCounts(std::size_t triangles, std::size_t open_triang
   std::vector<SideCount> counts;
   if (triangles > open_triangles) counts.push_back({"closed", triangles - open_triangles});
   if (open_triangles > 0)
-    counts.push_back({sides == OpenSides::one ? "one-sided" : "two-sided", open_triangles});
+    counts.push_back(
+        {sideName(haveTwoSides(sides) ? OpenSides::two : OpenSides::one), open_triangles});
   return counts;
 }
 

@@ -237,8 +237,11 @@ BuiltField united(const Objects& pieces, const CompiledScene& compiled, Progress
     const FieldReport& own = piece->built.report;
     built.report.dropped_triangles += own.dropped_triangles;
     built.report.ambiguous_signs += own.ambiguous_signs;
+    built.report.inner_triangles += own.inner_triangles;
     built.report.open_parts += own.open_parts;
     built.report.open_triangles += own.open_triangles;
+    built.report.parts.insert(built.report.parts.end(), own.parts.begin(), own.parts.end());
+    built.report.holes.insert(built.report.holes.end(), own.holes.begin(), own.holes.end());
   }
   progress.throwIfCancelled();
   if (compiled.scene.redistance) {

@@ -23,6 +23,8 @@ constexpr double kFeltInPlace = 2;     // voxels: of thicker parts only edges ar
 constexpr double kHeldBar = 4;         // voxels
 constexpr double kHoldingOffset = 0.5; // voxels; with it bars of two voxels hold
 constexpr double kToldBars = 0.005;    // of an object's area
+constexpr double kToldHole = 0.01;     // of the area
+constexpr std::size_t kMostHoles = 4;  // lines
 constexpr double kLargestScene = 2;    // [m]
 
 // Whole turns in the plane of a face, halved: lines through a part, not rays.
@@ -157,14 +159,46 @@ void tellStiffLayers(const CompiledScene& compiled, std::vector<std::string>& li
   }
 }
 
+double areaOf(const TriangleMesh& mesh, std::int32_t face) {
+  const Vec3 a = mesh.corner(index(face), 0);
+  return 0.5 *
+         (mesh.corner(index(face), 1) - a).cross(mesh.corner(index(face), 2) - a).norm();
+}
+
 std::string percent(double share) {
   return formatNumber(std::round(100 * share)) + " %";
 }
 
 } // namespace
 
-std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
+std::vector<std::string> surfaceWarnings(const FieldReport& built, OpenSides sides,
+                                         const TriangleMesh& mesh) {
   std::vector<std::string> lines;
+  if (built.inner_triangles > 0)
+    lines.push_back(formatCount(built.inner_triangles) +
+                    " triangles are there twice inside a body, as between the cells of a "
+                    "tetrahedral mesh: they are left out");
+  if (sides != OpenSides::closed && !built.holes.empty()) {
+    double area = 0;
+    for (const std::int32_t f : usableTriangles(mesh)) area += areaOf(mesh, f);
+    for (const Hole& hole : built.holes) {
+      if (hole.area < kToldHole * area || lines.size() >= kMostHoles) break;
+      lines.push_back("a hole of " + describeHole(hole) +
+                      " is closed over, so that what lies behind it is solid: surface.sides = one "
+                      "keeps it open, or two with tip.radius or offset");
+    }
+  }
+  const bool obeyed = std::any_of(built.parts.begin(), built.parts.end(),
+                                  [](const PartSides& part) { return part.asked; });
+  if ((sides == OpenSides::one || sides == OpenSides::two) && !obeyed)
+    lines.push_back(std::string("surface.sides = ") + (sides == OpenSides::one ? "one" : "two") +
+                    " has no effect: no part has an edge of one triangle, all are closed");
+  return lines;
+}
+
+std::vector<std::string> compileWarnings(const CompiledScene& compiled) {
+  std::vector<std::string> lines = surfaceWarnings(
+      compiled.built.report, compiled.scene.field.sides, *compiled.mesh);
   tellUnknownTextures(compiled.scene, lines);
   tellStiffLayers(compiled, lines);
   const double voxel = compiled.built.field->grid.voxel;

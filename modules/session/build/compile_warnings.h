@@ -13,4 +13,9 @@ namespace patina {
 // without range or strength, objects whose poses make the scene larger than any hand reaches.
 std::vector<std::string> compileWarnings(const CompiledScene& compiled);
 
+// Of them what says how a mesh was read as a surface: inner triangles that are left out, large
+// holes that are closed over, and a surface.sides that no part of it obeys. `mesh`: all of it.
+std::vector<std::string> surfaceWarnings(const FieldReport& built, OpenSides sides,
+                                         const TriangleMesh& mesh);
+
 } // namespace patina

@@ -99,7 +99,7 @@ std::optional<std::string> thinSheetWarning(const MeshReport& report) {
 namespace {
 
 void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMesh& mesh,
-                 bool both_sides) {
+                 bool chosen) {
   const MeshReport report = inspect(mesh);
   if (report.non_finite + report.degenerate == report.triangles)
     throw FileError(where, 0,
@@ -109,7 +109,7 @@ void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMe
   for (const std::string& line : meshWarnings(report))
     opened.warnings.push_back(where + ": " + line);
   const auto thin = thinSheetWarning(report);
-  if (thin && !both_sides) opened.warnings.push_back(where + ": " + *thin);
+  if (thin && !chosen) opened.warnings.push_back(where + ": " + *thin);
 }
 
 bool isScan(const std::filesystem::path& folder) {
@@ -190,11 +190,11 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
     if (options.unit_chosen) warnOf("--unit", "workspace");
     if (options.up != UpAxis::z) warnOf("--up", "workspace");
     if (options.iso) warnOf("--iso", "workspace");
-    const bool both_sides = opened.scene.field.sides == OpenSides::two ||
-                            options.tip_radius_chosen ||
-                            opened.scene.haptics.tip_radius.value_or(0.0) > 0;
+    const bool chosen = opened.scene.field.sides != OpenSides::automatic ||
+                        options.tip_radius_chosen ||
+                        opened.scene.haptics.tip_radius.value_or(0.0) > 0;
     for (const SceneObject& object : opened.scene.objects)
-      addWarnings(opened, path.string() + ": " + object.name, *object.mesh, both_sides);
+      addWarnings(opened, path.string() + ": " + object.name, *object.mesh, chosen);
     return opened;
   }
   const bool is_volume = isVolumeFile(path);

@@ -1,0 +1,36 @@
+// The connected parts of a mesh and their rims. Internal to open_parts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/mesh/triangle_mesh.h"
+
+namespace patina {
+
+struct RimEdge { // an edge with one face
+  std::array<std::int32_t, 2> vertices;
+  std::int32_t face;
+  bool joined = false; // a rim of another piece runs along it
+};
+
+struct ConnectedPart {
+  std::vector<std::int32_t> faces; // ascending
+  std::size_t rim_edges = 0;
+  bool joined = false;  // made of pieces by their rims
+  bool twisted = false; // faces beside each other do not agree: they cannot, if they were turned
+};
+
+struct ConnectedParts {
+  std::vector<ConnectedPart> parts;
+  std::vector<std::int32_t> part_of; // by face
+  std::vector<RimEdge> rims;
+};
+
+// `mesh`: welded. Pieces are connected over edges. Pieces with
+// rims are joined where the middles of rim edges lie at most 0.7 `reach` apart and that holds for
+// half of both rims (three tenths, of pieces of less than four faces).
+ConnectedParts connectedParts(const TriangleMesh& mesh, double reach);
+
+} // namespace patina
