@@ -1,6 +1,6 @@
 #include <chrono>
 
-#include "acquisition/files/frame_files.h"
+#include "acquisition/files/camera_file.h"
 #include "acquisition/tracking/track_frames.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/scan_input.h"
@@ -35,6 +35,8 @@ const Keys kTrackKeys = {
      Shown::if_any},
     {"misfit", "", "misfit", "frames whose markers are not where the rig has them", Shown::if_any},
     {"dropped_markers", "", "dropped", "markers that contradicted the others of a frame",
+     Shown::if_any},
+    {"repeated", "", "repeated", "frames that show a marker of the rig more than once",
      Shown::if_any},
     {"reprojection_rms_px", "px", "corners miss by", "rms of an image's two axes together"},
     {"sigma",
@@ -90,6 +92,7 @@ int runTrack(TrackOptions options, Console& console) {
                        rounded(found.without[0].t) + " s: " + found.without[0].why);
   report.set("unreadable", found.unreadable).set("ambiguous", found.ambiguous);
   report.set("misfit", found.misfit).set("dropped_markers", found.dropped);
+  report.set("repeated", found.repeated);
   if (!found.poses.empty()) {
     report.set("reprojection_rms_px", found.rms, rounded(found.rms) + " px");
     const Json sigma = sigmaJson(found.poses);
@@ -103,6 +106,11 @@ int runTrack(TrackOptions options, Console& console) {
     console.warn(options.frames + ": " + formatCount(found.unreadable) + " of " +
                  formatCount(found.frames) +
                  " frames cannot be read; the first: " + found.first_fault);
+  if (found.repeated > 0)
+    console.warn(options.frames + ": in " + formatCount(found.repeated) + " of " +
+                 formatCount(found.frames) + " frames a marker of the rig is seen more than once " +
+                 "and does not count; the first: " + found.first_repeated +
+                 ": cover or print again whatever else shows it");
   if (2 * found.dropped > found.poses.size())
     console.warn(options.rig.string() + ": in " + formatCount(found.poses.size()) + " frames " +
                  formatCount(found.dropped) +

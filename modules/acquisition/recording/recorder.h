@@ -24,6 +24,7 @@ struct RecordedFrame {
   GreyFrame image;
   std::vector<SeenMarker> markers;
   RigVerdict verdict = RigVerdict::no_marker;
+  std::string why;                // it has no pose; empty if it has one
   std::optional<CameraPose> pose; // where the verdict is `seen`
 };
 
