@@ -358,6 +358,28 @@ TEST_F(Frames, ThatAreMissingUnreadableOrEmptyAreGapsWithAReason) {
   EXPECT_EQ(back.values[0].sigma_position, found.poses[0].sigma_position);
 }
 
+TEST_F(Frames, ThatShowAMarkerTwiceNameBothPlaces) {
+  // Two pictures of one marker, side by side.
+  GreyFrame image = rig.renderer.render({poses[0]}, {}, 1);
+  const auto seen = findMarkers(image, rig.books, &rig.camera);
+  ASSERT_FALSE(seen.empty());
+  rig.markers = {rig.markers[static_cast<std::size_t>(seen[0].id)]};
+  GreyFrame half{320, 480, {}};
+  for (int y = 0; y < 480; ++y)
+    half.pixel.insert(half.pixel.end(), image.row(y) + 160, image.row(y) + 480);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x)
+      image.pixel[static_cast<std::size_t>(640 * y + x)] = half.row(y)[x % 320];
+  writeGrey(fileOf(0), image);
+  const TrackedFrames found = tracked(rig.camera);
+  EXPECT_EQ(found.repeated, 1u);
+  EXPECT_TRUE(found.first_repeated.starts_with("at 0 s marker " + std::to_string(seen[0].id) +
+                                               " of 4x4_50 is seen twice, at ("))
+      << found.first_repeated;
+  ASSERT_FALSE(found.without.empty());
+  EXPECT_EQ("at 0 s " + found.without[0].why, found.first_repeated);
+}
+
 TEST_F(Frames, OfAnotherSizeThanTheCalibrationAreRefused) {
   try {
     (void)tracked(test::largeCamera());

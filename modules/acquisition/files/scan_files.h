@@ -64,6 +64,7 @@ class ProbeLines {
   // Appends the samples whose lines are whole; where one is wrong, those before it too.
   void take(std::string_view bytes, std::vector<ProbeSample>& into);
   void end() const; // throws FileError in the middle of a line
+  std::string leftOut() const { return table_.leftOut(); }
 
  private:
   std::string name_;

@@ -241,6 +241,7 @@ class Recorder::Work {
       }
       batch.clear();
       state_.probe = probe_->health();
+      if (state_.left_out.empty()) state_.left_out = probe_->leftOut();
     }
     if (failure) std::rethrow_exception(failure);
   }
