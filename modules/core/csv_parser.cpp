@@ -64,8 +64,8 @@ const char* nameOfSeparator(char separator) {
 }
 
 struct Heading {
-  std::string name; // in lower case
-  std::optional<std::string> unit;
+  std::string name;                // in lower case
+  std::optional<std::string> unit; // none without brackets
 };
 
 // "T (ms)" is t in ms.
@@ -141,6 +141,45 @@ bool CsvParser::take(std::string_view line, std::vector<double>& row) {
   return true;
 }
 
+// Sets the target of the cell that holds the wanted column: the one with the same name and unit,
+// else the only one in a unit of the same dimension. Returns false without one; `cause` then says
+// why a cell of that name is none.
+bool CsvParser::findColumn(std::size_t wanted, std::vector<Cell>& cells, std::string& cause) const {
+  const std::string& name = columns_[wanted];
+  const Heading heading = headingIn(name);
+  const std::optional<Unit> unit = parseUnit(heading.unit.value_or(""));
+  Cell* found = nullptr;
+  bool ambiguous = false;
+  for (Cell& cell : cells) {
+    const Heading own = headingIn(cell.name);
+    if (own.name != heading.name || cell.target >= 0) continue;
+    const bool same = cell.name == name;
+    const std::optional<Unit> own_unit = parseUnit(own.unit.value_or(""));
+    const std::string column = "column " + inQuotes(cell.name);
+    if (same) {
+      if (!found || found->name != name) found = &cell;
+      found->multiplier = found->divisor = 1;
+    } else if (heading.unit && !own.unit) {
+      cause = column + " has no unit: write '" + name + "' or another unit";
+    } else if (!unit || !own_unit || own_unit->exponents != unit->exponents) {
+      const std::string known = unit ? unitsLike(*unit) : "";
+      cause = column + " is not in a known unit: write '" + name + "'" +
+              (known.empty() ? "" : " or one of " + known);
+    } else if (!found) {
+      found = &cell;
+      found->multiplier = own_unit->multiplier;
+      found->divisor = own_unit->divisor;
+    } else if (found->name != name) {
+      ambiguous = true;
+      cause = inQuotes(found->name) + " and " + inQuotes(cell.name) + " are the same column";
+    }
+  }
+  if (!found || (ambiguous && found->name != name)) return false;
+  cause.clear();
+  found->target = static_cast<int>(wanted);
+  return true;
+}
+
 // Returns false where the line comes before the header.
 bool CsvParser::readHeader(std::string_view line) {
   if (line.empty()) return false;
@@ -156,47 +195,23 @@ bool CsvParser::readHeader(std::string_view line) {
   for (const char candidate : {';', '\t', ','})
     if (!separator && cellsOf(text, candidate).size() > 1) separator = candidate;
   if (!separator) separator = ',';
-  const std::vector<std::string> names = cellsOf(text, separator);
-  std::vector<Heading> headings;
-  for (const std::string& name : names) headings.push_back(headingIn(name));
   std::vector<Cell> cells;
-  for (const std::string& name : names) cells.push_back({name.empty() ? "(no name)" : name});
+  for (const std::string& name : cellsOf(text, separator))
+    cells.push_back({name.empty() ? "(no name)" : name});
   const auto fail = [&](const std::string& cause) {
     refuse("header is " + inQuotes(line) + ", separated by " + nameOfSeparator(separator) + ": " +
            cause);
   };
   for (std::size_t i = 0; i < found_.size(); ++i) {
-    const Heading wanted = headingIn(columns_[i]);
-    const std::optional<Unit> unit = parseUnit(wanted.unit.value_or(""));
-    std::optional<std::size_t> found;
-    std::string cause;
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      if (headings[k].name != wanted.name || cells[k].target >= 0) continue;
-      const bool same = names[k] == columns_[i];
-      const std::optional<Unit> own = same ? unit : parseUnit(headings[k].unit.value_or(""));
-      const std::string in = "column " + inQuotes(names[k]);
-      if (wanted.unit && !headings[k].unit) {
-        cause = in + " has no unit: write '" + columns_[i] + "' or another unit";
-      } else if (!same && (!own || !unit || own->exponents != unit->exponents)) {
-        const std::string known = unit ? unitsLike(*unit) : "";
-        cause = in + " is not in a known unit: write '" + columns_[i] + "'" +
-                (known.empty() ? "" : " or one of " + known);
-      } else if (found && !same && names[*found] != columns_[i]) {
-        fail(inQuotes(names[*found]) + " and " + inQuotes(names[k]) + " are the same column");
-      } else if (!found || (same && names[*found] != columns_[i])) {
-        found = k;
-        cells[k].multiplier = same ? 1 : own->multiplier;
-        cells[k].divisor = same ? 1 : own->divisor;
-      }
-    }
     const bool required = i < wanted_.required.size();
+    std::string cause;
+    const bool found = findColumn(i, cells, cause);
     if (!found && comment && required) return false;
-    if (!found && !cause.empty()) fail(cause);
+    if (!cause.empty()) fail(cause);
     if (!found && required)
       fail("it lacks " + inQuotes(columns_[i]) + " of '" + joined(wanted_.required, ",") + "'" +
-           (names.size() < 2 ? ", or a comma, semicolon or tab between columns" : ""));
-    if (found) cells[*found].target = static_cast<int>(i);
-    found_[i] = found.has_value();
+           (cells.size() < 2 ? ", or a comma, semicolon or tab between columns" : ""));
+    found_[i] = found;
   }
   separator_ = separator;
   for (Cell& cell : cells)
@@ -215,10 +230,13 @@ std::string CsvParser::emptyText() const {
 
 std::string CsvParser::leftOut() const {
   std::vector<std::string> names;
-  for (const Cell& cell : cells_)
-    if (cell.target < 0 &&
-        std::find(wanted_.unread.begin(), wanted_.unread.end(), cell.name) == wanted_.unread.end())
+  for (const Cell& cell : cells_) {
+    const auto isCell = [&](const std::string& name) {
+      return headingIn(name).name == headingIn(cell.name).name;
+    };
+    if (cell.target < 0 && std::none_of(wanted_.unread.begin(), wanted_.unread.end(), isCell))
       names.push_back(printableText(cell.name));
+  }
   if (names.empty()) return "";
   constexpr std::size_t kNamed = 8;
   const std::size_t more = names.size() > kNamed ? names.size() - kNamed : 0;
@@ -259,12 +277,14 @@ double CsvParser::numberIn(std::string_view text, std::size_t column, bool may_h
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos || !may_have_comma) {
     std::optional<double> value = parseNumber(text);
+    const bool has_point = value && point;
     if (!value) value = microsoftNumber(text);
     if (!value && separator_ == ',' && text.find(';') != std::string_view::npos)
       refuse(kDecimalComma);
     if (!value) refuseNumber(" is not a number");
-    if (point && commas_) refuseNumber(" has a decimal point, numbers before it decimal commas");
-    points_ |= point;
+    if (has_point && commas_)
+      refuseNumber(" has a decimal point, numbers before it decimal commas");
+    points_ |= has_point;
     return *value;
   }
   std::string with_point(text);

@@ -52,6 +52,7 @@ class CsvParser {
   };
 
   bool readHeader(std::string_view line);
+  bool findColumn(std::size_t wanted, std::vector<Cell>& cells, std::string& cause) const;
   void readRow(std::string_view line, std::vector<double>& row);
   void readQuotedRow(std::string_view line, std::vector<double>& row);
   void set(std::vector<double>& row, std::size_t column, double value, std::string_view text);

@@ -11,7 +11,7 @@
 namespace patina {
 namespace {
 
-std::vector<Camera> cameras() {
+std::vector<Camera> cameraModels() {
   std::vector<Camera> all = {test::smallCamera(),    test::largeCamera(),  test::wideCamera(),
                              test::rationalCamera(), test::tiltedCamera(), test::fisheyeCamera()};
   Camera prism = test::smallCamera();
@@ -24,10 +24,9 @@ std::vector<Camera> cameras() {
   Camera pinhole = test::smallCamera();
   pinhole.distortion = {};
   all.push_back(pinhole);
-  // As real calibrations are: of a telephone, an action camera and a T265.
+  // As real calibrations are: of a telephone, an Azure Kinect and a T265.
   all.push_back({1920, 1080, 1412.3, 1411.8, 962.1, 541.7, {0.124, -0.257, 8e-4, -3e-4, 0.142}});
-  all.push_back(
-      {1280, 960, 602.1, 601.7, 640.8, 477.2, {1.31, 0.21, 1e-4, -5e-5, 4e-3, 1.64, 0.46, 0.03}});
+  all.push_back({1280, 720, 608, 608, 640, 366, {0.52, -2.7, 1e-3, -3e-4, 1.56, 0.4, -2.52, 1.49}});
   Camera t265{848, 800, 286.3, 286.4, 425.1, 399.8, {-0.0083, 0.0447, -0.0424, 0.0080}};
   t265.lens = LensModel::fisheye;
   all.push_back(t265);
@@ -37,7 +36,7 @@ std::vector<Camera> cameras() {
 TEST(Lens, SeesPointsWhereOpenCvDoes) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : cameraModels())
     for (int i = 0; i < 200; ++i) {
       const Vec2 pixel(unit(random) * camera.width, unit(random) * camera.height);
       const auto flat = flatOf(camera, pixel);
@@ -48,7 +47,7 @@ TEST(Lens, SeesPointsWhereOpenCvDoes) {
 }
 
 TEST(Lens, IsInvertedToTenDigitsOverThePicture) {
-  for (const Camera& camera : cameras()) {
+  for (const Camera& camera : cameraModels()) {
     int seen = 0;
     for (int i = 0; i <= 20; ++i)
       for (int j = 0; j <= 20; ++j) {
@@ -70,7 +69,7 @@ TEST(Lens, IsInvertedToTenDigitsOverThePicture) {
 TEST(Lens, HasTheDerivativeOfItsMap) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(-1, 1);
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : cameraModels())
     for (int i = 0; i < 100; ++i) {
       const double reach = camera.lens == LensModel::fisheye ? 3 : 0.5;
       const Vec2 flat = reach * Vec2(unit(random), unit(random));

@@ -16,7 +16,7 @@ struct Tracked {
 };
 
 // The rig in front of the camera, `aside` of the axis [rad].
-Tracked track(const Camera& camera, double aside) {
+Tracked trackBehind(const Camera& camera, double aside) {
   const test::RenderedRig rig(camera, "4x4_50");
   std::mt19937 random(4);
   Tracked result;
@@ -53,7 +53,7 @@ TEST(LensTracking, FindsPosesBehindEveryLens) {
                       {"fisheye, 29 degrees aside", test::fisheyeCamera(), 0.5},
                       {"fisheye, 46 degrees aside", test::fisheyeCamera(), 0.8}};
   for (const Row& row : rows) {
-    const Tracked found = track(row.camera, row.aside);
+    const Tracked found = trackBehind(row.camera, row.aside);
     std::printf("%s: %d of %d, worst %.3f mm, NEES %.1f\n", row.name, found.seen, found.frames,
                 1e3 * found.worst, found.nees);
     EXPECT_GE(found.seen, 0.7 * found.frames) << row.name;

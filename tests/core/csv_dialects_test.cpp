@@ -10,35 +10,35 @@
 namespace patina {
 namespace {
 
-const CsvColumns kTip{{"t [s]", "x [m]", "y [m]", "z [m]"}};
-using Rows = std::vector<std::vector<double>>;
+const CsvColumns kTipColumns{{"t [s]", "x [m]", "y [m]", "z [m]"}};
+using TableRows = std::vector<std::vector<double>>;
 
-struct Read {
-  Rows rows;
+struct ReadTable {
+  TableRows rows;
   std::string left_out, not_finite;
 };
 
-Read read(const std::string& text, const CsvColumns& columns = kTip) {
+ReadTable readTable(const std::string& text, const CsvColumns& columns = kTipColumns) {
   CsvReader reader(sourceOfText(text), "a.csv", columns);
-  Read out;
+  ReadTable out;
   for (std::vector<double> row; reader.next(row);) out.rows.push_back(row);
   out.left_out = reader.leftOut();
   out.not_finite = reader.firstNotFinite();
   return out;
 }
 
-std::string refusal(const std::string& text, const CsvColumns& columns = kTip) {
+std::string tableRefusal(const std::string& text, const CsvColumns& columns = kTipColumns) {
   try {
-    read(text, columns);
+    readTable(text, columns);
   } catch (const FileError& error) {
     return error.what();
   }
   return "";
 }
 
-const Rows kRows = {{0, 1.5, -2.25, 3}, {0.25, 4, 5.125, -6e-3}};
+const TableRows kTableRows = {{0, 1.5, -2.25, 3}, {0.25, 4, 5.125, -6e-3}};
 
-std::string utf16(const std::string& text, bool big) {
+std::string asUtf16(const std::string& text, bool big) {
   std::string bytes = big ? "\xFE\xFF" : "\xFF\xFE";
   for (const char c : text) big ? bytes += {'\0', c} : bytes += {c, '\0'};
   return bytes;
@@ -64,8 +64,8 @@ TEST(CsvDialects, TheSameTableIsReadAsEveryProgramWritesIt) {
       replaced(semicolons, "\n", "\r"),
       plain.substr(0, plain.size() - 1),
       "\xEF\xBB\xBF" + semicolons,
-      utf16(replaced(semicolons, ";", "\t"), false),
-      utf16(plain, true),
+      asUtf16(replaced(semicolons, ";", "\t"), false),
+      asUtf16(plain, true),
       "sep=;\r\n" + replaced(semicolons, "\n", "\r\n"),
       "sep=\t\n" + replaced(plain, ",", "\t"),
       "\n\n" + plain + "\n\n",
@@ -88,31 +88,32 @@ TEST(CsvDialects, TheSameTableIsReadAsEveryProgramWritesIt) {
       "two\"\n0.25,4,5.125,-6e-3,12.05.2024\n",
       "date;t [s];x [m];y [m];z [m]\n12.05.2024;0;1,5;-2,25;3\n12.05.2024;0,25;4;5,125;-6e-3\n",
   };
-  for (const std::string& text : texts) EXPECT_EQ(refusal(text), "") << text;
-  for (const std::string& text : texts) EXPECT_EQ(read(text).rows, kRows) << text;
+  for (const std::string& text : texts) EXPECT_EQ(tableRefusal(text), "") << text;
+  for (const std::string& text : texts) EXPECT_EQ(readTable(text).rows, kTableRows) << text;
 }
 
 TEST(CsvDialects, AThousandthIsExactlyThatOfTheDecimalNumber) {
-  const auto rows = read("x [mm]\n52\n0.1\n", {{"x [m]"}}).rows;
-  EXPECT_EQ(rows, (Rows{{0.052}, {0.1 / 1000}}));
+  const auto rows = readTable("x [mm]\n52\n0.1\n", {{"x [m]"}}).rows;
+  EXPECT_EQ(rows, (TableRows{{0.052}, {0.1 / 1000}}));
 }
 
 TEST(CsvDialects, UnitsOfForcesAccelerationsAndAnglesAreConverted) {
   const auto rows =
-      read("f [mN];a (g);b [mm/s\xC2\xB2];w [deg];c [cm/s^2];v [mm/s];d [mm s^-2]\n"
-           "1500;2;9810;180;100;250;1000\n",
-           {{"f [N]", "a [m/s^2]", "b [m/s^2]", "w [rad]", "c [m/s^2]", "v [m/s]", "d [m/s^2]"}})
+      readTable(
+          "f [mN];a (g);b [mm/s\xC2\xB2];w [deg];c [cm/s^2];v [mm/s];d [mm s^-2]\n"
+          "1500;2;9810;180;100;250;1000\n",
+          {{"f [N]", "a [m/s^2]", "b [m/s^2]", "w [rad]", "c [m/s^2]", "v [m/s]", "d [m/s^2]"}})
           .rows;
-  EXPECT_EQ(rows, (Rows{{1.5, 2 * 9.80665, 9.81, M_PI, 1, 0.25, 1}}));
+  EXPECT_EQ(rows, (TableRows{{1.5, 2 * 9.80665, 9.81, M_PI, 1, 0.25, 1}}));
 }
 
 TEST(CsvDialects, ColumnsThatNobodyReadsAreNamed) {
-  EXPECT_EQ(read("t [s],x [m],y [m],z [m]\n").left_out, "");
-  EXPECT_EQ(read("t [s],x [m],u,y [m],z [m]\n").left_out, "a.csv: column left out: u");
-  EXPECT_EQ(read("t [s],x [mm],x [m],y [m],z [m],b\n").left_out,
+  EXPECT_EQ(readTable("t [s],x [m],y [m],z [m]\n").left_out, "");
+  EXPECT_EQ(readTable("t [s],x [m],u,y [m],z [m]\n").left_out, "a.csv: column left out: u");
+  EXPECT_EQ(readTable("t [s],x [mm],x [m],y [m],z [m],b\n").left_out,
             "a.csv: columns left out: x [mm], b");
-  EXPECT_EQ(read("t [s],x [m],u\n", {{"t [s]"}, {"x [m]"}, {"u"}}).left_out, "");
-  EXPECT_EQ(read("a,b,c,d,e,f,g,h,i,j,t [s]\n", {{"t [s]"}}).left_out,
+  EXPECT_EQ(readTable("t [s],x [m],u\n", {{"t [s]"}, {"x [m]"}, {"u"}}).left_out, "");
+  EXPECT_EQ(readTable("a,b,c,d,e,f,g,h,i,j,t [s]\n", {{"t [s]"}}).left_out,
             "a.csv: columns left out: a, b, c, d, e, f, g, h and 2 more");
 }
 
@@ -132,20 +133,20 @@ TEST(CsvDialects, AnOptionalColumnThatIsNotThereIsNaN) {
 TEST(CsvDialects, TheFirstValueThatIsNotFiniteIsNamedWithItsPlace) {
   for (const char* text : {"nan", "NaN", "-nan", "inf", "-Inf", "1.#IND", "-1.#IND", "1.#INF",
                            "1.#QNAN0", "-nan(ind)", "infinity"}) {
-    const Read found =
-        read("t [s],x [m],y [m],z [m]\n0,0,0,0\n1,2,3," + std::string(text) + "\n2,nan,0,0\n");
+    const ReadTable found =
+        readTable("t [s],x [m],y [m],z [m]\n0,0,0,0\n1,2,3," + std::string(text) + "\n2,nan,0,0\n");
     EXPECT_EQ(found.rows.size(), 3u);
     EXPECT_FALSE(std::isfinite(found.rows[1][3])) << text;
     EXPECT_EQ(found.not_finite, "line 3: z [m] is '" + std::string(text) + "'");
   }
-  const Read german = read("x [mm];y [m]\n1,#IND;0\n", {{"x [m]", "y [m]"}});
+  const ReadTable german = readTable("x [mm];y [m]\n1,#IND;0\n", {{"x [m]", "y [m]"}});
   EXPECT_EQ(german.not_finite, "line 2: x [mm] is '1,#IND'");
 }
 
 TEST(CsvDialects, WhatCannotBeReadIsNamed) {
   const auto says = [](const std::string& text, const std::string& cause,
-                       const CsvColumns& columns = kTip) {
-    const std::string found = refusal(text, columns);
+                       const CsvColumns& columns = kTipColumns) {
+    const std::string found = tableRefusal(text, columns);
     EXPECT_NE(found.find(cause), std::string::npos) << text << "\n" << found << "\n" << cause;
   };
   says("t [s],x [m],z [m]\n",

@@ -9,7 +9,7 @@
 namespace patina::test {
 namespace {
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string withEach(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
     text.replace(at, from.size(), to);
   return text;
@@ -17,7 +17,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 // As a spreadsheet of a country with decimal commas writes it.
 std::string german(const std::string& text) {
-  return "\xEF\xBB\xBF" + replaced(replaced(replaced(text, ",", ";"), ".", ","), "\n", "\r\n");
+  return "\xEF\xBB\xBF" + withEach(withEach(withEach(text, ",", ";"), ".", ","), "\n", "\r\n");
 }
 
 class ForeignTables : public Scans {};
@@ -32,11 +32,11 @@ TEST_F(ForeignTables, AreFeltAndSampledAsTheirPlainTwins) {
   }
   const std::string twin = folder.write("plain.csv", plain);
   const std::string others[] = {
-      folder.write("quoted.csv", replaced(plain, "t [s],x [m],y [m],z [m]",
+      folder.write("quoted.csv", withEach(plain, "t [s],x [m],y [m],z [m]",
                                           "\"t [s]\",\"x [m]\",\"y [m]\",\"z [m]\"")),
       folder.write("german.csv", german(plain)),
-      folder.write("tabs.csv", replaced(plain, ",", "\t")),
-      folder.write("mac.csv", replaced(plain, "\n", "\r")), folder.write("scaled.csv", scaled)};
+      folder.write("tabs.csv", withEach(plain, ",", "\t")),
+      folder.write("mac.csv", withEach(plain, "\n", "\r")), folder.write("scaled.csv", scaled)};
   const std::string out = folder / "out.csv";
   const auto forces = [&](const std::string& path) {
     const Outcome felt = run({"feel", ball, "--path", path, "-o", out, "--resolution", "40"});
@@ -94,7 +94,7 @@ TEST_F(ForeignTables, AScanOfThemIsFilteredAsItsTwin) {
   writeFileAtomically(scan + "/probe.csv", german(probe));
   ASSERT_EQ(run({"filter", scan, "-o", path}).exit, 0);
   EXPECT_EQ(readFile(path), plain);
-  std::string more = replaced(probe, "\n", ",7\n");
+  std::string more = withEach(probe, "\n", ",7\n");
   more.replace(more.find(",7\n"), 3, ",battery [V]\n");
   writeFileAtomically(scan + "/probe.csv", more);
   const Outcome filtered = run({"filter", scan, "-o", path});
@@ -124,8 +124,8 @@ TEST_F(Scans, AFisheyeCameraIsTrackedByEveryProgramsCalibration) {
       "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>640</image_width>\n"
       "<image_height>480</image_height>\n<fisheye_model>1</fisheye_model>\n<camera_matrix "
       "type_id=\"opencv-matrix\">\n<data>" +
-      replaced(numbers, ",", "") + "</data></camera_matrix>\n<distortion_coefficients><data>" +
-      replaced(lens, ",", "") + "</data></distortion_coefficients>\n</opencv_storage>\n";
+      withEach(numbers, ",", "") + "</data></camera_matrix>\n<distortion_coefficients><data>" +
+      withEach(lens, ",", "") + "</data></distortion_coefficients>\n</opencv_storage>\n";
   const std::string camera = folder.write("cam.yaml", ros);
   simulate({"--frames", "--camera", camera, "--seconds", "1"});
   const std::string poses = folder / "poses.tum";
@@ -138,7 +138,7 @@ TEST_F(Scans, AFisheyeCameraIsTrackedByEveryProgramsCalibration) {
     ASSERT_EQ(run({"track", scan, "--camera", camera, "-o", poses}).exit, 0);
     EXPECT_EQ(readFile(poses), found);
   }
-  writeFileAtomically(camera, replaced(ros, "equidistant", "fov"));
+  writeFileAtomically(camera, withEach(ros, "equidistant", "fov"));
   expectOneLineError(run({"track", scan, "--camera", camera, "-o", poses}),
                      {"cam.yaml:7:", "'fov'", "equidistant", "plumb_bob"});
 }

@@ -22,6 +22,7 @@ struct TrackOptions {
 };
 
 const Keys kTrackKeys = {
+    {"lens", "", "lens", "the camera's lens model"},
     {"frames", "", "frames"},
     {"frames_with_pose", "", "with a pose"},
     {"without_pose",
@@ -81,6 +82,7 @@ int runTrack(TrackOptions options, Console& console) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
 
   Report report(kTrackKeys);
+  report.set("lens", lensName(camera));
   report.set("frames", found.frames).set("frames_with_pose", found.poses.size());
   Json without = Json::array();
   for (const NoPose& gap : found.without)
