@@ -10,12 +10,23 @@
 
 namespace patina {
 
+// The formula of a lens's distortion.
+enum class LensModel {
+  // Radial and tangential polynomials (Brown 1966) over a second polynomial (Claus & Fitzgibbon
+  // 2005), a thin prism (Weng, Cohen & Herniou 1992) and a tilted sensor, as OpenCV has them:
+  // k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tau_x tau_y.
+  brown,
+  // A polynomial of the angle to the axis (Kannala & Brandt 2006), OpenCV's fisheye: k1 k2 k3 k4.
+  fisheye
+};
+
 // A pinhole behind a lens, as OpenCV has it: z looks forward, x right, y down; the middle of the
 // first pixel is (0, 0).
 struct Camera {
   int width = 0, height = 0;             // [px]
   double fx = 0, fy = 0, cx = 0, cy = 0; // [px]
-  std::array<double, 5> distortion{};    // k1 k2 p1 p2 k3
+  std::array<double, 14> distortion{};   // coefficients of the lens model; those it lacks are 0
+  LensModel lens = LensModel::brown;
 };
 
 // The top row first.

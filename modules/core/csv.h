@@ -1,4 +1,4 @@
-// Strict numeric CSV with one header row that carries units: "t [s],x [m],y [m],z [m]".
+// Tables of numbers with one header row that carries units: "t [s],x [m],y [m],z [m]".
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/csv_parser.h"
 #include "core/file.h"
+#include "core/line_buffer.h"
 
 namespace patina {
 
@@ -17,38 +19,43 @@ struct CsvTable {
   std::vector<std::vector<double>> rows; // each as long as columns
 };
 
-// A table read a row at a time, in memory that does not grow with it. The first columns must be
-// `expected`, in order (more may follow). All throw FileError with the line for: wrong header,
-// wrong count, not a number (a decimal comma is named as such), a line of more than 1 MB.
+// A table read a row at a time, in memory that does not grow with it; see CsvParser. Text is UTF-8,
+// or UTF-16 with a byte order mark; a line of more than 1 MB is refused. All throw FileError.
 class CsvReader {
  public:
-  // Fills a buffer and says with how many bytes; 0 at the end.
-  using Source = std::function<std::size_t(char* buffer, std::size_t room)>;
+  // Fills a buffer and returns the number of bytes; 0 at the end.
+  using Source = std::function<std::size_t(char* buffer, std::size_t capacity)>;
 
-  CsvReader(const std::filesystem::path& path, const std::vector<std::string>& expected);
-  CsvReader(Source source, std::string name, const std::vector<std::string>& expected);
+  CsvReader(const std::filesystem::path& path, const CsvColumns& columns);
+  CsvReader(Source source, std::string name, const CsvColumns& columns);
 
-  const std::vector<std::string>& columns() const { return columns_; }
-  bool next(std::vector<double>& row);       // false at the end
-  std::size_t line() const { return line_; } // of what was read last, from 1
+  bool next(std::vector<double>& row); // false at the end
   double fraction() const; // of the file's bytes; 0 where its size is not known (a pipe)
+
+  const std::vector<std::string>& columns() const { return parser_.columns(); }
+  bool has(const std::string& column) const { return parser_.has(column); }
+  std::size_t line() const { return parser_.line(); } // of the last row, from 1
+  std::string leftOut() const { return parser_.leftOut(); }
+  const std::string& firstNotFinite() const { return parser_.firstNotFinite(); }
 
  private:
   bool nextLine(std::string_view& line);
 
   Source source_;
   std::string name_;
-  std::vector<std::string> columns_;
-  std::string buffer_; // what was read and not used yet begins at used_
-  std::size_t used_ = 0, line_ = 0;
+  CsvParser parser_;
+  LineBuffer lines_;
   bool ended_ = false;
   double bytes_ = 0, size_ = 0;
 };
 
-// The same as one value.
-CsvTable readCsv(const std::filesystem::path& path, const std::vector<std::string>& expected);
+// Reads a text, which must outlive the source.
+CsvReader::Source sourceOfText(std::string_view text);
+
+// The whole table: the required columns first, then all others, which must hold numbers too.
+CsvTable readCsv(const std::filesystem::path& path, const std::vector<std::string>& required);
 CsvTable parseCsv(const std::string& text, const std::string& name,
-                  const std::vector<std::string>& expected);
+                  const std::vector<std::string>& required);
 
 // A table written a row at a time; an AtomicFile. Numbers read back bit for bit.
 class CsvWriter {
@@ -62,5 +69,8 @@ class CsvWriter {
   std::string text_; // not yet in the file
 };
 void writeCsv(const std::filesystem::path& path, const CsvTable& table);
+// Lines of such a table with their ends.
+std::string csvHeader(const std::vector<std::string>& columns);
+std::string csvRow(const std::vector<double>& row);
 
 } // namespace patina

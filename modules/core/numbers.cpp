@@ -25,12 +25,12 @@ std::string shortNumber(double value) {
   return text;
 }
 
-struct Unit {
+struct LengthSuffix {
   std::string_view suffix;
   double metres;
 };
 // Longer suffixes first: "mm" also ends in "m".
-constexpr std::array<Unit, 5> kUnits{
+constexpr std::array<LengthSuffix, 5> kUnits{
     {{"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"m", 1.0}}};
 
 } // namespace
@@ -47,7 +47,7 @@ std::optional<double> parseNumber(std::string_view text) {
 double parseLength(std::string_view text) {
   std::string_view digits = text;
   double factor = 1;
-  for (const Unit& unit : kUnits) {
+  for (const LengthSuffix& unit : kUnits) {
     if (digits.size() > unit.suffix.size() && digits.ends_with(unit.suffix)) {
       digits.remove_suffix(unit.suffix.size());
       factor = unit.metres;

@@ -24,4 +24,17 @@ bool isUtf8(std::string_view text) {
   return true;
 }
 
+std::size_t putUtf8(char16_t unit, char* to) {
+  if (unit >= 0xD800 && unit < 0xE000) unit = '?';
+  if (unit < 0x80) {
+    to[0] = static_cast<char>(unit);
+    return 1;
+  }
+  const std::size_t count = unit < 0x800 ? 2 : 3;
+  to[0] = static_cast<char>(count == 2 ? 0xC0 | unit >> 6 : 0xE0 | unit >> 12);
+  for (std::size_t i = 1; i < count; ++i)
+    to[i] = static_cast<char>(0x80 | (unit >> 6 * (count - 1 - i) & 0x3F));
+  return count;
+}
+
 } // namespace patina

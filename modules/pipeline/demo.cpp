@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "acquisition/files/frame_files.h"
+#include "acquisition/files/camera_file.h"
 #include "acquisition/files/registered_file.h"
 #include "acquisition/simulation/simulated_scan.h"
 #include "acquisition/simulation/simulated_streams.h"

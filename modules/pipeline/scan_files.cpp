@@ -1,11 +1,12 @@
 #include "pipeline/scan_files.h"
 
 #include <algorithm>
-#include <sstream>
 
+#include "acquisition/files/camera_file.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json.h"
+#include "core/line_buffer.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_unit.h"
@@ -32,9 +33,10 @@ void readTruth(const std::string& text, const std::string& name, ScanFiles& file
 
 // A recording that has seen no marker yet, or heard no probe, has tables without a row.
 bool hasRows(const std::string& text, int header_lines) {
-  std::istringstream file(text);
+  LineBuffer file;
+  file.append(text);
   int lines = 0;
-  for (std::string line; lines <= header_lines && std::getline(file, line);)
+  for (std::string_view line; lines <= header_lines && file.next(line, true);)
     lines += !line.empty() && line[0] != '#';
   return lines > header_lines;
 }
@@ -56,14 +58,14 @@ void parseTexts(const std::string& where, ScanFiles& files, Progress& progress) 
       files.markers = parseMarkers(text, name);
   });
   withFile("poses.tum", 0.2, [&](const std::string& text, const std::string& name) {
-    if (hasRows(text, 0)) files.poses = parsePoses(text, name).values;
+    if (hasRows(text, 0)) files.poses = parsePoses(text, name, {}, &files.warnings).values;
   });
   withFile("path.csv", 0.3, [&](const std::string& text, const std::string& name) {
-    files.path = parsePath(text, name);
+    files.path = parsePath(text, name, &files.warnings);
   });
   withFile("probe.csv", 0.4, [&](const std::string& text, const std::string& name) {
     if (!hasRows(text, 1)) return;
-    files.probe = parseProbeStream(text, name).values;
+    files.probe = parseProbeStream(text, name, &files.warnings).values;
     if (files.rig)
       for (ProbeSample& sample : files.probe) sample.force = forceOf(*files.rig, sample.force);
   });

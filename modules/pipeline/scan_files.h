@@ -18,7 +18,8 @@ struct ScanFiles {
   bool pictures = false;        // only those, of which nobody knows when they were taken
   SceneScan scan;               // the texts; named as its folder is, or as in the scene
   std::filesystem::path folder; // that holds the frames; of a scene's scan empty where it has none
-  std::string problem;          // why there are no frames, though the scan has some; else empty
+  std::vector<std::string> warnings; // a line for each table with columns that are left out
+  std::string problem; // why there are no frames, though the scan has some; else empty
   std::vector<Frame> frames;
   std::optional<Camera> camera;
   std::vector<RigMarker> markers;

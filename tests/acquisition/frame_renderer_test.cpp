@@ -4,24 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <opencv2/calib3d.hpp>
 
-#include "acquisition/tracking/lens.h"
+#include "support/opencv_projection.h"
 #include "support/rendered_rig.h"
 
 namespace patina {
 namespace {
 
-Vec2 projectedByOpenCv(const Camera& camera, const Vec3& point) {
-  const cv::Matx33d matrix(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
-  std::vector<cv::Point2d> pixel;
-  cv::projectPoints(std::vector<cv::Point3d>{{point.x(), point.y(), point.z()}}, cv::Vec3d(0, 0, 0),
-                    cv::Vec3d(0, 0, 0), matrix,
-                    std::vector<double>(camera.distortion.begin(), camera.distortion.end()), pixel);
-  return {pixel[0].x, pixel[0].y};
-}
-
-const Camera kCameras[] = {test::smallCamera(), test::largeCamera(), test::wideCamera()};
+const Camera kCameras[] = {test::smallCamera(), test::largeCamera(), test::wideCamera(),
+                           test::rationalCamera(), test::fisheyeCamera()};
 
 // The middle of the dark of a tile without white bits, against the middle of its points.
 TEST(FrameRenderer, PutsTilesWhereOpenCvProjectsThem) {
@@ -50,8 +41,9 @@ TEST(FrameRenderer, PutsTilesWhereOpenCvProjectsThem) {
       // Of small cells of the tile, each with the area that it has in the picture.
       constexpr int kCells = 16;
       const auto node = [&](int i, int j) {
-        return projectedByOpenCv(camera, pose * Vec3(tile.place.size * (1. * i / kCells - 0.5),
-                                                     tile.place.size * (1. * j / kCells - 0.5), 0));
+        return test::projectedByOpenCv(camera,
+                                       pose * Vec3(tile.place.size * (1. * i / kCells - 0.5),
+                                                   tile.place.size * (1. * j / kCells - 0.5), 0));
       };
       double area = 0;
       for (int i = 0; i < kCells; ++i)
@@ -91,19 +83,6 @@ TEST(FrameRenderer, BlursWhatMovesDuringTheExposure) {
     return sum;
   };
   EXPECT_LT(sharpness(3e-3), 0.8 * sharpness(0));
-}
-
-TEST(Lens, AgreesWithOpenCvAndIsInverted) {
-  for (const Camera& camera : kCameras)
-    for (int i = 0; i <= 10; ++i)
-      for (int j = 0; j <= 10; ++j) {
-        const Vec2 pixel(0.1 * i * (camera.width - 1), 0.1 * j * (camera.height - 1));
-        const Vec2 flat = flatOf(camera, pixel);
-        const Vec3 point = 0.7 * flat.homogeneous();
-        EXPECT_LT((pixelOf(camera, point) - pixel).norm(), 1e-6);
-        EXPECT_LT((projectedByOpenCv(camera, point) - pixel).norm(), 1e-6);
-        EXPECT_LT((bentBack(camera, straightened(camera, pixel)) - pixel).norm(), 1e-6);
-      }
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/recording/arrival_clock.h"
 #include "core/error.h"

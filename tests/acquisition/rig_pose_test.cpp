@@ -272,7 +272,33 @@ TEST(RigPose, NeedsAMarkerOfTheRig) {
   std::mt19937 random(3);
   auto corners = seenExactly(rig, somePose(random), {0});
   corners.push_back(corners[0]); // the same marker twice cannot be
-  EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::no_marker);
+  EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::repeated);
+}
+
+TEST(RigPose, NamesAMarkerThatIsSeenTwiceWithBothPlaces) {
+  const RenderedRig rig(test::smallCamera(), "4x4_50");
+  std::mt19937 random(3);
+  auto corners = seenExactly(rig, somePose(random), {0, 1, 3});
+  SeenMarker twin = corners[0];
+  Vec2 middle = Vec2::Zero();
+  for (FittedCorner& corner : twin.corner) {
+    middle += corner.pixel / 4;
+    corner.pixel += Vec2(100, -20);
+  }
+  corners.push_back(twin);
+  const SeenRig others = poseOf(corners, rig.markers, rig.camera);
+  EXPECT_EQ(others.verdict, RigVerdict::seen);
+  EXPECT_EQ(others.markers, 2u);
+  ASSERT_EQ(others.repeated.size(), 1u);
+  EXPECT_EQ(others.repeated[0].id, rig.markers[0].id);
+  ASSERT_EQ(others.repeated[0].places.size(), 2u);
+  EXPECT_LT((others.repeated[0].places[0] - middle).norm(), 1e-9);
+  EXPECT_LT((others.repeated[0].places[1] - middle - Vec2(100, -20)).norm(), 1e-9);
+  const SeenRig alone = poseOf({corners[0], twin}, rig.markers, rig.camera);
+  EXPECT_EQ(alone.verdict, RigVerdict::repeated);
+  const RepeatedMarker marker{"4x4_50", 7, {Vec2(159.6, 239), Vec2(480, 241.2)}};
+  EXPECT_EQ(textOf(marker), "marker 7 of 4x4_50 is seen twice, at (160, 239) and (480, 241) px");
+  EXPECT_EQ(reasonOf(alone), textOf(alone.repeated[0]));
 }
 
 class Frames : public testing::Test {
@@ -330,6 +356,28 @@ TEST_F(Frames, ThatAreMissingUnreadableOrEmptyAreGapsWithAReason) {
   const auto back = readPoses(folder / "poses.tum");
   ASSERT_EQ(back.values.size(), 1u);
   EXPECT_EQ(back.values[0].sigma_position, found.poses[0].sigma_position);
+}
+
+TEST_F(Frames, ThatShowAMarkerTwiceNameBothPlaces) {
+  // Two pictures of one marker, side by side.
+  GreyFrame image = rig.renderer.render({poses[0]}, {}, 1);
+  const auto seen = findMarkers(image, rig.books, &rig.camera);
+  ASSERT_FALSE(seen.empty());
+  rig.markers = {rig.markers[static_cast<std::size_t>(seen[0].id)]};
+  GreyFrame half{320, 480, {}};
+  for (int y = 0; y < 480; ++y)
+    half.pixel.insert(half.pixel.end(), image.row(y) + 160, image.row(y) + 480);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x)
+      image.pixel[static_cast<std::size_t>(640 * y + x)] = half.row(y)[x % 320];
+  writeGrey(fileOf(0), image);
+  const TrackedFrames found = tracked(rig.camera);
+  EXPECT_EQ(found.repeated, 1u);
+  EXPECT_TRUE(found.first_repeated.starts_with("at 0 s marker " + std::to_string(seen[0].id) +
+                                               " of 4x4_50 is seen twice, at ("))
+      << found.first_repeated;
+  ASSERT_FALSE(found.without.empty());
+  EXPECT_EQ("at 0 s " + found.without[0].why, found.first_repeated);
 }
 
 TEST_F(Frames, OfAnotherSizeThanTheCalibrationAreRefused) {

@@ -85,6 +85,56 @@ TEST_F(ScanFiles, PosesThatAreNoneAreRefusedWithTheirLine) {
   EXPECT_EQ(refusal(read, "0 1 2 3 0 0 0 1 0 0.1\n"), "file:1: deviations must be above 0");
 }
 
+TEST_F(ScanFiles, PosesMayBeATable) {
+  std::vector<std::string> warnings;
+  const auto file =
+      readPoses(written("t [ms];tz [mm];tx [mm];ty [mm];qw;qx;qy;qz;frame\r0;3;1;2;1;0;0;0;7\r"
+                        "100,5;3;1;2;-1;0;0;0;8\r"),
+                {0.5e-3, 0.01}, &warnings);
+  ASSERT_EQ(file.values.size(), 2u);
+  EXPECT_EQ(file.values[1].t, 0.1005);
+  EXPECT_EQ(file.values[0].position, Vec3(0.001, 0.002, 0.003));
+  EXPECT_EQ(file.values[1].orientation.w(), -1);
+  EXPECT_EQ(file.values[1].sigma_angle, 0.01);
+  EXPECT_EQ(file.lines[1], 3u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].ends_with("file: column left out: frame")) << warnings[0];
+  const std::string head = "t [s],tx [m],ty [m],tz [m],qx,qy,qz,qw,sigma [m],sigma_angle [deg]\n";
+  EXPECT_EQ(readPoses(written(head + "0,1,2,3,0,0,0,1,1e-4,180\n")).values[0].sigma_angle, M_PI);
+  const auto read = [](const std::filesystem::path& path) { return readPoses(path); };
+  EXPECT_EQ(refusal(read, head + "0,1,1.#IND,3,0,0,0,1,1e-4,180\n"),
+            "file:2: ty [m] is not a finite number");
+  EXPECT_EQ(refusal(read, head), "file: there is no pose in it");
+  EXPECT_NE(refusal(read, "t tx ty tz qx qy qz qw\n0 1 2 3 0 0 0 1\n").find("it lacks 't [s]'"),
+            std::string::npos);
+}
+
+TEST_F(ScanFiles, PosesMayHaveTheLineEndsOfOldMacs) {
+  const auto file = readPoses(written("# t x\r0 1 2 3 0 0 0 1\r\r0.1 1 2 3 0 0 0 -1\r"));
+  ASSERT_EQ(file.values.size(), 2u);
+  EXPECT_EQ(file.lines[1], 4u);
+}
+
+TEST_F(ScanFiles, AProbesStreamIsReadAsOtherProgramsWriteIt) {
+  const std::string text = "battery [V];t [ms];force [mN];a1u [g];a1v [g];a2u [mg];a2v [m/s^2]\r\n"
+                           "3,7;0;1500;0;1;1000;2,5\r\n3,7;2,5;1500;0;1;1000;2,5\r\n";
+  std::vector<std::string> warnings;
+  const auto samples = parseProbeStream(text, "probe.csv", &warnings).values;
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(samples[1].t, 0.0025);
+  EXPECT_EQ(samples[0].force, 1.5);
+  EXPECT_EQ(samples[0].acceleration[1], 9.80665);
+  EXPECT_EQ(samples[0].acceleration[2], 9.80665);
+  EXPECT_EQ(samples[0].acceleration[3], 2.5);
+  EXPECT_EQ(warnings, std::vector<std::string>{"probe.csv: column left out: battery [V]"});
+  ProbeLines lines("pipe");
+  std::vector<ProbeSample> live;
+  for (const char c : text) lines.take({&c, 1}, live);
+  lines.end();
+  ASSERT_EQ(live.size(), 2u);
+  EXPECT_EQ(live[1].t, 0.0025);
+}
+
 TEST_F(ScanFiles, TablesReadBackBitForBit) {
   const std::vector<ProbeSample> samples = {{0, 0.1, {1, 2, 3, 4}}, {0.002, -1. / 3, {5, 6, 7, 8}}};
   writeProbeStream(folder / "probe.csv", samples);
@@ -154,48 +204,6 @@ TEST_F(ScanFiles, ARigReadsBackAndNeedsNoAccelerometers) {
             std::string::npos);
   EXPECT_NE(refusal(read, "{\"tip\": [0, 1, 2], \"force_noise\": -1}").find("force_noise"),
             std::string::npos);
-}
-
-TEST_F(ScanFiles, CamerasReadBackBitForBit) {
-  const Camera camera{640, 480, 600. / 7, 602, 322.1, 238, {-0.08, 0.03, 3e-4, -2e-4, 1. / 3}};
-  const Camera back = readCamera(written(cameraText(camera, "rms: 0.2\n")));
-  EXPECT_EQ(back.width, camera.width);
-  EXPECT_EQ(back.height, camera.height);
-  EXPECT_EQ(back.fx, camera.fx);
-  EXPECT_EQ(back.fy, camera.fy);
-  EXPECT_EQ(back.cx, camera.cx);
-  EXPECT_EQ(back.cy, camera.cy);
-  EXPECT_EQ(back.distortion, camera.distortion);
-}
-
-TEST_F(ScanFiles, CamerasAreReadAsOpenCvWritesThem) {
-  const Camera camera = readCamera(written(
-      "%YAML:1.0\n---\ncalibration_time: \"Wed 08 Dec\"\nimage_width: 640\nimage_height: 480\n"
-      "flags: 0\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
-      "   data: [ 4.5e+02, 0., 3.1e+02, 0.,\n       4.6e+02, 2.7e+02, 0., 0., 1. ]\n"
-      "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n"
-      "   data: [ 1.2e-01, -1.0, 1e-04,\n       -4e-04,\n       2.9 ]\ninfo: \"none\"\n"));
-  EXPECT_EQ(camera.fx, 450);
-  EXPECT_EQ(camera.cy, 270);
-  EXPECT_EQ(camera.distortion[1], -1);
-  EXPECT_EQ(camera.distortion[4], 2.9);
-}
-
-TEST_F(ScanFiles, CamerasThatAreNoneAreRefusedWithALine) {
-  const auto read = [](const std::filesystem::path& path) { return readCamera(path); };
-  const std::string good = cameraText({640, 480, 600, 600, 320, 240, {}});
-  const auto with = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    return text.replace(text.find(from), from.size(), to);
-  };
-  EXPECT_EQ(refusal(read, "nothing\n"), "file: 'image_width' is missing");
-  EXPECT_EQ(refusal(read, with("640", "6.5")),
-            "file:3: 'image_width' must be a whole number up to 16384");
-  EXPECT_EQ(refusal(read, with("600, 0, 320", "600, x, 320")),
-            "file:9: 'x' is not a finite number");
-  EXPECT_EQ(refusal(read, with("600, 0, 320", "-600, 0, 320")),
-            "file:9: 'camera_matrix' must be fx 0 cx 0 fy cy 0 0 1");
-  EXPECT_EQ(refusal(read, with("600, 0, 320, ", "600, ")), "file:9: 'camera_matrix' has 7 numbers");
 }
 
 TEST_F(ScanFiles, MarkersReadBack) {

@@ -32,9 +32,10 @@ TEST(Csv, AcceptsAByteOrderMarkAndNoLastNewline) {
 
 TEST(Csv, NamesTheLineOfAFault) {
   const std::string header = "t [s],x [m],y [m],z [m]\n0,0,0,0\n";
-  EXPECT_EQ(csvError(header + "1,2,3\n"), "tip.csv:3: 3 values where the header names 4");
-  EXPECT_EQ(csvError(header + "1,2,x,4\n"), "tip.csv:3: 'x' is not a number");
-  EXPECT_EQ(csvError(header + "1,2,,4\n"), "tip.csv:3: '' is not a number");
+  EXPECT_EQ(csvError(header + "1,2,3\n"),
+            "tip.csv:3: 3 values where the header names 4, separated by commas");
+  EXPECT_EQ(csvError(header + "1,2,x,4\n"), "tip.csv:3: y [m]: 'x' is not a number");
+  EXPECT_EQ(csvError(header + "1,2,,4\n"), "tip.csv:3: y [m]: '' is not a number");
   EXPECT_TRUE(csvError("time,x,y,z\n1,2,3,4\n").starts_with("tip.csv:1: header is 'time,x,y,z'"));
   EXPECT_TRUE(csvError("").starts_with("tip.csv: is empty"));
 }
@@ -44,9 +45,10 @@ TEST(Csv, NamesADecimalCommaAsSuch) {
   EXPECT_NE(csvError(header + "0,1,1,5,2,5,3,5\n").find("decimal comma"), std::string::npos);
   EXPECT_NE(csvError(header + "0,1;1,5;2,5;3,5\n").find("decimal comma"), std::string::npos);
   EXPECT_EQ(csvError(header + "0,1,1,2,5,3,5\n"),
-            "tip.csv:2: 7 values where the header names 4, none with a point: are there decimal "
-            "commas?");
-  EXPECT_EQ(csvError(header + "0.1,1,1,2,5\n"), "tip.csv:2: 5 values where the header names 4");
+            "tip.csv:2: 7 values where the header names 4, separated by commas; none has a point: "
+            "are there decimal commas?");
+  EXPECT_EQ(csvError(header + "0.1,1,1,2,5\n"),
+            "tip.csv:2: 5 values where the header names 4, separated by commas");
 }
 
 TEST(Csv, KeepsTheMessageOnOneLineWhateverTheFileHolds) {
@@ -74,36 +76,38 @@ TEST(Csv, WrittenNumbersComeBackBitForBit) {
 
 // Rows and their numbers must not depend on where the chunks of the file end.
 TEST(Csv, ReadsInPiecesOfAnySizeTheSameRowsAndLines) {
-  const std::string text = "\xEF\xBB\xBFt [s],x [m],y [m],z [m]\r\n0,1,2,3\r\n\n4,5,6,7\n8,9,1,2";
-  for (std::size_t piece = 1; piece < text.size() + 2; ++piece) {
-    std::string_view rest = text;
-    CsvReader reader(
-        [&](char* buffer, std::size_t room) {
-          const std::size_t count = rest.copy(buffer, std::min(piece, room));
-          rest.remove_prefix(count);
-          return count;
-        },
-        "tip.csv", kTip);
-    std::vector<double> row;
-    const std::pair<std::vector<double>, std::size_t> due[] = {
-        {{0, 1, 2, 3}, 2}, {{4, 5, 6, 7}, 4}, {{8, 9, 1, 2}, 5}};
-    for (const auto& [values, line] : due) {
-      ASSERT_TRUE(reader.next(row));
-      EXPECT_EQ(row, values);
-      EXPECT_EQ(reader.line(), line);
+  const std::string dos = "\xEF\xBB\xBFt [s],x [m],y [m],z [m]\r\n0,1,2,3\r\n\n4,5,6,7\n8,9,1,2";
+  const std::string mac = "t [s],x [m],y [m],z [m]\r0,1,2,3\r\r4,5,6,7\r8,9,1,2\r";
+  for (const std::string& text : {dos, mac})
+    for (std::size_t piece = 1; piece < text.size() + 2; ++piece) {
+      std::string_view rest = text;
+      CsvReader reader(
+          [&](char* buffer, std::size_t capacity) {
+            const std::size_t count = rest.copy(buffer, std::min(piece, capacity));
+            rest.remove_prefix(count);
+            return count;
+          },
+          "tip.csv", {kTip});
+      std::vector<double> row;
+      const std::pair<std::vector<double>, std::size_t> expected[] = {
+          {{0, 1, 2, 3}, 2}, {{4, 5, 6, 7}, 4}, {{8, 9, 1, 2}, 5}};
+      for (const auto& [values, line] : expected) {
+        ASSERT_TRUE(reader.next(row));
+        EXPECT_EQ(row, values);
+        EXPECT_EQ(reader.line(), line);
+      }
+      EXPECT_FALSE(reader.next(row));
     }
-    EXPECT_FALSE(reader.next(row));
-  }
 }
 
 TEST(Csv, ALineWithoutEndIsRefusedBeforeItFillsTheMemory) {
   std::size_t given = 0;
-  const auto endless = [&](char* buffer, std::size_t room) {
-    std::fill_n(buffer, room, '1');
-    given += room;
-    return room;
+  const auto endless = [&](char* buffer, std::size_t capacity) {
+    std::fill_n(buffer, capacity, '1');
+    given += capacity;
+    return capacity;
   };
-  EXPECT_THROW(CsvReader(endless, "tip.csv", kTip), FileError);
+  EXPECT_THROW(CsvReader(endless, "tip.csv", {kTip}), FileError);
   EXPECT_LT(given, std::size_t{1} << 22);
 }
 

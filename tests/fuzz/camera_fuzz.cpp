@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "acquisition/files/frame_files.h"
+#include "acquisition/files/camera_file.h"
 #include "core/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

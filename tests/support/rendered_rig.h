@@ -19,6 +19,26 @@ inline Camera wideCamera() {
   return {800, 600, 420, 420, 410, 290, {-0.22, 0.06, -5e-4, 4e-4, -0.006}};
 }
 
+// As OpenCV's calibration with CALIB_RATIONAL_MODEL, THIN_PRISM_MODEL and TILTED_MODEL gives them.
+inline Camera rationalCamera() {
+  return {800, 600, 420, 424, 410, 290, {0.31, -0.05, 2e-4, -3e-4, 2e-3, 0.62, -0.02, 4e-3}};
+}
+inline Camera tiltedCamera() {
+  return {800,
+          600,
+          520,
+          520,
+          410,
+          290,
+          {-0.1, 0.02, 2e-4, -3e-4, 1e-3, 0.02, 0.01, 1e-3, 2e-3, -1e-3, -3e-3, 2e-3, 0.04, -0.03}};
+}
+// The corners of its picture are 67 degrees from the axis.
+inline Camera fisheyeCamera() {
+  Camera camera{640, 480, 340, 340, 320, 240, {-0.05, 0.01, -2e-3, 3e-4}};
+  camera.lens = LensModel::fisheye;
+  return camera;
+}
+
 struct RenderedRig {
   RenderedRig(const Camera& lens, const std::string& name, double edge = 0.04)
       : camera(lens), family(&markerFamily(name)),

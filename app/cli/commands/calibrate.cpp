@@ -103,7 +103,9 @@ int calibrateTip(const CalibrateOptions& options, Console& console) {
 
 int calibrateStill(const CalibrateOptions& options, Console& console) {
   const OnFile<CameraPose> poses = readPoses(options.input / "poses.tum");
-  const OnFile<ProbeSample> samples = readProbeStream(options.input / "probe.csv");
+  std::vector<std::string> warnings;
+  const OnFile<ProbeSample> samples = readProbeStream(options.input / "probe.csv", &warnings);
+  for (const std::string& line : warnings) console.warn(line);
   Json json = Json::object();
   Rig rig;
   if (!options.rig.empty()) {
@@ -146,7 +148,7 @@ int calibrateStill(const CalibrateOptions& options, Console& console) {
 }
 
 int calibrateForce(const CalibrateOptions& options, Console& console) {
-  CsvReader table(options.input, {"force [N]", "reading"});
+  CsvReader table(options.input, {{"force [N]", "reading"}});
   std::vector<KnownForce> readings;
   std::vector<std::size_t> lines;
   for (std::vector<double> row; table.next(row);) {
@@ -155,6 +157,7 @@ int calibrateForce(const CalibrateOptions& options, Console& console) {
     readings.push_back({row[0], row[1]});
     lines.push_back(table.line());
   }
+  console.warn(table.leftOut());
   Json json = Json::object();
   if (!options.rig.empty()) {
     (void)readRig(options.rig);

@@ -22,7 +22,11 @@ const Keys kExportKeys = {{"folder", "", "folder", "", Shown::never},
 int runExport(const ExportOptions& options, Console& console) {
   const std::filesystem::path& folder = options.output;
   std::vector<TimedTip> path;
-  if (!options.path.empty()) path = readTipPath(options.path);
+  if (!options.path.empty()) {
+    TipPathReader reader(options.path);
+    console.warn(reader.table().leftOut());
+    while (const auto tip = reader.next()) path.push_back(*tip);
+  }
   const auto compiled =
       compileFor(openWith(options.input, options.scene, console), console, FaceLayer::kept);
   std::optional<SurfaceStability> stability;

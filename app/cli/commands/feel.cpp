@@ -48,6 +48,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   TipPathReader path(options.path);
   // A path that is wrong from the start is refused before the field is built.
   std::optional<TimedTip> first = path.next();
+  console.warn(path.table().leftOut());
   const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
 
   std::size_t ticks = 0, bad_tips = 0, contact_ticks = 0, deep_ticks = 0, faults = 0;
@@ -55,7 +56,7 @@ int runFeel(const FeelOptions& options, Console& console) {
   std::map<std::uint32_t, std::size_t> step_ns;
   CsvWriter rows_out(options.output, toolSampleColumns());
   const auto next = [&]() -> std::optional<TimedTip> {
-    if (ticks % 4096 == 0) console.progress().report(path.fraction(), "feeling");
+    if (ticks % 4096 == 0) console.progress().report(path.table().fraction(), "feeling");
     auto tip = first ? std::exchange(first, std::nullopt) : path.next();
     bad_tips += tip && !tip->tip.allFinite();
     return tip;
@@ -92,7 +93,8 @@ int runFeel(const FeelOptions& options, Console& console) {
   report.set("field", fieldReport(*compiled->built.field, compiled->built.report));
   if (bad_tips)
     console.warn(options.path.string() + ": " + formatCount(bad_tips) +
-                 (bad_tips == 1 ? " tip is" : " tips are") + " NaN or infinite: no force there");
+                 (bad_tips == 1 ? " tip is" : " tips are") + " NaN or infinite, no force there; " +
+                 path.table().firstNotFinite());
   if (contact_ticks == 0 && bad_tips < ticks)
     console.warn(options.path.string() +
                  ": the path never touches the object; compare their positions and check --unit");

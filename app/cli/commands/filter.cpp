@@ -138,9 +138,11 @@ struct Inputs {
 
 Inputs read(const FilterOptions& options, Console& console) {
   Inputs in;
-  in.poses = readPoses(options.input, options.sigmas);
-  if (!options.probe.empty()) in.samples = readProbeStream(options.probe);
-  if (!options.truth.empty()) in.truth = readPath(options.truth);
+  std::vector<std::string> warnings;
+  in.poses = readPoses(options.input, options.sigmas, &warnings);
+  if (!options.probe.empty()) in.samples = readProbeStream(options.probe, &warnings);
+  if (!options.truth.empty()) in.truth = readPath(options.truth, &warnings);
+  for (const std::string& line : warnings) console.warn(line);
   in.rig.probe.tip = Vec3::Zero();
   if (!options.rig.empty())
     in.rig = readRig(options.rig);

@@ -55,30 +55,23 @@ const Keys kFitKeys = {
 
 // The stretch that was asked for, or the one that goes farthest.
 std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console& console) {
-  const std::string text = readFile(options.profile);
-  const std::size_t first = text.starts_with("t [s]") ? 1 : 0;
-  std::vector<std::string> expected = {"along [m]", "height [m]"};
-  if (first) expected.insert(expected.begin(), "t [s]");
-  CsvReader reader(sourceOfText(text), options.profile.string(), expected);
+  CsvReader reader(options.profile,
+                   {{"along [m]", "height [m]"}, {"sigma [m]", "stretch", "speed [m/s]", "t [s]"}});
   const std::vector<std::string>& columns = reader.columns();
-  const auto column = [&](const char* name) {
-    const auto found = std::find(columns.begin(), columns.end(), name);
-    return found == columns.end()
-               ? std::nullopt
-               : std::optional(static_cast<std::size_t>(found - columns.begin()));
-  };
-  const auto sigma = column("sigma [m]"), stretch = column("stretch"),
-             speed = column("speed [m/s]");
+  const bool sigma = reader.has("sigma [m]"), stretch = reader.has("stretch"),
+             speed = reader.has("speed [m/s]");
   std::map<std::int64_t, std::vector<ProfilePoint>> stretches;
   for (std::vector<double> row; reader.next(row);) {
     for (std::size_t i = 0; i < row.size(); ++i)
-      requireMeasured(row[i], columns[i], options.profile.string(), reader.line());
-    std::vector<ProfilePoint>& points = stretches[stretch ? std::llround(row[*stretch]) : 0];
-    if (!points.empty() && row[first] < points.back().along)
+      if (reader.has(columns[i]))
+        requireMeasured(row[i], columns[i], options.profile.string(), reader.line());
+    std::vector<ProfilePoint>& points = stretches[stretch ? std::llround(row[3]) : 0];
+    if (!points.empty() && row[0] < points.back().along)
       throw FileError(options.profile.string(), reader.line(), "along [m] runs backwards");
-    points.push_back({row[first], row[first + 1], sigma ? row[*sigma] : 0,
-                      speed ? std::optional(row[*speed]) : std::nullopt});
+    points.push_back(
+        {row[0], row[1], sigma ? row[2] : 0, speed ? std::optional(row[4]) : std::nullopt});
   }
+  console.warn(reader.leftOut());
   if (stretches.empty()) throw FileError(options.profile.string(), 0, "has no height");
   if (options.stretch) {
     const auto found = stretches.find(static_cast<std::int64_t>(*options.stretch));

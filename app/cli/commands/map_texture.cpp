@@ -60,7 +60,9 @@ int runMapTexture(const MapOptions& options, Console& console) {
   usable_mesh.positions = scaled.mesh.positions;
   for (const std::int32_t face : usable)
     usable_mesh.triangles.push_back(scaled.mesh.triangles[static_cast<std::size_t>(face)]);
-  const std::vector<PathOnMesh> strokes = readStrokes(options.path, options.heights);
+  std::vector<std::string> warnings;
+  const std::vector<PathOnMesh> strokes = readStrokes(options.path, options.heights, &warnings);
+  for (const std::string& line : warnings) console.warn(line);
   const PathGround ground(std::move(usable_mesh));
   LaidTexture laid;
   try {

@@ -76,6 +76,7 @@ int runRecord(RecordOptions options, Console& console) {
   report.set("unreadable", now.unreadable).set("samples", now.samples);
   report.set("dropouts", now.dropouts);
   if (now.probe) setHealth(*now.probe, report);
+  console.warn(now.left_out);
   if (now.frames == 0)
     console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
   if (!now.error.empty()) console.warn(now.error + "; what had reached the disk by then is kept");

@@ -148,6 +148,7 @@ int runSample(const SampleOptions& options, Console& console) {
   requireWritable(options.output, {options.input, options.points}, FileKind::table);
   PointReader points(options.points);
   std::optional<Vec3> p = points.next(); // one that is wrong from the start is refused now
+  console.warn(points.table().leftOut());
   const SampledSurface surface = open(options, console);
   const FieldSampler sampler(*surface.field, surface.sampler);
   std::vector<std::string> columns = kSampleColumns;
@@ -166,7 +167,8 @@ int runSample(const SampleOptions& options, Console& console) {
 
   if (bad_points)
     console.warn(options.points.string() + ": " + formatCount(bad_points) +
-                 (bad_points == 1 ? " point is" : " points are") + " NaN or infinite");
+                 (bad_points == 1 ? " point is" : " points are") + " NaN or infinite; " +
+                 points.table().firstNotFinite());
   Report report(kSampleKeys);
   report.set("points", count, formatCount(count) + ", in the band " + formatCount(in_band));
   report.set("in_band", in_band).set("bad_points", bad_points);
@@ -183,8 +185,9 @@ Command sampleCommand() {
       .name = "sample",
       .summary = "distance, direction, nearest face and material at points",
       .description =
-          "Points come with the columns x [m],y [m],z [m], or as a path with t [s] before them, "
-          "which is not read; further columns are ignored. Out go phi [m] (negative inside), the "
+          "Points come with the columns x [m],y [m],z [m], in any order and any unit of length; "
+          "the times and forces of a path are not read, other columns are left out with a "
+          "warning. Out go phi [m] (negative inside), the "
           "unit direction nx,ny,nz, the nearest face, the closest point cx,cy,cz [m], in_band (1 "
           "or 0).\n"
           "With a mesh or workspace also every channel of material, relief [m], red, green, blue "

@@ -1,4 +1,4 @@
-#include "acquisition/files/frame_files.h"
+#include "acquisition/files/camera_file.h"
 #include "acquisition/files/scan_files.h"
 #include "acquisition/simulation/mesh_strokes.h"
 #include "acquisition/simulation/simulated_scan.h"

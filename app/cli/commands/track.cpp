@@ -1,6 +1,6 @@
 #include <chrono>
 
-#include "acquisition/files/frame_files.h"
+#include "acquisition/files/camera_file.h"
 #include "acquisition/tracking/track_frames.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/input_files.h"
@@ -23,6 +23,7 @@ struct TrackOptions {
 };
 
 const Keys kTrackKeys = {
+    {"lens", "", "lens", "the camera's lens model"},
     {"frames", "", "frames"},
     {"frames_with_pose", "", "with a pose"},
     {"without_pose",
@@ -36,6 +37,8 @@ const Keys kTrackKeys = {
      Shown::if_any},
     {"misfit", "", "misfit", "frames whose markers are not where the rig has them", Shown::if_any},
     {"dropped_markers", "", "dropped", "markers that contradicted the others of a frame",
+     Shown::if_any},
+    {"repeated", "", "repeated", "frames that show a marker of the rig more than once",
      Shown::if_any},
     {"reprojection_rms_px", "px", "corners miss by", "rms of an image's two axes together"},
     {"sigma",
@@ -80,6 +83,7 @@ int runTrack(TrackOptions options, Console& console) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
 
   Report report(kTrackKeys);
+  report.set("lens", lensName(camera));
   report.set("frames", found.frames).set("frames_with_pose", found.poses.size());
   Json without = Json::array();
   for (const NoPose& gap : found.without)
@@ -91,6 +95,7 @@ int runTrack(TrackOptions options, Console& console) {
                        rounded(found.without[0].t) + " s: " + found.without[0].why);
   report.set("unreadable", found.unreadable).set("ambiguous", found.ambiguous);
   report.set("misfit", found.misfit).set("dropped_markers", found.dropped);
+  report.set("repeated", found.repeated);
   if (!found.poses.empty()) {
     report.set("reprojection_rms_px", found.rms, rounded(found.rms) + " px");
     const Json sigma = sigmaJson(found.poses);
@@ -104,6 +109,11 @@ int runTrack(TrackOptions options, Console& console) {
     console.warn(options.frames + ": " + formatCount(found.unreadable) + " of " +
                  formatCount(found.frames) +
                  " frames cannot be read; the first: " + found.first_fault);
+  if (found.repeated > 0)
+    console.warn(options.frames + ": in " + formatCount(found.repeated) + " of " +
+                 formatCount(found.frames) + " frames a marker of the rig is seen more than once " +
+                 "and does not count; the first: " + found.first_repeated +
+                 ": cover or print again whatever else shows it");
   if (2 * found.dropped > found.poses.size())
     console.warn(options.rig.string() + ": in " + formatCount(found.poses.size()) + " frames " +
                  formatCount(found.dropped) +

@@ -1,4 +1,4 @@
-// Points as CSV: x [m],y [m],z [m], or a tip's path, whose times do not matter here.
+// Points as a table with x [m], y [m], z [m]; the times of a path do not matter here.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,15 @@
 
 namespace patina::cli {
 
-// Further columns are ignored. Throws FileError with the line: another header, a bad number.
+// Throws FileError with the line: another header, a bad number.
 class PointReader {
  public:
   explicit PointReader(const std::filesystem::path& path);
   std::optional<Vec3> next(); // nullopt at the end
+  const CsvReader& table() const { return rows_; }
 
  private:
   CsvReader rows_;
-  std::size_t first_ = 0; // the column of x
   std::vector<double> row_;
 };
 

@@ -20,7 +20,9 @@ std::filesystem::path besideFrames(const std::filesystem::path& named, const std
 
 std::vector<PathSample> readTouching(const std::filesystem::path& file, double length,
                                      Console& console) {
-  std::vector<PathSample> path = inContact(readPath(file));
+  std::vector<std::string> warnings;
+  std::vector<PathSample> path = inContact(readPath(file, &warnings));
+  for (const std::string& line : warnings) console.warn(line);
   if (const std::vector<PathSample> far = leaveOutFar(path, 2 * length); !far.empty())
     console.warn(file.string() + ": the sample at " + formatNumber(far.front().t) +
                  " s lies farther from the path's middle than the mesh is long, and is left out" +

@@ -1,8 +1,9 @@
-// A recorded tip as CSV: t [s],x [m],y [m],z [m].
+// A recorded tip as a table with t [s], x [m], y [m], z [m].
 #pragma once
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/csv.h"
@@ -15,7 +16,7 @@ class TipPathReader {
  public:
   explicit TipPathReader(const std::filesystem::path& path);
   std::optional<TimedTip> next(); // nullopt at the end
-  double fraction() const { return rows_.fraction(); }
+  const CsvReader& table() const { return rows_; }
 
  private:
   CsvReader rows_;
@@ -23,6 +24,5 @@ class TipPathReader {
   std::vector<double> row_;
   std::optional<double> last_;
 };
-std::vector<TimedTip> readTipPath(const std::filesystem::path& path);
 
 } // namespace patina::cli

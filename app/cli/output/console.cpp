@@ -163,6 +163,7 @@ int Console::fail(const std::exception& error) {
 }
 
 void Console::warn(const std::string& line) {
+  if (line.empty()) return;
   clearBar();
   std::fprintf(stderr, "patina: warning: %s\n", onOneLine(line).c_str());
 }

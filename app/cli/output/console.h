@@ -39,7 +39,7 @@ class Console {
   Progress& progress() { return progress_; }
   // From here on Ctrl-C ends the process: for work that touches no file and cannot be polled.
   void endOnInterrupt();
-  void warn(const std::string& line);
+  void warn(const std::string& line); // an empty line is no warning
   // The options that this run was given, by their long names.
   std::set<std::string> given;
   // Of these options, each that was given: "--load has no effect without --wire".

@@ -31,9 +31,11 @@ void AlignFiles::open(const QString& name, const std::function<AlignedPath()>& r
 }
 
 void AlignFiles::openPath(const std::filesystem::path& file) {
+  std::vector<std::string> warnings;
   open(QString::fromStdString(file.filename().string()), [&] {
-    return AlignedPath{readPath(file), {}};
+    return AlignedPath{readPath(file, &warnings), {}};
   });
+  for (const std::string& line : warnings) emit said({QString::fromStdString(line), true});
 }
 
 void AlignFiles::setScene(std::shared_ptr<const Scene> scene) {

@@ -221,7 +221,7 @@ void FrameView::showLive(const RecordedFrame& frame) {
   if (frame.pose) marks.camera_from_probe = poseOf(*frame.pose);
   canvas_->show(imageOf(frame.image), marks, files.camera, files.tip());
   title_->setText(tr("Live · %1 s").arg(frame.t, 0, 'f', 2));
-  sayWhy(frame.pose ? QString() : QString::fromStdString(std::string(nameOf(frame.verdict))));
+  sayWhy(QString::fromStdString(frame.why));
 }
 
 void FrameView::sayWhy(const QString& why) {

@@ -18,7 +18,7 @@ SeenFrame seenFrame(const SeenRig& rig, const std::string& why) {
   frame.looked = true;
   frame.verdict = rig.verdict;
   // A verdict speaks of a picture; without one the cause is the file's.
-  frame.readable = why.empty() || why == nameOf(rig.verdict);
+  frame.readable = why.empty() || why == reasonOf(rig);
   frame.markers = rig.markers;
   frame.dropped = rig.dropped;
   frame.rms = rig.rms;

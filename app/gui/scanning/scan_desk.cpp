@@ -227,6 +227,9 @@ void ScanDesk::takeScan() {
   scans_->setOpen(isOpen() && !scan_.files()->scan.files.empty());
   if (isOpen() && !scan_.files()->problem.empty())
     emit said({QString::fromStdString(scan_.files()->problem), true});
+  if (isOpen())
+    for (const std::string& line : scan_.files()->warnings)
+      emit said({QString::fromStdString(line), true});
   emit changed();
   if (isOpen() && !scan_.files()->folder.empty() && !scan_.files()->of_scene &&
       scan_.files()->camera && !scan_.files()->markers.empty())

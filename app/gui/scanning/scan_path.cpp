@@ -56,8 +56,13 @@ void addFrames(const ScanFiles& files, const std::vector<SeenFrame>& seen,
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (!seen[i].looked || seen[i].why.empty()) continue;
     std::size_t last = i;
-    while (last + 1 < seen.size() && seen[last + 1].looked && seen[last + 1].why == seen[i].why)
-      ++last;
+    // The places of a marker that is seen twice change from frame to frame.
+    const auto isLike = [&](const SeenFrame& other) {
+      return other.looked && (other.why == seen[i].why || (other.readable && seen[i].readable &&
+                                                           other.verdict == RigVerdict::repeated &&
+                                                           other.verdict == seen[i].verdict));
+    };
+    while (last + 1 < seen.size() && isLike(seen[last + 1])) ++last;
     const double from = files.frames[i].t, to = files.frames[last].t;
     const QString why = QString::fromStdString(seen[i].why);
     findings.push_back(
@@ -187,6 +192,7 @@ FrameQuality qualityOf(const ScanFiles& files, const std::vector<SeenFrame>& see
   case RigVerdict::misfit:
     return FrameQuality::rejected;
   case RigVerdict::no_marker:
+  case RigVerdict::repeated:
     return FrameQuality::no_marker;
   }
   return FrameQuality::unknown;

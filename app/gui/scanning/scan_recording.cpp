@@ -1,5 +1,6 @@
 #include "app/gui/scanning/scan_recording.h"
 
+#include "acquisition/files/camera_file.h"
 #include "core/error.h"
 
 namespace patina {

@@ -46,14 +46,14 @@ std::vector<SeenMarker> foundByOpenCv(const GreyFrame& image, const Setting& set
     if (one.id > 4) continue; // not on the cube
     seen.push_back({setting.family, one.id, 0, {}, 0});
     for (std::size_t i = 0; i < 4; ++i)
-      seen.back().corner[i] = {one.corner[i], straightened(camera, one.corner[i]),
+      seen.back().corner[i] = {one.corner[i], straightened(camera, one.corner[i]).value(),
                                10 * Eigen::Matrix2d::Identity()};
   }
   return seen;
 }
 
 Camera cameraOf(const Setting& setting) {
-  const std::array<double, 5> lens{-0.08, 0.03, 3e-4, -2e-4, 0};
+  const std::array<double, 14> lens{-0.08, 0.03, 3e-4, -2e-4, 0};
   return setting.large ? Camera{1920, 1080, 1500, 1500, 955, 545, lens}
                        : Camera{640, 480, 600, 602, 322, 238, lens};
 }

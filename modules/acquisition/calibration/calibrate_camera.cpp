@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "acquisition/files/camera_file.h"
 #include "acquisition/vision_library.h"
 #include "core/error.h"
 #include "core/json.h"

@@ -1,4 +1,4 @@
-// Pictures of a camera and what is known of it, in a scan folder.
+// Pictures of a camera in a scan folder.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,6 @@ namespace patina {
 GreyFrame readGrey(const std::filesystem::path& path);
 // As a .png. Throws FileError.
 void writeGrey(const std::filesystem::path& path, const GreyFrame& image);
-
-// OpenCV's YAML: image_width, image_height, camera_matrix, distortion_coefficients of up to five
-// numbers (k1 k2 p1 p2 k3). Throws FileError with the line.
-Camera readCamera(const std::filesystem::path& path);
-Camera parseCamera(const std::string& text, const std::string& name);
-// `more` are lines for people and other programs, whole.
-std::string cameraText(const Camera& camera, const std::string& more = "");
 
 struct Frame {
   double t = 0;               // [s]

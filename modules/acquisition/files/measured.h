@@ -4,7 +4,9 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "core/csv.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
@@ -24,6 +26,12 @@ inline void requireMeasured(double value, const std::string& what, const std::st
   if (!std::isfinite(value)) throw FileError(name, line, what + " is not a finite number");
   if (std::abs(value) > mostMeasured(what))
     throw FileError(name, line, what + " is " + formatNumber(value) + ", which nothing measures");
+}
+
+// Appends a line about the columns that nobody reads, if the table has any.
+inline void warnOfColumns(const CsvReader& reader, std::vector<std::string>* warnings) {
+  if (const std::string line = reader.leftOut(); warnings && !line.empty())
+    warnings->push_back(line);
 }
 
 } // namespace patina

@@ -1,12 +1,15 @@
-#include <array>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <sstream>
 
 #include "acquisition/files/measured.h"
 #include "acquisition/files/scan_files.h"
+#include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/line_buffer.h"
 #include "core/numbers.h"
 #include "core/utf8.h"
 
@@ -15,7 +18,7 @@ namespace {
 
 constexpr double kUnit = 0.01; // by how much a quaternion's length may differ from 1
 
-constexpr std::array<const char*, 10> kColumns = {
+const std::vector<std::string> kColumns = {
     "t [s]", "tx [m]", "ty [m]", "tz [m]",    "qx",
     "qy",    "qz",     "qw",     "sigma [m]", "sigma_angle [rad]"};
 
@@ -29,6 +32,44 @@ double measuredIn(const std::string& word, std::size_t column, const std::string
   return *value;
 }
 
+// Whether the first line that is no comment is a table's header.
+bool startsWithName(std::string_view text) {
+  text = withoutByteOrderMark(text);
+  while (!text.empty()) {
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) return false;
+    text.remove_prefix(first);
+    if (text.front() != '#') break;
+    text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
+  }
+  const std::string_view word = text.substr(0, text.find_first_of(" \t,;"));
+  return !text.empty() && !parseNumber(word) &&
+         (text.front() == '"' || std::isalpha(static_cast<unsigned char>(text.front())));
+}
+
+// Appends a pose of 8 or 10 values; throws FileError.
+void addPose(const std::vector<double>& values, const PoseSigmas& unsaid, const std::string& name,
+             std::size_t line, OnFile<CameraPose>& file) {
+  CameraPose pose;
+  pose.t = values[0];
+  pose.position = {values[1], values[2], values[3]};
+  pose.orientation = Eigen::Quaterniond(values[7], values[4], values[5], values[6]);
+  pose.sigma_position = values.size() > 8 ? values[8] : unsaid.position;
+  pose.sigma_angle = values.size() > 8 ? values[9] : unsaid.angle;
+  if (!(std::abs(pose.orientation.norm() - 1) < kUnit))
+    throw FileError(name, line,
+                    "the quaternion's length is " + formatNumber(pose.orientation.norm()) +
+                        ", not 1");
+  pose.orientation.normalize();
+  if (!(pose.sigma_position > 0 && pose.sigma_angle > 0))
+    throw FileError(name, line, "deviations must be above 0");
+  if (!file.values.empty() && !(pose.t > file.values.back().t))
+    throw FileError(name, line,
+                    pose.t == file.values.back().t ? "time repeats" : "time runs backwards");
+  file.values.push_back(pose);
+  file.lines.push_back(line);
+}
+
 std::string lineOf(const CameraPose& pose) {
   std::string text = formatNumber(pose.t);
   for (const double value : pose.position) text += " " + formatNumber(value);
@@ -38,51 +79,50 @@ std::string lineOf(const CameraPose& pose) {
 
 } // namespace
 
-OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid) {
+OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid,
+                             std::vector<std::string>* warnings) {
   // A pose takes some 150 bytes, so that this is a day of a camera.
   constexpr std::uintmax_t kMostBytes = 500'000'000;
   std::error_code unknown;
   if (const auto size = std::filesystem::file_size(path, unknown); !unknown && size > kMostBytes)
     throw FileError(path.string(), 0,
                     "is larger than any scan's poses: " + formatBytes(static_cast<double>(size)));
-  return parsePoses(readFile(path), path.string(), unsaid);
+  return parsePoses(readFile(path), path.string(), unsaid, warnings);
 }
 
 OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
-                              const PoseSigmas& unsaid) {
-  std::istringstream text{std::string(withoutByteOrderMark(whole))};
+                              const PoseSigmas& unsaid, std::vector<std::string>* warnings) {
   OnFile<CameraPose> file;
-  std::size_t number = 0;
-  for (std::string line; std::getline(text, line);) {
-    ++number;
-    std::istringstream words(line.substr(0, line.find('#')));
-    const std::vector<std::string> word{std::istream_iterator<std::string>(words), {}};
-    if (word.empty()) continue;
-    if (word.size() != 8 && word.size() != kColumns.size())
-      throw FileError(name, number,
-                      std::to_string(word.size()) +
-                          " numbers where t tx ty tz qx qy qz qw are due, or two more");
-    std::vector<double> values;
-    for (const std::string& each : word)
-      values.push_back(measuredIn(each, values.size(), name, number));
-    CameraPose pose;
-    pose.t = values[0];
-    pose.position = {values[1], values[2], values[3]};
-    pose.orientation = Eigen::Quaterniond(values[7], values[4], values[5], values[6]);
-    pose.sigma_position = values.size() > 8 ? values[8] : unsaid.position;
-    pose.sigma_angle = values.size() > 8 ? values[9] : unsaid.angle;
-    if (!(std::abs(pose.orientation.norm() - 1) < kUnit))
-      throw FileError(name, number,
-                      "the quaternion's length is " + formatNumber(pose.orientation.norm()) +
-                          ", not 1");
-    pose.orientation.normalize();
-    if (!(pose.sigma_position > 0 && pose.sigma_angle > 0))
-      throw FileError(name, number, "deviations must be above 0");
-    if (!file.values.empty() && !(pose.t > file.values.back().t))
-      throw FileError(name, number,
-                      pose.t == file.values.back().t ? "time repeats" : "time runs backwards");
-    file.values.push_back(pose);
-    file.lines.push_back(number);
+  if (startsWithName(whole)) {
+    const std::vector<std::string> required(kColumns.begin(), kColumns.begin() + 8);
+    CsvReader reader(sourceOfText(whole), name, {required, {kColumns[8], kColumns[9]}});
+    warnOfColumns(reader, warnings);
+    if (reader.has(kColumns[8]) != reader.has(kColumns[9]))
+      throw FileError(name, 1, "'sigma [m]' and 'sigma_angle [rad]' go together");
+    for (std::vector<double> row; reader.next(row);) {
+      if (!reader.has(kColumns[8])) row.resize(required.size());
+      for (std::size_t i = 0; i < row.size(); ++i)
+        requireMeasured(row[i], kColumns[i], name, reader.line());
+      addPose(row, unsaid, name, reader.line(), file);
+    }
+  } else {
+    LineBuffer lines;
+    lines.append(withoutByteOrderMark(whole));
+    std::size_t number = 0;
+    for (std::string_view line; lines.next(line, true);) {
+      ++number;
+      std::istringstream words{std::string(line.substr(0, line.find('#')))};
+      const std::vector<std::string> word{std::istream_iterator<std::string>(words), {}};
+      if (word.empty()) continue;
+      if (word.size() != 8 && word.size() != kColumns.size())
+        throw FileError(name, number,
+                        std::to_string(word.size()) +
+                            " numbers where t tx ty tz qx qy qz qw are due, or two more");
+      std::vector<double> values;
+      for (const std::string& each : word)
+        values.push_back(measuredIn(each, values.size(), name, number));
+      addPose(values, unsaid, name, number, file);
+    }
   }
   if (file.values.empty()) throw FileError(name, 0, "there is no pose in it");
   return file;

@@ -6,7 +6,6 @@
 
 #include "acquisition/files/measured.h"
 #include "core/csv.h"
-#include "core/csv_rows.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
@@ -47,14 +46,16 @@ struct Place {
 };
 
 // By time.
-std::map<double, Place> readPlaces(const std::filesystem::path& heights) {
-  const std::vector<std::string> columns = {"t [s]", "along [m]", "height [m]", "sigma [m]",
-                                            "stretch"};
+std::map<double, Place> readPlaces(const std::filesystem::path& heights,
+                                   std::vector<std::string>* warnings) {
+  const CsvColumns columns = {
+      {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"}, {}, {"speed [m/s]"}};
   CsvReader reader(heights, columns);
+  warnOfColumns(reader, warnings);
   std::map<double, Place> places;
   for (std::vector<double> row; reader.next(row);) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      requireMeasured(row[i], columns[i], heights.string(), reader.line());
+    for (std::size_t i = 0; i < row.size(); ++i)
+      requireMeasured(row[i], reader.columns()[i], heights.string(), reader.line());
     if (!places.empty() && !(row[0] > places.rbegin()->first))
       throw FileError(heights.string(), reader.line(), "time does not increase");
     places[row[0]] = {row[1], row[4]};
@@ -65,32 +66,32 @@ std::map<double, Place> readPlaces(const std::filesystem::path& heights) {
 } // namespace
 
 std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
-                                    const std::filesystem::path& heights) {
+                                    const std::filesystem::path& heights,
+                                    std::vector<std::string>* warnings) {
   constexpr double kPause = 5; // times the median interval
-  const std::string text = readFile(path);
-  const bool timed = text.substr(0, text.find('\n')).starts_with("t [s]");
+  CsvReader reader(path, {{"x [m]", "y [m]", "z [m]"},
+                          {"t [s]"},
+                          {"qx", "qy", "qz", "qw", "sigma [m]", "force [N]", "face", "b0", "b1",
+                           "b2", "distance [m]"}});
+  warnOfColumns(reader, warnings);
+  const bool timed = reader.has("t [s]");
   const std::map<double, Place> places =
-      heights.empty() ? std::map<double, Place>() : readPlaces(heights);
+      heights.empty() ? std::map<double, Place>() : readPlaces(heights, warnings);
   if (!heights.empty() && places.empty()) throw FileError(heights.string(), 0, "has no height");
   if (!heights.empty() && !timed)
     throw FileError(path.string(), 1, "has no times to find the heights' by");
-  std::vector<std::string> expected = {"x [m]", "y [m]", "z [m]"};
-  if (timed) expected.insert(expected.begin(), "t [s]");
-  CsvReader reader(sourceOfText(text), path.string(), expected);
   std::vector<Vec3> points;
   std::vector<double> times, intervals;
   for (std::vector<double> row; reader.next(row);) {
-    const std::size_t first = timed ? 1 : 0;
-    const Vec3 p(row[first], row[first + 1], row[first + 2]);
-    for (std::size_t i = 0; i < expected.size(); ++i)
-      requireMeasured(row[i], expected[i], path.string(), reader.line());
+    for (std::size_t i = 0; i < (timed ? row.size() : 3); ++i)
+      requireMeasured(row[i], reader.columns()[i], path.string(), reader.line());
     if (timed) {
-      if (!times.empty() && !(row[0] > times.back()))
+      if (!times.empty() && !(row[3] > times.back()))
         throw FileError(path.string(), reader.line(), "time does not increase");
-      if (!times.empty()) intervals.push_back(row[0] - times.back());
-      times.push_back(row[0]);
+      if (!times.empty()) intervals.push_back(row[3] - times.back());
+      times.push_back(row[3]);
     }
-    points.push_back(p);
+    points.emplace_back(row[0], row[1], row[2]);
   }
   if (points.empty()) throw FileError(path.string(), 0, "has no point");
   const double pause = intervals.empty() ? 0 : kPause * percentiles(intervals).p50;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "acquisition/registration/register_path.h"
@@ -18,10 +19,12 @@ std::string registeredText(const std::vector<PathSample>& samples,
 
 // Strokes of such a file, of any path's (t [s],x [m],y [m],z [m], ...) or of points alone (x [m],
 // y [m],z [m], ...): one wherever the time between two samples is more than five times the median.
-// Throws FileError: another header, a bad number, time that does not increase, no point.
+// Throws FileError: another header, a bad number, time that does not increase, no point. Appends to
+// `warnings` a line for each file that has columns which are left out.
 // `along` of those that the heights of such a scan have it for (t [s],along [m], ...); others are
 // left out then. Throws FileError for heights of another scan.
 std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
-                                    const std::filesystem::path& heights = {});
+                                    const std::filesystem::path& heights = {},
+                                    std::vector<std::string>* warnings = nullptr);
 
 } // namespace patina

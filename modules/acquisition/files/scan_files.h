@@ -9,11 +9,14 @@
 #include "acquisition/camera.h"
 #include "acquisition/profile/scan_heights.h"
 #include "acquisition/scan_samples.h"
+#include "core/csv_parser.h"
+#include "core/line_buffer.h"
 
 namespace patina {
 
-// All readers throw FileError with the line: a word that is no number or not finite, a decimal
-// comma, too few or too many of them, time that repeats or runs backwards, nothing at all.
+// All readers throw FileError with the line: a word that is no number or not finite, too few or too
+// many of them, time that repeats or runs backwards, nothing at all. Readers of tables append a
+// line to `warnings` where columns are left out.
 
 template <class Value> struct OnFile {
   std::vector<Value> values;
@@ -27,10 +30,13 @@ struct PoseSigmas {
 };
 
 // TUM: t tx ty tz qx qy qz qw in seconds and metres, a pose a line; '#' begins a comment. Two more
-// numbers are deviations of the position [m] and the angle [rad].
-OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid = {});
+// numbers are deviations of the position [m] and the angle [rad]. The same as a table with a
+// header: t [s],tx [m],ty [m],tz [m],qx,qy,qz,qw and perhaps sigma [m],sigma_angle [rad].
+OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid = {},
+                             std::vector<std::string>* warnings = nullptr);
 OnFile<CameraPose> parsePoses(const std::string& text, const std::string& name,
-                              const PoseSigmas& unsaid = {});
+                              const PoseSigmas& unsaid = {},
+                              std::vector<std::string>* warnings = nullptr);
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses);
 // With their deviations, and a comment for each time without a pose that says why.
 struct NoPose {
@@ -46,30 +52,35 @@ std::string poseRow(const CameraPose& pose);
 std::string poseRow(const NoPose& without);
 
 // CSV. `touching` and `gap` of a path are not in it.
-OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path);
-OnFile<ProbeSample> parseProbeStream(const std::string& text, const std::string& name);
+OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path,
+                                    std::vector<std::string>* warnings = nullptr);
+OnFile<ProbeSample> parseProbeStream(const std::string& text, const std::string& name,
+                                     std::vector<std::string>* warnings = nullptr);
 // The same of bytes as they come, in any pieces.
 class ProbeLines {
  public:
-  explicit ProbeLines(std::string name) : name_(std::move(name)) {}
-  void skipFirst() { headed_ = true; } // half a line perhaps, in place of the header
+  explicit ProbeLines(std::string name);
+  void skipFirst() { skip_ = true; } // half a line perhaps, in place of the header
   // Appends the samples whose lines are whole; where one is wrong, those before it too.
   void take(std::string_view bytes, std::vector<ProbeSample>& into);
   void end() const; // throws FileError in the middle of a line
+  std::string leftOut() const { return table_.leftOut(); }
 
  private:
-  std::string name_, rest_;
-  std::size_t line_ = 0;
-  std::size_t columns_ = 0; // that the header names, or the six where it was missed
-  bool headed_ = false;     // the first line is none
+  std::string name_;
+  LineBuffer lines_;
+  CsvParser table_;
+  bool skip_ = false;
   std::optional<double> last_;
 };
 // A row of its own, for what writes them as they come; the first is probeHeader().
 std::string probeHeader();
 std::string probeRow(const ProbeSample& sample);
 void writeProbeStream(const std::filesystem::path& path, const std::vector<ProbeSample>& samples);
-std::vector<PathSample> readPath(const std::filesystem::path& path);
-std::vector<PathSample> parsePath(const std::string& text, const std::string& name);
+std::vector<PathSample> readPath(const std::filesystem::path& path,
+                                 std::vector<std::string>* warnings = nullptr);
+std::vector<PathSample> parsePath(const std::string& text, const std::string& name,
+                                  std::vector<std::string>* warnings = nullptr);
 std::string pathText(const std::vector<PathSample>& samples);
 void writePath(const std::filesystem::path& path, const std::vector<PathSample>& samples);
 // Both files, or neither where the disk has no room for both.

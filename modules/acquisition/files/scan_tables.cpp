@@ -2,7 +2,7 @@
 
 #include "acquisition/files/measured.h"
 #include "acquisition/files/scan_files.h"
-#include "core/csv_rows.h"
+#include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
 
@@ -43,8 +43,10 @@ ProbeSample sampleIn(const std::vector<double>& row) {
   return {row[0], row[1], {row[2], row[3], row[4], row[5]}};
 }
 
-OnFile<ProbeSample> samplesIn(CsvReader reader, const std::string& name) {
+OnFile<ProbeSample> samplesIn(CsvReader reader, const std::string& name,
+                              std::vector<std::string>* warnings) {
   OnFile<ProbeSample> file;
+  warnOfColumns(reader, warnings);
   readTimed(std::move(reader), name, kProbeColumns,
             [&](const std::vector<double>& row, std::size_t line) {
               file.values.push_back(sampleIn(row));
@@ -59,44 +61,37 @@ std::vector<double> numbersOf(const ProbeSample& s) {
 
 } // namespace
 
-OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path) {
-  return samplesIn(CsvReader(path, kProbeColumns), path.string());
+OnFile<ProbeSample> readProbeStream(const std::filesystem::path& path,
+                                    std::vector<std::string>* warnings) {
+  return samplesIn(CsvReader(path, {kProbeColumns}), path.string(), warnings);
 }
 
-OnFile<ProbeSample> parseProbeStream(const std::string& text, const std::string& name) {
-  return samplesIn(CsvReader(sourceOfText(text), name, kProbeColumns), name);
+OnFile<ProbeSample> parseProbeStream(const std::string& text, const std::string& name,
+                                     std::vector<std::string>* warnings) {
+  return samplesIn(CsvReader(sourceOfText(text), name, {kProbeColumns}), name, warnings);
 }
+
+ProbeLines::ProbeLines(std::string name) : name_(std::move(name)), table_(name_, {kProbeColumns}) {}
 
 void ProbeLines::take(std::string_view bytes, std::vector<ProbeSample>& into) {
-  rest_ += bytes;
+  lines_.append(bytes);
   std::vector<double> row;
-  std::size_t begin = 0;
-  // What is done with stays done with where a line is wrong.
-  const auto forget = [&] { rest_.erase(0, begin); };
-  try {
-    for (std::size_t end; (end = rest_.find('\n', begin)) != std::string::npos;) {
-      const std::string line = rest_.substr(begin, end - begin);
-      begin = end + 1;
-      ++line_;
-      if (line_ == 1) {
-        columns_ =
-            headed_ ? kProbeColumns.size() : parseCsv(line, name_, kProbeColumns).columns.size();
-      } else if (line.find_first_not_of(" \t\r") != std::string::npos) {
-        parseCsvRow(line, columns_, name_, line_, row);
-        requireTimed(row, kProbeColumns, name_, line_, last_);
-        into.push_back(sampleIn(row));
-      }
+  for (std::string_view line; lines_.next(line);) {
+    if (skip_ && !table_.hasHeader()) {
+      table_.skipHeader();
+      continue;
     }
-  } catch (const FileError&) {
-    forget();
-    throw;
+    if (!table_.take(line, row)) continue;
+    requireTimed(row, kProbeColumns, name_, table_.line(), last_);
+    into.push_back(sampleIn(row));
   }
-  forget();
-  if (rest_.size() > 4096) throw FileError(name_, line_ + 1, "is no line of a probe's stream");
+  if (lines_.rest() > 4096)
+    throw FileError(name_, table_.line() + 1, "is no line of a probe's stream");
 }
 
 void ProbeLines::end() const {
-  if (!rest_.empty()) throw FileError(name_, line_ + 1, "the stream ended within this line");
+  if (lines_.rest() > 0)
+    throw FileError(name_, table_.line() + 1, "the stream ended within this line");
 }
 
 std::string probeHeader() {
@@ -115,8 +110,10 @@ void writeProbeStream(const std::filesystem::path& path, const std::vector<Probe
 
 namespace {
 
-std::vector<PathSample> pathIn(CsvReader reader, const std::string& name) {
+std::vector<PathSample> pathIn(CsvReader reader, const std::string& name,
+                               std::vector<std::string>* warnings) {
   std::vector<PathSample> samples;
+  warnOfColumns(reader, warnings);
   readTimed(
       std::move(reader), name, kPathColumns, [&](const std::vector<double>& row, std::size_t line) {
         const Eigen::Quaterniond turn(row[7], row[4], row[5], row[6]);
@@ -136,12 +133,14 @@ std::vector<PathSample> pathIn(CsvReader reader, const std::string& name) {
 
 } // namespace
 
-std::vector<PathSample> readPath(const std::filesystem::path& path) {
-  return pathIn(CsvReader(path, kPathColumns), path.string());
+std::vector<PathSample> readPath(const std::filesystem::path& path,
+                                 std::vector<std::string>* warnings) {
+  return pathIn(CsvReader(path, {kPathColumns}), path.string(), warnings);
 }
 
-std::vector<PathSample> parsePath(const std::string& text, const std::string& name) {
-  return pathIn(CsvReader(sourceOfText(text), name, kPathColumns), name);
+std::vector<PathSample> parsePath(const std::string& text, const std::string& name,
+                                  std::vector<std::string>* warnings) {
+  return pathIn(CsvReader(sourceOfText(text), name, {kPathColumns}), name, warnings);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/recording/arrival_clock.h"
 #include "acquisition/recording/row_file.h"
@@ -199,6 +200,7 @@ class Recorder::Work {
       seen->image = std::move(arrived.frame.image);
       seen->markers = tracker_.markers();
       seen->verdict = rig.verdict;
+      if (rig.verdict != RigVerdict::seen) seen->why = reasonOf(rig);
       if (rig.verdict == RigVerdict::seen) seen->pose = cameraPose(rig, seen->t);
       lock.lock();
       if (seen->pose) {
@@ -208,7 +210,7 @@ class Recorder::Work {
         }
         news_.poses.push_back(*seen->pose);
       } else {
-        leaveOut({seen->t, std::string(nameOf(rig.verdict))}, arrived.written);
+        leaveOut({seen->t, seen->why}, arrived.written);
       }
       news_.frame = seen;
     }
@@ -239,6 +241,7 @@ class Recorder::Work {
       }
       batch.clear();
       state_.probe = probe_->health();
+      if (state_.left_out.empty()) state_.left_out = probe_->leftOut();
     }
     if (failure) std::rethrow_exception(failure);
   }

@@ -24,6 +24,7 @@ struct RecordedFrame {
   GreyFrame image;
   std::vector<SeenMarker> markers;
   RigVerdict verdict = RigVerdict::no_marker;
+  std::string why;                // it has no pose; empty if it has one
   std::optional<CameraPose> pose; // where the verdict is `seen`
 };
 
@@ -38,6 +39,7 @@ struct RecordingState {
   std::size_t dropouts = 0;         // where the probe's stream lacks more than 50 ms
   bool probe_ended = false;         // it sends no more
   std::optional<ProbeHealth> probe; // of one that sends packets
+  std::string left_out;             // names columns of the probe's table that nobody reads
   std::string error;                // why it ended, if that was not asked for; one line
 };
 

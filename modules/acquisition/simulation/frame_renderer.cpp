@@ -5,42 +5,15 @@
 #include <random>
 #include <stdexcept>
 
+#include "acquisition/tracking/lens.h"
+
 namespace patina {
 namespace {
 
 constexpr int kRays = 8; // along each side of a pixel that an edge crosses
 
-// The pixel of a point of the plane z = 1, and how it moves with it: Brown's lens.
-struct Seen {
-  Vec2 pixel;
-  Eigen::Matrix2d slope;
-};
-
-Seen throughLens(const Camera& c, const Vec2& p) {
-  const auto& d = c.distortion;
-  const double x = p.x(), y = p.y(), rr = x * x + y * y;
-  const double m = 1 + d[0] * rr + d[1] * rr * rr + d[4] * rr * rr * rr;
-  const double dm = 2 * (d[0] + 2 * d[1] * rr + 3 * d[4] * rr * rr); // by rr, times two
-  Seen seen;
-  seen.pixel = {c.cx + c.fx * (x * m + 2 * d[2] * x * y + d[3] * (rr + 2 * x * x)),
-                c.cy + c.fy * (y * m + d[2] * (rr + 2 * y * y) + 2 * d[3] * x * y)};
-  const double mixed = x * y * dm + 2 * d[2] * x + 2 * d[3] * y;
-  seen.slope << c.fx * (m + x * x * dm + 2 * d[2] * y + 6 * d[3] * x), c.fx * mixed, c.fy * mixed,
-      c.fy * (m + y * y * dm + 6 * d[2] * y + 2 * d[3] * x);
-  return seen;
-}
-
-// Newton's method, from the neighbour's ray.
-Vec2 rayOf(const Camera& camera, const Vec2& pixel, Vec2 ray) {
-  for (int i = 0; i < 50; ++i) {
-    const Seen seen = throughLens(camera, ray);
-    if (!(seen.slope.determinant() > 0)) break;
-    const Vec2 step = seen.slope.inverse() * (pixel - seen.pixel);
-    ray += step;
-    if (step.squaredNorm() < 1e-24) return ray;
-  }
-  throw std::invalid_argument("a lens that shows one direction twice cannot be rendered");
-}
+// Stands for the ray of a pixel that a fisheye lens sees from the side or from behind.
+const Vec2 kNoRay(NAN, NAN);
 
 // A printed face at one moment, ready to be met by rays.
 struct Face {
@@ -145,7 +118,7 @@ Scene sceneOf(const Camera& camera, const std::vector<PrintedMarker>& markers,
                                       1 - look.slope_shade * (1 - cosine)});
       for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1)}) {
         const Vec3 p = face * Vec3(reach * corner.x(), reach * corner.y(), 0);
-        const Vec2 pixel = throughLens(camera, p.hnormalized()).pixel;
+        const Vec2 pixel = patina::pixelOf(camera, p);
         const int column = static_cast<int>(std::clamp(pixel.x(), -1e6, 1e6)),
                   row = static_cast<int>(std::clamp(pixel.y(), -1e6, 1e6));
         scene.left = std::min(scene.left, column - 8);
@@ -162,22 +135,21 @@ Scene sceneOf(const Camera& camera, const std::vector<PrintedMarker>& markers,
 FrameRenderer::FrameRenderer(const Camera& camera, std::vector<PrintedMarker> markers)
     : camera_(camera), markers_(std::move(markers)) {
   rays_.reserve(index(camera.width + 1) * index(camera.height + 1));
-  // From the middle outwards would be safest; along rows is close enough with a start from above.
-  Vec2 row_start((-0.5 - camera.cx) / camera.fx, (-0.5 - camera.cy) / camera.fy);
-  for (int y = 0; y <= camera.height; ++y) {
-    Vec2 ray = row_start;
+  for (int y = 0; y <= camera.height; ++y)
     for (int x = 0; x <= camera.width; ++x) {
-      ray = rayOf(camera, Vec2(x - 0.5, y - 0.5), ray);
-      if (x == 0) row_start = ray;
-      rays_.push_back(ray);
+      // The neighbour's ray is close.
+      const bool next = x > 0 && rays_.back().allFinite();
+      const auto ray = flatOf(camera, Vec2(x - 0.5, y - 0.5), next ? &rays_.back() : nullptr);
+      if (!ray && camera.lens != LensModel::fisheye)
+        throw std::invalid_argument("a lens that shows one direction twice cannot be rendered");
+      rays_.push_back(ray.value_or(kNoRay));
       if (x < camera.width && y < camera.height)
-        ripples_.push_back(std::sin(40 * ray.x()) * std::sin(55 * ray.y()));
+        ripples_.push_back(ray ? std::sin(40 * ray->x()) * std::sin(55 * ray->y()) : 0);
     }
-  }
 }
 
 Vec2 FrameRenderer::pixelOf(const Vec3& in_camera) const {
-  return throughLens(camera_, in_camera.hnormalized()).pixel;
+  return patina::pixelOf(camera_, in_camera);
 }
 
 GreyFrame FrameRenderer::render(const std::vector<Pose>& camera_from_probe, const FrameLook& look,

@@ -1,6 +1,5 @@
 // Pictures that a camera would take of a body of markers, for tests and simulated scans (A04). It
-// shares nothing with what finds markers: the lens is inverted by other means, each pixel is a mean
-// of rays.
+// shares nothing with what finds markers but the lens: each pixel is a mean of rays.
 #pragma once
 
 #include "acquisition/camera.h"
@@ -37,7 +36,8 @@ struct FrameLook {
 // What is the same in all frames of a camera.
 class FrameRenderer {
  public:
-  // Throws std::invalid_argument where the lens cannot be inverted over the picture.
+  // Throws std::invalid_argument where the lens folds within the picture. A fisheye lens may see
+  // farther than 89 degrees from its axis; there the picture shows the ground.
   FrameRenderer(const Camera& camera, std::vector<PrintedMarker> markers);
 
   // `camera_from_probe` are poses evenly spread over the exposure, at least one.

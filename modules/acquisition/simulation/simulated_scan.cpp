@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/marker_code.h"
 #include "core/csv.h"

@@ -199,7 +199,7 @@ std::vector<Frame> framesToRead(const std::filesystem::path& folder, double rate
 double replayStart(const std::string& folder, double first_frame) {
   const std::filesystem::path probe = std::filesystem::path(folder) / "probe.csv";
   if (!std::filesystem::exists(probe)) return first_frame;
-  CsvReader reader(probe, {"t [s]"});
+  CsvReader reader(probe, {{"t [s]"}});
   std::vector<double> row;
   return reader.next(row) ? std::min(row[0], first_frame) : first_frame;
 }

@@ -23,7 +23,7 @@ namespace {
 
 class ProbeFile : public ProbeSource {
  public:
-  ProbeFile(const std::string& path) : samples_(readProbeStream(path).values) {}
+  ProbeFile(const std::string& path) : samples_(readProbeStream(path, &warnings_).values) {}
   bool read(std::vector<ProbeSample>& into) override {
     if (stopped_ || samples_.empty()) return false;
     into.insert(into.end(), samples_.begin(), samples_.end());
@@ -32,8 +32,10 @@ class ProbeFile : public ProbeSource {
   }
   bool isLive() const override { return false; }
   void stop() noexcept override { stopped_ = true; }
+  std::string leftOut() const override { return warnings_.empty() ? "" : warnings_[0]; }
 
  private:
+  std::vector<std::string> warnings_;
   std::vector<ProbeSample> samples_;
   std::atomic<bool> stopped_{false};
 };
@@ -139,6 +141,7 @@ class ProbeStream final : public ByteStream {
   explicit ProbeStream(const std::string& path) : ByteStream(path, -1), lines_(path) {
     if (isSerial()) lines_.skipFirst(); // the device may have begun before
   }
+  std::string leftOut() const override { return lines_.leftOut(); }
 
  private:
   void take(std::string_view bytes, std::vector<ProbeSample>& into) override {

@@ -67,6 +67,8 @@ class ProbeSource {
   virtual void stop() noexcept = 0; // from any thread: read() returns false within 0.2 s
   // Of what sends packets; for the thread that reads.
   virtual std::optional<ProbeHealth> health() const { return std::nullopt; }
+  // Names the columns of a table that nobody reads, or is empty; for the thread that reads.
+  virtual std::string leftOut() const { return ""; }
 };
 
 // PROBE is a probe.csv, "stream:PATH", lines of a probe.csv, its header first, as they arrive at a

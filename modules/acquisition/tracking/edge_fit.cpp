@@ -172,8 +172,12 @@ std::optional<Lines> linesOf(const GreyFrame& image, const Quad& quad, const Cam
     const double border = across / bits;
     const double reach = std::clamp(border / 2, 1., most_reach);
     EdgePoints points = edgePoints(image, from, to, reach, again);
-    if (lens)
-      for (Vec2& point : points.place) point = straightened(*lens, point);
+    if (lens) {
+      std::vector<Vec2> straight;
+      for (const Vec2& point : points.place)
+        if (const auto place = straightened(*lens, point)) straight.push_back(*place);
+      points.place = std::move(straight);
+    }
     const auto line = lineOf(points.place, normal);
     if (!line) return std::nullopt;
     lines[i] = *line;

@@ -143,16 +143,27 @@ double angleBetween(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-std::vector<Sight> sightsOf(const std::vector<SeenMarker>& seen,
-                            const std::vector<RigMarker>& rig) {
+Vec2 centreOf(const SeenMarker& marker) {
+  Vec2 sum = Vec2::Zero();
+  for (const FittedCorner& corner : marker.corner) sum += corner.pixel;
+  return sum / 4;
+}
+
+// A marker that is seen more than once is seen wrongly at least once: none of its images counts.
+std::vector<Sight> sightsOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig,
+                            std::vector<RepeatedMarker>& repeated) {
   std::vector<Sight> sights;
   for (const RigMarker& marker : rig) {
     const auto is = [&](const SeenMarker& s) {
       return s.id == marker.id && s.family == marker.family;
     };
-    // One that is seen twice is seen wrongly at least once.
-    if (std::count_if(seen.begin(), seen.end(), is) != 1) continue;
-    sights.push_back({&*std::find_if(seen.begin(), seen.end(), is), marker.corners(), &marker});
+    std::vector<const SeenMarker*> images;
+    for (const SeenMarker& image : seen)
+      if (is(image)) images.push_back(&image);
+    if (images.size() == 1) sights.push_back({images[0], marker.corners(), &marker});
+    if (images.size() < 2) continue;
+    repeated.push_back({marker.family, marker.id, {}});
+    for (const SeenMarker* image : images) repeated.back().places.push_back(centreOf(*image));
   }
   return sights;
 }
@@ -246,15 +257,38 @@ std::string_view nameOf(RigVerdict verdict) {
     return "may be tilted either way";
   case RigVerdict::misfit:
     return "the markers are not where the rig has them";
+  case RigVerdict::repeated:
+    return "a marker of the rig is seen more than once";
   }
   return "";
+}
+
+std::string textOf(const RepeatedMarker& marker) {
+  const std::size_t count = marker.places.size();
+  std::string text = "marker " + std::to_string(marker.id) + " of " + marker.family + " is seen " +
+                     (count == 2 ? "twice" : std::to_string(count) + " times") + ", at ";
+  for (std::size_t i = 0; i < count; ++i)
+    text += std::string(i == 0          ? ""
+                        : i + 1 < count ? ", "
+                                        : " and ") +
+            "(" + std::to_string(std::lround(marker.places[i].x())) + ", " +
+            std::to_string(std::lround(marker.places[i].y())) + ")";
+  return text + " px";
+}
+
+std::string reasonOf(const SeenRig& seen) {
+  return seen.verdict == RigVerdict::repeated ? textOf(seen.repeated.front())
+                                              : std::string(nameOf(seen.verdict));
 }
 
 SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig,
                const Camera& camera, const Pose* lately, const GreyFrame* image) {
   SeenRig result;
-  const std::vector<Sight> all = sightsOf(seen, rig);
-  if (all.empty()) return result;
+  const std::vector<Sight> all = sightsOf(seen, rig, result.repeated);
+  if (all.empty()) {
+    if (!result.repeated.empty()) result.verdict = RigVerdict::repeated;
+    return result;
+  }
   PoseChoice choice = choose(all, camera);
   if (!std::isfinite(choice.best.cost)) {
     result.verdict = RigVerdict::misfit;

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/numbers.h"
 
 namespace patina {
 namespace {
@@ -84,8 +85,11 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
     requireSize(frame->image, camera, frame->name);
     const SeenRig seen = tracker.track(frame->image, frame->t);
     result.dropped += seen.dropped;
+    if (!seen.repeated.empty() && result.repeated++ == 0)
+      result.first_repeated =
+          "at " + formatNumber(frame->t) + " s " + textOf(seen.repeated.front());
     if (seen.verdict != RigVerdict::seen) {
-      goWithout(frame->t, seen, std::string(nameOf(seen.verdict)));
+      goWithout(frame->t, seen, reasonOf(seen));
       result.ambiguous += seen.verdict == RigVerdict::ambiguous;
       result.misfit += seen.verdict == RigVerdict::misfit;
       continue;

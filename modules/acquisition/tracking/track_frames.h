@@ -42,6 +42,8 @@ struct TrackedFrames {
   std::size_t dropped = 0;                               // markers that contradicted the others
   double rms = 0;                                        // of all corners [px]
   std::string first_fault = {};                          // of the first that cannot be read
+  std::size_t repeated = 0;        // frames in which a marker of the rig is seen more than once
+  std::string first_repeated = {}; // the first of them, its marker and places
 };
 
 // Each frame once it was looked at, in their order; `why` says why it has no pose, if it has none.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/lens.h"
 #include "acquisition/vision/aruco.h"
@@ -24,7 +25,7 @@ std::vector<SeenMarker> seenOf(const Corners& corners, const Camera& camera) {
   for (const auto& [id, pixel] : corners) {
     SeenMarker marker{"apriltag_36h11", id, 0, {}, 0};
     for (std::size_t i = 0; i < 4; ++i)
-      marker.corner[i] = {pixel[i], straightened(camera, pixel[i]),
+      marker.corner[i] = {pixel[i], straightened(camera, pixel[i]).value(),
                           10 * Eigen::Matrix2d::Identity()};
     seen.push_back(marker);
   }
@@ -193,7 +194,7 @@ TEST(MarkerPeers, MarkersOfTheSharedBoardLieOnAPlane) {
   for (std::size_t m = 0; m < ids.size(); ++m)
     for (std::size_t i = 0; i < 4; ++i) {
       theirs_board.push_back(cornerOn(ids[m], i));
-      theirs.push_back(straightened(camera, Vec2(found[m][i].x, found[m][i].y)));
+      theirs.push_back(straightened(camera, Vec2(found[m][i].x, found[m][i].y)).value());
     }
   const double own = planarResidual(board, ours), subpix = planarResidual(theirs_board, theirs);
   std::printf("planar residual %.3f px of %zu corners, SUBPIX %.3f of %zu\n", own, ours.size(),
