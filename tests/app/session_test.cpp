@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "geometry/atlas/texture_layout.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/shapes.h"
 #include "session/build/stage_cost.h"
@@ -27,6 +28,11 @@ class Session : public testing::Test {
     Scene scene = sceneOf(icosphere(0.02, 8), "sphere");
     scene.field.resolution = 40;
     return scene;
+  }
+
+  std::filesystem::path write(const std::string& name, const TriangleMesh& mesh) const {
+    writeMesh(folder / name, mesh);
+    return folder / name;
   }
 
   std::filesystem::path folder;
@@ -89,6 +95,28 @@ TEST_F(Session, WarnsOfEveryKindOfTriangleThatIsLeftOut) {
   ASSERT_GT(report.degenerate, 0u);
   EXPECT_EQ(meshWarnings(report).size(), 2u);
   EXPECT_TRUE(meshWarnings(inspect(icosphere(20, 4))).empty());
+}
+
+TEST_F(Session, SaysInOneLineWhyTextureCoordinatesCannotHoldPaint) {
+  const auto lines = [](const OpenedScene& opened) {
+    std::vector<std::string> found;
+    for (const std::string& line : opened.warnings)
+      if (line.find("texture coordinates") != std::string::npos) found.push_back(line);
+    return found;
+  };
+  TriangleMesh mesh = icosphere(20, 4);
+  EXPECT_TRUE(lines(openScene(write("plain.ply", mesh), {})).empty());
+  mesh.corner_uvs = *madeAtlas(mesh, 256).uvs;
+  EXPECT_TRUE(lines(openScene(write("unwrapped.ply", mesh), {})).empty());
+  mesh.corner_uvs[7] = mesh.corner_uvs[3];
+  const auto overlap = lines(openScene(write("overlap.ply", mesh), {}));
+  ASSERT_EQ(overlap.size(), 1u);
+  EXPECT_NE(overlap[0].find("overlap, those of triangles 3 and 7 for one"), std::string::npos);
+  EXPECT_NE(overlap[0].find("atlas of its own"), std::string::npos);
+  mesh.corner_uvs[7][0] = Vec2(1.5, 0);
+  const auto tiled = lines(openScene(write("tiled.ply", mesh), {}));
+  ASSERT_EQ(tiled.size(), 1u);
+  EXPECT_NE(tiled[0].find("leave the unit square"), std::string::npos);
 }
 
 TEST_F(Session, AdvisesATipRadiusForSheetsUntilThereIsOne) {

@@ -175,6 +175,38 @@ TEST(MadeAtlas, CracksInTheIndicesAreNoBorder) {
   EXPECT_EQ(madeAtlas(apart, 256).charts, madeAtlas(mesh, 256).charts);
 }
 
+TEST(MadeAtlas, FacesThatTheMeshHoldsTwiceHaveOnePlace) {
+  const TriangleMesh mesh = icosphere(1, 10);
+  TriangleMesh copy = mesh;
+  for (Triangle& t : copy.triangles) t = {t[1], t[2], t[0]};
+  const TextureLayout once = madeAtlas(mesh, 256), twice = madeAtlas(joined(mesh, copy), 256);
+  EXPECT_EQ(twice.charts, once.charts);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Corners& uv = (*once.uvs)[f];
+    ASSERT_EQ((*twice.uvs)[f], uv);
+    ASSERT_EQ((*twice.uvs)[f + mesh.triangles.size()], (Corners{uv[1], uv[2], uv[0]}));
+  }
+}
+
+TEST(MadeAtlas, FacesThatLookBothWaysHaveAPlaceForEither) {
+  for (const TriangleMesh& mesh : {sheet(1, 2, 8), icosphere(1, 6)}) {
+    TriangleMesh back = mesh, both;
+    for (Triangle& t : back.triangles) std::swap(t[1], t[2]);
+    // In turns, as those write who want a sheet seen from both sides.
+    both.positions = mesh.positions;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      both.triangles.push_back(mesh.triangles[f]);
+      both.triangles.push_back(back.triangles[f]);
+    }
+    const TextureLayout layout = madeAtlas(both, 256);
+    EXPECT_LE(layout.charts, madeAtlas(mesh, 256).charts + madeAtlas(back, 256).charts);
+    EXPECT_GT(share(layout), 0.4);
+    for (std::size_t a = 0; a < both.triangles.size(); ++a)
+      for (std::size_t b = a + 1; b < both.triangles.size(); ++b)
+        ASSERT_GT(test::separation((*layout.uvs)[a], (*layout.uvs)[b]), -1e-11) << a << ' ' << b;
+  }
+}
+
 TEST(MadeAtlas, FacesWithoutAreaGetAPointOfTheSurface) {
   TriangleMesh mesh = sheet(1, 1, 4);
   const std::size_t good = mesh.triangles.size();

@@ -99,21 +99,28 @@ TriangleMesh mapped(TriangleMesh mesh) {
 
 TEST(TextureLayout, KeepsTheMeshsOwnCoordinates) {
   const TriangleMesh mesh = mapped(sheet(1, 1, 4));
-  std::string why = "something else";
-  const TextureLayout layout = textureLayout(mesh, 256, &why);
+  const TextureLayout layout = textureLayout(mesh, 256);
   EXPECT_FALSE(layout.made);
-  EXPECT_EQ(why, "");
+  EXPECT_EQ(ownLayoutFault(mesh), "");
   EXPECT_EQ(*layout.uvs, mesh.corner_uvs);
   EXPECT_EQ(layout.charts, 1);
 }
 
-TEST(TextureLayout, CountsPiecesAndKeepsMirroredOverlaps) {
+// The right half of a sheet above the left one, or mirrored onto it.
+TriangleMesh halved(bool apart) {
   TriangleMesh mesh = mapped(sheet(1, 1, 4));
-  for (Corners& uv : mesh.corner_uvs) { // the right half onto the left
+  for (Corners& uv : mesh.corner_uvs) {
     const bool right = uv[0][0] + uv[1][0] + uv[2][0] > 1.5;
-    for (Vec2& p : uv) p = right ? Vec2(1 - p[0], 0.5 * p[1]) : Vec2(p[0], 0.5 * p[1] + 0.5);
+    for (Vec2& p : uv) {
+      if (right) p[0] = 1 - p[0];
+      if (apart) p[1] = 0.5 * p[1] + (right ? 0.5 : 0);
+    }
   }
-  const TextureLayout layout = textureLayout(mesh, 256);
+  return mesh;
+}
+
+TEST(TextureLayout, CountsPiecesOfTheMeshsOwnCoordinates) {
+  const TextureLayout layout = textureLayout(halved(true), 256);
   EXPECT_FALSE(layout.made);
   EXPECT_EQ(layout.charts, 2);
 }
@@ -121,16 +128,16 @@ TEST(TextureLayout, CountsPiecesAndKeepsMirroredOverlaps) {
 TEST(TextureLayout, MakesAnAtlasAndSaysWhyWhereCoordinatesFail) {
   const TriangleMesh good = mapped(sheet(1, 1, 4));
   const auto expectMade = [](const TriangleMesh& mesh, const std::string& reason) {
-    std::string why;
-    const TextureLayout layout = textureLayout(mesh, 64, &why);
+    const std::string why = ownLayoutFault(mesh);
+    const TextureLayout layout = textureLayout(mesh, 64);
     EXPECT_TRUE(layout.made);
     EXPECT_NE(why.find(reason), std::string::npos) << why;
-    EXPECT_TRUE(textureLayout(mesh, 64).made);
     TriangleMesh bare = mesh;
     bare.corner_uvs.clear();
     expectAtlas(bare, layout, 64);
   };
   expectMade(sheet(1, 1, 4), "no texture coordinates");
+  expectMade(halved(false), "overlap");
   TriangleMesh mesh = good;
   mesh.corner_uvs.pop_back();
   expectMade(mesh, "missing");

@@ -13,6 +13,7 @@
 #include "core/numbers.h"
 #include "core/percentiles.h"
 #include "session/build/compile_warnings.h"
+#include "session/build/session.h"
 #include "session/edit/editor.h"
 #include "session/store/workspace_link.h"
 
@@ -180,6 +181,8 @@ int runPaint(const PaintOptions& options, Console& console) {
     const Editor::OpenSpec spec{.own = in_place};
     editor = Editor::open(workspaceFolder(input), spec, console.progress(), listener);
     for (const std::string& note : editor->notes()) console.warn(note);
+    for (const SceneObject& object : editor->scene().objects)
+      if (const auto line = layoutWarning(object)) console.warn(object.name + ": " + *line);
   } else {
     Scene scene = openWith(input, {options.open, {}}, console);
     editor = std::make_unique<Editor>(std::move(scene), console.progress(), listener);

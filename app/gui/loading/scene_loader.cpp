@@ -121,6 +121,8 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
     const auto thin = thinSheetWarning(object->mesh_report);
     if (thin && !chosen)
       made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(*thin));
+    if (const auto layout = layoutWarning(object->object))
+      made.warnings << QStringLiteral("%1: %2").arg(name, QString::fromStdString(*layout));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "field/build/build_field.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {
@@ -13,10 +14,36 @@ std::shared_ptr<const TiledImage> anyImage(const SceneObject& object) {
   return object.paint->color ? object.paint->color : object.paint->relief;
 }
 
+std::shared_ptr<const TriangleMesh> weldedByPlace(const std::shared_ptr<const TriangleMesh>& mesh,
+                                                  const Scene& scene) {
+  std::vector<std::int32_t> one(mesh->positions.size());
+  std::vector<Vec3> places;
+  std::size_t first = 0; // vertex of the object
+  for (const SceneObject& object : scene.objects) {
+    const std::size_t count = object.mesh->positions.size();
+    VertexWeld weld(count);
+    const auto before = static_cast<std::int32_t>(places.size());
+    for (std::size_t v = first; v < first + count; ++v)
+      one[v] = before + weld.index(mesh->positions[v]);
+    places.insert(places.end(), weld.points().begin(), weld.points().end());
+    first += count;
+  }
+  if (places.size() == mesh->positions.size()) return mesh;
+  auto welded = std::make_shared<TriangleMesh>();
+  welded->positions = std::move(places);
+  welded->triangles = mesh->triangles;
+  for (Triangle& t : welded->triangles)
+    for (std::int32_t& v : t) v = one[index(v)];
+  return welded;
+}
+
 } // namespace
 
 std::size_t PaintSurface::bytes() const {
   std::size_t sum = adjacency ? patina::bytes(*adjacency) : 0;
+  if (welded && welded != mesh)
+    sum += welded->positions.capacity() * sizeof(Vec3) +
+           welded->triangles.capacity() * sizeof(Triangle);
   for (const PaintObject& object : objects) {
     if (object.layout.uvs) sum += object.layout.uvs->capacity() * sizeof(object.layout.uvs->at(0));
     if (object.texels) sum += object.texels->owner.capacity() * sizeof(std::int32_t);
@@ -42,7 +69,8 @@ std::shared_ptr<const PaintSurface> paintSurface(const Scene& scene,
     throw std::invalid_argument("paintSurface: not the mesh of this scene");
   progress.throwIfCancelled();
   progress.report(0, "neighbours");
-  surface->adjacency = std::make_shared<const Adjacency>(adjacency(*mesh));
+  surface->welded = weldedByPlace(mesh, scene);
+  surface->adjacency = std::make_shared<const Adjacency>(adjacency(*surface->welded));
   progress.throwIfCancelled();
   surface->mesh = std::move(mesh);
   surface->field = std::move(field);

@@ -27,9 +27,12 @@ struct PaintObject {
 struct PaintSurface {
   std::shared_ptr<const TriangleMesh> mesh;   // joint, world
   std::shared_ptr<const SurfaceField> field;  // of all objects, as built: relief is never baked in
-  std::shared_ptr<const Adjacency> adjacency; // of the joint mesh
+  std::shared_ptr<const Adjacency> adjacency; // of the welded mesh
   std::vector<PaintObject> objects;           // in the scene's order
-  std::size_t bytes() const;                  // beyond mesh and field
+  // The joint mesh with one vertex for each place of an object, so that the brush crosses cracks in
+  // the indices; the joint mesh itself where there are none.
+  std::shared_ptr<const TriangleMesh> welded;
+  std::size_t bytes() const; // beyond mesh and field
 };
 
 // Throws Cancelled. `mesh` and `field` are those of the compiled scene.

@@ -95,7 +95,7 @@ std::optional<ClosestPoint> VolumeFill::foot(const Vec3& p) const {
   const Adjacency& adjacency = *surface_->adjacency;
   for (std::int32_t from = -1; from != best.surface.face;) {
     from = best.surface.face;
-    for (const std::int32_t v : surface_->mesh->triangles[index(from)])
+    for (const std::int32_t v : surface_->welded->triangles[index(from)])
       for (std::int32_t k = adjacency.vertex_offsets[index(v)];
            k < adjacency.vertex_offsets[index(v) + 1]; ++k)
         consider(adjacency.vertex_faces[index(k)]);
@@ -124,7 +124,7 @@ std::span<const std::int32_t> VolumeFill::fill(const Vec3& centre, double radius
         continue;
       }
       // Where three faces or more meet no one neighbour is named: over the edge's ends.
-      const Triangle& triangle = surface_->mesh->triangles[index(face)];
+      const Triangle& triangle = surface_->welded->triangles[index(face)];
       visitFan(triangle[k]);
       visitFan(triangle[(k + 1) % 3]);
     }

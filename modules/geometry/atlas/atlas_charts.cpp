@@ -209,6 +209,70 @@ void refitPlane(const AtlasSurface& surface, Chart& chart, double cosine) {
   if (least > cosine) chart.normal = mean;
 }
 
+// The layers of a mesh that holds faces more than once: 0 for the first of a place, 1 for the first
+// that faces the other way there, and kTwin for the others.
+constexpr std::int8_t kTwin = 2;
+struct Layers {
+  std::vector<std::int8_t> of; // each face
+  std::vector<AtlasSurface::Twin> twins;
+  bool has_back = false; // a face is in layer 1
+};
+
+Layers layersOf(const std::vector<Triangle>& triangles) {
+  struct Place {
+    Triangle sorted;
+    std::int32_t face;
+    bool odd; // the face runs through its vertices against their order
+    bool operator<(const Place& other) const {
+      return std::tie(sorted, face) < std::tie(other.sorted, other.face);
+    }
+  };
+  std::vector<Place> places;
+  places.reserve(triangles.size());
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    const Triangle& t = triangles[f];
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    Place place{t, static_cast<std::int32_t>(f), ((t[0] > t[1]) != (t[1] > t[2])) != (t[0] > t[2])};
+    std::sort(place.sorted.begin(), place.sorted.end());
+    places.push_back(place);
+  }
+  std::sort(places.begin(), places.end());
+  Layers layers;
+  layers.of.assign(triangles.size(), 0);
+  for (std::size_t first = 0, last = 0; first < places.size(); first = last) {
+    const Place* back = nullptr;
+    for (last = first + 1; last < places.size() && places[last].sorted == places[first].sorted;
+         ++last) {
+      const Place& next = places[last];
+      const Place* same = next.odd == places[first].odd ? &places[first] : back;
+      if (same)
+        layers.twins.push_back({next.face, same->face});
+      else
+        back = &next;
+      layers.of[index(next.face)] = same ? kTwin : 1;
+    }
+    layers.has_back = layers.has_back || back;
+  }
+  return layers;
+}
+
+// Neighbours within each layer: the back of a sheet is a surface of its own.
+Adjacency adjacencyOf(const TriangleMesh& mesh, const Layers& layers) {
+  if (layers.twins.empty() && !layers.has_back) return adjacency(mesh);
+  const auto only = [&](std::int8_t layer) {
+    TriangleMesh part{mesh.positions, mesh.triangles, {}};
+    for (std::size_t f = 0; f < part.triangles.size(); ++f)
+      if (layers.of[f] != layer) part.triangles[f].fill(mesh.triangles[f][0]);
+    return adjacency(part);
+  };
+  Adjacency around = only(0);
+  if (!layers.has_back) return around;
+  const Adjacency back = only(1);
+  for (std::size_t f = 0; f < layers.of.size(); ++f)
+    if (layers.of[f] == 1) around.face_neighbours[f] = back.face_neighbours[f];
+  return around;
+}
+
 } // namespace
 
 AtlasSurface atlasSurface(const TriangleMesh& mesh) {
@@ -225,7 +289,8 @@ AtlasSurface atlasSurface(const TriangleMesh& mesh) {
     for (std::int32_t& v : t) v = one[index(v)];
 
   AtlasSurface surface;
-  Adjacency around = adjacency(welded);
+  Layers layers = layersOf(welded.triangles);
+  Adjacency around = adjacencyOf(welded, layers);
   surface.neighbours = std::move(around.face_neighbours);
   surface.vertex_offsets = std::move(around.vertex_offsets);
   surface.vertex_faces = std::move(around.vertex_faces);
@@ -238,7 +303,8 @@ AtlasSurface atlasSurface(const TriangleMesh& mesh) {
         std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
     const double doubled = (b - a).cross(c - a).norm();
     surface.normals[f] = Vec3::Zero();
-    if (doubled > kNeedle * longest2 && doubled < std::numeric_limits<double>::infinity()) {
+    if (layers.of[f] != kTwin && doubled > kNeedle * longest2 &&
+        doubled < std::numeric_limits<double>::infinity()) {
       surface.normals[f] = faceNormal(welded, f);
       surface.areas[f] = doubled / 2;
     }
@@ -253,6 +319,7 @@ AtlasSurface atlasSurface(const TriangleMesh& mesh) {
   });
   surface.positions = std::move(welded.positions);
   surface.triangles = std::move(welded.triangles);
+  surface.twins = std::move(layers.twins);
   return surface;
 }
 

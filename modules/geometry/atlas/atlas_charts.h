@@ -13,11 +13,16 @@ namespace patina {
 struct AtlasSurface {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  std::vector<Vec3> normals; // zero = without area: in no chart
+  std::vector<Vec3> normals; // zero = without area, or a twin: in no chart
   std::vector<double> areas;
   // Across each edge: the one other face there, if it runs along the edge the other way.
   std::vector<std::array<std::int32_t, 3>> neighbours;
   std::vector<std::int32_t> vertex_offsets, vertex_faces; // as in Adjacency
+  // Faces that lie on an earlier one and face the same way, and that one.
+  struct Twin {
+    std::int32_t face, first;
+  };
+  std::vector<Twin> twins;
 };
 AtlasSurface atlasSurface(const TriangleMesh& mesh);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include <tbb/parallel_for.h>
@@ -11,6 +12,7 @@
 #include "geometry/atlas/atlas_charts.h"
 #include "geometry/atlas/atlas_packing.h"
 #include "geometry/atlas/chart_overlap.h"
+#include "geometry/atlas/uv_overlap.h"
 #include "geometry/mesh/adjacency.h"
 
 namespace patina {
@@ -157,22 +159,12 @@ void pointIslands(const AtlasSurface& surface, const std::vector<bool>& placed, 
       uvs[f].fill(last);
 }
 
-// Why a mesh's own coordinates cannot be used; empty if they can.
-std::string faultOf(const TriangleMesh& mesh) {
-  if (mesh.corner_uvs.empty()) return "the mesh has no texture coordinates";
-  if (mesh.corner_uvs.size() != mesh.triangles.size())
-    return "texture coordinates are missing on some faces";
-  bool finite = true, inside = true, area = false;
-  for (const auto& uv : mesh.corner_uvs) {
-    for (const Vec2& p : uv) {
-      finite = finite && p.allFinite();
-      inside = inside && p.minCoeff() >= 0 && p.maxCoeff() <= 1;
-    }
-    area = area || hasArea(uv);
+void copyToTwins(const AtlasSurface& surface, CornerUvs& uvs) {
+  for (const auto& [face, first] : surface.twins) {
+    const Triangle &to = surface.triangles[index(face)], &from = surface.triangles[index(first)];
+    for (std::size_t k = 0; k < 3; ++k)
+      uvs[index(face)][k] = uvs[index(first)][to[k] == from[0] ? 0 : to[k] == from[1] ? 1 : 2];
   }
-  if (!finite) return "texture coordinates are not finite";
-  if (!inside) return "texture coordinates leave the unit square";
-  return area ? "" : "texture coordinates have no area";
 }
 
 // Pieces in the image: faces hang together where both corners of a common edge have one place.
@@ -214,10 +206,29 @@ bool hasArea(const std::array<Vec2, 3>& uv) {
   return std::abs(a[0] * b[1] - a[1] * b[0]) > 1e-13 * longest2;
 }
 
-TextureLayout textureLayout(const TriangleMesh& mesh, int image_size, std::string* why_made) {
-  const std::string fault = faultOf(mesh);
-  if (why_made) *why_made = fault;
-  if (!fault.empty()) return madeAtlas(mesh, image_size);
+std::string ownLayoutFault(const TriangleMesh& mesh) {
+  if (mesh.corner_uvs.empty()) return "the mesh has no texture coordinates";
+  if (mesh.corner_uvs.size() != mesh.triangles.size())
+    return "texture coordinates are missing on some faces";
+  bool finite = true, inside = true, area = false;
+  for (const auto& uv : mesh.corner_uvs) {
+    for (const Vec2& p : uv) {
+      finite = finite && p.allFinite();
+      inside = inside && p.minCoeff() >= 0 && p.maxCoeff() <= 1;
+    }
+    area = area || hasArea(uv);
+  }
+  if (!finite) return "texture coordinates are not finite";
+  if (!inside) return "texture coordinates leave the unit square";
+  if (!area) return "texture coordinates have no area";
+  const std::optional<UvOverlap> overlap = findUvOverlap(mesh.corner_uvs);
+  if (!overlap) return "";
+  return "texture coordinates overlap, those of triangles " + std::to_string(overlap->a) + " and " +
+         std::to_string(overlap->b) + " for one";
+}
+
+TextureLayout textureLayout(const TriangleMesh& mesh, int image_size) {
+  if (!ownLayoutFault(mesh).empty()) return madeAtlas(mesh, image_size);
   return {std::make_shared<CornerUvs>(mesh.corner_uvs), false, piecesOf(mesh)};
 }
 
@@ -243,6 +254,7 @@ TextureLayout madeAtlas(const TriangleMesh& mesh, int image_size) {
   });
   pointTheRest(surface, placed, *uvs);
   pointIslands(surface, placed, *uvs);
+  copyToTwins(surface, *uvs);
   return {std::move(uvs), true, static_cast<int>(charts.size())};
 }
 

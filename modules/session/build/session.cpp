@@ -96,7 +96,20 @@ std::optional<std::string> thinSheetWarning(const MeshReport& report) {
          "--set tip.radius=1mm";
 }
 
+std::optional<std::string> layoutWarning(const SceneObject& object) {
+  const bool has_images = object.paint && object.paint->layout.uvs;
+  if (object.mesh->corner_uvs.empty() || has_images) return std::nullopt;
+  const std::string fault = ownLayoutFault(*object.mesh);
+  if (fault.empty()) return std::nullopt;
+  return fault + ": paint gets an atlas of its own; pictures are still laid by the mesh's "
+                 "coordinates";
+}
+
 namespace {
+
+void addLayoutWarning(OpenedScene& opened, const std::string& where, const SceneObject& object) {
+  if (const auto line = layoutWarning(object)) opened.warnings.push_back(where + ": " + *line);
+}
 
 void addWarnings(OpenedScene& opened, const std::string& where, const TriangleMesh& mesh,
                  bool chosen) {
@@ -193,8 +206,11 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
     const bool chosen = opened.scene.field.sides != OpenSides::automatic ||
                         options.tip_radius_chosen ||
                         opened.scene.haptics.tip_radius.value_or(0.0) > 0;
-    for (const SceneObject& object : opened.scene.objects)
-      addWarnings(opened, path.string() + ": " + object.name, *object.mesh, chosen);
+    for (const SceneObject& object : opened.scene.objects) {
+      const std::string where = path.string() + ": " + object.name;
+      addWarnings(opened, where, *object.mesh, chosen);
+      addLayoutWarning(opened, where, object);
+    }
     return opened;
   }
   const bool is_volume = isVolumeFile(path);
@@ -227,6 +243,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   }
   if (!scaled.warning.empty()) opened.warnings.push_back(path.string() + ": " + scaled.warning);
   opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
+  addLayoutWarning(opened, path.string(), opened.scene.objects[0]);
   if (spec) opened.scene.field = *spec;
   if (!read.textured.empty()) {
     for (TexturedFace& face : read.textured)

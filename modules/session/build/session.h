@@ -38,6 +38,8 @@ struct OpenedScene {
 std::vector<std::string> meshWarnings(const MeshReport& report);
 // The line that a mesh with edges of one face needs unless the tip has a radius; else nothing.
 std::optional<std::string> thinSheetWarning(const MeshReport& report);
+// The line for an object whose own texture coordinates cannot hold its paint; else nothing.
+std::optional<std::string> layoutWarning(const SceneObject& object);
 
 // By the extension, in either case: .vti or .VTI.
 bool isVolumeFile(const std::filesystem::path& path);

@@ -8,6 +8,7 @@
 #include <vtkProperty.h>
 
 #include "scene/surface_pick.h"
+#include "visualization/surfaces/precise_points.h"
 #include "visualization/values/palette.h"
 
 namespace patina {
@@ -45,7 +46,7 @@ Vec3 laidDown(const Vec3& flat, const BrushPlace& place, const SurfaceField* fie
 } // namespace
 
 BrushCursor::BrushCursor(vtkRenderer& overlay)
-    : points_(vtkSmartPointer<vtkPoints>::New()), rings_(vtkSmartPointer<vtkPolyData>::New()),
+    : points_(precisePoints()), rings_(vtkSmartPointer<vtkPolyData>::New()),
       disc_(vtkSmartPointer<vtkPolyData>::New()),
       dark_(actorOf(rings_, palette::kContactPoint, 4, 1, 0)),
       light_(actorOf(rings_, {1, 1, 1}, 1.8, 1, -4)), fill_(actorOf(disc_, {1, 1, 1}, 1, 0.22, 0)) {

@@ -6,12 +6,12 @@
 #include <vtkCellArray.h>
 #include <vtkConeSource.h>
 #include <vtkCylinderSource.h>
-#include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 
 #include "core/decompose.h"
+#include "visualization/surfaces/precise_points.h"
 #include "visualization/view/scene_furniture.h"
 
 namespace patina {
@@ -185,7 +185,7 @@ void ClipLayer::prepare(const Box3& box, const palette::Ground& ground) {
   handle.linear() = size * turnFromTo(Vec3::UnitY(), plane_.normal).toRotationMatrix();
   handle.translation() = plane_.origin;
   for (const auto& actor : {ball_, shaft_, head_}) place(*actor, handle);
-  const vtkNew<vtkPoints> points;
+  const auto points = precisePoints();
   const vtkNew<vtkCellArray> lines;
   const std::vector<Vec3> rim = rimOf(plane_, box);
   if (!rim.empty()) {

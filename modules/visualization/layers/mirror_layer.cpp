@@ -1,9 +1,10 @@
 #include "visualization/layers/mirror_layer.h"
 
 #include <vtkCellArray.h>
-#include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
+
+#include "visualization/surfaces/precise_points.h"
 
 namespace patina {
 namespace {
@@ -26,7 +27,7 @@ vtkSmartPointer<vtkActor> flatActor(vtkPoints& points, bool filled) {
 } // namespace
 
 MirrorLayer::MirrorLayer(vtkRenderer& scene, const MirrorPlace& place) : scene_(scene) {
-  const vtkNew<vtkPoints> points;
+  const auto points = precisePoints();
   for (const Vec3& corner : place) points->InsertNextPoint(corner.data());
   fill_ = flatActor(*points, true);
   fill_->GetProperty()->SetColor(palette::forVtk(palette::kIso));

@@ -5,10 +5,10 @@
 
 #include <vtkCellArray.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkProperty.h>
 
 #include "field/store/node_reader.h"
+#include "visualization/surfaces/precise_points.h"
 #include "visualization/values/distance_map.h"
 
 namespace patina {
@@ -56,7 +56,7 @@ NodeLayer::NodeLayer(vtkRenderer& overlay)
 }
 
 void NodeLayer::update(const SurfaceField& field, const Vec3& tip) {
-  const vtkNew<vtkPoints> points;
+  const auto points = precisePoints();
   const vtkNew<vtkCellArray> vertices;
   const vtkNew<vtkFloatArray> distance;
   for (const FieldNode& node : nodesNear(field, tip, kRadius)) {

@@ -13,6 +13,7 @@
 #include <vtkSphereSource.h>
 #include <vtkTubeFilter.h>
 
+#include "visualization/surfaces/precise_points.h"
 #include "visualization/values/paint_quantity.h"
 #include "visualization/values/palette.h"
 #include "visualization/values/scalar_bar.h"
@@ -53,7 +54,7 @@ std::vector<DrawnSample> thinned(const std::vector<DrawnSample>& samples) {
 
 // The lines through what is bridged, or through the rest, each with the sample before it.
 vtkSmartPointer<vtkPolyData> linesOf(const std::vector<DrawnSample>& samples, bool bridged) {
-  const vtkNew<vtkPoints> points;
+  const auto points = precisePoints();
   const vtkNew<vtkCellArray> lines;
   const vtkNew<vtkDoubleArray> values;
   values->SetName("value");
@@ -87,7 +88,7 @@ vtkSmartPointer<vtkPolyData> linesOf(const std::vector<DrawnSample>& samples, bo
 }
 
 vtkSmartPointer<vtkPolyData> residualsOf(const std::vector<DrawnSample>& samples, double stretch) {
-  const vtkNew<vtkPoints> points;
+  const auto points = precisePoints();
   const vtkNew<vtkCellArray> lines;
   const vtkNew<vtkDoubleArray> values;
   for (const DrawnSample& sample : samples) {
@@ -171,6 +172,7 @@ void PathLayer::setPath(const DrawnPath& path) {
   tube->SetRadius(kThick * sizeOf(boxOf(drawn_)));
   tube->SetNumberOfSides(8);
   tube->CappingOn();
+  tube->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   tube->Update();
   meshMapper(*tube_)->SetInputData(tube->GetOutput());
   meshMapper(*line_)->SetInputData(lines);
@@ -196,8 +198,12 @@ void PathLayer::setPath(const DrawnPath& path) {
 
 void PathLayer::setMarks(const std::vector<DrawnMark>& marks) {
   marks_ = marks;
-  const vtkNew<vtkPoints> points;
-  for (const DrawnMark& mark : marks) points->InsertNextPoint(mark.position.data());
+  const auto points = precisePoints();
+  // Copies of a ball are placed in floats: about the first mark, where the actor stands.
+  const Vec3 middle = marks.empty() ? Vec3::Zero() : marks[0].position;
+  for (const DrawnMark& mark : marks)
+    points->InsertNextPoint((mark.position - middle).eval().data());
+  mark_actor_->SetPosition(middle[0], middle[1], middle[2]);
   const vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   mark_mapper_->SetInputData(data);

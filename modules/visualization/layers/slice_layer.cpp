@@ -147,6 +147,7 @@ SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : quad_(vtkSmartPointer<vtkPlaneSource>::New()), texture_(vtkSmartPointer<vtkTexture>::New()),
       actor_(vtkSmartPointer<vtkActor>::New()), bar_(scalarBar("distance [mm]")),
       plane_(vtkSmartPointer<vtkPlane>::New()) {
+  quad_->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   const vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(quad_->GetOutputPort());
   actor_->SetMapper(mapper);

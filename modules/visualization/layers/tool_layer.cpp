@@ -111,15 +111,14 @@ ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
       shaft_(unitRod(palette::kToolShaft)), ghost_(unitBall(palette::kGhost, 0.45)),
       spring_(unitRod(palette::kGhost)), stem_(unitRod(palette::kContactPoint)),
       contact_(unitBall(palette::kContactPoint, 1)), arrow_shaft_(unitRod(palette::kForce)),
-      arrow_head_(unitCone(palette::kForce)),
-      label_(vtkSmartPointer<vtkBillboardTextActor3D>::New()) {
+      arrow_head_(unitCone(palette::kForce)), label_(vtkSmartPointer<vtkTextActor>::New()) {
   for (const auto& actor : {ball_, neck_, shaft_}) scene.AddActor(actor);
   for (const auto& actor : {spring_, stem_, ghost_, contact_, arrow_shaft_, arrow_head_})
     overlay.AddActor(actor);
   vtkTextProperty* text = label_->GetTextProperty();
   text->BoldOn();
   text->SetVerticalJustificationToCentered();
-  overlay.AddActor(label_);
+  overlay.AddActor2D(label_);
   place();
 }
 
@@ -169,6 +168,9 @@ double ToolLayer::arrowLength(double newtons) const {
 std::optional<Vec2> ToolLayer::inPicture(const Vec3& p) const {
   auto* window = overlay_.GetRenderWindow();
   if (window == nullptr || window->GetSize()[0] <= 0) return std::nullopt;
+  vtkCamera& camera = *overlay_.GetActiveCamera();
+  if (!((p - Vec3(camera.GetPosition())).dot(Vec3(camera.GetDirectionOfProjection())) > 0))
+    return std::nullopt; // behind the eye
   overlay_.SetWorldPoint(p[0], p[1], p[2], 1);
   overlay_.WorldToDisplay();
   const double* pixel = overlay_.GetDisplayPoint();
@@ -184,7 +186,8 @@ bool ToolLayer::isOutside(const Vec3& p) const {
 
 // Beyond the arrow's end, on the side that it points to, but in the picture and off its corner.
 void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newtons) {
-  label_->SetPosition(end[0], end[1], end[2]);
+  const auto at = inPicture(end);
+  if (!at) return;
   char words[32];
   std::snprintf(words, sizeof words, " %.2f N ", newtons);
   label_->SetInput(words);
@@ -194,9 +197,8 @@ void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newto
   text->SetJustification(leftwards_ ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
   int beside = leftwards_ ? -kBeside : kBeside, over = 0;
   std::array<int, 4> box{};
-  if (const auto at = inPicture(end);
-      at && vtkTextRenderer::GetInstance()->GetBoundingBox(text, words, box.data(),
-                                                           overlay_.GetRenderWindow()->GetDPI())) {
+  if (vtkTextRenderer::GetInstance()->GetBoundingBox(text, words, box.data(),
+                                                     overlay_.GetRenderWindow()->GetDPI())) {
     const int* size = overlay_.GetRenderWindow()->GetSize();
     const double wide = box[1] - box[0], high = box[3] - box[2];
     const Vec2 natural = *at + Vec2(beside - (leftwards_ ? wide : 0), -0.5 * high);
@@ -211,7 +213,7 @@ void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newto
     beside += static_cast<int>(std::lround(low.x() - natural.x()));
     over = static_cast<int>(std::lround(low.y() - natural.y()));
   }
-  label_->SetDisplayOffset(beside, over);
+  label_->SetPosition(std::round(at->x()) + beside, std::round(at->y()) + over);
 }
 
 double ToolLayer::ballRadius() const {
@@ -255,7 +257,8 @@ void ToolLayer::place() {
   contact_->SetVisibility(visible_ && near);
   stem_->SetVisibility(visible_ && near && apart);
   for (const auto& actor : {arrow_shaft_, arrow_head_}) actor->SetVisibility(visible_ && pushed);
-  label_->SetVisibility(visible_ && pushed);
+  const auto number_at = pushed ? arrowEnd() : std::nullopt;
+  label_->SetVisibility(number_at && inPicture(*number_at));
 }
 
 } // namespace patina

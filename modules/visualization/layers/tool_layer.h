@@ -5,9 +5,9 @@
 #include <optional>
 
 #include <vtkActor.h>
-#include <vtkBillboardTextActor3D.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
+#include <vtkTextActor.h>
 
 #include "scene/tool_sample.h"
 #include "visualization/values/lettering.h"
@@ -48,7 +48,7 @@ class ToolLayer {
   vtkRenderer& overlay_;
   vtkSmartPointer<vtkActor> ball_, neck_, shaft_; // the proxy
   vtkSmartPointer<vtkActor> ghost_, spring_, stem_, contact_, arrow_shaft_, arrow_head_;
-  vtkSmartPointer<vtkBillboardTextActor3D> label_;
+  vtkSmartPointer<vtkTextActor> label_;
   ToolSample sample_;
   Vec3 right_ = Vec3::UnitX(); // of the picture
   bool leftwards_ = false;     // the force's number stands left of its arrow

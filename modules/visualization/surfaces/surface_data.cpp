@@ -7,8 +7,9 @@
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkTypeInt32Array.h>
+
+#include "visualization/surfaces/precise_points.h"
 
 namespace patina {
 namespace {
@@ -81,8 +82,9 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh,
   for (std::size_t f = 0; f < usable.size(); ++f) usable[f] = corner_normals[f][0].allFinite();
   const auto count = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), true));
   const Fans fans = fansOf(mesh, usable);
-  std::vector<float> points, normals, coordinates;
-  points.reserve(mesh.positions.size() * 3);
+  const auto points = precisePoints();
+  points->Allocate(static_cast<vtkIdType>(mesh.positions.size()));
+  std::vector<float> normals, coordinates;
   normals.reserve(mesh.positions.size() * 3);
   std::vector<std::int32_t> drawn_vertex(mesh.triangles.size() * 3, -1);
   std::vector<Made> made; // of this vertex so far
@@ -96,13 +98,10 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh,
       for (const Made& one : made)
         if (one.normal == normal && one.uv == uv) index = one.index;
       if (index < 0) {
-        index = static_cast<std::int32_t>(points.size() / 3);
+        index = static_cast<std::int32_t>(points->InsertNextPoint(mesh.positions[v].data()));
         made.push_back({normal, uv, index});
         const Vec3 unit = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3::UnitZ();
-        for (int axis = 0; axis < 3; ++axis) {
-          points.push_back(static_cast<float>(mesh.positions[v][axis]));
-          normals.push_back(static_cast<float>(unit[axis]));
-        }
+        for (int axis = 0; axis < 3; ++axis) normals.push_back(static_cast<float>(unit[axis]));
         if (uvs != nullptr)
           for (int axis = 0; axis < 2; ++axis) coordinates.push_back(static_cast<float>(uv[axis]));
         if (vertex_of_point != nullptr) vertex_of_point->push_back(static_cast<std::int32_t>(v));
@@ -118,9 +117,7 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh,
     if (vertex >= 0) connectivity->SetValue(next++, vertex);
 
   auto data = vtkSmartPointer<vtkPolyData>::New();
-  const vtkNew<vtkPoints> vtk_points;
-  vtk_points->SetData(floats(points, 3, "Points"));
-  data->SetPoints(vtk_points);
+  data->SetPoints(points);
   data->GetPointData()->SetNormals(floats(normals, 3, "Normals"));
   if (uvs != nullptr)
     data->GetPointData()->SetTCoords(floats(coordinates, 2, "Texture coordinates"));
@@ -169,8 +166,7 @@ vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, const CornerN
 }
 
 vtkSmartPointer<vtkPolyData> plainData(const TriangleMesh& mesh) {
-  const vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  const auto points = precisePoints();
   points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.positions.size()));
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     points->SetPoint(static_cast<vtkIdType>(v), mesh.positions[v].data());

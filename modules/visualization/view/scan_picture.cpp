@@ -13,6 +13,7 @@
 #include <vtkSphereSource.h>
 
 #include "visualization/layers/scale_layer.h"
+#include "visualization/surfaces/precise_points.h"
 #include "visualization/surfaces/surface_data.h"
 #include "visualization/values/palette.h"
 #include "visualization/values/scalar_bar.h"
@@ -34,7 +35,7 @@ vtkSmartPointer<vtkActor> lineActor(const palette::Color& color, double width) {
 }
 
 vtkSmartPointer<vtkPolyData> linesThrough(const std::vector<std::array<Vec3, 2>>& pairs) {
-  const vtkNew<vtkPoints> points;
+  const auto points = precisePoints();
   const vtkNew<vtkCellArray> lines;
   for (const auto& [from, to] : pairs) {
     lines->InsertNextCell(2);

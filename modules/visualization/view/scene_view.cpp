@@ -30,6 +30,7 @@ SceneView::SceneView() : impl_(std::make_unique<Impl>()) {
   my.scene->AddActor(my.coarse_actor);
 
   const vtkNew<vtkPolyDataMapper> mapper;
+  my.outline->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   mapper->SetInputConnection(my.outline->GetOutputPort());
   my.extent_actor->SetMapper(mapper);
   my.extent_actor->GetProperty()->SetColor(palette::forVtk(palette::kQuiet));

@@ -1,0 +1,138 @@
+#include "geometry/atlas/uv_overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+namespace patina {
+namespace {
+
+using Corners = std::array<Vec2, 3>;
+using Faces = std::vector<std::int32_t>;
+using Box2 = Eigen::AlignedBox2d;
+
+constexpr std::size_t kLeafFaces = 16; // below this, comparing all pairs costs less than splitting
+constexpr std::size_t kTaskFaces = 4096; // a cell with more faces searches its quarters in parallel
+
+Corners counterClockwise(Corners uv) {
+  if (cross(uv[1] - uv[0], uv[2] - uv[0]) < 0) std::swap(uv[1], uv[2]);
+  return uv;
+}
+
+bool isNarrow(const Corners& uv) {
+  const double doubled_area = cross(uv[1] - uv[0], uv[2] - uv[0]);
+  const double longest2 = std::max({(uv[1] - uv[0]).squaredNorm(), (uv[2] - uv[1]).squaredNorm(),
+                                    (uv[0] - uv[2]).squaredNorm()});
+  return !(doubled_area > kUvResolution * std::sqrt(longest2));
+}
+
+// Whether all points lie right of an edge of a counter-clockwise face, or left by `margin` at most.
+template <class Points> bool isParted(const Corners& face, const Points& points, double margin) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2 along = face[(k + 1) % 3] - face[k];
+    const double limit = margin > 0 ? margin * along.norm() : 0;
+    if (std::all_of(points.begin(), points.end(),
+                    [&](const Vec2& p) { return cross(along, p - face[k]) <= limit; }))
+      return true;
+  }
+  return false;
+}
+
+Box2 boxOf(const Corners& uv) {
+  return Box2(uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]), uv[0].cwiseMax(uv[1]).cwiseMax(uv[2]));
+}
+
+bool overlap(const Corners& a, const Corners& b) {
+  const Box2 box_a = boxOf(a), box_b = boxOf(b);
+  const Vec2 common = box_a.max().cwiseMin(box_b.max()) - box_a.min().cwiseMax(box_b.min());
+  return common.minCoeff() > kUvResolution && !isParted(a, b, kUvResolution) &&
+         !isParted(b, a, kUvResolution);
+}
+
+std::array<Vec2, 4> cornersOf(const Box2& cell) {
+  return {cell.min(), Vec2(cell.max()[0], cell.min()[1]), cell.max(),
+          Vec2(cell.min()[0], cell.max()[1])};
+}
+
+bool covers(const Corners& face, const std::array<Vec2, 4>& cell) {
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const Vec2& p : cell)
+      if (cross(face[(k + 1) % 3] - face[k], p - face[k]) < 0) return false;
+  return true;
+}
+
+class Search {
+ public:
+  explicit Search(const CornerUvs& uvs) : corners_(uvs.size()) {
+    tbb::parallel_for(std::size_t{0}, uvs.size(),
+                      [&](std::size_t f) { corners_[f] = counterClockwise(uvs[f]); });
+  }
+
+  std::optional<UvOverlap> run() const {
+    Faces faces;
+    for (std::size_t f = 0; f < corners_.size(); ++f)
+      if (!isNarrow(corners_[f])) faces.push_back(static_cast<std::int32_t>(f));
+    return in(Box2(Vec2::Zero().eval(), Vec2::Ones().eval()), faces);
+  }
+
+ private:
+  std::optional<UvOverlap> in(const Box2& cell, const Faces& faces) const {
+    if (faces.size() <= kLeafFaces) return amongAll(faces);
+    if (cell.sizes()[0] <= kUvResolution) return std::nullopt; // the hub of a great fan
+    std::array<std::optional<UvOverlap>, 4> found;
+    const auto search = [&](std::size_t quarter) {
+      found[quarter] = inQuarter(cell, faces, quarter);
+    };
+    if (faces.size() > kTaskFaces) {
+      tbb::parallel_for(std::size_t{0}, found.size(), search);
+    } else {
+      for (std::size_t quarter = 0; quarter < found.size(); ++quarter) {
+        search(quarter);
+        if (found[quarter]) break;
+      }
+    }
+    for (const auto& one : found)
+      if (one) return one;
+    return std::nullopt;
+  }
+
+  std::optional<UvOverlap> inQuarter(const Box2& whole, const Faces& faces,
+                                     std::size_t quarter) const {
+    const Vec2 low(quarter & 1 ? whole.center()[0] : whole.min()[0],
+                   quarter & 2 ? whole.center()[1] : whole.min()[1]);
+    const Box2 cell(low, (low + whole.sizes() / 2).eval());
+    const std::array<Vec2, 4> corners = cornersOf(cell);
+    Faces inside;
+    std::int32_t cover = kNone;
+    for (const std::int32_t f : faces) {
+      const Corners& face = corners_[index(f)];
+      if (!boxOf(face).intersects(cell) || isParted(face, corners, 0)) continue;
+      inside.push_back(f);
+      if (!covers(face, corners)) continue;
+      // Two faces that hold the whole cell would be in all of its quarters for ever.
+      if (cover != kNone && overlap(corners_[index(cover)], face)) return UvOverlap{cover, f};
+      cover = f;
+    }
+    return in(cell, inside);
+  }
+
+  std::optional<UvOverlap> amongAll(const Faces& faces) const {
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      for (std::size_t j = i + 1; j < faces.size(); ++j)
+        if (overlap(corners_[index(faces[i])], corners_[index(faces[j])]))
+          return UvOverlap{faces[i], faces[j]};
+    return std::nullopt;
+  }
+
+  std::vector<Corners> corners_; // counter-clockwise
+};
+
+} // namespace
+
+std::optional<UvOverlap> findUvOverlap(const CornerUvs& uvs) {
+  return Search(uvs).run();
+}
+
+} // namespace patina
