@@ -74,7 +74,7 @@ TEST_F(Session, AKindThatCannotBeReadNamesThoseThatCan) {
   std::filesystem::create_directories(folder / "empty");
   std::filesystem::create_directories(folder / "scan" / "frames");
   EXPECT_NE(refusalOf(folder / "empty").find("not a workspace"), std::string::npos);
-  EXPECT_NE(refusalOf(folder / "scan").find("patina scene WORKSPACE --scan"), std::string::npos);
+  EXPECT_NE(refusalOf(folder / "scan").find("patina scene -o WORKSPACE --scan"), std::string::npos);
 }
 
 TEST_F(Session, WarnsOfWhatAFileHasAndTheMeshDoesNotKeep) {

@@ -130,7 +130,7 @@ std::string picturesLeftOut(const std::filesystem::path& path, const std::string
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
     return what + "; " + (one ? "it" : "the first") + " is not beside the mesh";
-  return what + "; patina scene WORKSPACE --image " + text::shown(path.stem().string()) + "=" +
+  return what + "; patina scene -o WORKSPACE --image " + text::shown(path.stem().string()) + "=" +
          text::shown(file.string()) + ",color,mapped shows " + (one ? "it" : "the first");
 }
 

@@ -21,7 +21,7 @@ std::string pointCloud(std::size_t points, const char* why) {
 
 std::string colorsLeftOut(const char* whose) {
   return std::string("the colours of its ") + whose +
-         " are left out; a picture is shown with patina scene WORKSPACE --image "
+         " are left out; a picture is shown with patina scene -o WORKSPACE --image "
          "NAME=FILE,color,mapped";
 }
 

@@ -195,7 +195,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
       throw FileError(path.string(), 0,
                       isScan(path)
                           ? "is the folder of a scan: put it into a workspace with patina scene "
-                            "WORKSPACE --scan " +
+                            "-o WORKSPACE --scan " +
                                 path.string()
                           : std::string("is a folder without workspace.json, not a workspace; ") +
                                 kReadable);
