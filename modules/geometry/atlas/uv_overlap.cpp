@@ -78,49 +78,60 @@ class Search {
   }
 
  private:
+  struct Quarter {
+    Box2 cell;
+    Faces faces;
+    std::optional<UvOverlap> found;
+  };
+
   std::optional<UvOverlap> in(const Box2& cell, const Faces& faces) const {
-    if (faces.size() <= kLeafFaces) return amongAll(faces);
+    // Where many lie on one another the first few do.
+    if (auto found = amongFirst(faces); found || faces.size() <= kLeafFaces) return found;
     if (cell.sizes()[0] <= kUvResolution) return std::nullopt; // the hub of a great fan
-    std::array<std::optional<UvOverlap>, 4> found;
-    const auto search = [&](std::size_t quarter) {
-      found[quarter] = inQuarter(cell, faces, quarter);
+    std::array<Quarter, 4> quarters;
+    const auto forQuarters = [&](const auto& visit) {
+      if (faces.size() > kTaskFaces)
+        tbb::parallel_for(std::size_t{0}, quarters.size(), visit);
+      else
+        for (std::size_t q = 0; q < quarters.size(); ++q) visit(q);
     };
-    if (faces.size() > kTaskFaces) {
-      tbb::parallel_for(std::size_t{0}, found.size(), search);
-    } else {
-      for (std::size_t quarter = 0; quarter < found.size(); ++quarter) {
-        search(quarter);
-        if (found[quarter]) break;
-      }
-    }
-    for (const auto& one : found)
-      if (one) return one;
-    return std::nullopt;
+    const auto firstFound = [&]() -> std::optional<UvOverlap> {
+      for (const Quarter& quarter : quarters)
+        if (quarter.found) return quarter.found;
+      return std::nullopt;
+    };
+    forQuarters([&](std::size_t q) { quarters[q] = quarterOf(cell, faces, q); });
+    if (const auto found = firstFound()) return found;
+    forQuarters(
+        [&](std::size_t q) { quarters[q].found = in(quarters[q].cell, quarters[q].faces); });
+    return firstFound();
   }
 
-  std::optional<UvOverlap> inQuarter(const Box2& whole, const Faces& faces,
-                                     std::size_t quarter) const {
+  Quarter quarterOf(const Box2& whole, const Faces& faces, std::size_t quarter) const {
     const Vec2 low(quarter & 1 ? whole.center()[0] : whole.min()[0],
                    quarter & 2 ? whole.center()[1] : whole.min()[1]);
-    const Box2 cell(low, (low + whole.sizes() / 2).eval());
-    const std::array<Vec2, 4> corners = cornersOf(cell);
-    Faces inside;
+    Quarter result{Box2(low, (low + whole.sizes() / 2).eval()), {}, std::nullopt};
+    const std::array<Vec2, 4> corners = cornersOf(result.cell);
     std::int32_t cover = kNone;
     for (const std::int32_t f : faces) {
       const Corners& face = corners_[index(f)];
-      if (!boxOf(face).intersects(cell) || isParted(face, corners, 0)) continue;
-      inside.push_back(f);
+      if (!boxOf(face).intersects(result.cell) || isParted(face, corners, 0)) continue;
+      result.faces.push_back(f);
       if (!covers(face, corners)) continue;
       // Two faces that hold the whole cell would be in all of its quarters for ever.
-      if (cover != kNone && overlap(corners_[index(cover)], face)) return UvOverlap{cover, f};
+      if (cover != kNone && overlap(corners_[index(cover)], face)) {
+        result.found = UvOverlap{cover, f};
+        break;
+      }
       cover = f;
     }
-    return in(cell, inside);
+    return result;
   }
 
-  std::optional<UvOverlap> amongAll(const Faces& faces) const {
-    for (std::size_t i = 0; i < faces.size(); ++i)
-      for (std::size_t j = i + 1; j < faces.size(); ++j)
+  std::optional<UvOverlap> amongFirst(const Faces& faces) const {
+    const std::size_t count = std::min(faces.size(), kLeafFaces);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = i + 1; j < count; ++j)
         if (overlap(corners_[index(faces[i])], corners_[index(faces[j])]))
           return UvOverlap{faces[i], faces[j]};
     return std::nullopt;
