@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <tuple>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -87,7 +90,8 @@ class Search {
   std::optional<UvOverlap> in(const Box2& cell, const Faces& faces) const {
     // Where many lie on one another the first few do.
     if (auto found = amongFirst(faces); found || faces.size() <= kLeafFaces) return found;
-    if (cell.sizes()[0] <= kUvResolution) return std::nullopt; // the hub of a great fan
+    if (cell.sizes()[0] <= kUvResolution) return std::nullopt;
+    if (const auto hub = hubOf(faces)) return inFan(*hub, faces);
     std::array<Quarter, 4> quarters;
     const auto forQuarters = [&](const auto& visit) {
       if (faces.size() > kTaskFaces)
@@ -126,6 +130,47 @@ class Search {
       cover = f;
     }
     return result;
+  }
+
+  // The corner that all faces have, if there is one.
+  std::optional<Vec2> hubOf(const Faces& faces) const {
+    for (const Vec2& hub : corners_[index(faces[0])])
+      if (std::all_of(faces.begin(), faces.end(), [&](std::int32_t f) {
+            const Corners& uv = corners_[index(f)];
+            return uv[0] == hub || uv[1] == hub || uv[2] == hub;
+          }))
+        return hub;
+    return std::nullopt;
+  }
+
+  // Faces round a hub, in the order of the angles where they begin: one overlaps those that begin
+  // before it ends, or none.
+  std::optional<UvOverlap> inFan(const Vec2& hub, const Faces& faces) const {
+    constexpr double kTurn = 2 * std::numbers::pi;
+    struct Sector {
+      double from, to;
+      std::int32_t face;
+    };
+    std::vector<Sector> sectors;
+    for (const std::int32_t f : faces) {
+      const Corners& uv = corners_[index(f)];
+      const std::size_t k = uv[0] == hub ? 0 : uv[1] == hub ? 1 : 2;
+      const Vec2 first = uv[(k + 1) % 3] - hub, last = uv[(k + 2) % 3] - hub;
+      const double from = std::atan2(first[1], first[0]);
+      const double to = from + std::atan2(cross(first, last), first.dot(last));
+      sectors.push_back({from, to, f});
+      sectors.push_back({from + kTurn, to + kTurn, f}); // for those that end beyond a whole turn
+    }
+    std::sort(sectors.begin(), sectors.end(), [](const Sector& a, const Sector& b) {
+      return std::tie(a.from, a.face) < std::tie(b.from, b.face);
+    });
+    for (std::size_t i = 0; i < sectors.size(); ++i)
+      for (std::size_t j = i + 1; j < sectors.size() && sectors[j].from < sectors[i].to; ++j) {
+        const std::int32_t a = sectors[i].face, b = sectors[j].face;
+        if (overlap(corners_[index(a)], corners_[index(b)]))
+          return UvOverlap{std::min(a, b), std::max(a, b)};
+      }
+    return std::nullopt;
   }
 
   std::optional<UvOverlap> amongFirst(const Faces& faces) const {
