@@ -118,6 +118,10 @@ TEST(UvOverlap, IsFoundWhereverFacesShareAPlace) {
                    changed(changed(plain, [](const Vec2& p) { return Vec2(p * 0.99); }), shifted)));
   expectFound(both(CornerUvs{{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}}, changed(plain, small)));
   expectFound(both(fan(2000), changed(fan(3), small)));
+  expectFound(both(fan(2000), changed(fan(2000), turned_over))); // about one hub
+  CornerUvs wound = fan(400);                                    // one face of it once more
+  wound.push_back({wound[399][0], wound[399][1], Vec2(0.99, 0.52)});
+  expectFound(wound);
   expectFound(CornerUvs(5000, Corners{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)})); // all on one face
   expectFound(CornerUvs(5000, Corners{Vec2(.3, .3), Vec2(.301, .3), Vec2(.3, .301)}));
   // Six sides on the whole square.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <tuple>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -78,49 +81,102 @@ class Search {
   }
 
  private:
+  struct Quarter {
+    Box2 cell;
+    Faces faces;
+    std::optional<UvOverlap> found;
+  };
+
   std::optional<UvOverlap> in(const Box2& cell, const Faces& faces) const {
-    if (faces.size() <= kLeafFaces) return amongAll(faces);
-    if (cell.sizes()[0] <= kUvResolution) return std::nullopt; // the hub of a great fan
-    std::array<std::optional<UvOverlap>, 4> found;
-    const auto search = [&](std::size_t quarter) {
-      found[quarter] = inQuarter(cell, faces, quarter);
+    // Where many lie on one another the first few do.
+    if (auto found = amongFirst(faces); found || faces.size() <= kLeafFaces) return found;
+    if (cell.sizes()[0] <= kUvResolution) return std::nullopt;
+    if (const auto hub = hubOf(faces)) return inFan(*hub, faces);
+    std::array<Quarter, 4> quarters;
+    const auto forQuarters = [&](const auto& visit) {
+      if (faces.size() > kTaskFaces)
+        tbb::parallel_for(std::size_t{0}, quarters.size(), visit);
+      else
+        for (std::size_t q = 0; q < quarters.size(); ++q) visit(q);
     };
-    if (faces.size() > kTaskFaces) {
-      tbb::parallel_for(std::size_t{0}, found.size(), search);
-    } else {
-      for (std::size_t quarter = 0; quarter < found.size(); ++quarter) {
-        search(quarter);
-        if (found[quarter]) break;
-      }
-    }
-    for (const auto& one : found)
-      if (one) return one;
-    return std::nullopt;
+    const auto firstFound = [&]() -> std::optional<UvOverlap> {
+      for (const Quarter& quarter : quarters)
+        if (quarter.found) return quarter.found;
+      return std::nullopt;
+    };
+    forQuarters([&](std::size_t q) { quarters[q] = quarterOf(cell, faces, q); });
+    if (const auto found = firstFound()) return found;
+    forQuarters(
+        [&](std::size_t q) { quarters[q].found = in(quarters[q].cell, quarters[q].faces); });
+    return firstFound();
   }
 
-  std::optional<UvOverlap> inQuarter(const Box2& whole, const Faces& faces,
-                                     std::size_t quarter) const {
+  Quarter quarterOf(const Box2& whole, const Faces& faces, std::size_t quarter) const {
     const Vec2 low(quarter & 1 ? whole.center()[0] : whole.min()[0],
                    quarter & 2 ? whole.center()[1] : whole.min()[1]);
-    const Box2 cell(low, (low + whole.sizes() / 2).eval());
-    const std::array<Vec2, 4> corners = cornersOf(cell);
-    Faces inside;
+    Quarter result{Box2(low, (low + whole.sizes() / 2).eval()), {}, std::nullopt};
+    const std::array<Vec2, 4> corners = cornersOf(result.cell);
     std::int32_t cover = kNone;
     for (const std::int32_t f : faces) {
       const Corners& face = corners_[index(f)];
-      if (!boxOf(face).intersects(cell) || isParted(face, corners, 0)) continue;
-      inside.push_back(f);
+      if (!boxOf(face).intersects(result.cell) || isParted(face, corners, 0)) continue;
+      result.faces.push_back(f);
       if (!covers(face, corners)) continue;
       // Two faces that hold the whole cell would be in all of its quarters for ever.
-      if (cover != kNone && overlap(corners_[index(cover)], face)) return UvOverlap{cover, f};
+      if (cover != kNone && overlap(corners_[index(cover)], face)) {
+        result.found = UvOverlap{cover, f};
+        break;
+      }
       cover = f;
     }
-    return in(cell, inside);
+    return result;
   }
 
-  std::optional<UvOverlap> amongAll(const Faces& faces) const {
-    for (std::size_t i = 0; i < faces.size(); ++i)
-      for (std::size_t j = i + 1; j < faces.size(); ++j)
+  // The corner that all faces have, if there is one.
+  std::optional<Vec2> hubOf(const Faces& faces) const {
+    for (const Vec2& hub : corners_[index(faces[0])])
+      if (std::all_of(faces.begin(), faces.end(), [&](std::int32_t f) {
+            const Corners& uv = corners_[index(f)];
+            return uv[0] == hub || uv[1] == hub || uv[2] == hub;
+          }))
+        return hub;
+    return std::nullopt;
+  }
+
+  // Faces round a hub, in the order of the angles where they begin: one overlaps those that begin
+  // before it ends, or none.
+  std::optional<UvOverlap> inFan(const Vec2& hub, const Faces& faces) const {
+    constexpr double kTurn = 2 * std::numbers::pi;
+    struct Sector {
+      double from, to;
+      std::int32_t face;
+    };
+    std::vector<Sector> sectors;
+    for (const std::int32_t f : faces) {
+      const Corners& uv = corners_[index(f)];
+      const std::size_t k = uv[0] == hub ? 0 : uv[1] == hub ? 1 : 2;
+      const Vec2 first = uv[(k + 1) % 3] - hub, last = uv[(k + 2) % 3] - hub;
+      const double from = std::atan2(first[1], first[0]);
+      const double to = from + std::atan2(cross(first, last), first.dot(last));
+      sectors.push_back({from, to, f});
+      sectors.push_back({from + kTurn, to + kTurn, f}); // for those that end beyond a whole turn
+    }
+    std::sort(sectors.begin(), sectors.end(), [](const Sector& a, const Sector& b) {
+      return std::tie(a.from, a.face) < std::tie(b.from, b.face);
+    });
+    for (std::size_t i = 0; i < sectors.size(); ++i)
+      for (std::size_t j = i + 1; j < sectors.size() && sectors[j].from < sectors[i].to; ++j) {
+        const std::int32_t a = sectors[i].face, b = sectors[j].face;
+        if (overlap(corners_[index(a)], corners_[index(b)]))
+          return UvOverlap{std::min(a, b), std::max(a, b)};
+      }
+    return std::nullopt;
+  }
+
+  std::optional<UvOverlap> amongFirst(const Faces& faces) const {
+    const std::size_t count = std::min(faces.size(), kLeafFaces);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = i + 1; j < count; ++j)
         if (overlap(corners_[index(faces[i])], corners_[index(faces[j])]))
           return UvOverlap{faces[i], faces[j]};
     return std::nullopt;
