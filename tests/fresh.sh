@@ -176,7 +176,7 @@ use_package() {
     cd ~
     patina --version
     patina devices | tee devices.txt
-    ! grep -i example devices.txt
+    if grep -i example devices.txt; then exit 1; fi
     patina model plate -o plate.ply
     patina scene --add plate.ply -o relief \
       --image plate=/usr/share/icons/hicolor/128x128/apps/patina.png,relief,z
