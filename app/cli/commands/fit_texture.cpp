@@ -8,7 +8,6 @@
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
-#include "core/csv_rows.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
