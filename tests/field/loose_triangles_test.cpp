@@ -23,7 +23,7 @@ using test::moved;
 
 constexpr int kSamples = 400;
 
-BuiltField built(const TriangleMesh& mesh, OpenSides sides = OpenSides::automatic) {
+BuiltField builtAs(const TriangleMesh& mesh, OpenSides sides = OpenSides::automatic) {
   FieldSpec spec;
   spec.resolution = 80;
   spec.sides = sides;
@@ -65,7 +65,7 @@ TEST(LooseTriangles, OfABodyAreOneBody) {
     const double voxel = voxelOf(mesh);
     for (const double shift : {0.01, 0.03, 0.1, 0.3})
       for (const bool corners : {false, true}) {
-        const BuiltField made = built(loose(mesh, shift * voxel, corners));
+        const BuiltField made = builtAs(loose(mesh, shift * voxel, corners));
         EXPECT_EQ(made.report.open_triangles, 0U) << shift;
         EXPECT_LE(wrongShare(mesh, made, shift + 0.3), 0.001) << shift << ' ' << corners;
       }
@@ -75,7 +75,7 @@ TEST(LooseTriangles, OfABodyAreOneBody) {
 TEST(LooseTriangles, ThatOverlapOrLeaveGapsAreOneBody) {
   const TriangleMesh ball = icosphere(0.05, 24);
   for (const double shrunk : {-0.2, -0.05, 0.05, 0.2}) {
-    const BuiltField made = built(withShrunkenTriangles(ball, shrunk));
+    const BuiltField made = builtAs(withShrunkenTriangles(ball, shrunk));
     EXPECT_EQ(made.report.open_triangles, 0U) << shrunk;
     EXPECT_LE(wrongShare(ball, made, 0.6), 0.001) << shrunk;
   }
@@ -85,7 +85,7 @@ TEST(LooseTriangles, BesideAWeldedBodyAreABody) {
   const TriangleMesh ball = icosphere(0.05, 24),
                      solid = moved(box(Vec3(0.1, 0.06, 0.08), 4), Vec3(0.12, 0, 0));
   const TriangleMesh truth = joined(ball, solid);
-  const BuiltField made = built(joined(loose(ball, 0.2 * voxelOf(truth)), solid));
+  const BuiltField made = builtAs(joined(loose(ball, 0.2 * voxelOf(truth)), solid));
   EXPECT_EQ(made.report.open_triangles, 0U);
   EXPECT_LE(wrongShare(truth, made, 0.5), 0.001);
 }
@@ -95,9 +95,9 @@ TEST(LooseTriangles, OfASheetStayOpen) {
   const double voxel = voxelOf(flat);
   for (const double shift : {0.01, 0.1, 0.3}) {
     const TriangleMesh mesh = loose(flat, shift * voxel);
-    EXPECT_EQ(built(mesh).report.open_triangles, mesh.triangles.size()) << shift;
+    EXPECT_EQ(builtAs(mesh).report.open_triangles, mesh.triangles.size()) << shift;
     const TriangleMesh two = joined(mesh, moved(mesh, Vec3(0, 0, 5 * voxel)));
-    EXPECT_EQ(built(two).report.open_triangles, two.triangles.size()) << shift;
+    EXPECT_EQ(builtAs(two).report.open_triangles, two.triangles.size()) << shift;
   }
 }
 
@@ -119,18 +119,20 @@ std::size_t negativeNodes(const SurfaceField& field) {
 
 TEST(SurfaceSides, AreThoseThatWereAskedFor) {
   const TriangleMesh scan = withoutTop(icosphere(0.05, 24), 0.02);
-  EXPECT_EQ(built(scan).report.open_parts, 0U);
+  EXPECT_EQ(builtAs(scan).report.open_parts, 0U);
   for (const OpenSides sides : {OpenSides::one, OpenSides::two, OpenSides::closed}) {
     for (const TriangleMesh& mesh : {scan, sheet(0.1, 0.1, 20)}) {
-      const BuiltField made = built(mesh, sides);
+      const BuiltField made = builtAs(mesh, sides);
       ASSERT_EQ(made.report.parts.size(), 1U);
       EXPECT_EQ(made.report.parts[0].sides, sides);
       EXPECT_TRUE(made.report.parts[0].asked);
-      if (sides == OpenSides::two) EXPECT_EQ(negativeNodes(*made.field), 0U);
+      if (sides == OpenSides::two) {
+        EXPECT_EQ(negativeNodes(*made.field), 0U);
+      }
     }
   }
   // Nobody can be obeyed about a part without a rim.
-  const BuiltField ball = built(icosphere(0.05, 24), OpenSides::two);
+  const BuiltField ball = builtAs(icosphere(0.05, 24), OpenSides::two);
   EXPECT_EQ(ball.report.open_parts, 0U);
   EXPECT_TRUE(ball.report.parts.empty());
 }
@@ -158,10 +160,10 @@ TriangleMesh kleinBottle(int around, int across) {
 
 TEST(SurfaceSides, OfAKleinBottleMayBeTwo) {
   const TriangleMesh mesh = kleinBottle(60, 40);
-  const BuiltField two = built(mesh, OpenSides::two);
+  const BuiltField two = builtAs(mesh, OpenSides::two);
   EXPECT_EQ(two.report.open_triangles, mesh.triangles.size());
   EXPECT_EQ(negativeNodes(*two.field), 0U);
-  EXPECT_EQ(built(mesh).report.open_triangles, 0U);
+  EXPECT_EQ(builtAs(mesh).report.open_triangles, 0U);
 }
 
 // Six tetrahedra a cube, each with its four faces (Kuhn, 1960).
@@ -191,7 +193,7 @@ TriangleMesh tetrahedra(int cells, double size) {
 
 TEST(InnerFaces, OfATetrahedralMeshAreLeftOutOfItsField) {
   const TriangleMesh mesh = tetrahedra(16, 0.1); // 98,304 faces
-  const BuiltField made = built(mesh), solid = built(box(Vec3::Constant(0.1), 16));
+  const BuiltField made = builtAs(mesh), solid = builtAs(box(Vec3::Constant(0.1), 16));
   std::printf("%zu faces: %.2f s of CPU\n", mesh.triangles.size(), made.report.cpu_seconds);
   EXPECT_EQ(made.report.inner_triangles, mesh.triangles.size() - 12 * 16 * 16);
   EXPECT_EQ(made.report.ambiguous_signs, 0U);
