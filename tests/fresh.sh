@@ -53,7 +53,7 @@ fi
 
 # The folder of the clone has a space and letters that are not ASCII, as people's have.
 person=ada
-clone="/home/$person/Übung haptik/patina"
+clone="/srv/$person/Übung haptik/patina"
 root=
 
 remove_system() {
@@ -123,12 +123,12 @@ make_system() {
   mount -t tmpfs -o mode=1777 shm "$root/dev/shm"
   mount -t devpts -o newinstance,ptmxmode=0666,mode=620 pts "$root/dev/pts"
   ln -s pts/ptmx "$root/dev/ptmx"
-  echo "$person:x:1000:1000::/home/$person:/bin/bash" >>"$root/etc/passwd"
+  echo "$person:x:1000:1000::/srv/$person:/bin/bash" >>"$root/etc/passwd"
   echo "$person:x:1000:" >>"$root/etc/group"
   mkdir -p "$root$clone"
   # What a person gets who downloads the commit: no history, and no git to read one.
   git -C "$here" -c safe.directory="$here" archive HEAD | tar -x -C "$root$clone"
-  chown -R 1000:1000 "$root/home/$person"
+  chown -R 1000:1000 "$root/srv/$person"
 }
 
 # in_system USER SCRIPT: its environment is that of a first login without a display.
@@ -136,7 +136,7 @@ in_system() {
   local user=(--reuid=0 --regid=0 --clear-groups) home=/root
   if [ "$1" != root ]; then
     user=(--reuid=1000 --regid=1000 --clear-groups)
-    home=/home/$person
+    home=/srv/$person
   fi
   chroot "$root" setpriv "${user[@]}" env -i HOME="$home" TERM=dumb LANG=C.UTF-8 CI="${CI:-}" \
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin PATINA_WERROR=ON \
