@@ -57,8 +57,8 @@ TEST(LensTracking, FindsPosesBehindEveryLens) {
     std::printf("%s: %d of %d, worst %.3f mm, NEES %.1f\n", row.name, found.seen, found.frames,
                 1e3 * found.worst, found.nees);
     EXPECT_GE(found.seen, 0.7 * found.frames) << row.name;
-    EXPECT_LT(found.worst, 2e-3) << row.name;
-    EXPECT_LT(found.nees, 24) << row.name;
+    EXPECT_LT(found.worst, 1e-3) << row.name;
+    EXPECT_LT(found.nees, 12) << row.name;
   }
 }
 

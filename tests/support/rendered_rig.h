@@ -21,7 +21,7 @@ inline Camera wideCamera() {
 
 // As OpenCV's calibration with CALIB_RATIONAL_MODEL, THIN_PRISM_MODEL and TILTED_MODEL gives them.
 inline Camera rationalCamera() {
-  return {800, 600, 420, 424, 410, 290, {0.31, -0.05, 2e-4, -3e-4, 2e-3, 0.62, -0.02, 4e-3}};
+  return {800, 600, 420, 424, 410, 290, {0.31, -0.05, 2e-4, -3e-4, 2e-3, 0.42, -0.05, 4e-3}};
 }
 inline Camera tiltedCamera() {
   return {800,
