@@ -16,19 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSide = 0.05;
+constexpr double kCube = 0.05;
 
 // A cube of 50 mm about `middle` with all that a view can show of it, but for the camera.
 struct Shown {
   explicit Shown(const Vec3& middle) {
-    TriangleMesh mesh = box(Vec3::Constant(kSide), 4);
+    TriangleMesh mesh = box(Vec3::Constant(kCube), 4);
     for (Vec3& p : mesh.positions) p += middle;
     FieldSpec spec;
     spec.resolution = 60;
     spec.band = 8;
-    const Box3 around(middle - Vec3::Constant(kSide / 2), middle + Vec3::Constant(kSide / 2));
+    const Box3 around(middle - Vec3::Constant(kCube / 2), middle + Vec3::Constant(kCube / 2));
     const auto distance = [&](const Vec3& p) {
-      const Vec3 q = (p - middle).cwiseAbs() - Vec3::Constant(kSide / 2);
+      const Vec3 q = (p - middle).cwiseAbs() - Vec3::Constant(kCube / 2);
       return q.cwiseMax(0).norm() + std::min(0.0, q.maxCoeff());
     };
     field = std::make_shared<SurfaceField>(
@@ -37,7 +37,7 @@ struct Shown {
     SceneObject object = objectOf(mesh);
     ObjectPaint paint;
     paint.layout = madeAtlas(mesh, 256);
-    const Vec3 corner = middle + Vec3(0.5, -0.5, 0.5) * kSide;
+    const Vec3 corner = middle + Vec3(0.5, -0.5, 0.5) * kCube;
     const auto spot = [corner](const Vec3& p) { return (p - corner).norm() < 0.02; };
     paint.color =
         imageOf(mesh, *paint.layout.uvs, 256, kColorChannels, [&](const Vec3& p, float* v) {
@@ -64,13 +64,13 @@ struct Shown {
     view.setStability(&mesh, ratio);
     ToolSample sample;
     sample.contact = true;
-    sample.vcp = sample.surface = middle + Vec3(0.01, -kSide / 2, 0.01);
+    sample.vcp = sample.surface = middle + Vec3(0.01, -kCube / 2, 0.01);
     sample.tip = sample.vcp + Vec3(0, 0.002, 0);
     sample.normal = -Vec3::UnitY();
     sample.force = Vec3(0, -1.5, 0);
     sample.depth = 0.002;
     view.setTool(sample);
-    brush.centre = middle + Vec3(0, -kSide / 2, 0.005);
+    brush.centre = middle + Vec3(0, -kCube / 2, 0.005);
     brush.normal = -Vec3::UnitY();
     brush.radius = 0.012;
     brush.half_radius = 0.006;
