@@ -7,7 +7,7 @@ PATINA_BUILD_PACKAGES="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev
 # For a machine without a display.
 PATINA_HEADLESS_PACKAGES="xvfb xauth libgl1-mesa-dri"
 PATINA_TEST_PACKAGES="$PATINA_HEADLESS_PACKAGES libgtest-dev libgmock-dev libbenchmark-dev
-  libxcb-xtest0-dev openbox dbus-daemon clang-14 libclang-rt-14-dev python3 zsh umockdev"
+  libxcb-xtest0-dev openbox dbus-daemon clang libclang-rt-dev python3 zsh umockdev"
 # Only for the comparison with other programs; the tests pass without them.
 PATINA_PEER_PACKAGES="libopenvdb-dev libembree-dev libapriltag-dev"
 
@@ -26,8 +26,8 @@ need_packages() {
   [ "${PATINA_INSTALL:-yes}" = no ] && return 0
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     cat >&2 <<TEXT
-This system has no apt-get. Install what these Debian 12 packages hold, then run this again with
-PATINA_INSTALL=no in the environment:
+This system has no apt-get. Install what these packages of Debian 12 or 13 hold, then run this again
+with PATINA_INSTALL=no in the environment:
   $(echo "$@")
 TEXT
     exit 2

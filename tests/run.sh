@@ -129,7 +129,7 @@ build_fuzz() { # short or full
   local unity=ON
   [ "$1" = short ] || unity=OFF
   configure build-fuzz -DPATINA_FUZZ=ON -DCMAKE_UNITY_BUILD=$unity \
-    -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
+    -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++
   build build-fuzz
 }
 
