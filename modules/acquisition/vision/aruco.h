@@ -1,8 +1,8 @@
-#pragma once
-
 // OpenCV 4.7 moved its markers from the library `aruco` to `objdetect` and changed their interface.
 // This header gives both versions the same two functions; a family is one of OpenCV's `DICT_`
 // numbers.
+#pragma once
+
 #include <vector>
 
 #if __has_include(<opencv2/objdetect/aruco_detector.hpp>)
