@@ -181,7 +181,7 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
   DelayLine line(spec.device.delay);
   Clock clock(spec);
   Bounce bounce(spec.device.delay);
-  std::optional<Teleport> teleport = spec.teleport;
+  bool teleports = spec.teleport.has_value();
   SimulationReport report;
   MeanSquare early, middle, late;
   const double half = 0.5 * spec.seconds, energy_before = body.energy();
@@ -196,9 +196,9 @@ SimulationReport simulate(const ForceLaw& law, const SimulationSpec& spec, Progr
       progress.throwIfCancelled();
       progress.report(static_cast<double>(k) / ticks, "simulating");
     }
-    if (teleport && t >= teleport->at) {
-      body.teleport(teleport->by);
-      teleport.reset();
+    if (teleports && t >= spec.teleport->at) {
+      body.teleport(spec.teleport->by);
+      teleports = false;
     }
     const Vec3 tip = body.measured();
     const Felt felt = law(tip, dt);
