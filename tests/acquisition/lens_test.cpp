@@ -75,11 +75,11 @@ TEST(Lens, HasTheDerivativeOfItsMap) {
       const Vec2 flat = reach * Vec2(unit(random), unit(random));
       const DistortedPoint point = distortedWithJacobian(camera, flat);
       EXPECT_EQ(point.place, distorted(camera, flat));
-      constexpr double kStep = 1e-5;
+      constexpr double kDifference = 1e-5;
       for (int k = 0; k < 2; ++k) {
-        const Vec2 step = kStep * Vec2::Unit(k);
+        const Vec2 step = kDifference * Vec2::Unit(k);
         const Vec2 slope =
-            (distorted(camera, flat + step) - distorted(camera, flat - step)) / (2 * kStep);
+            (distorted(camera, flat + step) - distorted(camera, flat - step)) / (2 * kDifference);
         EXPECT_LT((point.jacobian.col(k) - slope).norm(), 1e-8);
       }
     }
