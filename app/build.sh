@@ -4,6 +4,7 @@
 # The folder that is built in. PATINA_BUILD names another one, for a source folder that is read only.
 # shellcheck disable=SC2034
 build_folder=${PATINA_BUILD:-$here/build}
+case $build_folder in /*) ;; *) build_folder=$PWD/$build_folder ;; esac
 
 # As many compilers as there are processors, but no more than 1.2 GB of free memory each allow.
 # PATINA_JOBS sets the number.
@@ -45,9 +46,12 @@ need_disk() { # FOLDER MEGABYTES
 explain_failure() { # LOG
   if grep -q '^Missing: ' "$1"; then
     grep '^Missing: ' "$1" >&2
+  elif [ -e "$1" ] && [ ! -w "$1" ]; then
+    echo "$1 cannot be written to: remove it, or name another folder by PATINA_BUILD" >&2
   elif [ ! -s "$1" ] || grep -q 'No space left on device' "$1"; then
-    echo "The disk of ${1%/*} is full: free some space, then run this again; it goes on from there" >&2
-  elif grep -qE 'Killed|emory exhausted|out of memory|Cannot allocate memory|bad_alloc' "$1"; then
+    echo "The disk of ${1%/*} or of ${TMPDIR:-/tmp} is full: free some space, then run this again;" \
+      "it goes on from there" >&2
+  elif grep -qE 'Killed signal|^Killed|(virtual )?memory exhausted|(cc1plus|cc1|ld|as|c\+\+): .*(out of memory|Cannot allocate memory)' "$1"; then
     echo "The compiler ran out of memory: close other programs, then run this again with" \
       "PATINA_JOBS=1 in the environment; it goes on from there" >&2
   else
@@ -63,6 +67,12 @@ configure() { # FOLDER [CMAKE ARGUMENT]...
   tree=$1
   shift
   mkdir -p "$tree" || exit 2
+  if grep -q '^CMAKE_GENERATOR:INTERNAL=' "$tree/CMakeCache.txt" 2>/dev/null &&
+    ! grep -q '^CMAKE_GENERATOR:INTERNAL=Ninja$' "$tree/CMakeCache.txt"; then
+    echo "$tree was configured for another generator than Ninja: remove it, or name another folder" \
+      "by PATINA_BUILD" >&2
+    exit 2
+  fi
   LC_ALL=C cmake -S "$here" -B "$tree" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
     "$@" >"$tree/configure.log" 2>&1 || explain_failure "$tree/configure.log"
 }
@@ -70,10 +80,8 @@ configure() { # FOLDER [CMAKE ARGUMENT]...
 build() { # FOLDER [TARGET]...
   tree=$1
   shift
-  { LC_ALL=C cmake --build "$tree" -j "$(build_jobs)" ${1:+--target "$@"} 2>&1 ||
-    touch "$tree/failed"; } | tee "$tree/build.log" >&2
-  if [ -e "$tree/failed" ]; then
-    rm "$tree/failed"
-    explain_failure "$tree/build.log" shown
-  fi
+  # The exit code goes past the pipe; nothing on the disk holds it, for the disk may be full.
+  code=$({ { { LC_ALL=C cmake --build "$tree" -j "$(build_jobs)" ${1:+--target "$@"} 2>&1 3>&- &&
+    echo 0 >&3; } || echo 1 >&3; } | tee "$tree/build.log" >&2; } 3>&1) || true
+  [ "$code" = 0 ] || explain_failure "$tree/build.log" shown
 }

@@ -64,16 +64,20 @@ need_tools() {
 # failure yet: the lists of before may do.
 # shellcheck disable=SC2086 # $as_root and the list are meant to split into words.
 install_packages() {
-  log=$(mktemp)
-  {
-    $as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get update -q </dev/null
+  log=$(mktemp) || {
+    echo "No file can be made in ${TMPDIR:-/tmp}: free some space there, then run this again" >&2
+    return 1
+  }
+  # The exit code goes past the pipe; nothing on the disk holds it, for the disk may be full.
+  code=$({ {
+    $as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get update -q </dev/null 3>&- || true
     umask 022
-    $as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get install -q -y \
-      --no-install-recommends $1 </dev/null || echo "apt-get failed"
-  } 2>&1 | tee "$log" >&2
+    { $as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get install -q -y \
+      --no-install-recommends $1 </dev/null 3>&- && echo 0 >&3; } || echo 1 >&3
+  } 2>&1 | tee "$log" >&2; } 3>&1) || true
   cause=
-  if [ "$(tail -n 1 "$log")" = "apt-get failed" ]; then
-    if grep -qE 'No space left|enough free space' "$log"; then
+  if [ "$code" != 0 ]; then
+    if [ ! -s "$log" ] || grep -qE 'No space left|enough free space' "$log"; then
       cause="the disk is full: free some space"
     elif grep -qE 'Could not get lock|Unable to (acquire|lock)' "$log"; then
       cause="another program is using apt: let it end"

@@ -5,7 +5,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 . "$here/app/packages.sh"
-build=${1:-$here/build}
+build=$(realpath -e "${1:-$here/build}")
 work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT
 export LC_ALL=C
@@ -19,7 +19,7 @@ apt-cache depends --recurse --installed --no-recommends --no-suggests --no-confl
 # the rules.
 libraries() {
   grep -oE '[ =]/[^ :|$]*\.(so|a)(\.[0-9]+)*( |$)' "$build/build.ninja" | tr -d ' ='
-  grep -oE ' -l[A-Za-z0-9_+.-]+' "$build/build.ninja" | sed 's/ -l//' | sort -u |
+  { grep -oE ' -l[A-Za-z0-9_+.-]+' "$build/build.ninja" || true; } | sed 's/ -l//' | sort -u |
     while read -r name; do g++ -print-file-name="lib$name.so"; done
 }
 {

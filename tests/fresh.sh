@@ -7,7 +7,7 @@
 #   tests/fresh.sh --tests [--quick]   app/run.sh as an ordinary user, then tests/run.sh as root
 #   tests/fresh.sh --package FILE.deb  installs Debian's own way and uses what is installed
 #   --release bookworm|trixie          the Debian that is tried; this machine's unless told
-#   --keep                             leaves the system where it is and says where
+#   --keep                             leaves the system, without its mounts, and says where
 # Each part prints its time. What the build has read must be what is declared (tests/declared.sh).
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
@@ -58,7 +58,7 @@ root=
 
 remove_system() {
   umount -R "$root"/{proc,sys,dev} 2>/dev/null || true
-  rm -rf --one-file-system "$root"
+  rm -rf --one-file-system "$root" "$root.list"
   root=
 }
 
@@ -97,6 +97,8 @@ sources() {
     done
 }
 
+commit=$(git -C "$here" -c safe.directory="$here" rev-parse HEAD)
+
 make_system() {
   root=$(mktemp -d "${TMPDIR:-/var/tmp}/patina-fresh-XXXXXX")
   chmod 755 "$root"
@@ -127,7 +129,7 @@ make_system() {
   echo "$person:x:1000:" >>"$root/etc/group"
   mkdir -p "$root$clone"
   # What a person gets who downloads the commit: no history, and no git to read one.
-  git -C "$here" -c safe.directory="$here" archive HEAD | tar -x -C "$root$clone"
+  git -C "$here" -c safe.directory="$here" archive "$commit" | tar -x -C "$root$clone"
   chown -R 1000:1000 "$root/srv/$person"
 }
 
@@ -162,7 +164,10 @@ first_command_as_person() {
   timed "A bare $release" make_system
   timed "What the first command names, installed by root" install_what_is_named app/run.sh
   timed "app/run.sh as an ordinary user" in_system $person app/run.sh
-  in_system $person "test -s out/report.md && build/bin/patina --version"
+  in_system $person "test -s out/report.md
+    build/bin/patina --version | tee out/version.txt
+    grep -qF ${commit:0:12} out/version.txt"
+  timed "The package" in_system $person "ninja -C build deb >&2 && ls -l build/patina_*.deb"
   timed "What the build has read" in_system root tests/declared.sh
 }
 

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Builds the Debian package and checks it; installs the checkers that are missing.
-#   tests/package.sh [BUILD]            by lintian, appstreamcli, desktop-file-validate and its list
+#   tests/package.sh [BUILD]            checks it by lintian, appstreamcli, desktop-file-validate and a
+#                                       list of its files
 # BUILD is a configured build folder; build if it is not named. tests/fresh.sh --package installs the
 # package in a bare Debian and uses it there.
 set -euo pipefail
@@ -10,13 +11,13 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 
 case "${1:-}" in
 -*)
-  sed -n '2,5s/^# \{0,1\}//p' "$0" >&2
+  sed -n '2,6s/^# \{0,1\}//p' "$0" >&2
   exit 2
   ;;
 esac
 build=${1:-$here/build}
 if [ ! -f "$build/CMakeCache.txt" ]; then
-  echo "$build: is no build folder; configure it: cmake -S . -B $build -G Ninja" >&2
+  echo "$build is no build folder; configure it: cmake -S '$here' -B '$build' -G Ninja" >&2
   exit 2
 fi
 # shellcheck disable=SC2086 # a list of words

@@ -181,6 +181,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 
+need_writable "$build_folder" PATINA_BUILD
 # shellcheck disable=SC2086 # lists of words
 need_packages $PATINA_BUILD_PACKAGES $PATINA_TEST_PACKAGES
 if [ "$mode" = all ] && [ "${PATINA_INSTALL:-yes}" != no ]; then
