@@ -38,14 +38,14 @@ const Keys& commonKeys() {
   static const Keys keys = {
       {"program",
        "",
-       "",
        "what made the report",
+       "",
        Shown::never,
        {{"version", "", ""}, {"commit", "", ""}}},
       {"inputs",
        "",
-       "",
        "files that the command line names, as they were before",
+       "",
        Shown::never,
        {{"path", "", ""}, {"sha256", "", ""}, {"digest", "", "", "of a folder of pictures"}}}};
   return keys;
