@@ -1,6 +1,6 @@
 #include "core/version.h"
 
-#include "built_from.h" // version.cmake writes it
+#include "core/built_from.h" // version.cmake writes it
 
 namespace patina {
 

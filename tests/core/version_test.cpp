@@ -73,9 +73,9 @@ TEST_F(CommitOf, ARepositoryIsItsHeadWithAMarkForEdits) {
 }
 
 TEST_F(CommitOf, AWorktreeIsItsOwnHead) {
-  shell("mkdir ../main && cd ../main && git init -q && echo one > file && git add file && git -c "
-        "user.name=a -c "
-        "user.email=a commit -q -m one && git worktree add -q '../a source'");
+  shell(
+      "mkdir ../main && cd ../main && git init -q && echo one > file && git add file && git -c "
+      "user.name=a -c user.email=a commit -q -m one && git worktree add -q --detach '../a source'");
   const std::string before = header();
   EXPECT_TRUE(std::regex_search(before, std::regex("COMMIT \"[0-9a-f]{12}\"\n"))) << before;
   shell("echo two > file && git -c user.name=a -c user.email=a commit -q -a -m two");
