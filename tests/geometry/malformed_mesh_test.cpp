@@ -38,7 +38,9 @@ void expectRefused(const std::string& format, const std::vector<Malformed>& file
       EXPECT_EQ(error.line(), malformed.line) << what;
       EXPECT_NE(what.find(malformed.cause), std::string::npos) << what;
       EXPECT_EQ(what.find('\n'), std::string::npos) << "one line";
-      for (const char c : what) EXPECT_TRUE(c >= 0x20 && c < 0x7f) << "printable";
+      // The folder of the project may have any name; what the reader says of the file may not.
+      for (const char c : what.substr(path.string().size()))
+        EXPECT_TRUE(c >= 0x20 && c < 0x7f) << "printable";
     }
   }
   EXPECT_TRUE(untested.empty()) << *untested.begin() << " is not in the test's list";

@@ -85,7 +85,10 @@ TEST(Defects, ShrunkenTrianglesLoseTheirShareOfTheArea) {
   const TriangleMesh mesh = icosphere(1, 6);
   const TriangleMesh cracked = withShrunkenTriangles(mesh, 0.01);
   EXPECT_NEAR(area(cracked) / area(mesh), 0.99 * 0.99, 1e-12);
-  EXPECT_EQ(inspect(cracked).boundary_edges, 3 * mesh.triangles.size());
+  // The report joins corners that are so near, and says how wide the cracks are.
+  const MeshReport report = inspect(cracked);
+  EXPECT_EQ(report.boundary_edges, 0u);
+  EXPECT_GT(report.widest_crack, 0);
   EXPECT_LT((faceNormal(cracked, 40) - faceNormal(mesh, 40)).norm(), 1e-12);
 }
 
