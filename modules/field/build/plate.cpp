@@ -31,8 +31,8 @@ class Caps {
  public:
   Caps(const FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
        const OpenParts& open, double thickness, const Progress& progress)
-      : builder_(builder), tree_(tree), open_(open), front_(mesh, open.open), progress_(progress),
-        reach_(thickness * builder.field.grid.voxel) {}
+      : builder_(builder), tree_(tree), open_(open), front_(mesh, open.open, open.seams),
+        progress_(progress), reach_(thickness * builder.field.grid.voxel) {}
 
   PlateCaps run() {
     std::vector<std::vector<CapEdge>> found(builder_.distance.size());

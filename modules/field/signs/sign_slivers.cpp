@@ -6,6 +6,30 @@
 #include "field/signs/sign_components.h"
 
 namespace patina::signs {
+namespace {
+
+// Distances of the blocks about one node, each unpacked once.
+class NearbyBlocks {
+ public:
+  explicit NearbyBlocks(const FieldBuilder& builder) : builder_(builder) {}
+  float distanceAt(std::int32_t slot, std::size_t node) {
+    std::size_t i = 0;
+    while (i < count_ && slots_[i] != slot) ++i;
+    if (i == count_) {
+      slots_[count_] = slot;
+      phi_[count_++] = phiOf(builder_, static_cast<std::size_t>(slot));
+    }
+    return std::abs(phi_[i][node]);
+  }
+
+ private:
+  const FieldBuilder& builder_;
+  std::array<std::int32_t, 8> slots_; // no more meet at a node and its neighbours
+  std::array<std::array<float, kBlockNodes>, 8> phi_;
+  std::size_t count_ = 0;
+};
+
+} // namespace
 
 std::array<int, 3> nodeAt(const FieldBuilder& builder, std::int32_t slot, std::size_t node) {
   return BlockNode{builder.field.block_at[static_cast<std::size_t>(slot)], node}.at();
@@ -23,7 +47,8 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
   std::array<Candidate, 26> candidates;
   std::size_t count = 0;
   const SurfaceField& field = builder.field;
-  const float depth = std::abs(phiAt(builder, slot, node));
+  NearbyBlocks blocks(builder);
+  const float depth = blocks.distanceAt(slot, node);
   const std::array<int, 3> at = nodeAt(builder, slot, node);
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
@@ -39,7 +64,7 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
         place.slot = std::max(field.top[place.top_index], -1);
         place.node = next.node;
         const float d = place.slot < 0 ? static_cast<float>(field.band)
-                                       : std::abs(phiAt(builder, place.slot, place.node));
+                                       : blocks.distanceAt(place.slot, place.node);
         if (d <= depth) continue;
         constexpr std::array<float, 4> kLength{0, 1, 1.41421356F, 1.73205081F};
         const float margin =

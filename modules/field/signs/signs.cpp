@@ -37,7 +37,9 @@ class Signer {
   Signer(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
          const WindingNumber& winding, const OpenParts& open, Progress& progress)
       : builder_(builder), mesh_(mesh), tree_(tree), winding_(winding), open_(open),
-        progress_(progress) {}
+        progress_(progress),
+        loose_(std::any_of(open.decided.begin(), open.decided.end(),
+                           [](const PartSides& part) { return part.joined; })) {}
 
   std::size_t run() {
     parts_ = signs::connectedComponents(builder_);
@@ -75,6 +77,12 @@ class Signer {
   }
 
   bool isSliver(std::size_t part) const { return !(depth_[parts_.root[part]] > kSliver); }
+  // Between loose pieces a component leaks out of a thin part, which has a say all the same.
+  bool reachesDeep(std::size_t part) const {
+    constexpr float kLeast = 0.5F; // [voxel]
+    const float depth = parts_.parts[part].depth;
+    return 2 * depth >= depth_[parts_.root[part]] || (loose_ && depth >= kLeast);
+  }
   bool isStored(std::size_t part) const { return parts_.parts[part].slot >= 0; }
 
   void vote(const std::vector<std::uint32_t>& voters) {
@@ -104,7 +112,7 @@ class Signer {
   void signComponents() {
     std::vector<std::uint32_t> voters;
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i)
-      if (!isSliver(i) && 2 * parts_.parts[i].depth >= depth_[parts_.root[i]]) voters.push_back(i);
+      if (!isSliver(i) && reachesDeep(i)) voters.push_back(i);
     vote(voters);
     for (std::uint32_t i : voters)
       if (saysInside(vote_[i])) turned_ += vote_[i] > 0 ? 1 : -1;
@@ -312,6 +320,7 @@ class Signer {
   const WindingNumber& winding_;
   const OpenParts& open_;
   Progress& progress_;
+  const bool loose_; // some part is of loose pieces
   Components parts_;
   std::vector<float> depth_;             // by root: of the component
   std::vector<float> vote_;              // by part: winding number at its deepest node
@@ -324,7 +333,7 @@ class Signer {
 // The nodes nearest to an open part.
 void signPlates(FieldBuilder& builder, const TriangleMesh& mesh, const OpenParts& open,
                 double thickness) {
-  const FrontSide front(mesh, open.open);
+  const FrontSide front(mesh, open.open, open.seams);
   tbb::parallel_for(std::size_t{0}, builder.distance.size(), [&](std::size_t slot) {
     auto phi = phiOf(builder, slot);
     for (std::size_t n = 0; n < phi.size(); ++n) {

@@ -1,5 +1,7 @@
 #include "geometry/mesh/connected_parts.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "geometry/mesh/edge_uses.h"
@@ -8,7 +10,10 @@
 namespace patina {
 namespace {
 
-constexpr double kNear = 0.7;                             // of the reach
+constexpr double kNear = 0.7; // of the reach
+// Of two rims along each other: how far apart they are, of the longer and at least of the reach,
+// and the cosine of the angle between them.
+constexpr double kSeam = 0.5, kLeastSeam = 0.25, kOpposed = -0.8;
 constexpr std::size_t kSmallPiece = 4;                    // faces
 constexpr double kJoinedRim = 0.5, kJoinedSmallRim = 0.3; // shares of a rim's length
 
@@ -37,28 +42,39 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
                                         std::vector<RimEdge>& rims, Forest& forest) {
   std::vector<Vec3> middles;
   std::vector<std::int32_t> root;
-  std::vector<double> whole(faces_of.size()), along(faces_of.size());
-  const auto length = [&](const RimEdge& rim) {
-    return (positions[index(rim.vertices[0])] - positions[index(rim.vertices[1])]).norm();
+  std::vector<double> whole(faces_of.size()), shared(faces_of.size());
+  const auto along = [&](const RimEdge& rim) -> Vec3 {
+    return positions[index(rim.vertices[1])] - positions[index(rim.vertices[0])];
   };
   for (const RimEdge& rim : rims) {
     middles.push_back(0.5 *
                       (positions[index(rim.vertices[0])] + positions[index(rim.vertices[1])]));
     root.push_back(forest.find(rim.face));
-    whole[index(root.back())] += length(rim);
+    whole[index(root.back())] += along(rim).norm();
   }
   const NearPoints near(middles, kNear * reach);
   near.forPairs([&](std::uint32_t i, std::uint32_t j) {
-    if (root[i] != root[j]) rims[i].joined = rims[j].joined = true;
+    if (root[i] == root[j]) return false;
+    rims[i].joined = rims[j].joined = true;
+    if (rims[i].covered && rims[j].covered) return false;
+    const Vec3 a = along(rims[i]), b = along(rims[j]);
+    const double longer = std::sqrt(std::max(a.squaredNorm(), b.squaredNorm()));
+    const double limit = std::clamp(kSeam * longer, kLeastSeam * reach, kNear * reach);
+    if (a.dot(b) < kOpposed * a.norm() * b.norm() &&
+        (middles[i] - middles[j]).squaredNorm() <= limit * limit)
+      rims[i].covered = rims[j].covered = true;
     return false;
   });
   for (std::size_t i = 0; i < rims.size(); ++i)
-    if (rims[i].joined) along[index(root[i])] += length(rims[i]);
+    if (rims[i].joined) shared[index(root[i])] += along(rims[i]).norm();
   const auto joins = [&](std::int32_t piece) {
     const double share = faces_of[index(piece)] < kSmallPiece ? kJoinedSmallRim : kJoinedRim;
-    return along[index(piece)] >= share * whole[index(piece)];
+    return shared[index(piece)] >= share * whole[index(piece)];
   };
-  for (std::size_t i = 0; i < rims.size(); ++i) rims[i].joined &= joins(root[i]);
+  for (std::size_t i = 0; i < rims.size(); ++i) {
+    rims[i].joined &= joins(root[i]);
+    rims[i].covered &= rims[i].joined;
+  }
   std::vector<std::int32_t> joined;
   near.forPairs([&](std::uint32_t i, std::uint32_t j) {
     if (!rims[i].joined || !rims[j].joined || root[i] == root[j]) return false;
@@ -79,10 +95,13 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   const auto rises = [&](const EdgeUse& use) {
     return triangles[index(use.face)][static_cast<std::size_t>(use.edge)] == use.low;
   };
+  const auto runOf = [&](const EdgeUse& use) {
+    return rises(use) ? std::array{use.low, use.high} : std::array{use.high, use.low};
+  };
   forEachEdge(
       triangles, twin, [](std::size_t) { return true; },
       [&](auto first, auto last) {
-        if (last - first == 1) found.rims.push_back({{first->low, first->high}, first->face});
+        if (last - first == 1) found.rims.push_back({runOf(*first), first->face, first->edge});
         if (last - first == 2 && rises(first[0]) == rises(first[1])) crossed.push_back(first->face);
         for (auto use = first + 1; use != last; ++use) forest.join(first->face, use->face);
       });

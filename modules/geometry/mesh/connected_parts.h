@@ -12,7 +12,9 @@ namespace patina {
 struct RimEdge { // an edge with one face
   std::array<std::int32_t, 2> vertices;
   std::int32_t face;
-  bool joined = false; // a rim of another piece runs along it
+  int edge;             // from corner `edge` of the face to the next
+  bool joined = false;  // a rim of another piece is near
+  bool covered = false; // one that runs the other way lies along it: a seam, not a rim
 };
 
 struct ConnectedPart {

@@ -7,7 +7,8 @@
 #include "geometry/tree/triangle_tree.h"
 
 namespace patina {
-FrontSide::FrontSide(const TriangleMesh& mesh, const std::vector<std::uint8_t>& open)
+FrontSide::FrontSide(const TriangleMesh& mesh, const std::vector<std::uint8_t>& open,
+                     const std::vector<FaceEdge>& seams)
     : mesh_(mesh), vertices_(weldedTriangles(mesh)), twin_(firstTwins(vertices_)),
       corners_(mesh.positions.size()), edge_of_(vertices_.size()) {
   for (std::size_t f = 0; f < vertices_.size(); ++f) {
@@ -23,11 +24,16 @@ FrontSide::FrontSide(const TriangleMesh& mesh, const std::vector<std::uint8_t>& 
       corner.outward -= angle * (a + b).normalized();
     }
   }
+  std::vector<std::array<std::uint8_t, 3>> seam(seams.empty() ? 0 : vertices_.size());
+  for (const FaceEdge& edge : seams)
+    seam[index(edge.face)][static_cast<std::size_t>(edge.edge)] = 1;
   forEachEdge(
       vertices_, twin_, [&](std::size_t f) { return open[f] != 0; },
       [&](auto first, auto last) {
         Edge edge;
-        edge.rim = last - first == 1;
+        edge.rim =
+            last - first == 1 &&
+            (seam.empty() || !seam[index(first->face)][static_cast<std::size_t>(first->edge)]);
         for (auto use = first; use != last; ++use) {
           edge.normal += faceNormal(mesh, index(use->face));
           edge_of_[index(use->face)][static_cast<std::size_t>(use->edge)] =

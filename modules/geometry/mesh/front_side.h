@@ -9,6 +9,11 @@
 
 namespace patina {
 
+struct FaceEdge {
+  std::int32_t face;
+  int edge; // from corner `edge` to the next
+};
+
 enum class Side : std::uint8_t { front, back, past };
 
 // Sides of points by the nearest point of a mesh: by the face's normal, on edges and vertices by
@@ -18,8 +23,10 @@ enum class Side : std::uint8_t { front, back, past };
 // Immutable; any thread.
 class FrontSide {
  public:
-  // The faces with open[face] != 0; the mesh must outlive this.
-  FrontSide(const TriangleMesh& mesh, const std::vector<std::uint8_t>& open);
+  // The faces with open[face] != 0; the mesh must outlive this. `seams`: edges with one face that
+  // are no rim.
+  FrontSide(const TriangleMesh& mesh, const std::vector<std::uint8_t>& open,
+            const std::vector<FaceEdge>& seams = {});
 
   // `face`: an open one that holds the point of the mesh nearest to p.
   Side at(const Vec3& p, std::int32_t face) const;

@@ -177,7 +177,13 @@ std::vector<std::int32_t> nearVertices(const TriangleMesh& mesh, const Connected
     while (lowest[index(v)] != v) v = lowest[index(v)];
     return v;
   };
-  NearPoints(points, reach).forPairs([&](std::uint32_t i, std::uint32_t j) {
+  // Less than half an edge, so that no hole closes.
+  double length = 0;
+  for (const RimEdge* rim : rims)
+    length +=
+        (mesh.positions[index(rim->vertices[0])] - mesh.positions[index(rim->vertices[1])]).norm() /
+        static_cast<double>(rims.size());
+  NearPoints(points, std::min(reach, 0.4 * length)).forPairs([&](std::uint32_t i, std::uint32_t j) {
     const std::int32_t a = find(vertices[i]), b = find(vertices[j]);
     lowest[index(std::max(a, b))] = std::min(a, b);
     return false;
@@ -190,7 +196,7 @@ std::vector<Hole> closedOver(const TriangleMesh& mesh, const ConnectedParts& fou
                              const std::vector<std::uint8_t>& open, double reach) {
   std::vector<const RimEdge*> rims;
   for (const RimEdge& rim : found.rims)
-    if (!rim.joined && (open.empty() || !open[index(rim.face)])) rims.push_back(&rim);
+    if (!rim.covered && (open.empty() || !open[index(rim.face)])) rims.push_back(&rim);
   if (rims.empty()) return {};
   const std::vector<std::int32_t> vertex = nearVertices(mesh, found, rims, reach);
   std::vector<std::int32_t> point_of(mesh.positions.size(), -1);
@@ -232,13 +238,16 @@ OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding, Open
     const OpenSides own = !part.open            ? OpenSides::closed
                           : haveTwoSides(sides) ? OpenSides::two
                                                 : OpenSides::one;
-    result.decided.push_back({part.faces.size(), found.parts[p].rim_edges, own, asked});
+    result.decided.push_back(
+        {part.faces.size(), found.parts[p].rim_edges, own, asked, part.joined});
     if (!part.open) continue;
     ++result.parts;
     result.triangles += part.faces.size();
     result.open.resize(mesh.triangles.size());
     for (const std::int32_t f : part.faces) result.open[index(f)] = 1;
   }
+  for (const RimEdge& rim : found.rims)
+    if (rim.covered) result.seams.push_back({rim.face, rim.edge});
   result.holes = closedOver(welded, found, result.open, reach);
   return result;
 }

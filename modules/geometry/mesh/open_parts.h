@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/mesh/front_side.h"
 #include "geometry/mesh/holes.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "geometry/winding/winding_number.h"
@@ -32,12 +33,14 @@ struct PartSides {
   std::size_t rim_edges = 0;           // edges with one face
   OpenSides sides = OpenSides::closed; // never automatic
   bool asked = false;                  // the caller decided, not openParts
+  bool joined = false;                 // of loose pieces, by their rims
 };
 
 struct OpenParts {
   std::vector<std::uint8_t> open;       // by face: 1 = of an open part; empty if there is none
   std::size_t parts = 0, triangles = 0; // that are open
   std::vector<PartSides> decided;       // by part; empty if no edge of the mesh has one face
+  std::vector<FaceEdge> seams;          // where loose pieces of one part meet
   std::vector<Hole> holes;              // of closed parts, the largest first
   std::size_t inner_triangles = 0;      // left out of a mesh as read (innerFaces)
   bool any() const { return parts > 0; }
