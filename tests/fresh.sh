@@ -51,9 +51,11 @@ if [ "${PATINA_FRESH_INSIDE:-}" != yes ]; then
   PATINA_FRESH_INSIDE=yes exec unshare --mount --pid --fork --kill-child --mount-proc "$0" "${words[@]}"
 fi
 
-# The folder of the clone has a space and letters that are not ASCII, as people's have.
+# The folder of the clone has a space and a letter that is not ASCII, as people's have; the tests run
+# in a plain one.
 person=ada
 clone="/srv/$person/Übung haptik/patina"
+[ $mode != tests ] || clone=/srv/$person/patina
 root=
 
 remove_system() {

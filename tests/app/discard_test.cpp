@@ -45,7 +45,7 @@ class Discard : public testing::Test {
           std::getenv("ASAN_OPTIONS"); // its runtime wants to be the first library
       const std::string with = std::string(options ? options : "") + ":verify_asan_link_order=0";
       ::setenv("ASAN_OPTIONS", with.c_str(), 1);
-      ::setenv("LD_PRELOAD", (programFolder() / "fault_shim.so").c_str(), 1);
+      ::setenv("LD_PRELOAD", preloadable("fault_shim.so").c_str(), 1);
       ::setenv("PATINA_FAULT", "eio", 1);
       ::setenv("PATINA_FAULT_READS", "1", 1);
       ::setenv("PATINA_FAULT_UNDER", place.c_str(), 1);

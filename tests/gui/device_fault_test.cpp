@@ -234,7 +234,7 @@ TEST(FalconInAStroke, EachFaultIsShownWithinATenthOfASecondAndNothingIsLost) {
   if (!usbLibrary(cause)) GTEST_SKIP() << cause;
   const test::ScratchFolder bus;
   const test::Environment environment{
-      {{"LD_PRELOAD", (test::programFolder() / "usbfs_shim.so").string()},
+      {{"LD_PRELOAD", test::preloadable("usbfs_shim.so")},
        {"PATINA_USBFS", bus.path().string()}}};
   const test::Outcome outcome =
       test::Running({"--gtest_filter=FalconWindow.DISABLED_FaultsInAStroke",

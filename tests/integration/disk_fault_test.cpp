@@ -36,7 +36,7 @@ TEST(DiskFault, ARefusedSaveIsOneLineAndExit2AndTheWorkspaceStays) {
     std::filesystem::remove(mark);
     Outcome outcome;
     {
-      const Environment fault({{"LD_PRELOAD", programFolder() / "fault_shim.so"},
+      const Environment fault({{"LD_PRELOAD", preloadable("fault_shim.so")},
                                {"PATINA_FAULT", "full"},
                                {"PATINA_FAULT_AT", std::to_string(at)},
                                {"PATINA_FAULT_UNDER", folder},
@@ -73,7 +73,7 @@ class RefusingDisk : public EveryCommand {
     std::filesystem::remove(mark);
     Outcome outcome;
     {
-      const Environment shim({{"LD_PRELOAD", programFolder() / "fault_shim.so"},
+      const Environment shim({{"LD_PRELOAD", preloadable("fault_shim.so")},
                               {"PATINA_FAULT", fault},
                               {"PATINA_FAULT_AT", std::to_string(at)},
                               {"PATINA_FAULT_UNDER", folder.path()},
@@ -222,7 +222,7 @@ TEST_F(RefusingDisk, OneErrorOfTheDiskCostsARecoveryNoHistory) {
     std::filesystem::remove(mark);
     Outcome outcome;
     {
-      const Environment shim({{"LD_PRELOAD", programFolder() / "fault_shim.so"},
+      const Environment shim({{"LD_PRELOAD", preloadable("fault_shim.so")},
                               {"PATINA_FAULT", "eio"},
                               {"PATINA_FAULT_READS", "1"},
                               {"PATINA_FAULT_AT", std::to_string(at)},

@@ -67,7 +67,7 @@ TEST(Interrupt, IsNotLostBeforeMain) {
   Outcome outcome;
   {
     const Environment early(
-        {{"LD_PRELOAD", programFolder() / "fault_shim.so"}, {"PATINA_FAULT_EARLY", "1"}});
+        {{"LD_PRELOAD", preloadable("fault_shim.so")}, {"PATINA_FAULT_EARLY", "1"}});
     outcome = run({"field", mesh, "-o", folder / "field.vti"});
   }
   std::signal(SIGINT, usual);

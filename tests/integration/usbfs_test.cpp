@@ -68,7 +68,7 @@ EmulatedPlug plugged(const fs::path& folder, const EmulatedUsb& device,
 // What programs that are started in its lifetime see.
 struct Bus {
   ScratchFolder folder;
-  Environment environment{{{"LD_PRELOAD", (programFolder() / "usbfs_shim.so").string()},
+  Environment environment{{{"LD_PRELOAD", preloadable("usbfs_shim.so")},
                            {"PATINA_USBFS", folder.path().string()}}};
   FalconBench bench{held(), systemClock()};
   EmulatedPlug plug(const EmulatedUsb& device = falcon()) {
