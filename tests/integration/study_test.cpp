@@ -61,13 +61,16 @@ TEST(Studies, PrintNoLineThatATerminalWouldBreak) {
       if (line.find(folder.path().string()) == std::string::npos) {
         EXPECT_LE(line.size(), 120u) << line;
       }
-    // Nothing of a table is left out for it; a title may break between words.
+    // Nothing of a table is left out for it but which program made it, which is the one that runs; a
+    // title may break between words.
     std::string words;
     std::istringstream text(outcome.out);
     for (std::string word; text >> word;) words += word + " ";
     std::istringstream names(firstLine(folder / ("out/" + study + "-1.csv")));
     for (std::string name; std::getline(names, name, ',');)
-      EXPECT_NE(words.find(name), std::string::npos) << study << ": " << name;
+      if (name != "program") {
+        EXPECT_NE(words.find(name), std::string::npos) << study << ": " << name;
+      }
   }
 }
 
