@@ -56,8 +56,8 @@ TEST_F(BadInput, TablesNameTheLineAndTheDecimalComma) {
   expectOneLineError(feel(box, folder.write("a.csv", "time,x,y,z\n0,0,0,0\n")), {"a.csv:1:"});
   expectOneLineError(feel(box, folder.write("b.csv", header + "0,0,0,1\n0,001,0,0,1\n")),
                      {"b.csv:3:"});
-  expectOneLineError(feel(box, folder.write("c.csv", "t [s];x [m];y [m];z [m]\n0;0,5;0;1\n")),
-                     {"c.csv:"});
+  expectOneLineError(feel(box, folder.write("c.csv", "t [s];x [m];y [m];z [m]\n0;0,5,0;1\n")),
+                     {"c.csv:2:"});
   expectOneLineError(feel(box, folder.write("d.csv", header + "0,0,0,1\n0,0,0,1\n")),
                      {"d.csv:3:", "time does not increase"});
   expectOneLineError(feel(box, folder.write("e.csv", header + "nan,0,0,1\n")), {"e.csv:2:"});

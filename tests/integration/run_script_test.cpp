@@ -113,7 +113,7 @@ TEST_F(RunScript, SaysInOneLineWhyAStepFailedAndWhatToDo) {
       {"--build", "c++: fatal error: Killed signal terminated program cc1plus", "PATINA_JOBS=1"},
       {"--build", "virtual memory exhausted: Cannot allocate memory", "PATINA_JOBS=1"}};
   for (const Failure& failure : failures) {
-    program("tools/cmake", std::string("case \"$*\" in *") + failure.step + " *) echo '" +
+    program("tools/cmake", std::string("case \"$*\" in *") + failure.step + "\\ *) echo '" +
                                failure.said + "'; exit 1 ;; esac\n");
     const Outcome outcome = runScript({});
     EXPECT_EQ(outcome.exit, 2) << failure.said;
