@@ -126,7 +126,9 @@ TEST(SurfaceSides, AreThoseThatWereAskedFor) {
       ASSERT_EQ(made.report.parts.size(), 1U);
       EXPECT_EQ(made.report.parts[0].sides, sides);
       EXPECT_TRUE(made.report.parts[0].asked);
-      if (sides == OpenSides::two) EXPECT_EQ(negativeNodes(*made.field), 0U);
+      if (sides == OpenSides::two) {
+        EXPECT_EQ(negativeNodes(*made.field), 0U);
+      }
     }
   }
   // Nobody can be obeyed about a part without a rim.
