@@ -11,9 +11,8 @@ namespace patina {
 namespace {
 
 constexpr double kNear = 0.7; // of the reach
-// Of two rims along each other: how far apart they are, of the longer and at least of the reach,
-// and the cosine of the angle between them.
-constexpr double kSeam = 0.5, kLeastSeam = 0.25, kOpposed = -0.8;
+// Distance of the ends of two rims that are one seam, of the shorter and at least of the reach.
+constexpr double kSeam = 0.4, kLeastSeam = 0.25;
 constexpr std::size_t kSmallPiece = 4;                    // faces
 constexpr double kJoinedRim = 0.5, kJoinedSmallRim = 0.3; // shares of a rim's length
 
@@ -57,12 +56,13 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
     if (root[i] == root[j]) return false;
     rims[i].joined = rims[j].joined = true;
     if (rims[i].covered && rims[j].covered) return false;
-    const Vec3 a = along(rims[i]), b = along(rims[j]);
-    const double longer = std::sqrt(std::max(a.squaredNorm(), b.squaredNorm()));
-    const double limit = std::clamp(kSeam * longer, kLeastSeam * reach, kNear * reach);
-    if (a.dot(b) < kOpposed * a.norm() * b.norm() &&
-        (middles[i] - middles[j]).squaredNorm() <= limit * limit)
-      rims[i].covered = rims[j].covered = true;
+    const double shorter = std::min(along(rims[i]).norm(), along(rims[j]).norm());
+    const double limit = std::clamp(kSeam * shorter, kLeastSeam * reach, kNear * reach);
+    const auto apart = [&](std::size_t end) {
+      return (positions[index(rims[i].vertices[end])] - positions[index(rims[j].vertices[1 - end])])
+          .norm();
+    };
+    if (apart(0) <= limit && apart(1) <= limit) rims[i].covered = rims[j].covered = true;
     return false;
   });
   for (std::size_t i = 0; i < rims.size(); ++i)
