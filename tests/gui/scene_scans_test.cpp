@@ -2,6 +2,7 @@
 #ifdef PATINA_HAS_ACQUISITION
 #include <QComboBox>
 
+#include "acquisition/files/camera_file.h"
 #include "acquisition/simulation/frame_renderer.h"
 #include "acquisition/tracking/lens.h"
 #include "app/gui/aligning/align_desk.h"

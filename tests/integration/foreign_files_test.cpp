@@ -38,10 +38,11 @@ TEST_F(ForeignTables, AreFeltAndSampledAsTheirPlainTwins) {
       folder.write("tabs.csv", withEach(plain, ",", "\t")),
       folder.write("mac.csv", withEach(plain, "\n", "\r")), folder.write("scaled.csv", scaled)};
   const std::string out = folder / "out.csv";
-  const auto forces = [&](const std::string& path) {
-    const Outcome felt = run({"feel", ball, "--path", path, "-o", out, "--resolution", "40"});
-    EXPECT_EQ(felt.exit, 0) << path << felt.err;
-    EXPECT_EQ(felt.err.find("left out: note") != std::string::npos, path.ends_with("scaled.csv"))
+  const auto forces = [&](const std::string& table_path) {
+    const Outcome felt = run({"feel", ball, "--path", table_path, "-o", out, "--resolution", "40"});
+    EXPECT_EQ(felt.exit, 0) << table_path << felt.err;
+    EXPECT_EQ(felt.err.find("left out: note") != std::string::npos,
+              table_path.ends_with("scaled.csv"))
         << felt.err;
     CsvTable table = readCsv(out, {"t [s]", "fz [N]"});
     const auto step = std::find(table.columns.begin(), table.columns.end(), "step [ns]");
@@ -50,13 +51,15 @@ TEST_F(ForeignTables, AreFeltAndSampledAsTheirPlainTwins) {
   };
   const auto expected = forces(twin);
   EXPECT_GT(expected.back()[1], 0);
-  for (const std::string& path : others) EXPECT_EQ(forces(path), expected) << path;
+  for (const std::string& table_path : others)
+    EXPECT_EQ(forces(table_path), expected) << table_path;
   const auto samples = [&](const std::string& points) {
     EXPECT_EQ(run({"sample", ball, "--points", points, "-o", out, "--resolution", "40"}).exit, 0);
     return readFile(out);
   };
   const std::string sampled = samples(twin);
-  for (const std::string& path : others) EXPECT_EQ(samples(path), sampled) << path;
+  for (const std::string& table_path : others)
+    EXPECT_EQ(samples(table_path), sampled) << table_path;
   // What feel writes is a path without a warning.
   ASSERT_EQ(run({"feel", ball, "--path", twin, "-o", folder / "felt.csv"}).exit, 0);
   EXPECT_EQ(run({"feel", ball, "--path", folder / "felt.csv", "-o", out}).err.find("left out"),
