@@ -9,7 +9,6 @@
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
 #include "core/error.h"
-#include "core/file.h"
 #include "core/numbers.h"
 #include "pictures/picture_file.h"
 #include "workspace/texture_file.h"
