@@ -186,9 +186,13 @@ TEST_F(Reports, OfSampleAreTheSameForAPathAsForItsPoints) {
 
 TEST_F(Reports, OfSampleNameTheHeadersThatPointsMayHave) {
   const std::string out = folder / "o.csv";
-  for (const char* text : {"", "t [s],x [m]\n0,0\n", "x,y,z\n0,0,0\n"})
+  const auto refused = [&](const char* text, const char* reason) {
     expectOneLineError(run({"sample", scene, "--points", folder.write("bad.csv", text), "-o", out}),
-                       {"bad.csv", "x [m],y [m],z [m]", "t [s],x [m],y [m],z [m]"});
+                       {"bad.csv", reason});
+  };
+  refused("", "x [m],y [m],z [m]");
+  refused("t [s],x [m]\n0,0\n", "it lacks 'y [m]'");
+  refused("x,y,z\n0,0,0\n", "has no unit");
   expectOneLineError(
       run({"sample", scene, "--points",
            folder.write("bad.csv", "t [s],x [m],y [m],z [m]\n0,0,0,0\n1,0,oops,0\n"), "-o", out}),
