@@ -30,7 +30,7 @@ need_packages() {
   [ "${PATINA_INSTALL:-yes}" = no ] && return 0
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     cat >&2 <<TEXT
-This system has no apt-get. Install what these packages of Debian 12 or 13 hold, then run this again
+This system has no apt-get. Install what these packages of Debian 12 hold, then run this again
 with PATINA_INSTALL=no in the environment:
   $*
 TEXT
