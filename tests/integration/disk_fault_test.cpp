@@ -123,7 +123,8 @@ class RefusingDisk : public EveryCommand {
       }
   }
 
-  // What the commands see of a workspace: its edits, values and objects, whatever its files' hashes.
+  // What the commands see of a workspace: its edits, values and objects. The hashes of its files
+  // are left out.
   std::string stateOf(const std::string& folder_of) const {
     Json info = runJson({"info", folder_of, "--no-field"});
     std::string state = info.set("inputs", Json()).dump();
