@@ -8,8 +8,8 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kMostVertices = 128; // the triangulation takes the cube of their number
-constexpr double kFlat = 1e-4;             // distance from a plane, of the root of the area
+constexpr std::size_t kMostVertices = 64; // the triangulation takes the cube of their number
+constexpr double kFlat = 1e-4;            // distance from a plane, of the root of the area
 
 Vec3 meanOf(const std::vector<Vec3>& loop) {
   Vec3 sum = Vec3::Zero();

@@ -18,7 +18,7 @@ struct Hole {
 };
 
 // The surface that spans a flat loop is flat; any other has the triangulation of least area of the
-// loop's vertices (Barequet and Sharir, 1995), of 128 of them if there are more.
+// loop's vertices (Barequet and Sharir, 1995), of 64 of them if there are more.
 Hole spanned(const std::vector<Vec3>& loop);
 
 // Loops of the edges between `points`, the largest area first. Where loops touch at a vertex each
