@@ -77,13 +77,27 @@ TEST_F(Session, AKindThatCannotBeReadNamesThoseThatCan) {
   EXPECT_NE(refusalOf(folder / "scan").find("patina scene -o WORKSPACE --scan"), std::string::npos);
 }
 
-TEST_F(Session, WarnsOfWhatAFileHasAndTheMeshDoesNotKeep) {
+TEST_F(Session, KeepsTheColoursOfAFileAsPaint) {
   writeFileAtomically(folder / "a.obj",
-                      "v 0 0 0 1 0 0\nv 50 0 0 0 1 0\nv 0 50 0 0 0 1\nv 0 0 50 1 1 "
-                      "1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+                      "v 0 0 0 1 0 0\nv 50 0 0 1 0 0\nv 0 50 0 1 0 0\nv 0 0 50 1 0 0\n"
+                      "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const OpenedScene opened = openScene(folder / "a.obj", {});
+  EXPECT_TRUE(opened.warnings.empty());
+  ASSERT_TRUE(opened.scene.objects[0].paint && opened.scene.objects[0].paint->color);
+  const ObjectPaint& paint = *opened.scene.objects[0].paint;
+  const Vec2 middle =
+      ((*paint.layout.uvs)[0][0] + (*paint.layout.uvs)[0][1] + (*paint.layout.uvs)[0][2]) / 3;
+  EXPECT_EQ(paint.color->sample(middle.x(), middle.y(), 0), 1);
+  EXPECT_EQ(paint.color->sample(middle.x(), middle.y(), 1), 0);
+}
+
+TEST_F(Session, WarnsOfWhatAFileHasAndTheMeshDoesNotKeep) {
+  writeFileAtomically(folder / "a.obj", "v 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nvt 0 0\nf 1/1 3/1 "
+                                        "2/1\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   const OpenedScene opened = openScene(folder / "a.obj", {});
   ASSERT_EQ(opened.warnings.size(), 1u);
-  EXPECT_NE(opened.warnings[0].find("a.obj: the colours of its vertices"), std::string::npos);
+  EXPECT_NE(opened.warnings[0].find("a.obj: the texture coordinates are left out"),
+            std::string::npos);
 }
 
 TEST_F(Session, WarnsOfEveryKindOfTriangleThatIsLeftOut) {

@@ -16,6 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     patina::fuzz::checkMesh(patina::parseObj(bytes, "fuzz"));
     const patina::TexturedMesh read = patina::parseTexturedObj(bytes, "fuzz");
     patina::fuzz::checkWarnings(read.warnings);
+    patina::fuzz::checkColors(read.colors, read.mesh);
     std::int32_t last = -1;
     for (const patina::TexturedFace& face : read.textured) {
       if (face.face <= last || face.texture < 0 ||

@@ -10,8 +10,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   std::vector<std::string> warnings;
+  patina::MeshColors colors;
   try {
-    patina::fuzz::checkMesh(patina::parsePly(bytes, "fuzz", &warnings));
+    const patina::TriangleMesh mesh = patina::parsePly(bytes, "fuzz", &warnings, &colors);
+    patina::fuzz::checkMesh(mesh);
+    patina::fuzz::checkColors(colors, mesh);
     patina::fuzz::checkWarnings(warnings);
   } catch (const patina::FileError&) {
   }

@@ -201,12 +201,9 @@ TEST(MalformedMesh, EveryTruncationOfEveryFormatIsHandled) {
     return count;
   };
   // OBJ and PLY are whole without their last newline; OBJ already when "1" of "1/1" has come.
-  const auto parsed = [](auto parse) {
-    return [parse](std::string_view bytes, const char* name) { parse(bytes, name, nullptr); };
-  };
-  EXPECT_EQ(refusals(obj, parsed(parseObj)), obj.size() - 3);
-  EXPECT_EQ(refusals(ply, parsed(parsePly)), ply.size() - 1);
-  EXPECT_EQ(refusals(stl, parsed(parseStl)), stl.size() - 1);
+  EXPECT_EQ(refusals(obj, [](auto... text) { parseObj(text...); }), obj.size() - 3);
+  EXPECT_EQ(refusals(ply, [](auto... text) { parsePly(text...); }), ply.size() - 1);
+  EXPECT_EQ(refusals(stl, [](auto... text) { parseStl(text...); }), stl.size() - 1);
 }
 
 } // namespace

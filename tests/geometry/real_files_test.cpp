@@ -179,9 +179,10 @@ TEST(RealPly, APointCloudIsCalledOne) {
 TEST(RealPly, ColoursAndPicturesAreSaidToBeLeftOut) {
   Warnings warnings;
   parsePly("ply\nformat ascii 1.0\ncomment TextureFile my skin.png\nelement vertex 3\n"
-           "property uchar red\nproperty float x\nproperty float y\nproperty float z\n"
-           "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n"
-           "end_header\n9 0 0 0\n9 1 0 0\n9 0 1 0\n3 0 1 2 9\n",
+           "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float x\n"
+           "property float y\nproperty float z\nelement face 1\nproperty list uchar int "
+           "vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+           "end_header\n9 9 9 0 0 0\n9 9 9 1 0 0\n9 9 9 0 1 0\n3 0 1 2 9 9 9\n",
            "t", &warnings);
   ASSERT_EQ(warnings.size(), 3u);
   EXPECT_NE(warnings[0].find("colours of its vertices"), std::string::npos);

@@ -1,56 +1,14 @@
 #include "authoring/images/lay_image.h"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <tbb/parallel_for.h>
 
-#include "authoring/brush/texel_place.h"
+#include "authoring/images/picture_sample.h"
 #include "core/error.h"
 
 namespace patina {
 namespace {
-
-constexpr int kMostSamples = 8; // a texel and axis, where the picture is finer than the image
-
-struct Sample {
-  double rgb[3], alpha;
-  double grey() const { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
-};
-
-// Premultiplied, so that what is transparent lends no colour to its neighbours.
-Sample texelOf(const Picture& picture, int i, int j) {
-  const auto at = (static_cast<std::size_t>(j) * static_cast<std::size_t>(picture.width) +
-                   static_cast<std::size_t>(i)) *
-                  static_cast<std::size_t>(picture.channels);
-  const float* value = &picture.texel[at];
-  const bool grey = picture.channels < 3;
-  Sample sample{{}, 1};
-  if (picture.channels % 2 == 0) sample.alpha = static_cast<double>(value[picture.channels - 1]);
-  for (int c = 0; c < 3; ++c)
-    sample.rgb[c] = sample.alpha * static_cast<double>(value[grey ? 0 : c]);
-  return sample;
-}
-
-int wrapped(int i, int n, bool repeats) {
-  return repeats ? (i % n + n) % n : std::clamp(i, 0, n - 1);
-}
-
-// Bilinear; adds `share` of it.
-void read(const Picture& picture, const Vec2& uv, bool repeats, double share, Sample& sum) {
-  const Vec2 inside = repeats ? Vec2(uv.array() - uv.array().floor()) : uv;
-  const double x = inside.x() * picture.width - 0.5, y = inside.y() * picture.height - 0.5;
-  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-  for (int corner = 0; corner < 4; ++corner) {
-    const int di = corner & 1, dj = corner >> 1;
-    const double part = share * (di ? x - i : 1 - (x - i)) * (dj ? y - j : 1 - (y - j));
-    const Sample texel = texelOf(picture, wrapped(i + di, picture.width, repeats),
-                                 wrapped(j + dj, picture.height, repeats));
-    for (int c = 0; c < 3; ++c) sum.rgb[c] += part * texel.rgb[c];
-    sum.alpha += part * texel.alpha;
-  }
-}
 
 // From a point of the surface to the picture.
 class Mapping {
@@ -82,37 +40,6 @@ class Mapping {
   Box3 box_;
 };
 
-// The mean of the picture over one texel of the image.
-Sample sampleOver(const Picture& picture, const Mapping& mapping, const std::array<Vec2, 3>& uv,
-                  std::size_t face, const TexelMap& texels, int i, int j) {
-  const Vec2 step(1.0 / texels.width, 1.0 / texels.height);
-  const Vec2 centre((i + 0.5) * step.x(), (j + 0.5) * step.y());
-  const auto at = [&](const Vec2& place) {
-    return mapping.at(face, texelBarycentric(uv, place.x(), place.y()));
-  };
-  const Vec2 size(picture.width, picture.height);
-  double finer = 0; // texels of the picture in one of the image
-  for (const Vec2& side : {Vec2(step.x() / 2, 0), Vec2(0, step.y() / 2)})
-    finer = std::max(finer, (at(centre + side) - at(centre - side)).cwiseProduct(size).norm());
-  const int n = static_cast<int>(std::ceil(std::clamp(finer, 1.0, double{kMostSamples})));
-  Sample sum{{}, 0};
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      const Vec2 place =
-          centre + Vec2(((x + 0.5) / n - 0.5) * step.x(), ((y + 0.5) / n - 0.5) * step.y());
-      read(picture, at(place), mapping.repeats(), 1.0 / (n * n), sum);
-    }
-  return sum;
-}
-
-void check(const Picture& picture) {
-  const auto count = static_cast<std::size_t>(std::max(0, picture.width)) *
-                     static_cast<std::size_t>(std::max(0, picture.height)) *
-                     static_cast<std::size_t>(std::max(0, picture.channels));
-  if (count == 0 || picture.channels > 4 || picture.texel.size() != count)
-    throw std::invalid_argument("laid: not a picture");
-}
-
 } // namespace
 
 std::shared_ptr<const ObjectPaint> laid(const PaintSurface& surface, const Scene& scene,
@@ -142,7 +69,11 @@ std::shared_ptr<const ObjectPaint> laid(const PaintSurface& surface, const Scene
         const std::int32_t face = texels.ownerAt(i, j);
         if (face < 0) continue;
         const auto f = static_cast<std::size_t>(face);
-        const Sample sample = sampleOver(picture, mapping, (*made.layout.uvs)[f], f, texels, i, j);
+        const auto& uv = (*made.layout.uvs)[f];
+        const PictureSample sample = meanOver(
+            picture, mapping.repeats(), texels.centre(i, j), texels.step(), [&](const Vec2& place) {
+              return mapping.at(f, texelBarycentric(uv, place.x(), place.y()));
+            });
         if (!(sample.alpha > 0)) continue;
         float* value = image.writable(tile) + image.offsetOf(i, j);
         const double lay[4] = {color ? sample.rgb[0] : sample.grey(), sample.rgb[1], sample.rgb[2],

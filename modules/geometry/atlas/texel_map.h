@@ -19,6 +19,8 @@ struct TexelMap {
     return owner[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
                  static_cast<std::size_t>(i)];
   }
+  Vec2 step() const { return {1.0 / width, 1.0 / height}; } // from texel to texel
+  Vec2 centre(int i, int j) const { return {(i + 0.5) / width, (j + 0.5) / height}; }
 };
 
 // A texel whose centre a face covers is owned by it: by the top-left rule exactly one of two that

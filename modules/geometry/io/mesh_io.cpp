@@ -36,14 +36,15 @@ MeshFileType meshFileType(const std::filesystem::path& path) {
                       (extension.empty() ? std::string() : ", not in '" + extension + "'"));
 }
 
-TriangleMesh readMesh(const std::filesystem::path& path, std::vector<std::string>* warnings) {
+TriangleMesh readMesh(const std::filesystem::path& path, std::vector<std::string>* warnings,
+                      MeshColors* colors) {
   (void)meshFileType(path); // a name that says nothing is refused unread
   const std::string bytes = readFile(path);
   switch (meshFileType(path, bytes)) {
   case MeshFileType::obj:
-    return parseObj(bytes, path.string(), warnings);
+    return parseObj(bytes, path.string(), warnings, colors);
   case MeshFileType::ply:
-    return parsePly(bytes, path.string(), warnings);
+    return parsePly(bytes, path.string(), warnings, colors);
   case MeshFileType::stl:
     break;
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/mesh/mesh_colors.h"
 #include "geometry/mesh/triangle_mesh.h"
 
 namespace patina {
@@ -25,17 +26,20 @@ namespace patina {
 //   normals are skipped.
 // - NaN and infinite coordinates and repeated corners are kept: cleaned() drops their faces and
 //   reports them. Texture coordinates are kept where every face has them.
-// Appends one line to `warnings` for each kind of thing that the mesh does not keep: colours,
-// materials, texture coordinates, indices out of range, bytes left over.
+// Colours of vertices, of faces and of materials (MTL: Kd, map_Kd with -s, -o, -clamp) and the
+// names of pictures (PLY: comment TextureFile, texnumber) go into `colors`, those of STL do not.
+// Appends one line to `warnings` for each kind of thing that is not kept: colours where `colors` is
+// null, libraries of materials that cannot be read, texture coordinates, indices out of range,
+// bytes left over.
 TriangleMesh readMesh(const std::filesystem::path& path,
-                      std::vector<std::string>* warnings = nullptr);
+                      std::vector<std::string>* warnings = nullptr, MeshColors* colors = nullptr);
 
-// The same from memory; `name` is used in messages, and warnings of materials and pictures look for
-// them beside it. These are what the fuzzers call.
+// The same from memory; `name` is used in messages, and materials and pictures are looked for
+// beside it. These are what the fuzzers call.
 TriangleMesh parseObj(std::string_view bytes, const std::string& name,
-                      std::vector<std::string>* warnings = nullptr);
+                      std::vector<std::string>* warnings = nullptr, MeshColors* colors = nullptr);
 TriangleMesh parsePly(std::string_view bytes, const std::string& name,
-                      std::vector<std::string>* warnings = nullptr);
+                      std::vector<std::string>* warnings = nullptr, MeshColors* colors = nullptr);
 TriangleMesh parseStl(std::string_view bytes, const std::string& name,
                       std::vector<std::string>* warnings = nullptr);
 

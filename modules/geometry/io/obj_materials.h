@@ -1,4 +1,4 @@
-// Reads the materials of an OBJ file for its warnings. Internal to the readers.
+// Reads the materials of an OBJ file. Internal to the readers.
 #pragma once
 
 #include <filesystem>
@@ -6,15 +6,21 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/mesh/mesh_colors.h"
 #include "geometry/mesh/triangle_mesh.h"
 
 namespace patina {
 
 struct ObjMaterials {
+  struct Use {
+    std::size_t first_triangle = 0;
+    std::string name;
+  };
   std::vector<std::string> libraries; // as written after mtllib
-  std::vector<std::string> used;      // names after usemtl, possibly repeated
+  std::vector<Use> uses;              // of usemtl; each holds until the next
 
-  void addStatement(std::string_view keyword, std::string_view statement);
+  // Adds what stands after mtllib or usemtl; `triangles` is the number of those before it.
+  void addStatement(std::string_view keyword, std::string_view statement, std::size_t triangles);
 };
 
 // One material of a library.
@@ -22,6 +28,7 @@ struct MtlMaterial {
   std::string name;
   std::vector<double> color; // Kd: three numbers, or none
   std::string picture;       // map_Kd: as written, without its options; or empty
+  MeshPicture mapped{};      // what its options -s, -o and -clamp say
 };
 
 // Statements that are unknown or broken are skipped: a material never refuses its mesh.
@@ -36,9 +43,11 @@ std::filesystem::path besideFile(const std::filesystem::path& from, const std::s
 std::string picturesLeftOut(const std::filesystem::path& path, const std::string& keyword,
                             const std::vector<std::string>& pictures, bool has_texture_coordinates);
 
-// Reads the libraries beside `path` and adds one line for each kind of thing that is left out:
-// libraries that cannot be read, pictures, colours.
-void addMaterialWarnings(const ObjMaterials& materials, const std::filesystem::path& path,
-                         const TriangleMesh& mesh, std::vector<std::string>& warnings);
+// Reads the libraries beside `path`. The colours and pictures of the mesh's faces go into `colors`;
+// one line goes into `warnings` for each kind of thing that is left out. Where `colors` is null all
+// of them are.
+void readMaterials(const ObjMaterials& materials, const std::filesystem::path& path,
+                   const TriangleMesh& mesh, MeshColors* colors,
+                   std::vector<std::string>* warnings);
 
 } // namespace patina

@@ -19,9 +19,9 @@ class ObjParser {
  public:
   // textured: where that lies which is not null, lines of haptic coordinates are read.
   ObjParser(std::string_view bytes, const std::string& name, std::vector<std::string>* warnings,
-            std::vector<TexturedFace>* textured = nullptr)
-      : name_(name), lines_(withoutByteOrderMark(bytes)), warnings_(warnings), textured_(textured) {
-  }
+            MeshColors* colors, std::vector<TexturedFace>* textured = nullptr)
+      : name_(name), lines_(withoutByteOrderMark(bytes)), colors_(colors), warnings_(warnings),
+        textured_(textured) {}
 
   TriangleMesh parse() {
     std::string_view statement;
@@ -39,7 +39,7 @@ class ObjParser {
       else if (textured_ && keyword == "h")
         readHapticCoordinates(words);
       else if (keyword == "mtllib" || keyword == "usemtl")
-        materials_.addStatement(keyword, statement);
+        materials_.addStatement(keyword, statement, mesh_.triangles.size());
       else if (text::hasControl(statement))
         fail("binary data where OBJ text should be");
     }
@@ -58,6 +58,8 @@ class ObjParser {
     if (texture_points_.missing == 0 && all_textured_) gatherTexture();
     const PolygonFaults faults = splitPolygons(mesh_, fans_);
     if (warnings_) addWarnings(faults);
+    if (colors_) keepVertexColors();
+    readMaterials(materials_, name_, mesh_, colors_, warnings_);
     return std::move(mesh_);
   }
 
@@ -117,14 +119,31 @@ class ObjParser {
   void readVertex(text::Words& words) {
     Vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = text::number(words.next(), name_, line_, "a coordinate");
-    // A weight or a colour may follow; neither is used, but it must be numbers.
-    int more = 0;
-    for (auto word = words.next(); !word.empty(); word = words.next(), ++more)
-      text::number(word, name_, line_, "a number");
-    if (more >= 3) ++colored_vertices_;
+    // A weight, a colour or both may follow.
+    std::array<double, 4> after{};
+    std::size_t more = 0;
+    for (auto word = words.next(); !word.empty(); word = words.next(), ++more) {
+      const double value = text::number(word, name_, line_, "a number");
+      if (more < after.size()) after[more] = value;
+    }
+    if (more >= 3) addVertexColor(&after[more > 3 ? 1 : 0]);
     if (static_cast<std::int64_t>(mesh_.positions.size()) == kMostIndices)
       fail("more vertices than this program can count");
     mesh_.positions.push_back(p);
+  }
+
+  void addVertexColor(const double* rgb) {
+    ++colored_vertices_;
+    if (!colors_) return;
+    colors_->vertices.resize(mesh_.positions.size());
+    Rgba& color = colors_->vertices.emplace_back(Rgba{0, 0, 0, 1});
+    for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<float>(rgb[k]);
+  }
+
+  void keepVertexColors() {
+    if (colored_vertices_ == 0) return;
+    colors_->vertices.resize(mesh_.positions.size());
+    scaleColors(colors_->vertices, 0);
   }
 
   void readTexturePoint(text::Words& words) {
@@ -254,8 +273,10 @@ class ObjParser {
     if (texture_points_.missing == 0 && !texture_.empty() && !all_textured_)
       warnings_->push_back("the texture coordinates are left out: " + formatCount(bare_triangles_) +
                            " of " + formatCount(mesh_.triangles.size()) + " triangles have none");
-    if (colored_vertices_ > 0) warnings_->push_back(text::colorsLeftOut("vertices"));
-    addMaterialWarnings(materials_, name_, mesh_, *warnings_);
+    if (colored_vertices_ > 0 && !colors_) warnings_->push_back(text::colorsLeftOut("vertices"));
+    if (colors_ && colored_vertices_ > 0 && colored_vertices_ < mesh_.positions.size())
+      warnings_->push_back(formatCount(mesh_.positions.size() - colored_vertices_) + " of " +
+                           formatCount(mesh_.positions.size()) + " vertices have no colour");
   }
 
   void gatherTexture() {
@@ -280,6 +301,7 @@ class ObjParser {
   std::size_t bare_triangles_ = 0; // triangles without texture coordinates
   std::size_t colored_vertices_ = 0;
   ObjMaterials materials_;
+  MeshColors* colors_;
   std::vector<std::string>* warnings_;
   std::vector<TexturedFace>* textured_;
   std::int64_t haptic_lines_ = 0;
@@ -292,13 +314,13 @@ class ObjParser {
 } // namespace
 
 TriangleMesh parseObj(std::string_view bytes, const std::string& name,
-                      std::vector<std::string>* warnings) {
-  return ObjParser(bytes, name, warnings).parse();
+                      std::vector<std::string>* warnings, MeshColors* colors) {
+  return ObjParser(bytes, name, warnings, colors).parse();
 }
 
 TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name) {
   TexturedMesh read;
-  read.mesh = ObjParser(bytes, name, &read.warnings, &read.textured).parse();
+  read.mesh = ObjParser(bytes, name, &read.warnings, &read.colors, &read.textured).parse();
   return read;
 }
 

@@ -11,36 +11,56 @@ namespace patina {
 namespace {
 
 constexpr int kUnused = -1;
-constexpr int kU = 3; // roles of vertex properties: 0..2 position, 3..4 texture
-constexpr int kIndices = 0;
-constexpr int kTexture = 1;           // roles of face properties
+constexpr int kU = 3; // roles of vertex properties: 0..2 position, 3..4 texture, 5..7 colour
+constexpr int kRed = 5;
+constexpr int kRoles = 8;
+constexpr int kIndices = 0; // roles of face properties; 5..7 colour
+constexpr int kTexture = 1;
+constexpr int kPicture = 2;
 constexpr std::int32_t kRestart = -1; // in a list of strips: the next one begins
+
+int colorRole(const PlyProperty& p) {
+  const std::string_view name = p.name.starts_with("diffuse_") ? std::string_view(p.name).substr(8)
+                                                               : std::string_view(p.name);
+  for (int k = 0; k < 3; ++k)
+    if (name == std::array{"red", "green", "blue"}[static_cast<std::size_t>(k)] ||
+        name == std::array{"r", "g", "b"}[static_cast<std::size_t>(k)])
+      return kRed + k;
+  return kUnused;
+}
 
 int vertexRole(const PlyProperty& p) {
   if (p.count_type) return kUnused;
   if (p.name == "x" || p.name == "y" || p.name == "z") return p.name[0] - 'x';
   if (p.name == "u" || p.name == "s" || p.name == "texture_u") return kU;
   if (p.name == "v" || p.name == "t" || p.name == "texture_v") return kU + 1;
-  return kUnused;
+  return colorRole(p);
 }
 
 int faceRole(const PlyProperty& p) {
-  if (!p.count_type) return kUnused;
+  if (!p.count_type) return p.name == "texnumber" ? kPicture : colorRole(p);
   if (p.name == "vertex_indices" || p.name == "vertex_index") return kIndices;
   if (p.name == "texcoord") return kTexture;
   return kUnused;
 }
 
-bool hasColors(const PlyElement& e) {
-  return e.count > 0 && std::any_of(e.properties.begin(), e.properties.end(), [](const auto& p) {
-           return p.name == "red" || p.name == "diffuse_red" || p.name == "r";
-         });
+using Roles = std::array<bool, kRoles>;
+
+bool hasColor(const Roles& has) {
+  return has[kRed] && has[kRed + 1] && has[kRed + 2];
+}
+
+// Returns what a full colour is in this type; 0 for numbers of which the largest decides.
+double whiteOf(PlyType type) {
+  if (!isInteger(type)) return 0;
+  return bytes(type) == 2 ? 65535 : 255;
 }
 
 template <typename Source> class PlyParser {
  public:
-  PlyParser(const PlyHeader& header, const std::string& name, std::vector<std::string>* warnings)
-      : header_(header), name_(name), in_(header, name), warnings_(warnings) {}
+  PlyParser(const PlyHeader& header, const std::string& name, std::vector<std::string>* warnings,
+            MeshColors* colors)
+      : header_(header), name_(name), in_(header, name), warnings_(warnings), colors_(colors) {}
 
   TriangleMesh parse() {
     const PlyElement* vertices = element("vertex");
@@ -66,7 +86,9 @@ template <typename Source> class PlyParser {
     if (!face_texture_) mesh_.corner_uvs.clear();
     const PolygonFaults faults = splitPolygons(mesh_, fans_);
     if (!face_texture_ && has_vertex_texture_) gatherVertexTexture();
-    if (warnings_) addWarnings(*vertices, faults);
+    const bool mapped = !mesh_.corner_uvs.empty();
+    if (colors_) keepColors(mapped);
+    if (warnings_) addWarnings(faults, mapped);
     return std::move(mesh_);
   }
 
@@ -83,16 +105,35 @@ template <typename Source> class PlyParser {
     throw FileError(name_, line, text::pointCloud(vertex_count_, "it has no face"));
   }
 
-  void addWarnings(const PlyElement& vertices, const PolygonFaults& faults) {
+  void addWarnings(const PolygonFaults& faults, bool mapped) {
     addPolygonWarnings(faults, *warnings_);
     if (texture_lost_)
       warnings_->push_back(
           "the texture coordinates of the faces are left out: not every face has them");
-    if (hasColors(vertices)) warnings_->push_back(text::colorsLeftOut("vertices"));
-    if (faces_ && hasColors(*faces_)) warnings_->push_back(text::colorsLeftOut("faces"));
-    if (!header_.pictures.empty())
-      warnings_->push_back(
-          picturesLeftOut(name_, "TextureFile", header_.pictures, !mesh_.corner_uvs.empty()));
+    if (!colors_ && vertex_white_) warnings_->push_back(text::colorsLeftOut("vertices"));
+    if (!colors_ && face_white_) warnings_->push_back(text::colorsLeftOut("faces"));
+    if (!header_.pictures.empty() && !(colors_ && mapped))
+      warnings_->push_back(picturesLeftOut(name_, "TextureFile", header_.pictures, mapped));
+  }
+
+  void keepColors(bool mapped) {
+    const std::size_t triangles = mesh_.triangles.size();
+    if (vertex_white_) scaleColors(colors_->vertices, *vertex_white_);
+    if (face_white_) {
+      colors_->faces.resize(triangles); // those of strips have none
+      scaleColors(colors_->faces, *face_white_);
+    }
+    if (!mapped || header_.pictures.empty()) {
+      colors_->picture_of.clear();
+      return;
+    }
+    for (const std::string& picture : header_.pictures) {
+      MeshPicture& kept = colors_->pictures.emplace_back();
+      kept.file = besideFile(name_, picture);
+    }
+    colors_->picture_of.resize(triangles, 0);
+    for (std::int32_t& picture : colors_->picture_of)
+      if (picture >= static_cast<std::int32_t>(colors_->pictures.size())) picture = -1;
   }
 
   const PlyElement* element(const char* wanted) const {
@@ -107,14 +148,18 @@ template <typename Source> class PlyParser {
 
   // The role of each property; a role that two properties claim is an error.
   template <typename RoleOf>
-  std::vector<int> roles(const PlyElement& e, RoleOf roleOf, std::array<bool, 5>& claimed) const {
+  std::vector<int> roles(const PlyElement& e, RoleOf roleOf, Roles& claimed) const {
     std::vector<int> result;
     for (const PlyProperty& p : e.properties) {
       result.push_back(roleOf(p));
       if (result.back() == kUnused) continue;
       bool& is_claimed = claimed[static_cast<std::size_t>(result.back())];
-      if (is_claimed) fail(e, "two properties like " + text::quoted(p.name));
-      is_claimed = true;
+      if (is_claimed && result.back() >= kRed)
+        result.back() = kUnused; // the first colour of two
+      else if (is_claimed)
+        fail(e, "two properties like " + text::quoted(p.name));
+      else
+        is_claimed = true;
     }
     return result;
   }
@@ -138,14 +183,17 @@ template <typename Source> class PlyParser {
   }
 
   void readVertices(const PlyElement& e) {
-    std::array<bool, 5> has{};
+    Roles has{};
     const std::vector<int> role = roles(e, vertexRole, has);
     for (std::size_t k = 0; k < 3; ++k)
       if (!has[k]) fail(e, std::string("the vertices have no property '") + "xyz"[k] + "'");
     has_vertex_texture_ = has[kU] && has[kU + 1];
     mesh_.positions.reserve(e.count);
     if (has_vertex_texture_) vertex_texture_.reserve(e.count);
-    std::array<double, 5> values{};
+    if (e.count > 0 && hasColor(has)) vertex_white_ = whiteOf(typeOf(e, role, kRed));
+    const bool colored = colors_ && vertex_white_;
+    if (colored) colors_->vertices.reserve(e.count);
+    std::array<double, kRoles> values{};
     for (std::uint64_t i = 0; i < e.count; ++i) {
       in_.beginItem(e);
       for (std::size_t k = 0; k < role.size(); ++k) {
@@ -160,11 +208,21 @@ template <typename Source> class PlyParser {
       in_.endItem();
       mesh_.positions.emplace_back(values[0], values[1], values[2]);
       if (has_vertex_texture_) vertex_texture_.emplace_back(values[kU], values[kU + 1]);
+      if (colored) colors_->vertices.push_back(colorIn(values));
     }
   }
 
-  std::vector<int> faceRoles(const PlyElement& e, const char* whose,
-                             std::array<bool, 5>& has) const {
+  static PlyType typeOf(const PlyElement& e, const std::vector<int>& role, int wanted) {
+    const auto found = std::find(role.begin(), role.end(), wanted);
+    return e.properties[static_cast<std::size_t>(found - role.begin())].type;
+  }
+
+  static Rgba colorIn(const std::array<double, kRoles>& values) {
+    return {static_cast<float>(values[kRed]), static_cast<float>(values[kRed + 1]),
+            static_cast<float>(values[kRed + 2]), 1.0F};
+  }
+
+  std::vector<int> faceRoles(const PlyElement& e, const char* whose, Roles& has) const {
     const std::vector<int> role = roles(e, faceRole, has);
     if (!has[kIndices]) fail(e, std::string("the ") + whose + " have no list 'vertex_indices'");
     for (std::size_t k = 0; k < role.size(); ++k)
@@ -174,12 +232,15 @@ template <typename Source> class PlyParser {
   }
 
   void readFaces(const PlyElement& e) {
-    std::array<bool, 5> has{};
+    Roles has{};
     const std::vector<int> role = faceRoles(e, "faces", has);
     face_texture_ = has[kTexture] && countOf(strips_) == 0;
     texture_lost_ = has[kTexture] && !face_texture_;
     mesh_.triangles.reserve(e.count);
     if (face_texture_) mesh_.corner_uvs.reserve(e.count);
+    if (e.count > 0 && hasColor(has)) face_white_ = whiteOf(typeOf(e, role, kRed));
+    const bool colored = colors_ && face_white_, pictured = colors_ && has[kPicture];
+    std::array<double, kRoles> values{};
     for (std::uint64_t i = 0; i < e.count; ++i) {
       in_.beginItem(e);
       for (std::size_t k = 0; k < role.size(); ++k) {
@@ -190,16 +251,24 @@ template <typename Source> class PlyParser {
           readFaceTexture(p);
         else if (p.count_type)
           skipList(p);
-        else
-          in_.value(p.type);
+        else if (const double value = in_.value(p.type); role[k] != kUnused)
+          values[static_cast<std::size_t>(role[k])] = value;
       }
       in_.endItem();
       addPolygon();
+      if (colored) colors_->faces.resize(mesh_.triangles.size(), colorIn(values));
+      if (pictured)
+        colors_->picture_of.resize(mesh_.triangles.size(), pictureNumber(values[kPicture]));
     }
   }
 
+  static std::int32_t pictureNumber(double number) {
+    constexpr double kMost = 1e9;
+    return number >= 0 && number < kMost ? static_cast<std::int32_t>(number) : -1;
+  }
+
   void readStrips(const PlyElement& e) {
-    std::array<bool, 5> has{};
+    Roles has{};
     const std::vector<int> role = faceRoles(e, "strips", has);
     for (std::uint64_t i = 0; i < e.count; ++i) {
       in_.beginItem(e);
@@ -287,6 +356,8 @@ template <typename Source> class PlyParser {
   const std::string& name_;
   Source in_;
   std::vector<std::string>* warnings_;
+  MeshColors* colors_;
+  std::optional<double> vertex_white_, face_white_; // absent where there is no colour
   TriangleMesh mesh_;
   const PlyElement* faces_ = nullptr; // nullptr where the file has none
   const PlyElement* strips_ = nullptr;
@@ -303,17 +374,17 @@ template <typename Source> class PlyParser {
 } // namespace
 
 TriangleMesh parsePly(std::string_view bytes, const std::string& name,
-                      std::vector<std::string>* warnings) {
+                      std::vector<std::string>* warnings, MeshColors* colors) {
   const PlyHeader header = parsePlyHeader(bytes, name);
   switch (header.format) {
   case PlyFormat::ascii:
-    return PlyParser<PlyAsciiSource>(header, name, warnings).parse();
+    return PlyParser<PlyAsciiSource>(header, name, warnings, colors).parse();
   case PlyFormat::little_endian:
-    return PlyParser<PlyBinarySource<false>>(header, name, warnings).parse();
+    return PlyParser<PlyBinarySource<false>>(header, name, warnings, colors).parse();
   case PlyFormat::big_endian:
     break;
   }
-  return PlyParser<PlyBinarySource<true>>(header, name, warnings).parse();
+  return PlyParser<PlyBinarySource<true>>(header, name, warnings, colors).parse();
 }
 
 } // namespace patina

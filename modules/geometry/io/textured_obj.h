@@ -11,6 +11,7 @@ namespace patina {
 
 struct TexturedMesh {
   TriangleMesh mesh; // as of readMesh()
+  MeshColors colors; // as of readMesh()
   std::vector<TexturedFace> textured;
   std::vector<std::string> warnings; // as of readMesh()
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "authoring/images/lay_colors.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "core/output_target.h"
@@ -167,6 +168,21 @@ void requireReadable(const std::filesystem::path& path) {
                       kReadable);
 }
 
+// Gives the scene's only object what its file says of colours and haptic textures. `scale` took its
+// lengths to metres.
+void addPaint(OpenedScene& opened, const std::string& where, TexturedMesh read, double scale) {
+  SceneObject& object = opened.scene.objects[0];
+  std::vector<std::string> warnings;
+  object.paint = paintOf(*object.mesh, read.colors, opened.scene.paint_size, warnings);
+  for (const std::string& line : warnings) opened.warnings.push_back(where + ": " + line);
+  if (read.textured.empty()) return;
+  for (TexturedFace& face : read.textured)
+    for (Vec2& at : face.at) at *= scale;
+  ObjectPaint paint = object.paint ? *object.paint : ObjectPaint{};
+  paint.textures = std::make_shared<const LaidTextures>(LaidTextures{std::move(read.textured), {}});
+  object.paint = std::make_shared<const ObjectPaint>(std::move(paint));
+}
+
 } // namespace
 
 bool isVolumeFile(const std::filesystem::path& path) {
@@ -224,7 +240,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
     read = readTexturedObj(path);
   } else {
     requireReadable(path);
-    read.mesh = readMesh(path, &read.warnings);
+    read.mesh = readMesh(path, &read.warnings, &read.colors);
   }
   for (const std::string& line : read.warnings)
     opened.warnings.push_back(path.string() + ": " + line);
@@ -245,14 +261,7 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
   addLayoutWarning(opened, path.string(), opened.scene.objects[0]);
   if (spec) opened.scene.field = *spec;
-  if (!read.textured.empty()) {
-    for (TexturedFace& face : read.textured)
-      for (Vec2& at : face.at) at *= scaled.scale;
-    ObjectPaint paint;
-    paint.textures =
-        std::make_shared<const LaidTextures>(LaidTextures{std::move(read.textured), {}});
-    opened.scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
-  }
+  addPaint(opened, path.string(), std::move(read), scaled.scale);
   return opened;
 }
 
