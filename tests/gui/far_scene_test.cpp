@@ -23,6 +23,13 @@ class FarScene : public DrivenWindow {
     for (const ToolSample& sample : samples) sum += sample.force;
     return sum / static_cast<double>(samples.size());
   }
+  void pressAt(const QPoint& place) {
+    pointAt(inView(place));
+    wait(500);
+    press();
+    EXPECT_TRUE(waitUntil([&] { return feel().sample().contact; }, 10000));
+    wait(600);
+  }
   Done doneAt(const Vec3& middle_of_cube, const std::string& name) {
     Done done;
     TriangleMesh cube = box(Vec3::Constant(kCube), 8);
@@ -32,14 +39,12 @@ class FarScene : public DrivenWindow {
     find<QCheckBox>(QStringLiteral("tip"))->setChecked(false);
     wait(1000);
 
+    type(QStringLiteral("p")); // once for the panel that it opens, so that views are alike
+    wait(800);
     type(QStringLiteral("q")); // press
+    wait(800);
     find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>()->setValue(1);
-    const QPoint place(60, -40);
-    pointAt(inView(place));
-    wait(500);
-    press();
-    EXPECT_TRUE(waitUntil([&] { return feel().sample().contact; }, 10000));
-    wait(600);
+    pressAt({60, -40});
     feel().startLog();
     wait(300);
     const std::vector<ToolSample> samples = feel().log().samples();
@@ -49,14 +54,14 @@ class FarScene : public DrivenWindow {
     done.felt_at = samples.back().surface - middle_of_cube;
     done.force = meanForce(samples);
 
-    pointAt(inView({0, 350}));
-    wait(500);
-    done.before = view().grab().toImage();
     type(QStringLiteral("p")); // colour
     EXPECT_TRUE(waitUntil([&] { return !edits().thread().busy(); }));
+    pointAt(inView({400, 0})); // beside the cube
+    wait(800);
+    done.before = view().grab().toImage();
     drag(inView({-60, 20}), inView({60, 20}), 1, 30);
     EXPECT_TRUE(waitUntil([&] { return edits().status().edits.size() == 1; }, 20000));
-    pointAt(inView({0, 350}));
+    pointAt(inView({400, 0}));
     wait(800);
     done.after = view().grab().toImage();
     const auto folder = folder_ / (name + ".patina");
@@ -89,7 +94,8 @@ TEST_F(FarScene, IsPickedPaintedAndFeltAsAtTheOrigin) {
               1000 * (near.felt_at - far.felt_at).norm(), near.force.norm(), far.force.norm(),
               100 * apart(near.before, far.before), 100 * apart(near.after, far.after),
               near.stroke.size(), far.stroke.size());
-  EXPECT_GT(near.force.norm(), 0.9);
+  ASSERT_EQ(near.before.size(), far.before.size());
+  EXPECT_GT(near.force.norm(), 0.7);
   EXPECT_LT((near.force - far.force).norm(), 0.01);
   EXPECT_LT((near.felt_at - far.felt_at).norm(), 2e-5);
   EXPECT_LT(apart(near.before, far.before), 0.002);

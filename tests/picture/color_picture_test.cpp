@@ -1,10 +1,9 @@
 // The colours that came with a mesh, as the view draws them, against what VTK draws of the same
-// colours as values of points, of cells and as a texture through the mesh's own coordinates.
+// colours as values of points and as a texture through the mesh's own coordinates.
 #include <array>
 
 #include <gtest/gtest.h>
 #include <vtkCamera.h>
-#include <vtkCellData.h>
 #include <vtkFloatArray.h>
 #include <vtkLight.h>
 #include <vtkNew.h>
@@ -185,8 +184,8 @@ class ColorPicture : public testing::Test {
     const auto data = bare();
     const auto values = rgb();
     for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
-      insert(*values, colorOfSide(sideOf(mesh_, f)));
-    data->GetCellData()->SetScalars(values);
+      for (int c = 0; c < 3; ++c) insert(*values, colorOfSide(sideOf(mesh_, f)));
+    data->GetPointData()->SetScalars(values); // no two triangles share a point
     return drawTruth(*data, nullptr);
   }
   vtkSmartPointer<vtkImageData> truthOfPicture() {
@@ -246,7 +245,7 @@ TEST_F(ColorPicture, OfVerticesIsThatOfPointValues) {
   expectEqual(seen, drawTruth(*data, nullptr));
 }
 
-TEST_F(ColorPicture, OfFacesIsThatOfCellValues) {
+TEST_F(ColorPicture, OfFacesIsThatOfTheirPoints) {
   std::string ply = "ply\nformat ascii 1.0\nelement vertex " +
                     std::to_string(mesh_.positions.size()) +
                     "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
@@ -260,17 +259,19 @@ TEST_F(ColorPicture, OfFacesIsThatOfCellValues) {
            text(colorOfSide(sideOf(mesh_, f))) + "\n";
   }
   writeFileAtomically(folder_ / "a.ply", ply);
-  expectEqual(drawFile(folder_ / "a.ply"), truthOfSides());
+  const auto seen = drawFile(folder_ / "a.ply");
+  expectEqual(seen, truthOfSides());
 }
 
-TEST_F(ColorPicture, OfMaterialsIsThatOfCellValues) {
+TEST_F(ColorPicture, OfMaterialsIsThatOfTheirFacesPoints) {
   std::string mtl;
   for (std::size_t side = 0; side < 6; ++side)
     mtl += "newmtl side" + std::to_string(side) + "\nKd" + text(colorOfSide(side)) + "\n";
   writeFileAtomically(folder_ / "a.mtl", mtl);
   writeFileAtomically(folder_ / "a.obj",
                       "mtllib a.mtl\n" + vertices(false, "v ") + mappedFaces("usemtl "));
-  expectEqual(drawFile(folder_ / "a.obj"), truthOfSides());
+  const auto seen = drawFile(folder_ / "a.obj");
+  expectEqual(seen, truthOfSides());
 }
 
 TEST_F(ColorPicture, OfATextureIsThatOfTheTexture) {
@@ -284,7 +285,8 @@ TEST_F(ColorPicture, OfATextureIsThatOfTheTexture) {
   std::string ply = plyBytes(mesh_);
   ply.insert(ply.find("element vertex"), "comment TextureFile checks.png\n");
   writeFileAtomically(folder_ / "a.ply", ply);
-  expectEqual(drawFile(folder_ / "a.ply"), truthOfPicture());
+  const auto of_ply = drawFile(folder_ / "a.ply");
+  expectEqual(of_ply, truthOfPicture());
 }
 
 } // namespace

@@ -12,7 +12,9 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
     throw Error("the scan has no poses, no probe's stream or no rig.json: heights need all three");
   if (scene.objects.size() != 1)
     throw Error("a scan's texture needs a scene of one object, the one that was scanned");
-  if (!align.alignment().isReady() || align.name() != scan.name())
+  // A scan that was put into the workspace is aligned under the name that it has there.
+  const QString stored = QString::fromStdString(scan.files()->scan.name);
+  if (!align.alignment().isReady() || (align.name() != scan.name() && align.name() != stored))
     throw Error("the scan's path is not laid onto the mesh: do that on the desk Align");
   PlacedScan placed;
   placed.name = scan.name().toStdString();

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kTexelsPerFace = 8; // so that what is one face's stays sharp
 constexpr double kPacked = 0.6;      // of the unit square, by an atlas
+constexpr double kFiner = 1.5;       // an atlas than the picture that is read into it, a side
 
 using Pictures = std::vector<std::optional<Picture>>;
 
@@ -57,7 +58,7 @@ double wantedSide(const TriangleMesh& mesh, const MeshColors& colors, const Pict
     }
     const MeshPicture& named = colors.pictures[static_cast<std::size_t>(colors.picture_of[f])];
     if (atlas)
-      texels += texelsShown(mesh, named, *picture, f);
+      texels += kFiner * kFiner * texelsShown(mesh, named, *picture, f);
     else
       side = std::max({side, named.scale.x() * picture->width, named.scale.y() * picture->height});
   }
@@ -100,7 +101,7 @@ std::shared_ptr<const ObjectPaint> paintOf(const TriangleMesh& mesh, const MeshC
   if (paint->layout.made && side != least) paint->layout = madeAtlas(mesh, side);
   const CornerUvs& uvs = *paint->layout.uvs;
   const TexelMap texels = texelMap(uvs, side, side);
-  if (!pictures.empty() && wanted > side)
+  if (!pictures.empty() && wanted / (paint->layout.made ? kFiner : 1) > side)
     warnings.push_back("its pictures are finer than what is kept of them: " + std::to_string(side) +
                        " x " + std::to_string(side) + " texels");
 
@@ -134,7 +135,10 @@ std::shared_ptr<const ObjectPaint> paintOf(const TriangleMesh& mesh, const MeshC
       }
   });
   image.dropEmptyTiles();
-  if (image.bytes() == 0) return nullptr;
+  bool is_empty = true;
+  for (std::size_t tile = 0; tile < image.tileCount(); ++tile)
+    is_empty = is_empty && image.tile(tile) == nullptr;
+  if (is_empty) return nullptr;
   paint->color = std::make_shared<const TiledImage>(std::move(image));
   return paint;
 }
