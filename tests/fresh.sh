@@ -3,7 +3,8 @@
 # nothing is there but what the scripts install. Needs root, chroot and the package sources of this
 # machine; where one of them is refused it fails.
 #   tests/fresh.sh                     app/run.sh as an ordinary user, after root has installed what it
-#                                      names; then, in a second system, app/run.sh as root
+#                                      names; then, in a second system and another folder, app/run.sh
+#                                      as root; both must build the same programs, byte for byte
 #   tests/fresh.sh --tests [--quick]   app/run.sh as an ordinary user, then tests/run.sh as root
 #   tests/fresh.sh --package FILE.deb  installs Debian's own way and uses what is installed
 #   --release bookworm|trixie          the Debian that is tried; this machine's unless told
@@ -30,7 +31,7 @@ while [ $# -gt 0 ]; do
     shift
     ;;
   --keep) keep=yes ;;
-  *) sed -n '2,11s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,12s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
   esac
   shift
 done
@@ -173,6 +174,11 @@ first_command_as_person() {
   timed "What the build has read" in_system root tests/declared.sh
 }
 
+# The digests of all that is built into bin, by name.
+programs() {
+  (cd "$root$clone/build/bin" && find . -type f -print0 | sort -z | xargs -0 sha256sum)
+}
+
 use_package() {
   cp "$package" "$root/package.deb"
   in_system root "
@@ -205,9 +211,13 @@ first_command_as_person
 if [ $mode = tests ]; then
   timed "tests/run.sh as root" in_system root "tests/run.sh $quick"
 else
+  built=$(programs)
   remove_system
+  clone=/root/patina
   timed "A second bare $release" make_system
   timed "app/run.sh as root" in_system root app/run.sh
   in_system root "test -s out/report.md"
+  diff <(echo "$built") <(programs) || { echo "two builds of $commit differ"; exit 1; }
+  say "Both built the same $(wc -l <<<"$built") programs and libraries"
 fi
 say "README's commands hold on a bare $release ($((SECONDS / 60)) min)"

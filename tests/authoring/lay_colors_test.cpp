@@ -157,7 +157,39 @@ TEST_F(LayColors, APictureThatIsTooFineIsKeptCoarserWithALine) {
   ASSERT_TRUE(paint);
   EXPECT_EQ(paint->color->width(), kMostColorTexels);
   ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_NE(warnings_[0].find("more than 2048 texels a side"), std::string::npos);
+}
+
+// 2560 texels become 1280, which the image of 2048 takes whole.
+TEST_F(LayColors, APictureThatIsKeptCoarserStaysWhereItWas) {
+  TriangleMesh mesh = sheet(0.05, 0.05, 1);
+  mesh.corner_uvs = {{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, {Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)}};
+  MeshColors colors;
+  colors.pictures.push_back({ramp(2560), {-1, 1}, {1, 0}, true});
+  colors.picture_of.assign(mesh.triangles.size(), 0);
+  const auto paint = paintOf(mesh, colors, 512, warnings_);
+  ASSERT_TRUE(paint);
+  EXPECT_EQ(paint->color->width(), 2048);
+  for (int trial = 1; trial < 9; ++trial)
+    EXPECT_NEAR(colorAt(*paint, 0, Vec3(1 - 0.1 * trial, 0.05 * trial, 0.05 * trial)).x(),
+                1 - 0.05 * trial, 1e-3);
+}
+
+TEST_F(LayColors, OfManyFacesThatNeedMoreTexelsAreKeptCoarserWithALine) {
+  const TriangleMesh mesh = sheet(0.05, 0.05, 420);
+  MeshColors colors;
+  colors.faces.assign(mesh.triangles.size(), {1, 0, 0, 1});
+  ASSERT_TRUE(paintOf(mesh, colors, 512, warnings_));
+  ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_NE(warnings_[0].find("2048 x 2048"), std::string::npos);
+}
+
+TEST_F(LayColors, TheImageIsNoSmallerThanTheSceneAsksFor) {
+  const TriangleMesh mesh = box(Vec3(0.05, 0.04, 0.03), 1);
+  MeshColors colors;
+  colors.faces.assign(mesh.triangles.size(), {1, 0, 0, 1});
+  for (const int least : {64, 1024, 4096})
+    EXPECT_EQ(paintOf(mesh, colors, least, warnings_)->color->width(), least);
 }
 
 TEST_F(LayColors, APictureThatCannotBeReadLeavesTheFacesTheirOwnColour) {

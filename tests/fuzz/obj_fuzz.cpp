@@ -14,9 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!material.color.empty() && material.color.size() != 3) std::abort();
   try {
     patina::fuzz::checkMesh(patina::parseObj(bytes, "fuzz"));
-    const patina::TexturedMesh read = patina::parseTexturedObj(bytes, "fuzz");
+    patina::MeshColors colors;
+    const patina::TexturedMesh read = patina::parseTexturedObj(bytes, "fuzz", &colors);
     patina::fuzz::checkWarnings(read.warnings);
-    patina::fuzz::checkColors(read.colors, read.mesh);
+    patina::fuzz::checkColors(colors, read.mesh);
     std::int32_t last = -1;
     for (const patina::TexturedFace& face : read.textured) {
       if (face.face <= last || face.texture < 0 ||

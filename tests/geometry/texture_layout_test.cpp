@@ -158,5 +158,21 @@ TEST(TextureLayout, MakesAnAtlasAndSaysWhyWhereCoordinatesFail) {
   EXPECT_FALSE(textureLayout(mesh, 64).made);
 }
 
+TEST(OwnLayoutFault, NamesASideWithoutAreaAndChartsThatAreTooSmall) {
+  TriangleMesh mesh = sheet(1, 1, 4);
+  for (const Triangle& t : mesh.triangles) {
+    auto& uv = mesh.corner_uvs.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k)
+      uv[k] = mesh.positions[static_cast<std::size_t>(t[k])].head<2>() + Vec2(0.5, 0.5);
+  }
+  EXPECT_EQ(ownLayoutFault(mesh), "");
+  TriangleMesh flat = mesh;
+  flat.corner_uvs[5].fill(Vec2(0.5, 0.5));
+  EXPECT_EQ(ownLayoutFault(flat), "texture coordinates have no area on 1 triangles");
+  for (auto& uv : mesh.corner_uvs)
+    for (Vec2& p : uv) p *= 0.05;
+  EXPECT_EQ(ownLayoutFault(mesh), "texture coordinates fill less than 1 % of the unit square");
+}
+
 } // namespace
 } // namespace patina

@@ -15,6 +15,10 @@
 #include <vtkPointData.h>
 #include <vtkShortArray.h>
 #include <vtkSignedCharArray.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnsignedIntArray.h>
+#include <vtkUnsignedLongLongArray.h>
+#include <vtkUnsignedShortArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
 
@@ -367,6 +371,38 @@ TEST_F(FieldIo, AnIsoValueBetweenWholeNumbersIsTakenAsItIs) {
   double x = 99;
   for (const Vec3& p : isoSurfaceOfVolume(file("v.vti"), 33).positions) x = std::min(x, p.x());
   EXPECT_NEAR(x, 3.3, 1e-6); // no node has 33
+}
+
+TEST_F(FieldIo, NumbersOfEveryTypeGiveTheSameSurface) {
+  const auto falls = [](int i, int j, int k) {
+    return std::max(0, 40 - static_cast<int>(5 * (Vec3(i, j, k) - Vec3(6, 7, 6)).norm()));
+  };
+  const auto mesh = [&](auto array, const char* name) {
+    const vtkNew<vtkImageData> image;
+    image->SetDimensions(14, 14, 14);
+    array->SetName("numbers");
+    for (int k = 0; k < 14; ++k)
+      for (int j = 0; j < 14; ++j)
+        for (int i = 0; i < 14; ++i) array->InsertNextTuple1(falls(i, j, k));
+    image->GetPointData()->AddArray(array);
+    const vtkNew<vtkXMLImageDataWriter> writer;
+    writer->SetInputData(image);
+    writer->SetFileName(file(name).c_str());
+    writer->Write();
+    return isoSurfaceOfVolume(file(name), 12.3);
+  };
+  const TriangleMesh truth = mesh(vtkSmartPointer<vtkDoubleArray>::New(), "double.vti");
+  ASSERT_GT(truth.triangles.size(), 100u);
+  const auto expectTruth = [&](const TriangleMesh& other, const char* name) {
+    ASSERT_EQ(other.triangles, truth.triangles) << name;
+    for (std::size_t v = 0; v < truth.positions.size(); ++v)
+      EXPECT_LT((other.positions[v] - truth.positions[v]).norm(), 1e-5) << name;
+  };
+  expectTruth(mesh(vtkSmartPointer<vtkUnsignedIntArray>::New(), "a.vti"), "uint32");
+  expectTruth(mesh(vtkSmartPointer<vtkUnsignedLongLongArray>::New(), "b.vti"), "uint64");
+  expectTruth(mesh(vtkSmartPointer<vtkUnsignedShortArray>::New(), "c.vti"), "uint16");
+  expectTruth(mesh(vtkSmartPointer<vtkUnsignedCharArray>::New(), "d.vti"), "uint8");
+  expectTruth(mesh(vtkSmartPointer<vtkFloatArray>::New(), "e.vti"), "float32");
 }
 
 TEST_F(FieldIo, AnIsoValueOutsideTheRangeIsExplained) {

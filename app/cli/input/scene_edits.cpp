@@ -218,6 +218,7 @@ Scene edited(const Scene& scene, const SceneEdits& edits, const OpenOptions& giv
   OpenOptions open = given;
   open.tip_radius_chosen =
       after.haptics.tip_radius.value_or(0.0) > 0 || setsTipRadius(edits.settings);
+  open.paint_size = paintSizeOf(edits.settings, after.paint_size);
   for (const std::string& text : edits.added) addObject(after, readObject(text, open, console));
   for (const std::string& name : edits.unscans) after = withoutScan(std::move(after), name);
   for (const std::string& text : edits.scans)

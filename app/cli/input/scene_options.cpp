@@ -161,6 +161,14 @@ bool setsTipRadius(const Settings& settings) {
   return false;
 }
 
+int paintSizeOf(const Settings& settings, int before) {
+  Scene scene;
+  scene.paint_size = before;
+  for (const auto& [key, value] : settings)
+    if (key == "paint.size") setValue(scene, key, value);
+  return scene.paint_size;
+}
+
 namespace {
 
 // What a setting needs so that anything comes of it.
@@ -195,6 +203,7 @@ OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& op
                        Console& console) {
   OpenOptions open = options.open;
   open.tip_radius_chosen = setsTipRadius(options.settings);
+  open.paint_size = paintSizeOf(options.settings, open.paint_size);
   OpenedScene opened = openScene(path, open);
   for (const std::string& warning : opened.warnings) console.warn(warning);
   layTextures(opened.scene, options.textures);

@@ -47,6 +47,8 @@ void applySettings(Scene& scene, const Settings& settings);
 
 // Whether they leave a scene with a tip radius above zero.
 bool setsTipRadius(const Settings& settings);
+// Returns the paint.size that the settings leave; `before` where they do not name it.
+int paintSizeOf(const Settings& settings, int before);
 
 // Opens, warns, and applies the settings. Throws FileError or Error; see openScene().
 OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& options,

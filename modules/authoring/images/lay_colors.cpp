@@ -1,11 +1,13 @@
 #include "authoring/images/lay_colors.h"
 
+#include <map>
 #include <optional>
 
 #include <tbb/parallel_for.h>
 
 #include "authoring/images/picture_sample.h"
 #include "core/error.h"
+#include "core/numbers.h"
 #include "geometry/atlas/texel_map.h"
 #include "pictures/picture_file.h"
 
@@ -14,26 +16,82 @@ namespace {
 
 constexpr double kTexelsPerFace = 8; // so that what is one face's stays sharp
 constexpr double kPacked = 0.6;      // of the unit square, by an atlas
-constexpr double kFiner = 1.5;       // an atlas than the picture that is read into it, a side
+constexpr double kFiner = 1.5;       // an atlas than what is read into it, a side
 
-using Pictures = std::vector<std::optional<Picture>>;
+// Each file once, however many materials show it.
+struct Pictures {
+  std::vector<std::optional<Picture>> files;
+  std::vector<std::size_t> file_of; // by picture of the mesh
+};
 
+// Returns the picture at half its size: each texel is the mean of four, weighted by coverage.
+Picture halved(const Picture& picture) {
+  Picture half{picture.width / 2, picture.height / 2, picture.channels, {}};
+  const auto channels = static_cast<std::size_t>(picture.channels);
+  const bool covers = channels % 2 == 0;
+  half.texel.resize(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height) *
+                    channels);
+  tbb::parallel_for(0, half.height, [&](int j) {
+    for (int i = 0; i < half.width; ++i) {
+      const auto texel = [&](int k) {
+        return &picture.texel[channels * (static_cast<std::size_t>(2 * j + k / 2) *
+                                              static_cast<std::size_t>(picture.width) +
+                                          static_cast<std::size_t>(2 * i + k % 2))];
+      };
+      float* to = &half.texel[channels *
+                              (static_cast<std::size_t>(j) * static_cast<std::size_t>(half.width) +
+                               static_cast<std::size_t>(i))];
+      float weight = 0;
+      for (int k = 0; k < 4; ++k) weight += covers ? texel(k)[channels - 1] : 1;
+      for (std::size_t c = 0; c < channels; ++c) {
+        const bool coverage = covers && c == channels - 1;
+        float sum = 0;
+        for (int k = 0; k < 4; ++k)
+          sum += texel(k)[c] * (covers && !coverage ? texel(k)[channels - 1] : 1);
+        to[c] = coverage ? sum / 4 : weight > 0 ? sum / weight : 0;
+      }
+    }
+  });
+  return half;
+}
+
+// Of a picture that is finer than any image that is made of it no more is kept in memory.
 Pictures readPictures(const MeshColors& colors, std::vector<std::string>& warnings) {
   Pictures pictures;
+  std::map<std::filesystem::path, std::size_t> known;
+  std::string first_lost;
+  std::size_t lost = 0, coarser = 0;
   for (const MeshPicture& named : colors.pictures) {
-    pictures.emplace_back();
+    const auto [file, is_new] = known.emplace(named.file, pictures.files.size());
+    pictures.file_of.push_back(file->second);
+    if (!is_new) continue;
+    auto& picture = pictures.files.emplace_back();
     try {
-      pictures.back() = readPicture(named.file);
+      picture = readPicture(named.file);
+      const bool fits = std::max(picture->width, picture->height) <= kMostColorTexels;
+      if (!fits) ++coarser;
+      while (std::max(picture->width, picture->height) > kMostColorTexels &&
+             std::min(picture->width, picture->height) > 1)
+        picture = halved(*picture);
     } catch (const Error& error) {
-      warnings.push_back(std::string("a picture of the mesh is not shown: ") + error.what());
+      if (lost++ == 0) first_lost = error.what();
     }
   }
+  if (lost > 0)
+    warnings.push_back((lost == 1 ? "a picture of the mesh is not shown: "
+                                  : formatCount(lost) + " pictures of the mesh are not shown, the "
+                                                        "first: ") +
+                       first_lost);
+  if (coarser > 0)
+    warnings.push_back(formatCount(coarser) + " of its pictures have more than " +
+                       std::to_string(kMostColorTexels) + " texels a side and are kept coarser");
   return pictures;
 }
 
 const Picture* pictureOf(const MeshColors& colors, const Pictures& pictures, std::size_t face) {
   if (colors.picture_of.empty() || colors.picture_of[face] < 0) return nullptr;
-  const auto& picture = pictures[static_cast<std::size_t>(colors.picture_of[face])];
+  const auto named = static_cast<std::size_t>(colors.picture_of[face]);
+  const auto& picture = pictures.files[pictures.file_of[named]];
   return picture ? &*picture : nullptr;
 }
 
@@ -58,17 +116,18 @@ double wantedSide(const TriangleMesh& mesh, const MeshColors& colors, const Pict
     }
     const MeshPicture& named = colors.pictures[static_cast<std::size_t>(colors.picture_of[f])];
     if (atlas)
-      texels += kFiner * kFiner * texelsShown(mesh, named, *picture, f);
+      texels += texelsShown(mesh, named, *picture, f);
     else
-      side = std::max({side, named.scale.x() * picture->width, named.scale.y() * picture->height});
+      side = std::max({side, std::abs(named.scale.x()) * picture->width,
+                       std::abs(named.scale.y()) * picture->height});
   }
   return std::max(side, std::sqrt(texels / kPacked));
 }
 
 int sideFor(double wanted, int least) {
   int side = least;
-  while (side < wanted && side < kMostColorTexels) side *= 2;
-  return std::min(side, kMostColorTexels);
+  while (side < wanted && 2 * side <= kMostColorTexels) side *= 2;
+  return side;
 }
 
 // Returns what the face shows beneath or without its picture.
@@ -95,15 +154,15 @@ std::shared_ptr<const ObjectPaint> paintOf(const TriangleMesh& mesh, const MeshC
   if (colors.empty()) return nullptr;
   const Pictures pictures = readPictures(colors, warnings);
   auto paint = std::make_shared<ObjectPaint>();
-  paint->layout = textureLayout(mesh, least);
-  const double wanted = wantedSide(mesh, colors, pictures, paint->layout.made);
-  const int side = sideFor(wanted, least);
-  if (paint->layout.made && side != least) paint->layout = madeAtlas(mesh, side);
+  const bool atlas = !ownLayoutFault(mesh).empty();
+  const double wanted = wantedSide(mesh, colors, pictures, atlas);
+  const int side = sideFor((atlas ? kFiner : 1) * wanted, least);
+  paint->layout = atlas ? madeAtlas(mesh, side) : textureLayout(mesh, side);
   const CornerUvs& uvs = *paint->layout.uvs;
   const TexelMap texels = texelMap(uvs, side, side);
-  if (!pictures.empty() && wanted / (paint->layout.made ? kFiner : 1) > side)
-    warnings.push_back("its pictures are finer than what is kept of them: " + std::to_string(side) +
-                       " x " + std::to_string(side) + " texels");
+  if (wanted > side)
+    warnings.push_back("its colours are finer than the " + std::to_string(side) + " x " +
+                       std::to_string(side) + " texels that are kept of them");
 
   TiledImage image(side, side, kColorChannels);
   tbb::parallel_for(std::size_t{0}, image.tileCount(), [&](std::size_t tile) {

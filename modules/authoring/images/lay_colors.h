@@ -16,9 +16,10 @@ inline constexpr int kMostColorTexels = 2048;
 
 // Returns a paint whose colour is that of each face's point: of its picture, read through the
 // mesh's own texture coordinates, of its vertices by barycentric weights of their sRGB values, or
-// its own (see MeshColors). Its layout is textureLayout()'s; its image is as fine as the pictures
-// or as 8 texels a face, between `least` and kMostColorTexels a side. Null if nothing has a colour.
-// A picture that cannot be read or is finer than the image is one line in `warnings`.
+// its own (see MeshColors). Its layout is textureLayout()'s. Its image has `least` texels a side,
+// or twice, four times as many ... up to kMostColorTexels where pictures or 8 texels a face need
+// them. Null if nothing has a colour. Pictures that cannot be read, and colours that are finer than
+// what is kept, are one line each in `warnings`.
 std::shared_ptr<const ObjectPaint> paintOf(const TriangleMesh& mesh, const MeshColors& colors,
                                            int least, std::vector<std::string>& warnings);
 

@@ -22,7 +22,9 @@ constexpr int kGap = 2 * kGutter; // texels between charts
 // Charts with less than this many texels are joined to neighbours even at the price of stretch:
 // their gaps would cost more than they show.
 constexpr double kSmallChart = 256;
-constexpr double kLeastShare = 0.4; // of the image that charts fill, as is hoped for
+constexpr double kLeastShare = 0.4;   // of the image that charts fill, as is hoped for
+constexpr double kMostLost = 1e-3;    // of the surface, without a place in the unit square
+constexpr double kLeastFilled = 0.01; // of the unit square
 // Sides of the image, about: longer charts would make the others small.
 constexpr double kLongest = 0.95;
 
@@ -210,17 +212,31 @@ std::string ownLayoutFault(const TriangleMesh& mesh) {
   if (mesh.corner_uvs.empty()) return "the mesh has no texture coordinates";
   if (mesh.corner_uvs.size() != mesh.triangles.size())
     return "texture coordinates are missing on some faces";
-  bool finite = true, inside = true, area = false;
-  for (const auto& uv : mesh.corner_uvs) {
+  bool finite = true, inside = true;
+  double filled = 0, whole = 0, lost = 0; // area of the unit square; of the faces, and of those
+  std::size_t flat = 0;                   // that have none of the square
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const auto& uv = mesh.corner_uvs[f];
     for (const Vec2& p : uv) {
       finite = finite && p.allFinite();
       inside = inside && p.minCoeff() >= 0 && p.maxCoeff() <= 1;
     }
-    area = area || hasArea(uv);
+    const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
+    const double area =
+        (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0)).norm();
+    if (!std::isfinite(area)) continue;
+    whole += area;
+    filled += 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
+    if (hasArea(uv)) continue;
+    lost += area;
+    ++flat;
   }
   if (!finite) return "texture coordinates are not finite";
   if (!inside) return "texture coordinates leave the unit square";
-  if (!area) return "texture coordinates have no area";
+  if (filled == 0) return "texture coordinates have no area";
+  if (lost > kMostLost * whole)
+    return "texture coordinates have no area on " + std::to_string(flat) + " triangles";
+  if (filled < kLeastFilled) return "texture coordinates fill less than 1 % of the unit square";
   const std::optional<UvOverlap> overlap = findUvOverlap(mesh.corner_uvs);
   if (!overlap) return "";
   return "texture coordinates overlap, those of triangles " + std::to_string(overlap->a) + " and " +

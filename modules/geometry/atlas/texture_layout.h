@@ -23,7 +23,8 @@ struct TextureLayout {
 inline constexpr int kGutter = 2;
 
 // Says why paint cannot lie by a mesh's own coordinates; empty if it can: every face has some, they
-// are finite, lie in the unit square, have area somewhere, and no two faces overlap.
+// are finite, lie in the unit square and fill a hundredth of it, all but a thousandth of the surface
+// has area there, and no two faces overlap.
 std::string ownLayoutFault(const TriangleMesh& mesh);
 
 // Returns the mesh's own coordinates where nothing is wrong with them, otherwise an atlas.

@@ -1,7 +1,9 @@
 #include "geometry/io/obj_materials.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -26,6 +28,17 @@ std::string_view after(std::string_view line, std::string_view word) {
   return trimmed(line.substr(static_cast<std::size_t>(word.data() + word.size() - line.data())));
 }
 
+std::optional<double> finiteNumber(std::string_view word) {
+  const auto number = parseNumber(word);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+// Returns the text without what may be a comment.
+std::string withoutComment(const std::string& text) {
+  const std::size_t at = text.find(" #");
+  return at == text.npos ? text : std::string(trimmed(text.substr(0, at)));
+}
+
 // Returns the text after the options of a map statement, such as `-s 2 2 1 -clamp on`, and notes
 // those that say where the picture lies.
 std::string_view withoutMapOptions(std::string_view rest, MeshPicture& mapped) {
@@ -37,7 +50,7 @@ std::string_view withoutMapOptions(std::string_view rest, MeshPicture& mapped) {
     std::string_view last = option;
     for (int i = 0; i < arguments; ++i) {
       const std::string_view word = words.next();
-      const auto number = parseNumber(word);
+      const auto number = finiteNumber(word);
       if (word.empty() || (vector && i > 0 && !number)) break;
       last = word;
       if (option == "-s" && number && i < 2) mapped.scale[i] = *number;
@@ -51,11 +64,13 @@ std::string_view withoutMapOptions(std::string_view rest, MeshPicture& mapped) {
   return rest;
 }
 
-// Returns true for two or more colours, or for one that is not grey.
-bool hasColors(const std::vector<const MtlMaterial*>& materials) {
+// Returns true for two or more colours, or for one that is not grey. Those beneath pictures that
+// are shown do not count.
+bool hasColors(const std::set<const MtlMaterial*>& materials, bool shows_pictures) {
   std::set<std::vector<double>> colors;
   for (const MtlMaterial* material : materials)
-    if (material->picture.empty() && !material->color.empty()) colors.insert(material->color);
+    if (!material->color.empty() && (material->picture.empty() || !shows_pictures))
+      colors.insert(material->color);
   if (colors.size() != 1) return !colors.empty();
   const std::vector<double>& c = *colors.begin();
   return c[0] != c[1] || c[1] != c[2];
@@ -66,6 +81,8 @@ std::vector<std::string> librariesOf(const std::string& written,
                                      const std::filesystem::path& path) {
   if (std::error_code ignored; std::filesystem::exists(besideFile(path, written), ignored))
     return {written};
+  const std::string bare = withoutComment(written);
+  if (bare != written) return librariesOf(bare, path);
   std::vector<std::string> names;
   text::Words words(written);
   for (std::string_view word = words.next(); !word.empty(); word = words.next())
@@ -75,24 +92,48 @@ std::vector<std::string> librariesOf(const std::string& written,
 
 using Library = std::map<std::string, MtlMaterial>; // by name; of two alike the first
 
+// Returns "'first'" or "'first' and 3 more".
+std::string firstOf(const std::set<std::string>& names) {
+  const std::string first = text::quoted(*names.begin(), 200);
+  return names.size() == 1 ? first : first + " and " + formatCount(names.size() - 1) + " more";
+}
+
 Library readLibraries(const ObjMaterials& materials, const std::filesystem::path& path,
                       std::vector<std::string>& warnings) {
   Library library;
+  std::set<std::string> read, lost;
   for (const std::string& written : materials.libraries)
     for (const std::string& name : librariesOf(written, path)) {
+      if (!read.insert(name).second) continue;
       try {
         const std::filesystem::path file = besideFile(path, name);
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(file, ignored))
           throw FileError(file.string(), 0, "no file");
-        for (MtlMaterial& material : parseMtl(readFile(file)))
+        for (MtlMaterial& material : parseMtl(readFile(file))) {
+          material.library = file;
           library.emplace(material.name, std::move(material));
+        }
       } catch (const FileError&) {
-        warnings.push_back("the materials " + text::quoted(name, 200) +
-                           " cannot be read: their colours and pictures are left out");
+        lost.insert(name);
       }
     }
+  if (!lost.empty())
+    warnings.push_back("the materials " + firstOf(lost) +
+                       " cannot be read: their colours and pictures are left out");
   return library;
+}
+
+const MtlMaterial* materialOf(const Library& library, const std::string& name) {
+  auto found = library.find(name);
+  if (found == library.end()) found = library.find(withoutComment(name));
+  return found == library.end() ? nullptr : &found->second;
+}
+
+std::filesystem::path pictureFile(const MtlMaterial& material, const std::filesystem::path& path) {
+  const std::filesystem::path file = besideFile(material.library, material.picture);
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored) ? file : besideFile(path, material.picture);
 }
 
 // Gives each triangle the colour and the picture of the material that is used for it.
@@ -101,14 +142,14 @@ void keepMaterials(const ObjMaterials& materials, const Library& library,
                    MeshColors& colors) {
   colors.faces.assign(triangles, Rgba{});
   if (mapped) colors.picture_of.assign(triangles, -1);
-  std::map<std::string, std::int32_t> known; // material -> its picture
+  std::map<const MtlMaterial*, std::int32_t> known; // its picture
   for (std::size_t i = 0; i < materials.uses.size(); ++i) {
     const ObjMaterials::Use& use = materials.uses[i];
     const std::size_t end =
         i + 1 < materials.uses.size() ? materials.uses[i + 1].first_triangle : triangles;
-    const auto found = library.find(use.name);
-    if (found == library.end() || use.first_triangle == end) continue;
-    const MtlMaterial& material = found->second;
+    const MtlMaterial* named = materialOf(library, use.name);
+    if (!named || use.first_triangle == end) continue;
+    const MtlMaterial& material = *named;
     const auto first = static_cast<std::ptrdiff_t>(use.first_triangle);
     const auto last = static_cast<std::ptrdiff_t>(end);
     Rgba color{1, 1, 1, 1};
@@ -118,10 +159,10 @@ void keepMaterials(const ObjMaterials& materials, const Library& library,
       std::fill(colors.faces.begin() + first, colors.faces.begin() + last, color);
     if (!mapped || material.picture.empty()) continue;
     const auto [picture, is_new] =
-        known.emplace(use.name, static_cast<std::int32_t>(colors.pictures.size()));
+        known.emplace(named, static_cast<std::int32_t>(colors.pictures.size()));
     if (is_new) {
       MeshPicture& kept = colors.pictures.emplace_back(material.mapped);
-      kept.file = besideFile(path, material.picture);
+      kept.file = pictureFile(material, path);
     }
     std::fill(colors.picture_of.begin() + first, colors.picture_of.begin() + last, picture->second);
   }
@@ -147,7 +188,7 @@ std::vector<MtlMaterial> parseMtl(std::string_view bytes) {
     text::Words words(line);
     const std::string_view keyword = words.next();
     if (text::equalIgnoringCase(keyword, "newmtl"))
-      materials.push_back({std::string(after(line, keyword)), {}, {}, {}});
+      materials.emplace_back().name = after(line, keyword);
     if (materials.empty()) continue;
     MtlMaterial& material = materials.back();
     if (text::equalIgnoringCase(keyword, "map_Kd")) {
@@ -156,8 +197,13 @@ std::vector<MtlMaterial> parseMtl(std::string_view bytes) {
     } else if (text::equalIgnoringCase(keyword, "Kd")) {
       std::vector<double> color;
       for (int k = 0; k < 3; ++k)
-        if (const auto value = parseNumber(words.next())) color.push_back(*value);
+        if (const auto value = finiteNumber(words.next())) color.push_back(*value);
+      if (color.size() == 1) color.assign(3, color[0]); // a grey
       if (color.size() == 3) material.color = color;
+    } else if (text::equalIgnoringCase(keyword, "d") || text::equalIgnoringCase(keyword, "Tr")) {
+      const auto value = finiteNumber(words.next());
+      const bool solid = value && *value == (keyword.size() == 1 ? 1 : 0);
+      material.is_transparent = value && !solid;
     }
   }
   return materials;
@@ -176,25 +222,11 @@ std::filesystem::path besideFile(const std::filesystem::path& from, const std::s
   return std::filesystem::exists(bare, ignored) ? bare : folder / name;
 }
 
-std::string picturesLeftOut(const std::filesystem::path& path, const std::string& keyword,
-                            const std::vector<std::string>& pictures,
-                            bool has_texture_coordinates) {
-  constexpr std::size_t kShown = 3;
-  const bool one = pictures.size() == 1;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(pictures.size(), kShown); ++i)
-    names += (i == 0 ? "" : ", ") + text::shown(pictures[i]);
-  if (pictures.size() > kShown) names += ", ...";
-  const std::string what =
-      one ? "the picture of " + keyword + " " + names + " is not shown"
-          : formatCount(pictures.size()) + " pictures of " + keyword + " are not shown: " + names;
-  if (!has_texture_coordinates) return what + "; the mesh has no texture coordinates that are kept";
-  const std::filesystem::path file = besideFile(path, pictures.front());
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored))
-    return what + "; " + (one ? "it" : "the first") + " is not beside the mesh";
-  return what + "; patina scene -o WORKSPACE --image " + text::shown(path.stem().string()) + "=" +
-         text::shown(file.string()) + ",color,mapped shows " + (one ? "it" : "the first");
+std::string picturesLeftOut(const std::set<std::string>& pictures, bool mapped) {
+  return std::string(pictures.size() == 1 ? "a picture is" : "pictures are") + " left out, " +
+         firstOf(pictures) +
+         (mapped ? ": only the surface is read here"
+                 : ": the mesh has no texture coordinates that are kept");
 }
 
 void readMaterials(const ObjMaterials& materials, const std::filesystem::path& path,
@@ -204,37 +236,33 @@ void readMaterials(const ObjMaterials& materials, const std::filesystem::path& p
   std::vector<std::string> lost;
   const Library library = readLibraries(materials, path, lost);
   std::set<std::string> unknown;
-  std::vector<const MtlMaterial*> seen;
-  std::vector<std::string> pictures;
-  const auto see = [&](const MtlMaterial& material) {
-    if (std::find(seen.begin(), seen.end(), &material) != seen.end()) return;
-    seen.push_back(&material);
-    if (!material.picture.empty() &&
-        std::find(pictures.begin(), pictures.end(), material.picture) == pictures.end())
-      pictures.push_back(material.picture);
-  };
+  std::set<const MtlMaterial*> seen;
   for (const ObjMaterials::Use& use : materials.uses) {
-    const auto found = library.find(use.name);
-    if (found != library.end())
-      see(found->second);
+    if (const MtlMaterial* material = materialOf(library, use.name))
+      seen.insert(material);
     else if (!use.name.empty())
       unknown.insert(use.name);
   }
   if (materials.uses.empty())
-    for (const auto& [name, material] : library) see(material);
+    for (const auto& [name, material] : library) seen.insert(&material);
+  std::set<std::string> pictures;
+  bool is_transparent = false;
+  for (const MtlMaterial* material : seen) {
+    if (!material->picture.empty()) pictures.insert(material->picture);
+    is_transparent = is_transparent || material->is_transparent;
+  }
 
   const bool mapped = mesh.corner_uvs.size() == mesh.triangles.size();
   const bool keeps = colors && !materials.uses.empty();
-  if (keeps && (hasColors(seen) || (mapped && !pictures.empty())))
+  const bool colored = hasColors(seen, mapped);
+  if (keeps && (colored || (mapped && !pictures.empty())))
     keepMaterials(materials, library, path, mapped, mesh.triangles.size(), *colors);
-  if (!pictures.empty() && !(keeps && mapped))
-    lost.push_back(picturesLeftOut(path, "map_Kd", pictures, mapped));
-  if (!keeps && hasColors(seen)) lost.push_back(text::colorsLeftOut("materials"));
+  if (!pictures.empty() && !(keeps && mapped)) lost.push_back(picturesLeftOut(pictures, mapped));
+  if (!keeps && colored) lost.push_back(text::colorsLeftOut("materials"));
+  if (keeps && is_transparent) lost.push_back(text::kOpaque);
   if (!unknown.empty() && !library.empty())
-    lost.push_back("the material " + text::quoted(*unknown.begin(), 200) +
-                   (unknown.size() > 1 ? " and " + formatCount(unknown.size() - 1) + " more are"
-                                       : std::string(" is")) +
-                   " in no library of the mesh: their faces have no colour");
+    lost.push_back("no library of the mesh has the material " + firstOf(unknown) +
+                   ": its faces have no colour");
   if (warnings) warnings->insert(warnings->end(), lost.begin(), lost.end());
 }
 

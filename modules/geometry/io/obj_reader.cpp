@@ -39,7 +39,7 @@ class ObjParser {
       else if (textured_ && keyword == "h")
         readHapticCoordinates(words);
       else if (keyword == "mtllib" || keyword == "usemtl")
-        materials_.addStatement(keyword, statement, mesh_.triangles.size());
+        materials_.addStatement(keyword, whole_, mesh_.triangles.size());
       else if (text::hasControl(statement))
         fail("binary data where OBJ text should be");
     }
@@ -94,7 +94,7 @@ class ObjParser {
     if (!lines_.next(line)) return false;
     line_ = lines_.number();
     if (!endsInBackslash(line)) {
-      statement = withoutComment(line);
+      statement = withoutComment(whole_ = line);
       return true;
     }
     joined_.clear();
@@ -105,7 +105,7 @@ class ObjParser {
       more = lines_.next(line);
     }
     if (more) joined_.append(withoutComment(line));
-    statement = joined_;
+    statement = whole_ = joined_;
     return true;
   }
   static bool endsInBackslash(std::string_view& line) {
@@ -119,20 +119,20 @@ class ObjParser {
   void readVertex(text::Words& words) {
     Vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = text::number(words.next(), name_, line_, "a coordinate");
-    // A weight, a colour or both may follow.
-    std::array<double, 4> after{};
+    // A weight or a colour may follow, after that what some programs write of transparency.
+    std::array<double, 3> after{};
     std::size_t more = 0;
     for (auto word = words.next(); !word.empty(); word = words.next(), ++more) {
       const double value = text::number(word, name_, line_, "a number");
       if (more < after.size()) after[more] = value;
     }
-    if (more >= 3) addVertexColor(&after[more > 3 ? 1 : 0]);
+    if (more >= 3) addVertexColor(after);
     if (static_cast<std::int64_t>(mesh_.positions.size()) == kMostIndices)
       fail("more vertices than this program can count");
     mesh_.positions.push_back(p);
   }
 
-  void addVertexColor(const double* rgb) {
+  void addVertexColor(const std::array<double, 3>& rgb) {
     ++colored_vertices_;
     if (!colors_) return;
     colors_->vertices.resize(mesh_.positions.size());
@@ -291,6 +291,7 @@ class ObjParser {
   text::Lines lines_;
   std::size_t line_ = 0; // where the current statement begins
   std::string joined_;
+  std::string_view whole_; // the statement with its comment: a material's name may have a '#'
   TriangleMesh mesh_;
   std::vector<Vec2> texture_;
   std::vector<std::array<std::int32_t, 3>> corner_textures_;
@@ -318,16 +319,16 @@ TriangleMesh parseObj(std::string_view bytes, const std::string& name,
   return ObjParser(bytes, name, warnings, colors).parse();
 }
 
-TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name) {
+TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name, MeshColors* colors) {
   TexturedMesh read;
-  read.mesh = ObjParser(bytes, name, &read.warnings, &read.colors, &read.textured).parse();
+  read.mesh = ObjParser(bytes, name, &read.warnings, colors, &read.textured).parse();
   return read;
 }
 
-TexturedMesh readTexturedObj(const std::filesystem::path& path) {
+TexturedMesh readTexturedObj(const std::filesystem::path& path, MeshColors* colors) {
   if (meshFileType(path) != MeshFileType::obj)
     throw FileError(path.string(), 0, "only an .obj holds haptic coordinates");
-  return parseTexturedObj(readFile(path), path.string());
+  return parseTexturedObj(readFile(path), path.string(), colors);
 }
 
 } // namespace patina

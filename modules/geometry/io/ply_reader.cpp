@@ -11,10 +11,11 @@ namespace patina {
 namespace {
 
 constexpr int kUnused = -1;
-constexpr int kU = 3; // roles of vertex properties: 0..2 position, 3..4 texture, 5..7 colour
+constexpr int kU = 3; // roles of vertex properties: 0..2 position, 3..4 texture, 5..8 colour
 constexpr int kRed = 5;
-constexpr int kRoles = 8;
-constexpr int kIndices = 0; // roles of face properties; 5..7 colour
+constexpr int kAlpha = 8;
+constexpr int kRoles = 9;
+constexpr int kIndices = 0; // roles of face properties; 5..8 colour
 constexpr int kTexture = 1;
 constexpr int kPicture = 2;
 constexpr std::int32_t kRestart = -1; // in a list of strips: the next one begins
@@ -26,7 +27,7 @@ int colorRole(const PlyProperty& p) {
     if (name == std::array{"red", "green", "blue"}[static_cast<std::size_t>(k)] ||
         name == std::array{"r", "g", "b"}[static_cast<std::size_t>(k)])
       return kRed + k;
-  return kUnused;
+  return name == "alpha" ? kAlpha : kUnused;
 }
 
 int vertexRole(const PlyProperty& p) {
@@ -48,6 +49,10 @@ using Roles = std::array<bool, kRoles>;
 
 bool hasColor(const Roles& has) {
   return has[kRed] && has[kRed + 1] && has[kRed + 2];
+}
+
+bool hasPartOfAColor(const Roles& has) {
+  return !hasColor(has) && (has[kRed] || has[kRed + 1] || has[kRed + 2]);
 }
 
 // Returns what a full colour is in this type; 0 for numbers of which the largest decides.
@@ -112,8 +117,19 @@ template <typename Source> class PlyParser {
           "the texture coordinates of the faces are left out: not every face has them");
     if (!colors_ && vertex_white_) warnings_->push_back(text::colorsLeftOut("vertices"));
     if (!colors_ && face_white_) warnings_->push_back(text::colorsLeftOut("faces"));
+    if (has_broken_color_)
+      warnings_->push_back("colours are left out that are not red, green and blue");
+    if (colors_ && is_transparent_) warnings_->push_back(text::kOpaque);
+    if (lost_pictures_ > 0)
+      warnings_->push_back(formatCount(lost_pictures_) +
+                           " triangles name a picture (texnumber) that the header does not");
+    if (colors_ && mapped && header_.pictures.size() > 1 && !has_picture_numbers_)
+      warnings_->push_back("of " + formatCount(header_.pictures.size()) +
+                           " pictures of TextureFile only the first is shown: no face says by "
+                           "texnumber which it has");
     if (!header_.pictures.empty() && !(colors_ && mapped))
-      warnings_->push_back(picturesLeftOut(name_, "TextureFile", header_.pictures, mapped));
+      warnings_->push_back(
+          picturesLeftOut({header_.pictures.begin(), header_.pictures.end()}, mapped));
   }
 
   void keepColors(bool mapped) {
@@ -132,8 +148,11 @@ template <typename Source> class PlyParser {
       kept.file = besideFile(name_, picture);
     }
     colors_->picture_of.resize(triangles, 0);
-    for (std::int32_t& picture : colors_->picture_of)
-      if (picture >= static_cast<std::int32_t>(colors_->pictures.size())) picture = -1;
+    for (std::int32_t& picture : colors_->picture_of) {
+      if (picture < static_cast<std::int32_t>(colors_->pictures.size())) continue;
+      picture = -1;
+      ++lost_pictures_;
+    }
   }
 
   const PlyElement* element(const char* wanted) const {
@@ -191,6 +210,7 @@ template <typename Source> class PlyParser {
     mesh_.positions.reserve(e.count);
     if (has_vertex_texture_) vertex_texture_.reserve(e.count);
     if (e.count > 0 && hasColor(has)) vertex_white_ = whiteOf(typeOf(e, role, kRed));
+    has_broken_color_ |= hasPartOfAColor(has);
     const bool colored = colors_ && vertex_white_;
     if (colored) colors_->vertices.reserve(e.count);
     std::array<double, kRoles> values{};
@@ -209,7 +229,13 @@ template <typename Source> class PlyParser {
       mesh_.positions.emplace_back(values[0], values[1], values[2]);
       if (has_vertex_texture_) vertex_texture_.emplace_back(values[kU], values[kU + 1]);
       if (colored) colors_->vertices.push_back(colorIn(values));
+      is_transparent_ |= colored && has[kAlpha] && isBelowWhite(values[kAlpha], e, role);
     }
+  }
+
+  static bool isBelowWhite(double alpha, const PlyElement& e, const std::vector<int>& role) {
+    const double white = whiteOf(typeOf(e, role, kAlpha));
+    return alpha < (white > 0 ? white : 1);
   }
 
   static PlyType typeOf(const PlyElement& e, const std::vector<int>& role, int wanted) {
@@ -239,7 +265,9 @@ template <typename Source> class PlyParser {
     mesh_.triangles.reserve(e.count);
     if (face_texture_) mesh_.corner_uvs.reserve(e.count);
     if (e.count > 0 && hasColor(has)) face_white_ = whiteOf(typeOf(e, role, kRed));
+    has_broken_color_ |= hasPartOfAColor(has);
     const bool colored = colors_ && face_white_, pictured = colors_ && has[kPicture];
+    has_picture_numbers_ = has[kPicture];
     std::array<double, kRoles> values{};
     for (std::uint64_t i = 0; i < e.count; ++i) {
       in_.beginItem(e);
@@ -255,10 +283,14 @@ template <typename Source> class PlyParser {
           values[static_cast<std::size_t>(role[k])] = value;
       }
       in_.endItem();
+      const std::size_t first = mesh_.triangles.size();
       addPolygon();
+      if (colored) colors_->faces.resize(first); // what strips before it have left out
       if (colored) colors_->faces.resize(mesh_.triangles.size(), colorIn(values));
+      if (pictured) colors_->picture_of.resize(first, -1);
       if (pictured)
         colors_->picture_of.resize(mesh_.triangles.size(), pictureNumber(values[kPicture]));
+      is_transparent_ |= colored && has[kAlpha] && isBelowWhite(values[kAlpha], e, role);
     }
   }
 
@@ -358,6 +390,8 @@ template <typename Source> class PlyParser {
   std::vector<std::string>* warnings_;
   MeshColors* colors_;
   std::optional<double> vertex_white_, face_white_; // absent where there is no colour
+  bool has_broken_color_ = false, is_transparent_ = false, has_picture_numbers_ = false;
+  std::size_t lost_pictures_ = 0; // triangles
   TriangleMesh mesh_;
   const PlyElement* faces_ = nullptr; // nullptr where the file has none
   const PlyElement* strips_ = nullptr;

@@ -7,8 +7,9 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kHeader = 84; // 80 bytes of anything, then the count
-constexpr std::size_t kRecord = 50; // normal, three corners (floats), two bytes of anything
+constexpr std::size_t kHeader = 84;       // 80 bytes of anything, then the count
+constexpr unsigned char kOwnColor = 0x80; // in an attribute's second byte: a colour (VisCAM)
+constexpr std::size_t kRecord = 50;       // normal, three corners (floats), two bytes of anything
 constexpr std::uint32_t kUnknownCount = 0xffffffff; // of programs that write without seeking
 
 template <typename T> T littleEndian(const char* at) {
@@ -67,8 +68,7 @@ TriangleMesh parseBinary(std::string_view bytes, const std::string& name,
                        (left < kRecord ? std::string()
                                        : ", though they could be " + formatCount(left / kRecord) +
                                              " triangles more than the header says"));
-  if (bytes.substr(0, 80).find("COLOR=") != bytes.npos)
-    warnings.push_back(text::colorsLeftOut("triangles"));
+  bool colored = bytes.substr(0, 80).find("COLOR=") != bytes.npos; // Magics
   TriangleMesh mesh;
   mesh.triangles.resize(count);
   VertexWeld weld(count / 2 + 3);
@@ -78,7 +78,9 @@ TriangleMesh parseBinary(std::string_view bytes, const std::string& name,
       mesh.triangles[t][k] =
           weld.index(Vec3(littleEndian<float>(corner), littleEndian<float>(corner + 4),
                           littleEndian<float>(corner + 8)));
+    colored = colored || (static_cast<unsigned char>(corner[1]) & kOwnColor) != 0;
   }
+  if (colored) warnings.push_back(text::colorsLeftOut("triangles"));
   mesh.positions = weld.takePoints();
   return mesh;
 }

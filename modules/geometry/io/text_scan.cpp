@@ -19,12 +19,6 @@ std::string pointCloud(std::size_t points, const char* why) {
          "PoissonRecon in CloudCompare";
 }
 
-std::string colorsLeftOut(const char* whose) {
-  return std::string("the colours of its ") + whose +
-         " are left out; a picture is shown with patina scene -o WORKSPACE --image "
-         "NAME=FILE,color,mapped";
-}
-
 void throwNotANumber(std::string_view word, const std::string& name, std::size_t line,
                      const char* what) {
   const std::string expected = std::string(" where ") + what + " should be";

@@ -40,7 +40,10 @@ inline std::string quoted(std::string_view word, std::size_t most = 32) {
 // Returns the cause for a file that has vertices but no face.
 std::string pointCloud(std::size_t points, const char* why);
 // Returns the warning for the colours of "vertices", "faces" or others that `whose` names.
-std::string colorsLeftOut(const char* whose);
+inline std::string colorsLeftOut(const std::string& whose) {
+  return "the colours of its " + whose + " are left out";
+}
+inline constexpr const char* kOpaque = "its colours are shown opaque: transparency is left out";
 
 // Returns '\r' for text of old Macs, which contains no '\n'.
 inline char lineEndOf(std::string_view bytes) {

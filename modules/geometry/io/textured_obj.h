@@ -11,7 +11,6 @@ namespace patina {
 
 struct TexturedMesh {
   TriangleMesh mesh; // as of readMesh()
-  MeshColors colors; // as of readMesh()
   std::vector<TexturedFace> textured;
   std::vector<std::string> warnings; // as of readMesh()
 };
@@ -20,9 +19,10 @@ struct TexturedMesh {
 // file's own unit; texture -1: none there. A file without any such line has no texture. Throws
 // FileError as readMesh() does, and where their number is not that of the faces, where a face with
 // more than three corners would need one, for a number that is not finite, and for an OBJ by name
-// alone.
-TexturedMesh readTexturedObj(const std::filesystem::path& path);
-TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name);
+// alone. `colors` as of readMesh().
+TexturedMesh readTexturedObj(const std::filesystem::path& path, MeshColors* colors = nullptr);
+TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name,
+                              MeshColors* colors = nullptr);
 
 // Atomic; the shortest text that reads back bit for bit. Programs that know no `h` pass over it.
 void writeTexturedObj(const std::filesystem::path& path, const TriangleMesh& mesh,

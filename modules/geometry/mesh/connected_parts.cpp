@@ -51,25 +51,30 @@ class RimJoiner {
     }
   }
 
-  // Marks the rims and returns roots of what is joined. Where pieces fit well, most is found near.
+  // Marks the rims and returns roots of what is joined. Most pieces fit well: only those that close
+  // rims do not join are asked for rims that are farther.
   std::vector<std::int32_t> run() {
     const double mean = std::accumulate(lengths_.begin(), lengths_.end(), 0.0) /
                         static_cast<double>(std::max<std::size_t>(1, lengths_.size()));
-    const double close = std::clamp(kSeam * mean, kLeastSeam * reach_, kNear * reach_);
-    for (const double radius : {close, kNear * reach_}) {
-      const NearPoints near(middles_, radius);
-      mark(near);
-      const bool all = std::all_of(roots_.begin(), roots_.end(),
-                                   [&](std::int32_t piece) { return joins(piece); });
-      if (all || radius == kNear * reach_) return join(near);
-    }
-    return {};
+    const double far = kNear * reach_;
+    mark(NearPoints(middles_, std::clamp(kSeam * mean, kLeastSeam * reach_, far)),
+         [](std::size_t, std::size_t) { return true; });
+    std::vector<char> left(whole_.size()); // by root
+    bool any = false;
+    for (const std::int32_t piece : roots_)
+      if (!joins(piece)) left[index(piece)] = any = true;
+    const NearPoints near(middles_, far);
+    if (any)
+      mark(near, [&](std::size_t i, std::size_t j) {
+        return left[index(roots_[i])] != 0 || left[index(roots_[j])] != 0;
+      });
+    return join(near);
   }
 
  private:
-  void mark(const NearPoints& near) {
+  template <typename Asked> void mark(const NearPoints& near, const Asked& asked) {
     near.forPairs([&](std::uint32_t i, std::uint32_t j) {
-      if (roots_[i] == roots_[j]) return false;
+      if (roots_[i] == roots_[j] || !asked(i, j)) return false;
       rims_[i].joined = rims_[j].joined = true;
       if (!(rims_[i].covered && rims_[j].covered) && isSeam(i, j))
         rims_[i].covered = rims_[j].covered = true;

@@ -31,8 +31,8 @@ struct MeshColors {
   bool empty() const { return vertices.empty() && faces.empty() && picture_of.empty(); }
 };
 
-// Divides by `white`, the value of a full colour. 0: that is 1, or 255 where a value is above 1.
-// What is not a number becomes no colour; the rest is clamped to [0, 1].
+// Divides by `white`, the value of a full colour. 0 stands for 1, or for 255 where some value is 2 or
+// more. A colour that is not finite becomes none; the others are clamped to [0, 1].
 void scaleColors(std::vector<Rgba>& colors, double white);
 
 } // namespace patina

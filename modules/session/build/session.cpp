@@ -92,7 +92,7 @@ std::vector<std::string> meshWarnings(const MeshReport& report) {
 std::optional<std::string> thinSheetWarning(const MeshReport& report) {
   if (report.boundary_edges == 0) return std::nullopt;
   return formatCount(report.boundary_edges) + (report.boundary_edges == 1 ? " edge" : " edges") +
-         " of one triangle: holes are closed over, what stays open is felt from its front "
+         " of one triangle: a part that stays open is felt from its front "
          "(patina info, sides); from both sides with patina scene --set surface.sides=two "
          "--set tip.radius=1mm";
 }
@@ -168,19 +168,11 @@ void requireReadable(const std::filesystem::path& path) {
                       kReadable);
 }
 
-// Gives the scene's only object what its file says of colours and haptic textures. `scale` took its
-// lengths to metres.
-void addPaint(OpenedScene& opened, const std::string& where, TexturedMesh read, double scale) {
-  SceneObject& object = opened.scene.objects[0];
-  std::vector<std::string> warnings;
-  object.paint = paintOf(*object.mesh, read.colors, opened.scene.paint_size, warnings);
-  for (const std::string& line : warnings) opened.warnings.push_back(where + ": " + line);
-  if (read.textured.empty()) return;
-  for (TexturedFace& face : read.textured)
-    for (Vec2& at : face.at) at *= scale;
-  ObjectPaint paint = object.paint ? *object.paint : ObjectPaint{};
-  paint.textures = std::make_shared<const LaidTextures>(LaidTextures{std::move(read.textured), {}});
-  object.paint = std::make_shared<const ObjectPaint>(std::move(paint));
+std::shared_ptr<const ObjectPaint> withTextures(const ObjectPaint* before,
+                                                std::vector<TexturedFace> faces) {
+  ObjectPaint paint = before ? *before : ObjectPaint{};
+  paint.textures = std::make_shared<const LaidTextures>(LaidTextures{std::move(faces), {}});
+  return std::make_shared<const ObjectPaint>(std::move(paint));
 }
 
 } // namespace
@@ -231,16 +223,17 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   }
   const bool is_volume = isVolumeFile(path);
   TexturedMesh read;
+  MeshColors colors;
   std::optional<FieldSpec> spec;
   if (is_volume) {
     VolumeSurface volume = surfaceOfVolume(path, options);
     read.mesh = std::move(volume.mesh);
     spec = volume.spec;
   } else if (lowerExtension(path) == ".obj") {
-    read = readTexturedObj(path);
+    read = readTexturedObj(path, &colors);
   } else {
     requireReadable(path);
-    read.mesh = readMesh(path, &read.warnings, &read.colors);
+    read.mesh = readMesh(path, &read.warnings, &colors);
   }
   for (const std::string& line : read.warnings)
     opened.warnings.push_back(path.string() + ": " + line);
@@ -261,7 +254,14 @@ OpenedScene openScene(const std::filesystem::path& input, const OpenOptions& opt
   opened.scene = sceneOf(std::move(scaled.mesh), objectName(path));
   addLayoutWarning(opened, path.string(), opened.scene.objects[0]);
   if (spec) opened.scene.field = *spec;
-  addPaint(opened, path.string(), std::move(read), scaled.scale);
+  for (TexturedFace& face : read.textured)
+    for (Vec2& at : face.at) at *= scaled.scale;
+  std::vector<std::string> warnings;
+  SceneObject& object = opened.scene.objects[0];
+  object.paint = paintOf(*object.mesh, colors, options.paint_size, warnings);
+  for (const std::string& line : warnings) opened.warnings.push_back(path.string() + ": " + line);
+  if (!read.textured.empty())
+    object.paint = withTextures(object.paint.get(), std::move(read.textured));
   return opened;
 }
 

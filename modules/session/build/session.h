@@ -18,10 +18,11 @@ namespace patina {
 
 struct OpenOptions {
   MeshUnit unit = MeshUnit::mm;
-  UpAxis up = UpAxis::z;          // of a mesh file
-  std::optional<double> iso{};    // needed for a volume from elsewhere
-  bool unit_chosen = false;       // so that a unit without an effect is warned of
-  bool tip_radius_chosen = false; // what is opened gets a tip radius: no advice to set one
+  UpAxis up = UpAxis::z;               // of a mesh file
+  std::optional<double> iso{};         // needed for a volume from elsewhere
+  bool unit_chosen = false;            // so that a unit without an effect is warned of
+  int paint_size = Scene{}.paint_size; // least texels a side of the colours of a mesh file
+  bool tip_radius_chosen = false;      // what is opened gets a tip radius: no advice to set one
 };
 
 struct StoredHistory {

@@ -3,6 +3,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
 #include <vtkPointData.h>
@@ -47,6 +48,10 @@ template <class Visit> void withValues(vtkDataArray* scalars, const Visit& visit
   }
 }
 
+bool isWideUnsigned(int type) {
+  return type == VTK_UNSIGNED_INT || type == VTK_UNSIGNED_LONG || type == VTK_UNSIGNED_LONG_LONG;
+}
+
 // Returns the value at which the surface is taken. If all values are whole and some equal `iso`,
 // the surface would pass through nodes: it would have triangles without area, and parts that meet
 // in a point. Such nodes then count as higher ones: the surface is taken half a step lower, or half
@@ -81,8 +86,13 @@ TriangleMesh isoSurfaceOfVolume(const std::filesystem::path& path, double iso) {
   const int* nodes = image->GetDimensions();
   if (nodes[0] < 2 || nodes[1] < 2 || nodes[2] < 2)
     throw FileError(path.string(), 0, "is flat: a surface needs two nodes or more on each axis");
-  image->GetPointData()->SetActiveScalars(scalars->GetName());
-  image->GetPointData()->SetScalars(scalars);
+  // Flying edges subtracts neighbours in the array's own type, where wide unsigned ones wrap.
+  vtkSmartPointer<vtkDataArray> values = scalars;
+  if (isWideUnsigned(scalars->GetDataType())) {
+    values = vtkSmartPointer<vtkDoubleArray>::New();
+    values->DeepCopy(scalars);
+  }
+  image->GetPointData()->SetScalars(values);
 
   const vtkNew<vtkFlyingEdges3D> contour;
   contour->SetInputData(image);
