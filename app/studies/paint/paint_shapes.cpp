@@ -39,6 +39,12 @@ Scene slabScene(double side, double thickness, int resolution) {
   return scene;
 }
 
+void layEmptyColor(Scene& slab, int image_size) {
+  ObjectPaint paint = paintOf(slab);
+  paint.color = std::make_shared<const TiledImage>(image_size, image_size, kColorChannels);
+  slab.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
+}
+
 void layRelief(Scene& slab, double side, int image_size,
                const std::function<double(double, double)>& g) {
   auto image = std::make_shared<TiledImage>(image_size, image_size, 1);

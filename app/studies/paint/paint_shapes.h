@@ -11,6 +11,9 @@ namespace patina {
 // unit square: u along x, v along y. The other faces share one point of the image.
 Scene slabScene(double side, double thickness, int resolution);
 
+// An empty colour image, by which strokes keep the slab's own layout.
+void layEmptyColor(Scene& slab, int image_size);
+
 // The relief g(x, y) at each texel's place on the slab's top; x and y in metres from its middle.
 void layRelief(Scene& slab, double side, int image_size,
                const std::function<double(double, double)>& g);

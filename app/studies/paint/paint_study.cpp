@@ -52,7 +52,7 @@ WorkPrecisionTable coverage(const std::vector<int>& sizes, int dabs, Progress& p
   OrderFit order;
   for (const int size : sizes) {
     Scene scene = slabScene(kSide, kThickness, 60);
-    scene.paint_size = size;
+    layEmptyColor(scene, size);
     const auto compiled = compile(scene, progress);
     const auto surface = paintSurfaceOf(*compiled, compiled->scene, nullptr, true, progress);
     for (const WeightForm& form : kForms) {
