@@ -35,96 +35,54 @@ class Forest {
   std::vector<std::int32_t> up_;
 };
 
-// Joins pieces along their rims.
-class RimJoiner {
- public:
-  RimJoiner(const std::vector<Vec3>& positions, const std::vector<std::size_t>& faces_of,
-            double reach, std::vector<RimEdge>& rims, Forest& forest)
-      : positions_(positions), faces_of_(faces_of), reach_(reach), rims_(rims), forest_(forest),
-        whole_(faces_of.size()) {
-    for (const RimEdge& rim : rims) {
-      const Vec3 &a = positions[index(rim.vertices[0])], &b = positions[index(rim.vertices[1])];
-      middles_.push_back(0.5 * (a + b));
-      lengths_.push_back((b - a).norm());
-      roots_.push_back(forest.find(rim.face));
-      whole_[index(roots_.back())] += lengths_.back();
-    }
+// Marks the rims that run along others and joins their pieces. Returns the roots of those joined.
+std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
+                                        const std::vector<std::size_t>& faces_of, double reach,
+                                        std::vector<RimEdge>& rims, Forest& forest) {
+  std::vector<Vec3> middles;
+  std::vector<std::int32_t> root;
+  std::vector<double> whole(faces_of.size()), shared(faces_of.size());
+  const auto along = [&](const RimEdge& rim) -> Vec3 {
+    return positions[index(rim.vertices[1])] - positions[index(rim.vertices[0])];
+  };
+  for (const RimEdge& rim : rims) {
+    middles.push_back(0.5 *
+                      (positions[index(rim.vertices[0])] + positions[index(rim.vertices[1])]));
+    root.push_back(forest.find(rim.face));
+    whole[index(root.back())] += along(rim).norm();
   }
-
-  // Marks the rims and returns roots of what is joined. Most pieces fit well: only those that close
-  // rims do not join are asked for rims that are farther.
-  std::vector<std::int32_t> run() {
-    const double mean = std::accumulate(lengths_.begin(), lengths_.end(), 0.0) /
-                        static_cast<double>(std::max<std::size_t>(1, lengths_.size()));
-    const double far = kNear * reach_;
-    mark(NearPoints(middles_, std::clamp(kSeam * mean, kLeastSeam * reach_, far)),
-         [](std::size_t, std::size_t) { return true; });
-    std::vector<char> left(whole_.size()); // by root
-    bool any = false;
-    for (const std::int32_t piece : roots_)
-      if (!joins(piece)) left[index(piece)] = any = true;
-    const NearPoints near(middles_, far);
-    if (any)
-      mark(near, [&](std::size_t i, std::size_t j) {
-        return left[index(roots_[i])] != 0 || left[index(roots_[j])] != 0;
-      });
-    return join(near);
-  }
-
- private:
-  template <typename Asked> void mark(const NearPoints& near, const Asked& asked) {
-    near.forPairs([&](std::uint32_t i, std::uint32_t j) {
-      if (roots_[i] == roots_[j] || !asked(i, j)) return false;
-      rims_[i].joined = rims_[j].joined = true;
-      if (!(rims_[i].covered && rims_[j].covered) && isSeam(i, j))
-        rims_[i].covered = rims_[j].covered = true;
-      return false;
-    });
-    shared_.assign(whole_.size(), 0);
-    for (std::size_t i = 0; i < rims_.size(); ++i)
-      if (rims_[i].joined) shared_[index(roots_[i])] += lengths_[i];
-  }
-
-  bool isSeam(std::size_t i, std::size_t j) const {
-    const double limit =
-        std::clamp(kSeam * std::min(lengths_[i], lengths_[j]), kLeastSeam * reach_, kNear * reach_);
+  const NearPoints near(middles, kNear * reach);
+  near.forPairs([&](std::uint32_t i, std::uint32_t j) {
+    if (root[i] == root[j]) return false;
+    rims[i].joined = rims[j].joined = true;
+    if (rims[i].covered && rims[j].covered) return false;
+    const double shorter = std::min(along(rims[i]).norm(), along(rims[j]).norm());
+    const double limit = std::clamp(kSeam * shorter, kLeastSeam * reach, kNear * reach);
     const auto apart = [&](std::size_t end) {
-      return (positions_[index(rims_[i].vertices[end])] -
-              positions_[index(rims_[j].vertices[1 - end])])
-          .squaredNorm();
+      return (positions[index(rims[i].vertices[end])] - positions[index(rims[j].vertices[1 - end])])
+          .norm();
     };
-    return apart(0) <= limit * limit && apart(1) <= limit * limit;
+    if (apart(0) <= limit && apart(1) <= limit) rims[i].covered = rims[j].covered = true;
+    return false;
+  });
+  for (std::size_t i = 0; i < rims.size(); ++i)
+    if (rims[i].joined) shared[index(root[i])] += along(rims[i]).norm();
+  const auto joins = [&](std::int32_t piece) {
+    const double share = faces_of[index(piece)] < kSmallPiece ? kJoinedSmallRim : kJoinedRim;
+    return shared[index(piece)] >= share * whole[index(piece)];
+  };
+  for (std::size_t i = 0; i < rims.size(); ++i) {
+    rims[i].joined &= joins(root[i]);
+    rims[i].covered &= rims[i].joined;
   }
-
-  bool joins(std::int32_t piece) const {
-    const double share = faces_of_[index(piece)] < kSmallPiece ? kJoinedSmallRim : kJoinedRim;
-    return shared_[index(piece)] >= share * whole_[index(piece)];
-  }
-
-  std::vector<std::int32_t> join(const NearPoints& near) {
-    for (std::size_t i = 0; i < rims_.size(); ++i) {
-      rims_[i].joined &= joins(roots_[i]);
-      rims_[i].covered &= rims_[i].joined;
-    }
-    std::vector<std::int32_t> joined;
-    near.forPairs([&](std::uint32_t i, std::uint32_t j) {
-      if (!rims_[i].joined || !rims_[j].joined || roots_[i] == roots_[j]) return false;
-      if (forest_.join(roots_[i], roots_[j])) joined.push_back(roots_[i]);
-      return true; // the rest of the row is near that one
-    });
-    return joined;
-  }
-
-  const std::vector<Vec3>& positions_;
-  const std::vector<std::size_t>& faces_of_; // by root, of a piece
-  const double reach_;
-  std::vector<RimEdge>& rims_;
-  Forest& forest_;
-  std::vector<Vec3> middles_; // by rim
-  std::vector<double> lengths_;
-  std::vector<std::int32_t> roots_;
-  std::vector<double> whole_, shared_; // by root: length of its rim, and of what is joined of it
-};
+  std::vector<std::int32_t> joined;
+  near.forPairs([&](std::uint32_t i, std::uint32_t j) {
+    if (!rims[i].joined || !rims[j].joined || root[i] == root[j]) return false;
+    if (forest.join(root[i], root[j])) joined.push_back(root[i]);
+    return true; // the rest of the row is near that one
+  });
+  return joined;
+}
 
 } // namespace
 
@@ -151,7 +109,7 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   std::vector<std::size_t> faces_of(triangles.size()); // by root
   for (std::size_t f = 0; f < triangles.size(); ++f) ++faces_of[index(forest.find(twin[f]))];
   if (reach > 0 && !triangles.empty() && faces_of[0] < triangles.size())
-    joined = RimJoiner(mesh.positions, faces_of, reach, found.rims, forest).run();
+    joined = joinAlongRims(mesh.positions, faces_of, reach, found.rims, forest);
 
   found.part_of.resize(triangles.size());
   std::vector<std::uint8_t> doubled; // by part
