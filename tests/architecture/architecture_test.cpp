@@ -1,6 +1,8 @@
 // The house keeps its plan: its rooms and their doors, checked on every source.
 #include <algorithm>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "architecture/include_rules.h"
 
@@ -100,6 +102,30 @@ TEST(Architecture, NoFileIsTooLongToRead) {
   }
 }
 
+// Two types of one name are merged by the linker, member functions and all, without a word.
+TEST(Architecture, NoTwoHeadersDefineATypeOfOneName) {
+  std::map<std::string, std::string> first;
+  for (const SourceFile& file : filesUnder({"modules", "app"}, isCode)) {
+    if (!file.path.ends_with(".h")) continue;
+    std::istringstream lines(file.text);
+    std::string space;
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::string kind, name;
+      words >> kind >> name;
+      if (kind == "namespace") space = name;
+      if (name == "class" || name.starts_with("alignas")) words >> name;
+      const bool defines = (kind == "struct" || kind == "class" || kind == "enum") &&
+                           line[0] != ' ' && line.find('{') != std::string::npos &&
+                           name.find("::") == std::string::npos;
+      if (!defines) continue;
+      const auto [known, is_new] = first.emplace(space + "::" + name, file.path);
+      EXPECT_TRUE(is_new) << known->first << " is in " << known->second << " and in " << file.path;
+    }
+  }
+  EXPECT_GT(first.size(), 300u);
+}
+
 TEST(Architecture, EveryModuleHeaderBeginsWithItsIdea) {
   for (const SourceFile& file : filesUnder({"modules"}, isCode)) {
     if (file.path.ends_with(".h")) {
@@ -122,11 +148,24 @@ TEST(Architecture, MatricesAreDecomposedInOnePlace) {
 }
 
 TEST(Architecture, TheTopLevelTellsTheStory) {
-  const std::set<std::string> allowed{
-      "CMakeLists.txt", "README.md",     "LICENSE",      "CITATION.cff",   "CHANGELOG.md",
-      "SECURITY.md",    "app",           "modules",      "data",           "tests",
-      "docs",           ".ci",           ".reuse",       ".clang-format",  ".clang-tidy",
-      ".gitignore",     ".gitattributes", ".git_archival.txt"};
+  const std::set<std::string> allowed{"CMakeLists.txt",
+                                      "README.md",
+                                      "LICENSE",
+                                      "CITATION.cff",
+                                      "CHANGELOG.md",
+                                      "SECURITY.md",
+                                      "app",
+                                      "modules",
+                                      "data",
+                                      "tests",
+                                      "docs",
+                                      ".ci",
+                                      ".reuse",
+                                      ".clang-format",
+                                      ".clang-tidy",
+                                      ".gitignore",
+                                      ".gitattributes",
+                                      ".git_archival.txt"};
   // What git leaves out: see .gitignore.
   const std::set<std::string> ignored{".git", "out", ".cache", "compile_commands.json"};
   std::set<std::string> found;

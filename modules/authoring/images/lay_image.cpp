@@ -45,7 +45,7 @@ class Mapping {
 std::shared_ptr<const ObjectPaint> laid(const PaintSurface& surface, const Scene& scene,
                                         std::size_t object, const Picture& picture,
                                         Projection projection, PictureTarget target) {
-  check(picture);
+  requirePicture(picture);
   const SceneObject& owner = scene.objects.at(object);
   const PaintObject& made = surface.objects.at(object);
   const TriangleMesh& mesh = *owner.mesh;

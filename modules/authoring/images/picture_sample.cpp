@@ -24,7 +24,7 @@ int wrapped(int i, int n, bool repeats) {
 
 } // namespace
 
-void check(const Picture& picture) {
+void requirePicture(const Picture& picture) {
   const auto count = static_cast<std::size_t>(std::max(0, picture.width)) *
                      static_cast<std::size_t>(std::max(0, picture.height)) *
                      static_cast<std::size_t>(std::max(0, picture.channels));

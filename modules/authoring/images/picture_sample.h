@@ -16,7 +16,7 @@ struct PictureSample {
 };
 
 // Throws std::invalid_argument if sizes, channels and texels do not belong together.
-void check(const Picture& picture);
+void requirePicture(const Picture& picture);
 
 // Adds `share` of the picture's bilinear value at a place in the unit square. Outside of it the
 // picture repeats, or its edge goes on.

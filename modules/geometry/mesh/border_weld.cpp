@@ -10,10 +10,10 @@
 namespace patina {
 namespace {
 
-std::vector<std::int32_t> verticesOf(const std::vector<BorderEdge>& border) {
+std::vector<std::int32_t> verticesOf(const std::vector<BoundaryEdge>& border) {
   std::vector<std::int32_t> vertices;
   vertices.reserve(2 * border.size());
-  for (const BorderEdge& e : border) vertices.insert(vertices.end(), {e.from, e.to});
+  for (const BoundaryEdge& e : border) vertices.insert(vertices.end(), {e.from, e.to});
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
@@ -77,7 +77,7 @@ std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t v) {
 
 } // namespace
 
-BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BorderEdge>& border) {
+BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border) {
   BorderWeld result;
   const std::vector<std::int32_t> vertices = verticesOf(border);
   VertexWeld places(vertices.size());
@@ -97,14 +97,14 @@ BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<Bord
   return result;
 }
 
-BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BorderEdge>& border,
+BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border,
                       double tolerance) {
   constexpr double kShare = 0.25; // of an edge, so that its ends are never welded
   const std::vector<std::int32_t> vertices = verticesOf(border);
   std::unordered_map<std::int32_t, double> reach;
   for (const std::int32_t v : vertices) reach[v] = tolerance;
   double farthest = 0;
-  for (const BorderEdge& e : border) {
+  for (const BoundaryEdge& e : border) {
     const double length = kShare * (positions[index(e.to)] - positions[index(e.from)]).norm();
     for (const std::int32_t v : {e.from, e.to}) reach[v] = std::min(reach[v], length);
   }
@@ -128,11 +128,11 @@ BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<Bord
   return result;
 }
 
-SplitBorder splitBorder(const std::vector<Vec3>& positions, const std::vector<BorderEdge>& border,
+SplitBorder splitBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border,
                         double tolerance) {
   SplitBorder result;
   double sum = 0;
-  for (const BorderEdge& e : border)
+  for (const BoundaryEdge& e : border)
     sum += (positions[index(e.to)] - positions[index(e.from)]).norm();
   const CellGrid grid(positions, verticesOf(border),
                       std::max(tolerance, sum / static_cast<double>(border.size())));
@@ -142,7 +142,7 @@ SplitBorder splitBorder(const std::vector<Vec3>& positions, const std::vector<Bo
     auto operator<=>(const OnEdge&) const = default;
   };
   std::vector<OnEdge> on;
-  for (const BorderEdge& e : border) {
+  for (const BoundaryEdge& e : border) {
     const Vec3 from = positions[index(e.from)], way = positions[index(e.to)] - from;
     const double length = way.norm();
     const double near = std::min(tolerance, length / 4);

@@ -11,7 +11,7 @@
 namespace patina {
 
 // An edge that one face uses, in the direction of that face.
-struct BorderEdge {
+struct BoundaryEdge {
   std::int32_t from = 0;
   std::int32_t to = 0;
 };
@@ -22,18 +22,18 @@ struct BorderWeld {
 };
 
 // Welds vertices of the border at equal positions.
-BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BorderEdge>& border);
+BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border);
 // Welds vertices of the border that are at most `tolerance` and a quarter of the shortest border
 // edge at either of them apart.
-BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BorderEdge>& border,
+BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border,
                       double tolerance);
 
 struct SplitBorder {
-  std::vector<BorderEdge> edges;
+  std::vector<BoundaryEdge> edges;
   double widest_crack = 0; // greatest distance of a corner from the edge that it splits
 };
 // Splits edges of the border at its vertices that lie on them within `tolerance` (T-junctions).
-SplitBorder splitBorder(const std::vector<Vec3>& positions, const std::vector<BorderEdge>& border,
+SplitBorder splitBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border,
                         double tolerance);
 
 } // namespace patina

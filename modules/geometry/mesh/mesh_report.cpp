@@ -105,7 +105,7 @@ struct DirectedUse {
 // Adds to the report's counts; `border` receives the edges of one face.
 template <class ForEachEdge>
 void countEdges(std::size_t vertices, std::size_t edges, const ForEachEdge& forEachEdge,
-                MeshReport& report, std::vector<BorderEdge>& border) {
+                MeshReport& report, std::vector<BoundaryEdge>& border) {
   ByVertex<DirectedUse> by_lower(vertices, edges);
   const auto forEach = [&](auto visit) {
     forEachEdge([&](std::int32_t from, std::int32_t to) {
@@ -123,8 +123,8 @@ void countEdges(std::size_t vertices, std::size_t edges, const ForEachEdge& forE
           while (next < last && next->high == first->high) ++next;
           const auto uses = next - first;
           if (uses == 1)
-            border.push_back(first->upwards ? BorderEdge{low, first->high}
-                                            : BorderEdge{first->high, low});
+            border.push_back(first->upwards ? BoundaryEdge{low, first->high}
+                                            : BoundaryEdge{first->high, low});
           else if (uses > 2)
             ++report.non_manifold_edges;
           else if (first[0].upwards == first[1].upwards)
@@ -168,12 +168,13 @@ std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& t
 
 // Counts duplicates, components and edges; the triangles may name other vertices than the mesh's.
 // Returns the edges of one face.
-std::vector<BorderEdge> countTopology(std::size_t vertices, const std::vector<Triangle>& triangles,
-                                      std::vector<Fault>& faults, MeshReport& report) {
+std::vector<BoundaryEdge> countTopology(std::size_t vertices,
+                                        const std::vector<Triangle>& triangles,
+                                        std::vector<Fault>& faults, MeshReport& report) {
   markDuplicates(vertices, triangles, faults);
   report.components = countComponents(vertices, triangles, faults);
   report.non_manifold_edges = report.misoriented_edges = 0;
-  std::vector<BorderEdge> border;
+  std::vector<BoundaryEdge> border;
   countEdges(
       vertices, 3 * triangles.size(),
       [&](auto visit) {
@@ -189,7 +190,7 @@ std::vector<BorderEdge> countTopology(std::size_t vertices, const std::vector<Tr
 
 // Closes cracks at the border and counts again: corners in one place, then corners within the
 // tolerance, then corners on an edge. The mesh itself does not change.
-void closeCracks(const TriangleMesh& mesh, std::vector<BorderEdge>& border,
+void closeCracks(const TriangleMesh& mesh, std::vector<BoundaryEdge>& border,
                  std::vector<Fault>& faults, MeshReport& report) {
   Box3 box;
   for (std::size_t t = 0; t < faults.size(); ++t)
@@ -218,7 +219,7 @@ void closeCracks(const TriangleMesh& mesh, std::vector<BorderEdge>& border,
   countEdges(
       mesh.positions.size(), split.edges.size(),
       [&](auto visit) {
-        for (const BorderEdge& e : split.edges) visit(e.from, e.to);
+        for (const BoundaryEdge& e : split.edges) visit(e.from, e.to);
       },
       report, border);
 }
@@ -228,7 +229,7 @@ MeshReport inspect(const TriangleMesh& mesh, std::vector<Fault>& faults) {
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.positions.size();
   faults = triangleFaults(mesh);
-  std::vector<BorderEdge> border =
+  std::vector<BoundaryEdge> border =
       countTopology(mesh.positions.size(), mesh.triangles, faults, report);
   if (!border.empty()) closeCracks(mesh, border, faults, report);
   report.boundary_edges = border.size();
