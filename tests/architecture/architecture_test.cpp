@@ -120,7 +120,8 @@ TEST(Architecture, NoTwoHeadersDefineATypeOfOneName) {
                            name.find("::") == std::string::npos;
       if (!defines) continue;
       const auto [known, is_new] = first.emplace(space + "::" + name, file.path);
-      EXPECT_TRUE(is_new) << known->first << " is in " << known->second << " and in " << file.path;
+      EXPECT_TRUE(is_new || known->second == file.path)
+          << known->first << " is in " << known->second << " and in " << file.path;
     }
   }
   EXPECT_GT(first.size(), 300u);
