@@ -1,5 +1,6 @@
 // The house keeps its plan: its rooms and their doors, checked on every source.
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <set>
 #include <sstream>
@@ -116,7 +117,8 @@ TEST(Architecture, NoTwoHeadersDefineATypeOfOneName) {
       if (kind == "namespace") space = name;
       if (name == "class" || name.starts_with("alignas")) words >> name;
       const bool defines = (kind == "struct" || kind == "class" || kind == "enum") &&
-                           line[0] != ' ' && line.find('{') != std::string::npos &&
+                           line[0] != ' ' && std::isalpha(name[0]) &&
+                           line.find('{') != std::string::npos &&
                            name.find("::") == std::string::npos;
       if (!defines) continue;
       const auto [known, is_new] = first.emplace(space + "::" + name, file.path);
