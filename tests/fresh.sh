@@ -213,7 +213,7 @@ if [ $mode = tests ]; then
 else
   built=$(programs)
   remove_system
-  clone=/root/patina
+  clone=/srv/$person/patina
   timed "A second bare $release" make_system
   timed "app/run.sh as root" in_system root app/run.sh
   in_system root "test -s out/report.md"

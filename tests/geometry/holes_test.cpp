@@ -94,5 +94,15 @@ TEST(InnerFaces, AreThoseThatTwoBodiesShare) {
   EXPECT_TRUE(innerFaces(joined(one, joined(fin, inverted(fin)))).empty());
 }
 
+// Their edges form loops round the whole body by chance.
+TEST(Holes, BetweenLoosePiecesAreNone) {
+  const double voxel = 0.001;
+  for (const TriangleMesh& body : {torus(0.04, 0.015, 120, 60), icosphere(0.05, 40)})
+    for (const double shift : {0.01, 0.1, 0.3})
+      for (const Hole& hole :
+           openParts(loose(body, shift * voxel), OpenSides::automatic, voxel).holes)
+        EXPECT_LT(hole.area, 25 * voxel * voxel) << shift;
+}
+
 } // namespace
 } // namespace patina

@@ -217,6 +217,16 @@ std::vector<Hole> closedOver(const TriangleMesh& mesh, const ConnectedParts& fou
   return holesOf(points, edges);
 }
 
+// The edges of loose pieces form loops by chance, too. In the middle of a hole the winding number
+// of what is round it is about a half; inside and outside of a body it is whole.
+void dropLoopsOfChance(const WindingNumber& winding, std::vector<Hole>& holes) {
+  constexpr double kHole = 0.35; // from a half
+  std::erase_if(holes, [&](const Hole& hole) {
+    const double around = std::abs(winding.at(hole.centre));
+    return std::abs(around - std::floor(around) - 0.5) > kHole;
+  });
+}
+
 } // namespace
 
 OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding, OpenSides sides,
@@ -249,6 +259,9 @@ OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding, Open
   for (const RimEdge& rim : found.rims)
     if (rim.covered) result.seams.push_back({rim.face, rim.edge});
   result.holes = closedOver(welded, found, result.open, reach);
+  if (std::any_of(found.parts.begin(), found.parts.end(),
+                  [](const auto& part) { return part.joined; }))
+    dropLoopsOfChance(winding, result.holes);
   return result;
 }
 
