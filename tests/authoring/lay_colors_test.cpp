@@ -207,6 +207,24 @@ TEST_F(LayColors, APictureThatCannotBeReadLeavesTheFacesTheirOwnColour) {
   EXPECT_LT((colorAt(*paint, 3, Vec3::Constant(1.0 / 3)) - Vec3(0, 1, 0)).norm(), 1e-6);
 }
 
+TEST_F(LayColors, CoordinatesThatAreNotFiniteShowNothingAndHarmNoOther) {
+  TriangleMesh mesh = box(Vec3(0.05, 0.04, 0.03), 1);
+  mesh.corner_uvs.assign(mesh.triangles.size(), {Vec2(0.1, 0.1), Vec2(0.9, 0.1), Vec2(0.1, 0.9)});
+  mesh.corner_uvs[0][1].x() = std::numeric_limits<double>::quiet_NaN();
+  mesh.corner_uvs[1][1].x() = std::numeric_limits<double>::infinity();
+  MeshColors colors;
+  colors.pictures.push_back({ramp(64), {1e308, 1}, {1e308, 0}, true});
+  colors.pictures.push_back({ramp(64), {1, 1}, {0, 0}, true});
+  colors.picture_of.assign(mesh.triangles.size(), 1);
+  colors.picture_of[2] = 0;
+  const auto paint = paintOf(mesh, colors, 512, warnings_);
+  ASSERT_TRUE(paint);
+  for (int j = 0; j < paint->color->height(); ++j)
+    for (int i = 0; i < paint->color->width(); ++i)
+      for (int c = 0; c < 4; ++c) ASSERT_TRUE(std::isfinite(paint->color->at(i, j, c)));
+  EXPECT_NEAR(colorAt(*paint, 5, Vec3::Constant(1.0 / 3)).x(), 1.1 / 3, 0.01);
+}
+
 TEST_F(LayColors, AMeshWithoutColoursHasNoPaint) {
   EXPECT_EQ(paintOf(icosphere(0.03, 3), {}, 512, warnings_), nullptr);
   EXPECT_TRUE(warnings_.empty());

@@ -141,7 +141,7 @@ class ColorPicture : public testing::Test {
   static void expectEqual(vtkImageData* seen, vtkImageData* truth) {
     ASSERT_TRUE(seen && truth);
     double sum = 0;
-    int drawn = 0, apart = 0;
+    int covered = 0, different = 0;
     for (int y = 0; y < kPixels; ++y)
       for (int x = 0; x < kPixels; ++x) {
         double most = 0;
@@ -153,13 +153,13 @@ class ColorPicture : public testing::Test {
           background = background && b == 255;
         }
         if (background && most == 0) continue;
-        ++drawn;
+        ++covered;
         sum += most;
-        if (most > 24) ++apart;
+        if (most > 24) ++different;
       }
-    EXPECT_GT(drawn, kPixels * kPixels / 5);
-    EXPECT_LT(sum / drawn, 1.5);     // of 255
-    EXPECT_LT(apart, 0.015 * drawn); // along edges between two colours
+    EXPECT_GT(covered, kPixels * kPixels / 5);
+    EXPECT_LT(sum / covered, 1.5);         // of 255
+    EXPECT_LT(different, 0.015 * covered); // along edges between two colours
   }
 
   static std::string text(const std::array<float, 3>& c) {

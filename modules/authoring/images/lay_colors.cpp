@@ -55,7 +55,8 @@ Picture halved(const Picture& picture) {
   return half;
 }
 
-// Of a picture that is finer than any image that is made of it no more is kept in memory.
+// Reads each file once. A picture with more than kMostColorTexels a side is halved until it fits,
+// so that memory is bounded by what an image can show.
 Pictures readPictures(const MeshColors& colors, std::vector<std::string>& warnings) {
   Pictures pictures;
   std::map<std::filesystem::path, std::size_t> known;

@@ -34,6 +34,7 @@ void requirePicture(const Picture& picture) {
 
 void addSample(const Picture& picture, const Vec2& place, bool repeats, double share,
                PictureSample& sum) {
+  if (!place.allFinite()) return;
   const Vec2 inside =
       repeats ? Vec2(place.array() - place.array().floor()) : Vec2(place.array().max(0.0).min(1.0));
   const double x = inside.x() * picture.width - 0.5, y = inside.y() * picture.height - 0.5;

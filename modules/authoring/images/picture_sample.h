@@ -15,11 +15,12 @@ struct PictureSample {
   double grey() const { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
 };
 
-// Throws std::invalid_argument if sizes, channels and texels do not belong together.
+// Throws std::invalid_argument unless there are 1 to 4 channels and as many texels as the size
+// says.
 void requirePicture(const Picture& picture);
 
 // Adds `share` of the picture's bilinear value at a place in the unit square. Outside of it the
-// picture repeats, or its edge goes on.
+// picture repeats, or its edge goes on. A place that is not finite adds nothing.
 void addSample(const Picture& picture, const Vec2& place, bool repeats, double share,
                PictureSample& sum);
 
