@@ -1,7 +1,11 @@
 #include "pipeline/demo.h"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <numeric>
+
+#include <tbb/parallel_for.h>
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/registered_file.h"
@@ -83,23 +87,33 @@ Pose cameraFromPlane(const Demo& demo) {
   return demo.camera_from_object * demo.object.plane_from_object.inverse();
 }
 
-void track(Demo& demo, Progress& progress) {
-  for (DemoScan& one : demo.scans) {
-    const std::filesystem::path folder = demo.folder / ("scan-" + one.name);
-    const auto frames = openFrames(folder.string(), 0);
-    const TrackedFrames found = trackFrames(*frames, readCamera(folder / "camera.yml"),
-                                            readMarkers(folder / "rig.json"), {}, progress);
-    progress.throwIfCancelled();
-    if (found.poses.empty()) throw Error(one.name + ": no frame shows a pose of the markers");
-    writePoses(folder / "poses.tum", found.poses, found.without);
-    one.streams.poses = found.poses;
-    double squares = 0;
-    for (const CameraPose& pose : found.poses) {
-      const Vec3 tip = pose.position + pose.orientation * demo.rig.probe.tip;
-      squares += (tip - cameraFromPlane(demo) * handAt(one.hand, pose.t).tip).squaredNorm();
-    }
-    one.tip_error = std::sqrt(squares / static_cast<double>(found.poses.size()));
+void trackOne(const Demo& demo, DemoScan& one, Progress& progress) {
+  const std::filesystem::path folder = demo.folder / ("scan-" + one.name);
+  const auto frames = openFrames(folder.string(), 0);
+  const TrackedFrames found = trackFrames(*frames, readCamera(folder / "camera.yml"),
+                                          readMarkers(folder / "rig.json"), {}, progress);
+  progress.throwIfCancelled();
+  if (found.poses.empty()) throw Error(one.name + ": no frame shows a pose of the markers");
+  writePoses(folder / "poses.tum", found.poses, found.without);
+  one.streams.poses = found.poses;
+  double squares = 0;
+  for (const CameraPose& pose : found.poses) {
+    const Vec3 tip = pose.position + pose.orientation * demo.rig.probe.tip;
+    squares += (tip - cameraFromPlane(demo) * handAt(one.hand, pose.t).tip).squaredNorm();
   }
+  one.tip_error = std::sqrt(squares / static_cast<double>(found.poses.size()));
+}
+
+void track(Demo& demo, Progress& progress) {
+  std::vector<std::atomic<double>> done(demo.scans.size());
+  tbb::parallel_for(std::size_t{0}, demo.scans.size(), [&](std::size_t i) {
+    Progress part(progress, [&](double fraction, std::string_view what) {
+      done[i] = fraction;
+      progress.report(
+          std::accumulate(done.begin(), done.end(), 0.) / static_cast<double>(done.size()), what);
+    });
+    trackOne(demo, demo.scans[i], part);
+  });
 }
 
 void filter(Demo& demo, Progress& progress) {

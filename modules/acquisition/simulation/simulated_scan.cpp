@@ -1,6 +1,9 @@
 #include "acquisition/simulation/simulated_scan.h"
 
+#include <atomic>
 #include <cstdio>
+
+#include <tbb/parallel_for.h>
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
@@ -38,14 +41,15 @@ std::size_t writeFrames(const std::filesystem::path& folder, const Camera& camer
   CsvTable times{{"frame", "t [s]"}, {}};
   const int count = frameCount(hand, course);
   makeFolder(folder / "frames");
-  for (int i = 0; i < count; ++i) {
+  std::atomic<int> done{0};
+  tbb::parallel_for(0, count, [&](int i) {
     progress.throwIfCancelled();
-    progress.report(static_cast<double>(i) / count, "frames");
+    progress.report(static_cast<double>(done++) / count, "frames");
     char name[32];
     std::snprintf(name, sizeof name, "frames/%06d.png", i);
     writeGrey(folder / name, frameAt(renderer, hand, probe, course, i));
-    times.rows.push_back({static_cast<double>(i), i / course.rate});
-  }
+  });
+  for (int i = 0; i < count; ++i) times.rows.push_back({static_cast<double>(i), i / course.rate});
   writeCsv(folder / "frames.csv", times);
   writeFileAtomically(folder / "camera.yml", cameraText(camera));
   return static_cast<std::size_t>(count);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <future>
 #include <thread>
 #include <utility>
 
@@ -25,12 +26,16 @@ SourceFrame readFrame(const Frame& frame) {
   return read;
 }
 
+// Reads one frame ahead, in a thread of its own, while the caller works on the one before.
 class FolderFrames : public FrameSource {
  public:
   FolderFrames(std::vector<Frame> frames) : frames_(std::move(frames)) {}
   std::optional<SourceFrame> next() override {
     if (stopped_ || at_ == frames_.size()) return std::nullopt;
-    return readFrame(frames_[at_++]);
+    SourceFrame frame = ahead_.valid() ? ahead_.get() : readFrame(frames_[at_]);
+    if (++at_ < frames_.size())
+      ahead_ = std::async(std::launch::async, readFrame, std::cref(frames_[at_]));
+    return frame;
   }
   std::optional<std::size_t> count() const override { return frames_.size(); }
   bool isLive() const override { return false; }
@@ -40,6 +45,7 @@ class FolderFrames : public FrameSource {
   std::vector<Frame> frames_;
   std::size_t at_ = 0;
   std::atomic<bool> stopped_{false};
+  std::future<SourceFrame> ahead_; // the last member: it waits for its thread before they go
 };
 
 class ReplayedFrames : public FrameSource {

@@ -151,8 +151,13 @@ template <typename Whole>
 std::string writePngOf(const ImageRows& rows, const OIIO::TypeDesc& type, std::string& bytes) {
   OIIO::ImageSpec spec = specOf(rows, type);
   spec.attribute("oiio:UnassociatedAlpha", 1);
-  // Frames are grey noise, of which packing takes more time than it saves room.
-  if (sizeof(Whole) == 1) spec.attribute("png:compressionLevel", 1);
+  // Frames are grey noise, of which packing takes more time than it saves room; the difference to
+  // the row above (PNG's filter "up") is the quickest that packs as well.
+  if (sizeof(Whole) == 1) {
+    constexpr int kUp = 0x20;
+    spec.attribute("png:compressionLevel", 1);
+    spec.attribute("png:filter", kUp);
+  }
   constexpr double kMost = std::numeric_limits<Whole>::max();
   std::vector<Whole> data;
   data.reserve(rows.value.size());
