@@ -136,6 +136,9 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
                  std::to_string(scan.streams.poses.size()) + " of " + std::to_string(scan.frames),
                  formatLength(scan.tip_error), formatLength(scan.path_error.rms),
                  formatNumber(std::round(scan.path_error.nees * 100) / 100)});
+  text += "\nNEES is the squared error of a sample over the variance that the filter states for "
+          "it, on the "
+          "mean: 1 where the\nstated variance is right.\n";
   text += "\n## Materials\n\n" +
           row({"material", "path [mm]", "wavelength [mm]", "found", "amplitude", "found",
                "stiffness [N/m]", "found", "faces"}) +
@@ -158,11 +161,17 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
   for (const DemoFigure& figure : demoFigures(demo))
     text += row({figure.step, figure.what, figure.of, figureText(figure.value, figure.unit),
                  figureText(figure.most, figure.unit), figure.holds() ? "holds" : "**missed**"});
-  if (!pictures.empty()) text += "\n## Pictures\n";
+  text += "\nThe variation of the force is compared after one lag for each 10 mm is taken off, "
+          "which has "
+          "a row of its own.\n\n## Pictures\n";
+  if (pictures.empty())
+    text += "\nThere was no display to draw them with; `xvfb-run -a patina demo` brings one.\n";
   for (const std::string& picture : pictures)
     text += "\n![" + picture.substr(0, picture.find('.')) + "](" + picture + ")\n";
   text += "\n## The same by commands\n\n"
-          "Each scan is a folder that every command and the window's Scan desk open:\n\n"
+          "Each scan is a folder that every command and the window's Scan desk open. `patina "
+          "register` takes one compliance\nfor all scans, where the demo finds one for each, so "
+          "that its place is less exact here:\n\n"
           "    patina track scan-ribs -o scan-ribs/poses.tum\n"
           "    patina filter scan-ribs -o path-ribs.csv\n"
           "    patina register textured.obj path-ribs.csv --also path-weave.csv --also "

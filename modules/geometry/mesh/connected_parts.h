@@ -30,9 +30,10 @@ struct ConnectedParts {
   std::vector<RimEdge> rims;
 };
 
-// `mesh`: welded. Pieces are connected over edges. Pieces with
-// rims are joined where the middles of rim edges lie at most 0.7 `reach` apart and that holds for
-// half of both rims (three tenths, of pieces of less than four faces).
+// `mesh`: welded. A piece is what edges connect. A rim edge is near another piece if the middle of
+// one of its rim edges is at most 0.7 `reach` away. A piece takes part where that holds for half of
+// its rim's length (three tenths, of a piece of less than four faces), and is joined to the pieces
+// whose rims lie along its own; where none does, to all that are near.
 ConnectedParts connectedParts(const TriangleMesh& mesh, double reach);
 
 } // namespace patina

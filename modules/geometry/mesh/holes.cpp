@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 
 #include "core/numbers.h"
 
@@ -158,12 +159,23 @@ std::string describeHole(const Hole& hole) {
 }
 
 std::vector<Hole> holesOf(const std::vector<Vec3>& points,
-                          const std::vector<std::array<std::int32_t, 2>>& edges) {
+                          const std::vector<std::array<std::int32_t, 2>>& edges,
+                          double least_area) {
   std::vector<Hole> holes;
+  std::vector<Vec3> loop;
   Loops(points.size(), edges).run([&](const std::vector<std::size_t>& way) {
-    std::vector<Vec3> loop;
-    for (const std::size_t p : way) loop.push_back(points[p]);
-    if (loop.size() > 2) holes.push_back(spanned(loop));
+    if (way.size() < 3) return;
+    loop.clear();
+    double round = 0;
+    for (const std::size_t p : way) {
+      if (!loop.empty()) round += (points[p] - loop.back()).norm();
+      loop.push_back(points[p]);
+    }
+    round += (loop.front() - loop.back()).norm();
+    // No loop spans more than the circle of its length (isoperimetric inequality).
+    if (round * round < 4 * std::numbers::pi * least_area) return;
+    const Hole hole = spanned(loop);
+    if (hole.area >= least_area) holes.push_back(hole);
   });
   std::stable_sort(holes.begin(), holes.end(),
                    [](const Hole& a, const Hole& b) { return a.area > b.area; });

@@ -22,9 +22,10 @@ struct Hole {
 Hole spanned(const std::vector<Vec3>& loop);
 
 // Loops of the edges between `points`, the largest area first. Where loops touch at a vertex each
-// is one by itself. Edges that close no loop are left out.
+// is one by itself. Edges that close no loop are left out, and holes of less than `least_area`.
 std::vector<Hole> holesOf(const std::vector<Vec3>& points,
-                          const std::vector<std::array<std::int32_t, 2>>& edges);
+                          const std::vector<std::array<std::int32_t, 2>>& edges,
+                          double least_area = 0);
 
 // "3600 mm² about (50 mm, 50 mm, 100 mm)".
 std::string describeHole(const Hole& hole);

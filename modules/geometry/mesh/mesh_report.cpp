@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "geometry/mesh/border_weld.h"
+#include "geometry/mesh/disjoint_sets.h"
 
 namespace patina {
 namespace {
@@ -136,33 +137,18 @@ void countEdges(std::size_t vertices, std::size_t edges, const ForEachEdge& forE
 
 std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& triangles,
                             const std::vector<Fault>& faults) {
-  constexpr std::int32_t kNoParent = -1;
-  std::vector<std::int32_t> parent(vertices, kNoParent);
-  const auto find = [&](std::int32_t v) {
-    while (parent[static_cast<std::size_t>(v)] != v) {
-      std::int32_t& up = parent[static_cast<std::size_t>(v)];
-      up = parent[static_cast<std::size_t>(up)];
-      v = up;
-    }
-    return v;
-  };
-  std::size_t components = 0;
+  DisjointSets sets(vertices);
+  std::vector<std::uint8_t> used(vertices);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (faults[t] != Fault::none) continue;
     const Triangle& v = triangles[t];
-    for (const std::int32_t vertex : v)
-      if (auto& up = parent[static_cast<std::size_t>(vertex)]; up == kNoParent) {
-        up = vertex;
-        ++components;
-      }
-    for (std::size_t k = 1; k < 3; ++k) {
-      const std::int32_t a = find(v[0]), b = find(v[k]);
-      if (a == b) continue;
-      // The lower index becomes the root: meshes number neighbours closely, so paths stay short.
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-      --components;
-    }
+    for (const std::int32_t vertex : v) used[index(vertex)] = 1;
+    sets.join(v[0], v[1]);
+    sets.join(v[0], v[2]);
   }
+  std::size_t components = 0;
+  for (std::size_t v = 0; v < vertices; ++v)
+    components += used[v] && index(sets.find(static_cast<std::int32_t>(v))) == v;
   return components;
 }
 

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include <tbb/parallel_for.h>
 
 #include "geometry/mesh/connected_parts.h"
+#include "geometry/mesh/disjoint_sets.h"
 #include "geometry/mesh/edge_uses.h"
 #include "geometry/mesh/inner_faces.h"
 #include "geometry/mesh/mesh_report.h"
-#include "geometry/mesh/near_points.h"
 #include "geometry/mesh/orientation.h"
+#include "geometry/mesh/point_grid.h"
 
 namespace patina {
 namespace {
@@ -163,37 +163,35 @@ void decide(const TriangleMesh& mesh, const WindingNumber& winding, std::vector<
 // By vertex: the lowest of those that joined rims bring together, at most `reach` apart.
 std::vector<std::int32_t> nearVertices(const TriangleMesh& mesh, const ConnectedParts& found,
                                        const std::vector<const RimEdge*>& rims, double reach) {
-  std::vector<std::int32_t> lowest(mesh.positions.size());
-  std::iota(lowest.begin(), lowest.end(), 0);
-  std::vector<std::int32_t> vertices;
+  std::vector<std::uint8_t> asked(mesh.positions.size());
   for (const RimEdge* rim : rims)
     if (found.parts[index(found.part_of[index(rim->face)])].joined)
-      vertices.insert(vertices.end(), rim->vertices.begin(), rim->vertices.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      for (const std::int32_t v : rim->vertices) asked[index(v)] = 1;
+  std::vector<std::int32_t> vertices;
+  for (std::size_t v = 0; v < asked.size(); ++v)
+    if (asked[v]) vertices.push_back(static_cast<std::int32_t>(v));
   std::vector<Vec3> points;
+  points.reserve(vertices.size());
   for (const std::int32_t v : vertices) points.push_back(mesh.positions[index(v)]);
-  const auto find = [&](std::int32_t v) {
-    while (lowest[index(v)] != v) v = lowest[index(v)];
-    return v;
-  };
-  // Less than half an edge, so that no hole closes.
   double length = 0;
   for (const RimEdge* rim : rims)
     length +=
-        (mesh.positions[index(rim->vertices[0])] - mesh.positions[index(rim->vertices[1])]).norm() /
-        static_cast<double>(rims.size());
-  NearPoints(points, std::min(reach, 0.4 * length)).forPairs([&](std::uint32_t i, std::uint32_t j) {
-    const std::int32_t a = find(vertices[i]), b = find(vertices[j]);
-    lowest[index(std::max(a, b))] = std::min(a, b);
-    return false;
-  });
-  for (const std::int32_t v : vertices) lowest[index(v)] = find(v);
-  return lowest;
+        (mesh.positions[index(rim->vertices[0])] - mesh.positions[index(rim->vertices[1])]).norm();
+  // Less than half an edge, so that no hole closes.
+  const double near = std::min(reach, 0.4 * length / static_cast<double>(rims.size()));
+  const PointGrid grid(points, near);
+  DisjointSets sets(mesh.positions.size());
+  for (std::size_t n = 0; n < grid.size(); ++n)
+    grid.forEachNear(n, near, [&](std::size_t m) {
+      if (m < n) sets.join(vertices[grid.point(n)], vertices[grid.point(m)]);
+      return false;
+    });
+  return std::move(sets).lowest();
 }
 
 std::vector<Hole> closedOver(const TriangleMesh& mesh, const ConnectedParts& found,
-                             const std::vector<std::uint8_t>& open, double reach) {
+                             const std::vector<std::uint8_t>& open, double reach,
+                             double least_area) {
   std::vector<const RimEdge*> rims;
   for (const RimEdge& rim : found.rims)
     if (!rim.covered && (open.empty() || !open[index(rim.face)])) rims.push_back(&rim);
@@ -214,7 +212,7 @@ std::vector<Hole> closedOver(const TriangleMesh& mesh, const ConnectedParts& fou
     }
     if (edge[0] != edge[1]) edges.push_back(edge);
   }
-  return holesOf(points, edges);
+  return holesOf(points, edges, least_area);
 }
 
 // The edges of loose pieces form loops by chance, too. In the middle of a hole the winding number
@@ -258,10 +256,11 @@ OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding, Open
   }
   for (const RimEdge& rim : found.rims)
     if (rim.covered) result.seams.push_back({rim.face, rim.edge});
-  result.holes = closedOver(welded, found, result.open, reach);
-  if (std::any_of(found.parts.begin(), found.parts.end(),
-                  [](const auto& part) { return part.joined; }))
-    dropLoopsOfChance(winding, result.holes);
+  // Between loose pieces a hole smaller than a square of side `reach` is a gap.
+  const bool loose = std::any_of(found.parts.begin(), found.parts.end(),
+                                 [](const auto& part) { return part.joined; });
+  result.holes = closedOver(welded, found, result.open, reach, loose ? reach * reach : 0);
+  if (loose) dropLoopsOfChance(winding, result.holes);
   return result;
 }
 
