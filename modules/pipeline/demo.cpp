@@ -188,7 +188,7 @@ std::vector<ProfilePoint> trueProfile(const DemoObject& object, const DemoMateri
   return profile;
 }
 
-void fit(Demo& demo, Progress& progress) {
+void fit(Demo& demo, Progress&) {
   FitOptions1d options;
   options.blend = kBlend;
   options.cutoff = kCutoff;
@@ -197,8 +197,8 @@ void fit(Demo& demo, Progress& progress) {
     demo.textures.emplace_back();
     DemoTexture& texture = demo.textures.back();
     texture.scanned =
-        fitScan(demo.target, one.streams, demo.rig.probe, demo.rig.gravity, objectFromCamera(demo),
-                demo.registered.compliances[i], options, progress);
+        fitScan(demo.target, one.filtered, one.streams.poses, demo.rig.probe, demo.rig.gravity,
+                objectFromCamera(demo), demo.registered.compliances[i], options);
     FourierTexture& fitted = texture.scanned.fitted.texture;
     fitted.name = one.name;
     writeHeights(demo.folder / ("heights-" + one.name + ".csv"), texture.scanned.heights);

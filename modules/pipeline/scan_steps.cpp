@@ -80,18 +80,14 @@ RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<Fil
   return found;
 }
 
-ScannedTexture fitScan(const SurfaceTarget& target, const ScanStreams& streams,
-                       const ProbeModel& probe, const Vec3& gravity, const Pose& mesh_from_scan,
-                       double compliance, const FitOptions1d& options, Progress& progress) {
-  ScanFilter filter;
-  filter.gravity = gravity;
-  const FilteredScan path = filterScan(streams.poses, streams.samples, probe, filter, progress);
-  filter.heights = true;
-  filter.compliance = compliance;
-  filter.normal = meanNormal(target, mesh_from_scan, path.path);
-  const FilteredScan scan = filterScan(streams.poses, streams.samples, probe, filter, progress);
+ScannedTexture fitScan(const SurfaceTarget& target, const FilteredScan& scan,
+                       const std::vector<CameraPose>& poses, const ProbeModel& probe,
+                       const Vec3& gravity, const Pose& mesh_from_scan, double compliance,
+                       const FitOptions1d& options) {
+  const ScanHeights heights = scanHeights(
+      scan, poses, probe, gravity, meanNormal(target, mesh_from_scan, scan.path), compliance);
   ScannedTexture found;
-  found.heights = longestStroke(heightsOverMesh(target, mesh_from_scan, scan.path, *scan.heights));
+  found.heights = longestStroke(heightsOverMesh(target, mesh_from_scan, scan.path, heights));
   if (found.heights.empty()) throw Error("nowhere along the path is there a height over the mesh");
   found.stroke = strokeUnder(found.heights, scan.path, mesh_from_scan);
   std::vector<ProfilePoint> profile;

@@ -42,11 +42,13 @@ struct ScannedTexture {
   FittedTexture fitted;            // with the compliance, where it was found
   LaidTexture laid;                // once it is
 };
-// From the streams of one scan that is registered: heights along the mesh's mean normal under it,
-// over the mesh, as harmonics. Throws as scanHeights() and fitTexture() do.
-ScannedTexture fitScan(const SurfaceTarget& target, const ScanStreams& streams,
-                       const ProbeModel& probe, const Vec3& gravity, const Pose& mesh_from_scan,
-                       double compliance, const FitOptions1d& options, Progress& progress);
+// From one scan that is registered: heights along the mesh's mean normal under it, over the mesh,
+// as harmonics. `scan` was filtered from `poses`, touching only; the filter does not run again.
+// Throws as scanHeights() and fitTexture() do.
+ScannedTexture fitScan(const SurfaceTarget& target, const FilteredScan& scan,
+                       const std::vector<CameraPose>& poses, const ProbeModel& probe,
+                       const Vec3& gravity, const Pose& mesh_from_scan, double compliance,
+                       const FitOptions1d& options);
 
 // The mesh as a scene of one object with these textures on it, numbered from 1 in their order; of
 // faces that several want the later ones get them. What was not scanned is as stiff as what was, on

@@ -79,15 +79,14 @@ void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
   const std::vector<CameraPose> poses = simulateCamera(hand, probe, {}, seed);
   const std::vector<ProbeSample> samples = simulateProbe(hand, probe, {}, seed + 1);
   Progress progress;
-  ScanFilter filter;
-  const FilteredScan path = filterScan(poses, samples, probe, filter, progress);
-  filter.heights = true;
-  filter.normal = meanNormal(target, Pose::Identity(), path.path);
-  const auto yielding = complianceOverMesh(target, Pose::Identity(), path.path, path.track, probe);
-  filter.compliance = yielding ? yielding->compliance : 0;
+  const ScanFilter filter;
   const FilteredScan scan = filterScan(poses, samples, probe, filter, progress);
+  const auto yielding = complianceOverMesh(target, Pose::Identity(), scan.path, scan.track, probe);
   const std::vector<ScanHeight> heights =
-      heightsOverMesh(target, Pose::Identity(), scan.path, *scan.heights);
+      heightsOverMesh(target, Pose::Identity(), scan.path,
+                      scanHeights(scan, poses, probe, filter.gravity,
+                                  meanNormal(target, Pose::Identity(), scan.path),
+                                  yielding ? yielding->compliance : 0));
   for (std::size_t first = 0, last = 0; first < heights.size(); first = last) {
     std::vector<ProfilePoint> points;
     for (; last < heights.size() && heights[last].stretch == heights[first].stretch; ++last)

@@ -26,13 +26,12 @@ Rough roughScan(std::uint32_t seed, double rms, const SimulatedProbe& stream = {
   rough.hand = strokes(seed);
   rough.hand.relief = roughSurface(seed, rms);
   const ProbeModel probe;
-  ScanFilter filter;
-  filter.heights = true;
+  const ScanFilter filter;
   Progress progress;
-  rough.found =
-      *filterScan(simulateCamera(rough.hand, probe, {}, seed),
-                  simulateProbe(rough.hand, probe, stream, seed + 100), probe, filter, progress)
-           .heights;
+  const std::vector<CameraPose> poses = simulateCamera(rough.hand, probe, {}, seed);
+  rough.found = scanHeights(filterScan(poses, simulateProbe(rough.hand, probe, stream, seed + 100),
+                                       probe, filter, progress),
+                            poses, probe, filter.gravity);
   return rough;
 }
 
@@ -111,13 +110,12 @@ TEST(ScanHeights, ArePressedByNothing) {
     rough.hand.moves.push_back({Vec2(0.06, 0.01), 1, 0, 1, 0});
     rough.hand.moves.push_back({Vec2(0.06, 0.01), 0.5, 0, 0, 1});
     const ProbeModel probe;
-    ScanFilter filter;
-    filter.heights = true;
-    filter.normal = Vec3::UnitZ();
+    const ScanFilter filter;
     Progress progress;
-    rough.found = *filterScan(simulateCamera(rough.hand, probe, {}, 5),
-                              simulateProbe(rough.hand, probe, {}, 6), probe, filter, progress)
-                       .heights;
+    const std::vector<CameraPose> poses = simulateCamera(rough.hand, probe, {}, 5);
+    rough.found = scanHeights(
+        filterScan(poses, simulateProbe(rough.hand, probe, {}, 6), probe, filter, progress), poses,
+        probe, filter.gravity, Vec3::UnitZ());
     // Where it went.
     std::vector<ScanHeight>& heights = rough.found.heights;
     std::erase_if(heights,

@@ -216,13 +216,27 @@ void requireTouch(const FilteredScan& scan, const FilterOptions& options) {
                         " N; --lifted keeps what is in the air");
 }
 
-void layOver(const Over& over, const std::optional<ComplianceEstimate>& presses, FilteredScan& scan,
-             const std::filesystem::path& mesh) {
-  scan.heights->compliance = presses;
-  scan.heights->heights =
-      heightsOverMesh(over.target, over.mesh_from_scan, scan.path, *scan.heights);
-  if (scan.heights->heights.empty())
-    throw FileError(mesh.string(), 0, "nowhere on it is there a height of the scan");
+// Over the mesh, or over a plane where there is none.
+ScanHeights heightsOf(const FilteredScan& scan, const std::optional<Over>& over, const Inputs& in,
+                      const FilterOptions& options) {
+  const std::vector<CameraPose>& poses = in.poses.values;
+  const ProbeModel& probe = in.rig.probe;
+  if (!over) return scanHeights(scan, poses, probe, in.rig.gravity, options.normal);
+  Vec3 normal;
+  try {
+    normal = meanNormal(over->target, over->mesh_from_scan, scan.path);
+  } catch (const Error& error) {
+    throw FileError(options.over.string(), 0, error.what());
+  }
+  const auto presses =
+      complianceOverMesh(over->target, over->mesh_from_scan, scan.path, scan.track, probe);
+  ScanHeights found = scanHeights(scan, poses, probe, in.rig.gravity, normal,
+                                  presses && presses->isTold() ? presses->compliance : 0);
+  found.compliance = presses;
+  found.heights = heightsOverMesh(over->target, over->mesh_from_scan, scan.path, found);
+  if (found.heights.empty())
+    throw FileError(options.over.string(), 0, "nowhere on it is there a height of the scan");
+  return found;
 }
 
 int runFilter(FilterOptions options, Console& console) {
@@ -247,36 +261,19 @@ int runFilter(FilterOptions options, Console& console) {
   filter.smooth = !options.forward;
   filter.touching_only = !options.lifted;
   filter.gravity = in.rig.gravity;
-  filter.normal = options.normal;
-  filter.heights = !options.heights.empty();
-  if (filter.heights && filter.model != PathModel::fused)
+  const bool with_heights = !options.heights.empty();
+  if (with_heights && filter.model != PathModel::fused)
     throw Error("--heights: come from the accelerometers of the fused --model");
   const auto begin = std::chrono::steady_clock::now();
-  const auto filtered = [&] {
-    return filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
-  };
-  std::optional<ComplianceEstimate> presses; // over the mesh
-  if (over) {
-    filter.heights = false;
-    const FilteredScan path = filtered();
-    requireTouch(path, options);
-    try {
-      filter.normal = meanNormal(over->target, over->mesh_from_scan, path.path);
-    } catch (const Error& error) {
-      throw FileError(options.over.string(), 0, error.what());
-    }
-    presses =
-        complianceOverMesh(over->target, over->mesh_from_scan, path.path, path.track, in.rig.probe);
-    filter.compliance = presses && presses->isTold() ? presses->compliance : 0;
-    filter.heights = true;
-  }
-  FilteredScan scan = filtered();
+  const FilteredScan scan =
+      filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
   requireTouch(scan, options);
-  if (over) layOver(*over, presses, scan, options.over);
+  std::optional<ScanHeights> heights;
+  if (with_heights) heights = heightsOf(scan, over, in, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   console.progress().throwIfCancelled();
-  if (scan.heights)
-    writePath(options.output, scan.path, options.heights, scan.heights->heights);
+  if (heights)
+    writePath(options.output, scan.path, options.heights, heights->heights);
   else
     writePath(options.output, scan.path);
 
@@ -305,7 +302,7 @@ int runFilter(FilterOptions options, Console& console) {
                formatLength(error.rms) + " (rms), " + formatLength(error.most) + " (max); NEES " +
                    rounded(error.nees));
   }
-  if (scan.heights) reportHeights(*scan.heights, report);
+  if (heights) reportHeights(*heights, report);
   report.set("seconds", taken.count());
   for (const std::string& doubt : scan.doubts) console.warn(options.input.string() + ": " + doubt);
   warnOf(scan.without_pose, options.input, in.poses, nullptr, "a pose", console);

@@ -10,6 +10,8 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
   const ScanPath& path = *scan.path();
   if (!scan.files()->rig || path.poses.empty() || path.probe.empty())
     throw Error("the scan has no poses, no probe's stream or no rig.json: heights need all three");
+  if (path.filtered.whole.empty())
+    throw Error("the scan's rig.json names no accelerometers, from which heights are made");
   if (scene.objects.size() != 1)
     throw Error("a scan's texture needs a scene of one object, the one that was scanned");
   // A scan that was put into the workspace is aligned under the name that it has there.
@@ -18,7 +20,9 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
     throw Error("the scan's path is not laid onto the mesh: do that on the desk Align");
   PlacedScan placed;
   placed.name = scan.name().toStdString();
-  placed.streams = {path.poses, path.probe};
+  placed.filtered = path.filtered;
+  std::erase_if(placed.filtered.path, [](const PathSample& sample) { return !sample.touching; });
+  placed.poses = path.poses;
   placed.probe = scan.files()->rig->probe;
   placed.gravity = scan.files()->rig->gravity;
   placed.mesh_from_scan = scene.objects[0].world_from_object.inverse() * align.alignment().pose();

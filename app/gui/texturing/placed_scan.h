@@ -12,7 +12,8 @@ namespace patina {
 
 struct PlacedScan {
   std::string name;
-  ScanStreams streams;
+  FilteredScan filtered; // its path only where it touches
+  std::vector<CameraPose> poses;
   ProbeModel probe;
   Vec3 gravity = Vec3::Zero();            // in the camera's frame [m/s^2]
   Pose mesh_from_scan = Pose::Identity(); // mesh: of the scene's one object

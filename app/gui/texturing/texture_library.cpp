@@ -206,14 +206,14 @@ void TextureLibrary::takeFromScan() {
   work_ = Work{title, title};
   emit changed();
   const std::int32_t number = freeNumber(texturesOf(scene_->scene, read_));
-  job_.start([this, scan, number, rings = card_->rings(), mesh = scene_->scene.objects[0].mesh](
-                 Progress& progress, const Background::Deliver& deliver) {
+  job_.start([this, scan, number, rings = card_->rings(),
+              mesh = scene_->scene.objects[0].mesh](Progress&, const Background::Deliver& deliver) {
     try {
       const SurfaceTarget target(*mesh, 0, true);
       FitOptions1d options;
       options.cutoff = kShape;
-      ScannedTexture found = fitScan(target, scan.streams, scan.probe, scan.gravity,
-                                     scan.mesh_from_scan, scan.compliance.value_or(0), options, progress);
+      ScannedTexture found = fitScan(target, scan.filtered, scan.poses, scan.probe, scan.gravity,
+                                     scan.mesh_from_scan, scan.compliance.value_or(0), options);
       found.fitted.texture.name = scan.name;
       const auto felt = feltTexture(std::move(found.fitted.texture));
       // Without a registration the texture is as stiff as the scene; the user is told so.

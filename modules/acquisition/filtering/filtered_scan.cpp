@@ -99,12 +99,10 @@ FilteredScan filterScan(const std::vector<CameraPose>& poses,
     eraseUnseen(corrected, poses, track);
     if (corrected.empty() && !samples.empty() && !track.empty()) throw apart(poses, track, samples);
     FusedPath fused = fuseWith(std::move(track), poses, corrected, probe, options, progress);
-    if (filter.heights) {
-      markContact(fused.path);
-      scan.heights = scanHeights(fused, poses, corrected, probe, filter.gravity, filter.normal,
-                                 filter.compliance);
-    }
-    scan.path = std::move(fused.path);
+    scan.path = fused.path;
+    scan.whole = std::move(fused.path);
+    markContact(scan.whole);
+    scan.samples = std::move(corrected);
     scan.track = std::move(fused.track);
     scan.bias = fused.bias;
     scan.axis_nis = fused.axis_nis;

@@ -5,7 +5,6 @@
 
 #include "acquisition/filtering/fused_path.h"
 #include "acquisition/filtering/probe_clock.h"
-#include "acquisition/profile/scan_heights.h"
 
 namespace patina {
 
@@ -17,9 +16,6 @@ struct ScanFilter {
   bool touching_only = true;           // leaves out what the probe did in the air
   double longest_pause = 0.05;         // between samples of the probe [s]
   Vec3 gravity = Vec3(0, 0, -9.80665); // in the camera's frame [m/s^2]
-  bool heights = false;                // of the surface; fused only
-  std::optional<Vec3> normal;          // of scanHeights()
-  std::optional<double> compliance{};  // of scanHeights(); else as is found [m/N]
 };
 
 struct FilteredScan {
@@ -28,7 +24,10 @@ struct FilteredScan {
   std::array<double, 4> bias{}; // of the accelerometers [m/s^2]; 0 where they were not used
   std::vector<Gap> without_pose, without_sample;
   double largest_force = 0; // [N]
-  std::optional<ScanHeights> heights;
+  // Of a fused path: one sample for each of the probe's, in the air too, and the probe's samples on
+  // the camera's clock. scanHeights() makes heights of them without another run of the filter.
+  std::vector<PathSample> whole;
+  std::vector<ProbeSample> samples;
   std::optional<ProbeClock> clock;  // where accelerometers are known; corrected where it differs
   std::array<double, 4> axis_nis{}; // of FusedPath, as pose_nis; 0 where it was not used
   double pose_nis = 0;
@@ -36,7 +35,7 @@ struct FilteredScan {
 };
 
 // `samples` may be empty: the path then is at the poses' times, has no force and is not cut. Throws
-// Cancelled, and Error where the streams have no time in common, and as scanHeights() does.
+// Cancelled, and Error where the streams have no time in common.
 FilteredScan filterScan(const std::vector<CameraPose>& poses,
                         const std::vector<ProbeSample>& samples, const ProbeModel& probe,
                         const ScanFilter& filter, Progress& progress);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "acquisition/filtering/contact.h"
-#include "acquisition/filtering/fused_path.h"
+#include "acquisition/filtering/filtered_scan.h"
 
 namespace patina {
 
@@ -69,10 +69,10 @@ struct Plane {
   Vec3 normal = Vec3::UnitZ(), point = Vec3::Zero();
 };
 
-// Samples of a stretch of a fused path (its samples are `probe`'s by time); compliance [m/N].
-std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
-                                 const std::vector<CameraPose>& poses,
-                                 const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+// Samples of a stretch of a fused path, `scan.whole`, which was made of these poses; compliance
+// [m/N].
+std::vector<TracedSample> traced(const FilteredScan& scan, const Stretch& stretch,
+                                 const std::vector<CameraPose>& poses, const ProbeModel& probe,
                                  const Vec3& gravity, const Plane& plane, double compliance);
 
 // On places `step` apart [m]; the mean of the points about each place, by their sigmas. Where the

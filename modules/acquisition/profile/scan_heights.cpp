@@ -49,32 +49,30 @@ Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip) {
   return {normal.dot(shaft) < 0 ? Vec3(-normal) : normal, mean};
 }
 
-ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& poses,
-                        const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                        const Vec3& gravity, const std::optional<Vec3>& normal,
-                        const std::optional<double>& given) {
-  ScanHeights scan;
+ScanHeights scanHeights(const FilteredScan& scan, const std::vector<CameraPose>& poses,
+                        const ProbeModel& probe, const Vec3& gravity,
+                        const std::optional<Vec3>& normal, const std::optional<double>& given) {
+  ScanHeights found;
   if (normal) {
-    scan.plane.normal = normal->normalized();
+    found.plane.normal = normal->normalized();
     double count = 0;
-    for (const PathSample& sample : fused.path)
-      if (sample.touching) scan.plane.point += (sample.position - scan.plane.point) / ++count;
+    for (const PathSample& sample : scan.whole)
+      if (sample.touching) found.plane.point += (sample.position - found.plane.point) / ++count;
   } else {
-    scan.plane = touchedPlane(fused.path, probe.tip);
+    found.plane = touchedPlane(scan.whole, probe.tip);
   }
-  scan.compliance =
-      estimateCompliance(pressesOf(fused.path, fused.track,
-                                   [&normal = scan.plane.normal](const PathSample& sample) {
+  found.compliance =
+      estimateCompliance(pressesOf(scan.whole, scan.track,
+                                   [&normal = found.plane.normal](const PathSample& sample) {
                                      return TipOver{normal, normal.dot(sample.position)};
                                    }),
                          std::sqrt(probe.forceVariance()), true);
-  const bool told = scan.compliance && scan.compliance->isTold();
-  const double compliance = given.value_or(told ? scan.compliance->compliance : 0);
+  const bool told = found.compliance && found.compliance->isTold();
+  const double compliance = given.value_or(told ? found.compliance->compliance : 0);
   std::vector<std::vector<TracedSample>> traces;
-  for (const Stretch& stretch : touchingStretches(fused.path))
+  for (const Stretch& stretch : touchingStretches(scan.whole))
     if (stretch.end - stretch.begin >= kFewest)
-      traces.push_back(
-          traced(fused, stretch, poses, samples, probe, gravity, scan.plane, compliance));
+      traces.push_back(traced(scan, stretch, poses, probe, gravity, found.plane, compliance));
   if (traces.empty()) throw Error("the probe touches too shortly for a height");
   HeightOptions options;
   options.acceleration_variance = probe.accelerationVariance();
@@ -84,9 +82,9 @@ ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& p
   for (std::size_t s = 0; s < traces.size(); ++s) {
     const HeightProfile profile = heightAlong(traces[s], options);
     for (std::size_t i = 0; i < profile.points.size(); ++i)
-      scan.heights.push_back({traces[s][i].t, profile.points[i], s});
+      found.heights.push_back({traces[s][i].t, profile.points[i], s});
   }
-  return scan;
+  return found;
 }
 
 } // namespace patina

@@ -37,14 +37,14 @@ struct TipOver {
 std::vector<PressSample> pressesOf(const std::vector<PathSample>& path, const CameraTrack& track,
                                    const std::function<TipOver(const PathSample&)>& over);
 
-// `fused.path` knows when it touches; its samples are `samples` by time. `normal`: outwards, in the
+// `scan` is of a fused path, `poses` are those that it was made of. `normal`: outwards, in the
 // camera's frame; else that of touchedPlane(). compliance [m/N]: what the surface yields by;
 // else what its presses say, if any. Heights are of the surface as nobody presses it,
 // along that normal, from the plane. Throws Error as touchedPlane() does, where nothing touches,
 // and where the accelerometers' axes do not span space.
-ScanHeights scanHeights(const FusedPath& fused, const std::vector<CameraPose>& poses,
-                        const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                        const Vec3& gravity, const std::optional<Vec3>& normal,
+ScanHeights scanHeights(const FilteredScan& scan, const std::vector<CameraPose>& poses,
+                        const ProbeModel& probe, const Vec3& gravity,
+                        const std::optional<Vec3>& normal = {},
                         const std::optional<double>& compliance = {});
 
 } // namespace patina

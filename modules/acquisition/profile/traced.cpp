@@ -70,29 +70,28 @@ class TipAcceleration {
 
 } // namespace
 
-std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
-                                 const std::vector<CameraPose>& poses,
-                                 const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+std::vector<TracedSample> traced(const FilteredScan& scan, const Stretch& stretch,
+                                 const std::vector<CameraPose>& poses, const ProbeModel& probe,
                                  const Vec3& gravity, const Plane& plane, double compliance) {
   const Vec3& normal = plane.normal;
-  const TipAcceleration accelerationOf(probe, fused.bias);
+  const TipAcceleration accelerationOf(probe, scan.bias);
   std::vector<TracedSample> trace;
   trace.reserve(stretch.end - stretch.begin);
   double along = 0;
   Vec3 direction = Vec3::Zero(); // where it last moved
   bool stood = false;
-  const std::vector<double> force_change = forceAccelerations(fused.path, stretch);
+  const std::vector<double> force_change = forceAccelerations(scan.whole, stretch);
   std::size_t next = 0;
-  while (next < poses.size() && !(poses[next].t > fused.path[stretch.begin].t &&
-                                  fused.track.verdicts[next] == PoseVerdict::used))
+  while (next < poses.size() && !(poses[next].t > scan.whole[stretch.begin].t &&
+                                  scan.track.verdicts[next] == PoseVerdict::used))
     ++next;
-  auto reading = samples.begin();
+  auto reading = scan.samples.begin();
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
-    const PathSample& point = fused.path[i];
-    while (reading != samples.end() && reading->t != point.t) ++reading;
-    if (reading == samples.end())
+    const PathSample& point = scan.whole[i];
+    while (reading != scan.samples.end() && reading->t != point.t) ++reading;
+    if (reading == scan.samples.end())
       throw std::invalid_argument("traced: the path was not made from these samples");
-    const TipMotion motion = motionAt(fused.track, point.t);
+    const TipMotion motion = motionAt(scan.track, point.t);
     const Vec3 velocity = motion.velocity - normal * normal.dot(motion.velocity);
     TracedSample sample;
     sample.t = point.t;
@@ -121,7 +120,7 @@ std::vector<TracedSample> traced(const FusedPath& fused, const Stretch& stretch,
       sample.height_sigma =
           std::hypot(pose.sigma_position, pose.sigma_angle * lever.cross(normal).norm());
       do ++next;
-      while (next < poses.size() && fused.track.verdicts[next] != PoseVerdict::used);
+      while (next < poses.size() && scan.track.verdicts[next] != PoseVerdict::used);
     }
     trace.push_back(sample);
   }
