@@ -71,7 +71,8 @@ WorkPrecisionTable coverage(const std::vector<int>& sizes, int dabs, Progress& p
         PaintReport report;
         double took = 0;
         for (int i = 0; i < dabs; ++i) {
-          stroke.samples = {{0, Vec3(place(random), place(random), 0), 1}};
+          stroke.samples.clear();
+          stroke.samples.push_back({0, Vec3(place(random), place(random), 0), 1, {}});
           const auto start = std::chrono::steady_clock::now();
           const Scene after = painted(surface, scene, stroke, &report);
           took += secondsSince(start);
