@@ -207,6 +207,7 @@ TEST_F(RegisteredScans, OnABallAreFreeToTurn) {
   const auto& free = report.at("unobservable").asArray();
   ASSERT_EQ(free.size(), 3U);
   for (const Json& motion : free) EXPECT_EQ(motion.at("kind").asString(), "turn");
+  EXPECT_FALSE(report.at("unique").asBool());
 }
 
 TEST_F(RegisteredScans, AreRefusedWithTheFileThatIsWrong) {

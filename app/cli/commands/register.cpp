@@ -52,7 +52,8 @@ const Keys kRegisterKeys = {
      "counted once",
      Shown::if_any,
      {{"turn", "rad", ""}, {"shift", "m", ""}}},
-    {"unique", "", "unique", "no other place on the mesh fits as well; absent: nobody looked"},
+    {"unique", "", "unique",
+     "no other place on the mesh fits as well, and no motion is free; absent: nobody looked"},
     {"rivals",
      "",
      "other places",
@@ -208,14 +209,17 @@ Report reportOf(const Registration& found, const RegisterOptions& options, doubl
     report.set("deviation", Json::object().set("turn", turns).set("shift", shifts),
                formatLength(shifts) + ", " + rounded(turns * 180 / std::numbers::pi) +
                    " degrees (one deviation)");
-    if (found.rivals) {
-      report.set("unique", found.rivals->empty(),
-                 found.rivals->empty() ? "yes" : "no: " + inWords(*found.rivals));
-      report.set("rivals", rivalsJson(*found.rivals));
-    }
     std::string words;
     for (const FreeMotion& motion : found.free)
       words += (words.empty() ? "" : "; ") + inWords(motion);
+    if (found.rivals) {
+      const bool alone = found.rivals->empty();
+      report.set("unique", alone && found.free.empty(),
+                 !alone          ? "no: " + inWords(*found.rivals)
+                 : words.empty() ? "yes"
+                                 : "no: " + words);
+      report.set("rivals", rivalsJson(*found.rivals));
+    }
     report.set("unobservable", freeJson(found.free), words);
     const double compliance = options.compliance.value_or(found.compliance);
     report.set("compliance", compliance, formatLength(compliance) + " a newton");
