@@ -91,6 +91,15 @@ TEST(PointGrid, TakesOnePointManyInOnePlaceAndNone) {
   EXPECT_LE(count, 64 * same.size());
 }
 
+// Nearly all points then lie in one part of the grid's index.
+TEST(PointGrid, FindsAllWhereOnePointIsThousandsOfTimesFarther) {
+  for (const double far : {1e3, 4e4}) {
+    std::vector<Vec3> points = cloud(3000, {1, 1, 1}, 9);
+    points.emplace_back(0, 0, far);
+    EXPECT_EQ(pairsOf(points, 0.05, 0.05), pairsByDistance(points, 0.05)) << far;
+  }
+}
+
 TEST(PointGrid, MissesNothingWhereOnePointIsAMillionTimesFarther) {
   std::vector<Vec3> points = cloud(60, {1, 1, 1}, 9); // all in one cell: fewer than it looks at
   points.resize(30);

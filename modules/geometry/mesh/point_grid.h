@@ -83,9 +83,12 @@ class PointGrid {
 
   // The first point in the grid's order whose cell is `cell` or a later one.
   std::size_t firstFrom(std::uint64_t cell) const {
-    std::size_t i = starts_[std::min(cell >> shift_, std::uint64_t{starts_.size() - 1})];
-    while (i < placed_.size() && placed_[i].cell < cell) ++i;
-    return i;
+    const std::uint64_t part = cell >> shift_;
+    if (part + 1 >= starts_.size()) return placed_.size();
+    const auto begin = placed_.begin() + starts_[part], end = placed_.begin() + starts_[part + 1];
+    const auto first = std::partition_point(
+        begin, end, [cell](const Placed& placed) { return placed.cell < cell; });
+    return static_cast<std::size_t>(first - placed_.begin());
   }
 
   Box3 box_;
