@@ -217,6 +217,7 @@ else
   timed "A second bare $release" make_system
   timed "app/run.sh as root" in_system root app/run.sh
   in_system root "test -s out/report.md"
+  timed "The window" in_system root "ninja -C build patina-gui >&2"
   diff <(echo "$built") <(programs) || { echo "two builds of $commit differ"; exit 1; }
   say "Both built the same $(wc -l <<<"$built") programs and libraries"
 fi

@@ -64,6 +64,17 @@ TEST_F(RunScript, TakesAScanToAFeelWithoutAnArgument) {
   EXPECT_EQ(log.find("--tour"), std::string::npos) << log;
 }
 
+TEST_F(RunScript, BuildsTheWindowWhereOneIsOpened) {
+  const std::string cup = folder.write("cup.obj", "");
+  ASSERT_EQ(runScript({}).exit, 0);
+  EXPECT_EQ(readFile(folder / "log.txt").find("patina-gui"), std::string::npos);
+  ASSERT_EQ(runScript({}, {"DISPLAY=:7"}).exit, 0);
+  EXPECT_NE(readFile(folder / "log.txt").find("--target patina patina-gui"), std::string::npos);
+  fs::remove(folder.path() / "log.txt");
+  ASSERT_EQ(runScript({cup}).exit, 0);
+  EXPECT_NE(readFile(folder / "log.txt").find("--target patina patina-gui"), std::string::npos);
+}
+
 TEST_F(RunScript, TakesAFileWhereverItStandsAndKeepsItsOptions) {
   const std::string cup = folder.write("cup.obj", "");
   ASSERT_EQ(runScript({"--unit", "cm", cup}).exit, 0);

@@ -20,8 +20,9 @@ int runGui(const GuiOptions& options) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
   const std::filesystem::path window = self.parent_path() / "patina-gui";
   if (!std::filesystem::exists(window))
-    throw Error("this build has no window: " + window.string() +
-                " is missing; configure with PATINA_GUI=ON and build again");
+    throw Error("the window is not built: " + window.string() +
+                " is missing; app/run.sh builds it where there is a display, or ninja -C BUILD "
+                "patina-gui, with PATINA_GUI=ON");
   std::vector<std::string> words = {window.string()};
   words.insert(words.end(), options.words.begin(), options.words.end());
   if (!options.input.empty()) {
