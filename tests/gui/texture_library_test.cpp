@@ -99,6 +99,13 @@ TEST_F(TextureLibraryTest, ATextureIsLaidAlongWhatIsDrawnAndUndone) {
   const std::size_t faces = laid()->faces.size();
   type('z', kControl);
   ASSERT_TRUE(waitUntil([&] { return laid() == nullptr; }, 10000));
+  // The menu offers to redo a moment after the scene has changed.
+  const QKeySequence redo(QStringLiteral("Ctrl+Y"));
+  ASSERT_TRUE(waitUntil([&] {
+    for (const QAction* action : window_->findChildren<QAction*>())
+      if (action->shortcuts().contains(redo)) return action->isEnabled();
+    return false;
+  }));
   type('y', kControl);
   ASSERT_TRUE(waitUntil([&] { return laid() != nullptr && laid()->faces.size() == faces; }, 10000));
 }
