@@ -42,8 +42,8 @@ struct ScannedTexture {
   FittedTexture fitted;            // with the compliance, where it was found
   LaidTexture laid;                // once it is
 };
-// From one scan that is registered: heights along the mesh's mean normal under it, over the mesh,
-// as harmonics. `scan` was filtered from `poses`, touching only; the filter does not run again.
+// The scan is registered. Its heights over the mesh, along the mesh's mean normal under it, become
+// harmonics. `scan` was filtered from `poses`, touching only; the filter does not run again.
 // Throws as scanHeights() and fitTexture() do.
 ScannedTexture fitScan(const SurfaceTarget& target, const FilteredScan& scan,
                        const std::vector<CameraPose>& poses, const ProbeModel& probe,

@@ -24,8 +24,9 @@ struct FilteredScan {
   std::array<double, 4> bias{}; // of the accelerometers [m/s^2]; 0 where they were not used
   std::vector<Gap> without_pose, without_sample;
   double largest_force = 0; // [N]
-  // Of a fused path: one sample for each of the probe's, in the air too, and the probe's samples on
-  // the camera's clock. scanHeights() makes heights of them without another run of the filter.
+  // scanHeights() makes heights of these two without another run of the filter: the fused path at
+  // each sample of the probe, in the air too, and those samples on the camera's clock. Both are
+  // empty for the other models.
   std::vector<PathSample> whole;
   std::vector<ProbeSample> samples;
   std::optional<ProbeClock> clock;  // where accelerometers are known; corrected where it differs

@@ -25,7 +25,7 @@ class DisjointSets {
     up_[index(std::max(a, b))] = std::min(a, b);
   }
 
-  // By number, what find() says.
+  // The result holds for each number what find() says of it.
   std::vector<std::int32_t> lowest() && {
     for (std::int32_t& v : up_) v = up_[index(v)]; // ascending, so that what is above v is done
     return std::move(up_);

@@ -18,8 +18,8 @@ class PointGrid {
   PointGrid(const std::vector<Vec3>& points, double side);
 
   std::size_t size() const { return placed_.size(); }
-  // Which of the points is the n-th in the grid's order. What a caller keeps of each point lies
-  // together for neighbours if it is kept in that order.
+  // The n-th point in the grid's order has this index among the given ones. A caller that keeps
+  // values of points in the grid's order has those of neighbours side by side in memory.
   std::size_t point(std::size_t n) const { return placed_[n].point; }
 
   // Calls visit(m), numbers in the grid's order, for the points that are at most `reach` from the
@@ -95,7 +95,7 @@ class PointGrid {
   double side_ = 1;
   std::array<std::uint64_t, 3> stride_{1, 1, 1};
   std::vector<Placed> placed_;
-  // By the upper bits of a cell's number: the first point there or later.
+  // The index holds, for the upper bits of a cell's number, the first point there or later.
   std::vector<std::uint32_t> starts_;
   int shift_ = 0;
 };
