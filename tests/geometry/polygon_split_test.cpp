@@ -58,6 +58,20 @@ Outline randomStar(unsigned seed) {
   return outline;
 }
 
+// Runs from a point of the outline to a tip and back, as drawings that were edited do: from the
+// middle of an edge to either side, and from a corner along its edge, over it.
+Outline spiked(const Outline& outline, std::size_t at, double length) {
+  const Vec2 a = outline[at], b = outline[(at + 1) % outline.size()], along = (b - a).normalized();
+  const Vec2 middle = (a + b) / 2, tip = middle + length * Vec2(along.y(), -along.x());
+  Outline out(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(at + 1));
+  if (length > 0)
+    out.insert(out.end(), {middle, tip, middle});
+  else
+    out.push_back(b - length * along);
+  out.insert(out.end(), outline.begin() + static_cast<std::ptrdiff_t>(at + 1), outline.end());
+  return out;
+}
+
 std::vector<Outline> outlines() {
   std::vector<Outline> all = {
       {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},                 // L
@@ -79,6 +93,13 @@ std::vector<Outline> outlines() {
       regular(4),
       regular(17)};
   for (unsigned seed = 0; seed < 30; ++seed) all.push_back(randomStar(seed));
+  for (const std::size_t corners : {3u, 4u, 5u, 12u})
+    for (const double length : {0.25, 3.0, -0.25, -3.0})
+      for (std::size_t at = 0; at < corners; ++at)
+        all.push_back(spiked(regular(corners), at, length));
+  for (const double length : {0.25, -0.25})
+    for (std::size_t at = 0; at + 1 < comb(3).size(); ++at)
+      all.push_back(spiked(comb(3), at, length));
   return all;
 }
 
@@ -132,7 +153,7 @@ TEST(PolygonSplit, KeepsEveryOutlineFromEveryCorner) {
       for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const Outline triangle = {mesh.corner(t, 0).head<2>(), mesh.corner(t, 1).head<2>(),
                                   mesh.corner(t, 2).head<2>()};
-        EXPECT_GE(areaOf(triangle), 0);
+        EXPECT_GE(areaOf(triangle), -1e-12);
         sum += areaOf(triangle);
         for (std::size_t k = 0; k < 3; ++k) // texture goes with its corner
           EXPECT_EQ(mesh.corner_uvs[t][k], Vec2(mesh.triangles[t][k], 7));

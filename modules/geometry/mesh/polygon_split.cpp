@@ -12,6 +12,7 @@ constexpr std::size_t kMaxCorners = 20'000;      // the time grows with the squa
 constexpr std::size_t kMaxExchangeCorners = 128; // the exchange of edges grows faster still
 constexpr double kMaxHeight = 1e-5;              // of a flat polygon, over its size
 constexpr double kThin = 1e-12; // twice the area over the square of the longest edge
+constexpr double kSpike = 1e-5; // [rad] of an outline that runs back upon itself
 constexpr double kLessFold = 1e-9;
 
 using Corners = std::array<std::size_t, 3>; // of one triangle, as places in the polygon
@@ -100,10 +101,14 @@ class PolygonSplitter {
     return std::abs(twice_area) > kThin * longest ? twice_area : 0;
   }
 
-  enum class Ear { sound, without_area, any };
+  enum class Ear { spike, sound, without_area, any };
 
   bool isEar(std::size_t b, Ear wanted) const {
     const std::size_t a = previous_[b], c = next_[b];
+    if (wanted == Ear::spike) { // the outline runs back at b
+      const Vec2 ba = flat_[a] - flat_[b], bc = flat_[c] - flat_[b];
+      return ba.dot(bc) > 0 && std::abs(cross(ba, bc)) <= kSpike * ba.dot(bc);
+    }
     const double area = turn(a, b, c);
     if (wanted == Ear::without_area) return area == 0;
     if (!(area > 0)) return false;
@@ -147,8 +152,10 @@ class PolygonSplitter {
     }
     for (std::size_t i = 0; i < n; ++i) convex_[i] = turn(previous_[i], i, next_[i]) > 0;
     std::size_t at = 0;
+    bool has_spikes = true; // go first: nothing tells whether their corners are inside an ear
     for (std::size_t left = n; left > 3; --left) {
-      if (!findEar(at, left, Ear::sound) && !findEar(at, left, Ear::without_area))
+      has_spikes = has_spikes && findEar(at, left, Ear::spike);
+      if (!has_spikes && !findEar(at, left, Ear::sound) && !findEar(at, left, Ear::without_area))
         findEar(at, left, Ear::any); // only an outline that crosses itself gets here
       const std::size_t a = previous_[at], c = next_[at];
       triangles_.push_back({a, at, c});
