@@ -285,6 +285,20 @@ TEST(RealStl, AsciiIsReadAsManyProgramsWriteIt) {
   EXPECT_TRUE(warningsOfStl(withCarriageReturns(text + upper), 2).empty());
 }
 
+TEST(RealStl, AsciiOfOneLineWithColorsOrWithoutItsEndIsRead) {
+  const std::string text = "solid a part\n" + kFacet + kFacet + "endsolid a solid part\n";
+  std::string line = text + text;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  EXPECT_TRUE(warningsOfStl(line, 4).empty());
+  EXPECT_TRUE(warningsOfStl(text + text, 4).empty());
+  expectOne(warningsOfStl("solid a\n" + kFacet, 1), "may have been cut off");
+  EXPECT_THROW(parseStl("solid a\n", "t"), FileError);
+  std::string colored = text;
+  for (const char* before : {" facet", "   vertex", "  endloop", " endfacet", "endsolid"})
+    colored.insert(colored.find(before), "color 1 0 0 0.5\n");
+  expectOne(warningsOfStl(colored, 2), "colours of its triangles");
+}
+
 TEST(RealStl, WhatFollowsTheLastSolidIsLeftOut) {
   const std::string text = "solid a\n" + kFacet + "endsolid a\n";
   for (const char* rest : {"garbage\n", "\x1a", "color 1 0 0\n", "endsolid\n"})

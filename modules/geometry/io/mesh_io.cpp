@@ -40,6 +40,8 @@ TriangleMesh readMesh(const std::filesystem::path& path, std::vector<std::string
                       MeshColors* colors) {
   (void)meshFileType(path); // a name that says nothing is refused unread
   const std::string bytes = readFile(path);
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
+    throw FileError(path.string(), 1, "the text is UTF-16; save it as UTF-8");
   switch (meshFileType(path, bytes)) {
   case MeshFileType::obj:
     return parseObj(bytes, path.string(), warnings, colors);

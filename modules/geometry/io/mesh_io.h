@@ -22,8 +22,8 @@ namespace patina {
 //   cannot contain are refused before memory is allocated; data beyond the counts is an error.
 // - STL: the size decides whether a file is binary, since a binary header may begin with "solid".
 //   Bytes after the last triangle or the last solid are left out; a count of 0 is replaced by the
-//   one that the size allows. Corners with identical coordinates are welded (-0 is 0). Stored
-//   normals are skipped.
+//   one that the size allows; the end may be missing. Corners with identical coordinates are welded
+//   (-0 is 0). Stored normals are skipped.
 // - NaN and infinite coordinates and repeated corners are kept: cleaned() drops their faces and
 //   reports them. Texture coordinates are kept where every face has them.
 // Colours of vertices, of faces and of materials (MTL: Kd, map_Kd with -s, -o, -clamp) and the

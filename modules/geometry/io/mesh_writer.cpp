@@ -11,9 +11,9 @@
 namespace patina {
 namespace {
 
-template <typename Number> void appendNumber(std::string& out, Number value) {
-  std::array<char, 32> text;
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+template <typename Number> void appendNumber(std::string& out, char before, Number value) {
+  std::array<char, 32> text{before};
+  const auto result = std::to_chars(text.data() + 1, text.data() + text.size(), value);
   out.append(text.data(), result.ptr);
 }
 
@@ -26,10 +26,7 @@ std::string objText(const TriangleMesh& mesh) {
   out.reserve(mesh.positions.size() * 64 + mesh.triangles.size() * 32);
   for (const Vec3& p : mesh.positions) {
     out += 'v';
-    for (int k = 0; k < 3; ++k) {
-      out += ' ';
-      appendNumber(out, p[k]);
-    }
+    for (int k = 0; k < 3; ++k) appendNumber(out, ' ', p[k]);
     out += '\n';
   }
   // Corners that share a texture point share its line.
@@ -40,21 +37,15 @@ std::string objText(const TriangleMesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) indices[k] = weld.index({uvs[k][0], uvs[k][1], 0});
   }
   for (const Vec3& uv : weld.points()) {
-    out += "vt ";
-    appendNumber(out, uv[0]);
-    out += ' ';
-    appendNumber(out, uv[1]);
+    out += "vt";
+    for (int k = 0; k < 2; ++k) appendNumber(out, ' ', uv[k]);
     out += '\n';
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     out += 'f';
     for (std::size_t k = 0; k < 3; ++k) {
-      out += ' ';
-      appendNumber(out, mesh.triangles[t][k] + 1);
-      if (!texture.empty()) {
-        out += '/';
-        appendNumber(out, texture[t][k] + 1);
-      }
+      appendNumber(out, ' ', mesh.triangles[t][k] + 1);
+      if (!texture.empty()) appendNumber(out, '/', texture[t][k] + 1);
     }
     out += '\n';
   }
@@ -110,17 +101,14 @@ void writeTexturedObj(const std::filesystem::path& path, const TriangleMesh& mes
   std::string out = objText(mesh);
   auto next = textured.begin();
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    out += "h ";
+    out += 'h';
     if (next == textured.end() || static_cast<std::size_t>(next->face) != f) {
-      out += "-1 0 0 0 0 0 0\n";
+      out += " -1 0 0 0 0 0 0\n";
       continue;
     }
-    appendNumber(out, next->texture);
+    appendNumber(out, ' ', next->texture);
     for (const Vec2& corner : next->at)
-      for (int k = 0; k < 2; ++k) {
-        out += ' ';
-        appendNumber(out, corner[k]);
-      }
+      for (int k = 0; k < 2; ++k) appendNumber(out, ' ', corner[k]);
     out += '\n';
     ++next;
   }

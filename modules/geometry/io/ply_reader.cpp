@@ -76,15 +76,16 @@ template <typename Source> class PlyParser {
     if (vertex_count_ > std::numeric_limits<std::int32_t>::max())
       fail(*vertices, "more vertices than this program can count");
     if (countOf(faces_) + countOf(strips_) == 0) failWithoutFaces();
+    Roles has_of_strips{};
     for (const PlyElement& e : header_.elements) {
       if (&e == vertices)
         readVertices(e);
       else if (&e == faces_)
         readFaces(e);
       else if (&e == strips_)
-        readStrips(e);
-      else
-        skip(e);
+        readItems(e, faceRoles(e, "strips", has_of_strips), [&](const auto&) { addStrips(); });
+      else if (!e.properties.empty())
+        readItems(e, std::vector<int>(e.properties.size(), kUnused), [](const auto&) {});
     }
     in_.end();
     if (mesh_.triangles.empty()) in_.fail("the file has no triangle: its strips are too short");
@@ -183,21 +184,22 @@ template <typename Source> class PlyParser {
     return result;
   }
 
-  void skipList(const PlyProperty& p) {
-    for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n) in_.value(p.type);
-  }
-
-  void skip(const PlyElement& e) {
-    if (e.properties.empty()) return;
+  // Reads every item of an element: its numbers by their role, its lists into polygon_ and
+  // polygon_texture_, and calls use(numbers) for each.
+  template <typename Use>
+  void readItems(const PlyElement& e, const std::vector<int>& role, Use use) {
+    std::array<double, kRoles> values{};
     for (std::uint64_t i = 0; i < e.count; ++i) {
       in_.beginItem(e);
-      for (const PlyProperty& p : e.properties) {
+      for (std::size_t k = 0; k < role.size(); ++k) {
+        const PlyProperty& p = e.properties[k];
         if (p.count_type)
-          skipList(p);
-        else
-          in_.value(p.type);
+          readList(p, role[k], &e == strips_);
+        else if (const double value = in_.value(p.type); role[k] != kUnused)
+          values[static_cast<std::size_t>(role[k])] = value;
       }
       in_.endItem();
+      use(values);
     }
   }
 
@@ -213,24 +215,12 @@ template <typename Source> class PlyParser {
     has_broken_color_ |= hasPartOfAColor(has);
     const bool colored = colors_ && vertex_white_;
     if (colored) colors_->vertices.reserve(e.count);
-    std::array<double, kRoles> values{};
-    for (std::uint64_t i = 0; i < e.count; ++i) {
-      in_.beginItem(e);
-      for (std::size_t k = 0; k < role.size(); ++k) {
-        const PlyProperty& p = e.properties[k];
-        if (p.count_type) {
-          skipList(p);
-          continue;
-        }
-        const double v = in_.value(p.type);
-        if (role[k] != kUnused) values[static_cast<std::size_t>(role[k])] = v;
-      }
-      in_.endItem();
+    readItems(e, role, [&](const std::array<double, kRoles>& values) {
       mesh_.positions.emplace_back(values[0], values[1], values[2]);
       if (has_vertex_texture_) vertex_texture_.emplace_back(values[kU], values[kU + 1]);
       if (colored) colors_->vertices.push_back(colorIn(values));
       is_transparent_ |= colored && has[kAlpha] && isBelowWhite(values[kAlpha], e, role);
-    }
+    });
   }
 
   static bool isBelowWhite(double alpha, const PlyElement& e, const std::vector<int>& role) {
@@ -268,21 +258,7 @@ template <typename Source> class PlyParser {
     has_broken_color_ |= hasPartOfAColor(has);
     const bool colored = colors_ && face_white_, pictured = colors_ && has[kPicture];
     has_picture_numbers_ = has[kPicture];
-    std::array<double, kRoles> values{};
-    for (std::uint64_t i = 0; i < e.count; ++i) {
-      in_.beginItem(e);
-      for (std::size_t k = 0; k < role.size(); ++k) {
-        const PlyProperty& p = e.properties[k];
-        if (role[k] == kIndices)
-          readIndices(p);
-        else if (role[k] == kTexture)
-          readFaceTexture(p);
-        else if (p.count_type)
-          skipList(p);
-        else if (const double value = in_.value(p.type); role[k] != kUnused)
-          values[static_cast<std::size_t>(role[k])] = value;
-      }
-      in_.endItem();
+    readItems(e, role, [&](const std::array<double, kRoles>& values) {
       const std::size_t first = mesh_.triangles.size();
       addPolygon();
       if (colored) colors_->faces.resize(first); // what strips before it have left out
@@ -291,7 +267,7 @@ template <typename Source> class PlyParser {
       if (pictured)
         colors_->picture_of.resize(mesh_.triangles.size(), pictureNumber(values[kPicture]));
       is_transparent_ |= colored && has[kAlpha] && isBelowWhite(values[kAlpha], e, role);
-    }
+    });
   }
 
   static std::int32_t pictureNumber(double number) {
@@ -299,42 +275,24 @@ template <typename Source> class PlyParser {
     return number >= 0 && number < kMost ? static_cast<std::int32_t>(number) : -1;
   }
 
-  void readStrips(const PlyElement& e) {
-    Roles has{};
-    const std::vector<int> role = faceRoles(e, "strips", has);
-    for (std::uint64_t i = 0; i < e.count; ++i) {
-      in_.beginItem(e);
-      for (std::size_t k = 0; k < role.size(); ++k) {
-        const PlyProperty& p = e.properties[k];
-        if (role[k] == kIndices)
-          readList(p, true);
-        else if (p.count_type)
-          skipList(p);
-        else
-          in_.value(p.type);
-      }
-      in_.endItem();
-      addStrips();
+  void readList(const PlyProperty& p, int role, bool restarts) {
+    if (role == kIndices) polygon_.clear();
+    if (role == kTexture) polygon_texture_.clear();
+    for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n) {
+      const double value = in_.value(p.type);
+      if (role == kIndices) polygon_.push_back(vertexIndex(value, restarts));
+      if (role == kTexture) polygon_texture_.push_back(value);
     }
-  }
-
-  void readIndices(const PlyProperty& p) {
-    readList(p, false);
-    if (polygon_.size() < 3)
+    if (role == kIndices && !restarts && polygon_.size() < 3)
       in_.fail("a face needs 3 corners or more, this one has " + std::to_string(polygon_.size()));
   }
 
-  void readList(const PlyProperty& p, bool restarts) {
-    polygon_.clear();
-    for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n) {
-      const double index = in_.value(p.type);
-      const bool restart = restarts && index == kRestart;
-      if (!restart && (!(index >= 0 && index < static_cast<double>(vertex_count_)) ||
-                       index != std::floor(index)))
-        in_.fail("the face names vertex " + formatNumber(index) + ", but the file has " +
-                 std::to_string(vertex_count_) + ", counted from 0");
-      polygon_.push_back(static_cast<std::int32_t>(index));
-    }
+  std::int32_t vertexIndex(double index, bool restarts) const {
+    if (!(restarts && index == kRestart) &&
+        (!(index >= 0 && index < static_cast<double>(vertex_count_)) || index != std::floor(index)))
+      in_.fail("the face names vertex " + formatNumber(index) + ", but the file has " +
+               std::to_string(vertex_count_) + ", counted from 0");
+    return static_cast<std::int32_t>(index);
   }
 
   // Every other triangle of a strip runs backwards. One that names a vertex twice only leads the
@@ -351,12 +309,6 @@ template <typename Source> class PlyParser {
       else
         mesh_.triangles.push_back({b, a, c});
     }
-  }
-
-  void readFaceTexture(const PlyProperty& p) {
-    polygon_texture_.clear();
-    for (std::uint64_t n = in_.length(*p.count_type); n > 0; --n)
-      polygon_texture_.push_back(in_.value(p.type));
   }
 
   void addPolygon() {

@@ -98,11 +98,12 @@ class AsciiParser {
         break;
       }
       expect("solid");
-      words_ = text::Words({}); // the rest of the line is a name
+      skipName("facet normal");
       while (nextIsFacet()) readFacet();
-      words_ = text::Words({});
+      skipName("solid ");
     }
     if (triangles_.empty()) throw FileError(name_, lines_.number(), "the file has no triangle");
+    if (colored_) warnings_.push_back(text::colorsLeftOut("triangles"));
     TriangleMesh mesh;
     mesh.triangles = std::move(triangles_);
     mesh.positions = weld_.takePoints();
@@ -114,15 +115,29 @@ class AsciiParser {
     for (;;) {
       word_ = words_.next();
       if (!word_.empty()) return true;
-      std::string_view line;
-      if (!lines_.next(line)) return false;
-      words_ = text::Words(line);
+      if (!lines_.next(line_)) return false;
+      words_ = text::Words(line_);
     }
   }
+  // The rest of the line is a name, unless all of the file is one line: then it ends at `next`.
+  void skipName(std::string_view next) {
+    const auto from = static_cast<std::size_t>(word_.data() + word_.size() - line_.data());
+    const bool goes_on = line_.find("facet normal", from) != line_.npos;
+    words_ = text::Words(goes_on ? line_.substr(std::min(line_.find(next, from), line_.size()))
+                                 : std::string_view());
+  }
   void nextWord(const char* wanted) {
-    if (!findWord())
-      throw FileError(name_, lines_.number(),
-                      std::string("the file ends where ") + wanted + " should be");
+    do {
+      if (!findWord())
+        throw FileError(name_, lines_.number(),
+                        std::string("the file ends where ") + wanted + " should be");
+    } while (skipsColor());
+  }
+  bool skipsColor() { // of Magics: a line of its own
+    const bool skips = text::equalIgnoringCase(word_, "color");
+    if (skips) words_ = text::Words({});
+    colored_ = colored_ || skips;
+    return skips;
   }
   void expect(const char* wanted) {
     if (!text::equalIgnoringCase(word_, wanted)) throwUnexpected(wanted);
@@ -143,9 +158,13 @@ class AsciiParser {
   }
   // Else the solid has ended.
   bool nextIsFacet() {
-    nextWord("endsolid");
-    if (text::equalIgnoringCase(word_, "facet")) return true;
-    expectEnd("endsolid", "solid");
+    while (findWord()) {
+      if (text::equalIgnoringCase(word_, "facet")) return true;
+      if (skipsColor()) continue;
+      expectEnd("endsolid", "solid");
+      return false;
+    }
+    warnings_.push_back("the file ends without 'endsolid': it may have been cut off");
     return false;
   }
   [[noreturn]] void throwUnexpected(const char* wanted) const {
@@ -176,8 +195,10 @@ class AsciiParser {
 
   const std::string& name_;
   text::Lines lines_;
-  text::Words words_{{}};
+  std::string_view line_;
+  text::Words words_{{}}; // those of the line that are left
   std::string_view word_;
+  bool colored_ = false;
   VertexWeld weld_;
   std::vector<Triangle> triangles_;
   std::vector<std::string>& warnings_;
