@@ -81,7 +81,7 @@ void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
   Progress progress;
   const ScanFilter filter;
   const FilteredScan scan = filterScan(poses, samples, probe, filter, progress);
-  const auto yielding = complianceOverMesh(target, Pose::Identity(), scan.path, scan.track, probe);
+  const auto yielding = complianceOverMesh(target, Pose::Identity(), scan.path);
   const std::vector<ScanHeight> heights =
       heightsOverMesh(target, Pose::Identity(), scan.path,
                       scanHeights(scan, poses, probe, filter.gravity,

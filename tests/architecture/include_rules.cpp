@@ -29,9 +29,12 @@ const std::map<std::string, Names>& visibleModules() {
       {"session",
        {"core", "geometry", "field", "scene", "usb", "pictures", "haptics", "authoring",
         "visualization", "workspace"}},
-      {"pipeline",
+      {"scan",
        {"core", "geometry", "field", "scene", "usb", "pictures", "haptics", "authoring",
-        "visualization", "workspace", "session", "acquisition"}}};
+        "visualization", "workspace", "session", "acquisition"}},
+      {"demo",
+       {"core", "geometry", "field", "scene", "usb", "pictures", "haptics", "authoring",
+        "visualization", "workspace", "session", "acquisition", "scan"}}};
   return kVisible;
 }
 
@@ -57,7 +60,7 @@ const std::vector<Library>& libraries() {
         {"modules/authoring/", false},
         {"modules/acquisition/simulation/", false},
         {"modules/session/", false},
-        {"modules/pipeline/", false},
+        {"modules/demo/", false},
         {"app/", false}}},
       {"nlohmann-json", {"nlohmann/"}, {{"modules/core/json.cpp", false}}},
       {"libusb", {"libusb.h"}, {{"modules/usb/libusb/", true}}},

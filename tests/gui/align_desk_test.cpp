@@ -321,8 +321,8 @@ TEST_F(AlignDeskTest, AFitShowsItsResidualsAsLinesAndOverTheMesh) {
   clickOn("align_open");
   wait(800);
   clickOn("align_fit");
-  ASSERT_TRUE(waitUntil([&] { return !desk().work() && desk().found(); }, 60000));
-  const Registration& found = *desk().found();
+  ASSERT_TRUE(waitUntil([&] { return !desk().work() && desk().alignment().found(); }, 60000));
+  const Registration& found = *desk().alignment().found();
   EXPECT_NEAR(found.rms, 4e-4, 0.6e-4);
   EXPECT_NEAR(lengthAfter(find<QLabel>("align_found")->text(), QStringLiteral("rms")), found.rms,
               1e-6);
@@ -360,12 +360,12 @@ TEST_F(AlignDeskTest, AFitShowsItsResidualsAsLinesAndOverTheMesh) {
   EXPECT_GT(changed(plain, map), 0.1);
   // Moved by hand, the old map goes at once; the new one is of where it lies now.
   type('z', kControl);
-  EXPECT_FALSE(desk().found());
+  EXPECT_FALSE(desk().alignment().found());
   EXPECT_GT(changed(map, picture("align_map_by_hand")), 0.05);
   // What the fit said of its place is there again with the place.
   EXPECT_EQ(find<QLabel>("align_found")->text(), QString());
   desk().redo();
-  EXPECT_TRUE(desk().found());
+  EXPECT_TRUE(desk().alignment().found());
   EXPECT_TRUE(find<QLabel>("align_found")->text().contains(QStringLiteral("Fitted")));
 }
 

@@ -117,8 +117,8 @@ TEST_F(SceneScansTest, ATextureOfAFittedScanYieldsAsTheFitFound) {
   auto& align = *window_->findChild<AlignDesk*>();
   ASSERT_TRUE(waitUntil([&] { return align.alignment().isReady(); }, 10000));
   clickOn("align_fit");
-  ASSERT_TRUE(waitUntil([&] { return align.found() && !align.work(); }, 60000));
-  const double compliance = align.found()->compliance;
+  ASSERT_TRUE(waitUntil([&] { return align.alignment().found() && !align.work(); }, 60000));
+  const double compliance = align.alignment().found()->compliances.at(0);
   ASSERT_GT(compliance, 0);
   clickAction("desk_texture");
   clickOn("tab_library");

@@ -5,8 +5,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/staged_folder.h"
-#include "pipeline/demo_pictures.h"
-#include "pipeline/demo_report.h"
+#include "demo/demo_pictures.h"
+#include "demo/demo_report.h"
 #include "visualization/view/display.h"
 
 namespace patina::cli {

@@ -229,7 +229,7 @@ ScanHeights heightsOf(const FilteredScan& scan, const std::optional<Over>& over,
     throw FileError(options.over.string(), 0, error.what());
   }
   const auto presses =
-      complianceOverMesh(over->target, over->mesh_from_scan, scan.path, scan.track, probe);
+      complianceOverMesh(over->target, over->mesh_from_scan, scan.path);
   ScanHeights found = scanHeights(scan, poses, probe, in.rig.gravity, normal,
                                   presses && presses->isTold() ? presses->compliance : 0);
   found.compliance = presses;

@@ -3,13 +3,8 @@
 
 #include "acquisition/files/registered_file.h"
 #include "acquisition/files/scan_files.h"
-#include "acquisition/registration/closest_point_loop.h"
-#include "acquisition/registration/first_guess.h"
-#include "acquisition/registration/joint_fit.h"
-#include "acquisition/registration/scan_options.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/mesh_input.h"
-#include "app/cli/input/scan_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -18,22 +13,21 @@
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
 #include "geometry/mesh/pose_values.h"
+#include "scan/register_scans.h"
 
 namespace patina::cli {
 
 namespace {
 
-enum class Method { distance, loop, literal };
+using Method = ScanRegistrationOptions::Method;
 
 struct RegisterOptions {
   std::filesystem::path mesh, path, output, report, initial, truth;
   std::vector<std::filesystem::path> also;
   std::optional<PoseValues> align;
   MeshUnit unit = MeshUnit::mm;
-  Method method = Method::distance;
   double tip_radius = 0;
-  std::optional<double> compliance, noise;
-  bool no_search = false, refine = false;
+  ScanRegistrationOptions fit;
 };
 
 const Keys kRegisterKeys = {
@@ -89,6 +83,8 @@ const Keys kRegisterKeys = {
     {"error", "m", "error", "against the truth: of the samples, rms", Shown::if_any},
     {"mesh_from_scan", "", "mesh from scan", "4 x 4"},
     {"mean_distance", "m", "mean distance"},
+    {"roughness", "m", "roughness",
+     "of the surface: what of rms the samples' noise leaves unexplained", Shown::if_any},
     {"noise", "m", "noise", "that was expected of the samples", Shown::if_any},
     {"together", "", "worth one", "so many samples in a row, as their errors go together",
      Shown::if_any},
@@ -123,27 +119,6 @@ Method parseMethod(const std::string& word) {
   if (word == "loop") return Method::loop;
   if (word == "literal") return Method::literal;
   throw Error("'" + word + "' is none of distance, loop, literal");
-}
-
-Registration byLoop(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& start,
-                    bool literal, Console& console, const std::string& file) {
-  LoopOptions options;
-  options.literal = literal;
-  const LoopFit fit = closestPointLoop(target, points, start, options);
-  if (fit.fell_back)
-    console.warn(file + ": lies in a plane, where the literal fit does not exist; each step was "
-                        "fitted by singular values");
-  Registration result;
-  result.mesh_from_path = fit.mesh_from_path;
-  result.mean_distance = fit.mean_distance;
-  result.rms = std::sqrt(fit.mean_square);
-  result.last_turn = fit.last_turn;
-  result.last_shift = fit.last_shift;
-  result.iterations = fit.iterations;
-  result.converged = fit.converged;
-  for (const Vec3& p : points) result.misses.push_back(target.miss(fit.mesh_from_path * p));
-  result.counts.assign(points.size(), true);
-  return result;
 }
 
 void addJoint(const JointFit& joint, Report& report) {
@@ -193,8 +168,9 @@ Json rivalsJson(const std::vector<Rival>& rivals) {
   return list;
 }
 
-Report reportOf(const Registration& found, const RegisterOptions& options, double seconds,
-                const std::optional<double>& error) {
+Report reportOf(const RegisteredScans& scans, const ScanRegistrationOptions& options,
+                double seconds, const std::optional<double>& error) {
+  const Registration& found = scans.registration;
   Report report(kRegisterKeys);
   const std::size_t all = found.counts.size();
   const auto count =
@@ -221,8 +197,8 @@ Report reportOf(const Registration& found, const RegisterOptions& options, doubl
       report.set("rivals", rivalsJson(*found.rivals));
     }
     report.set("unobservable", freeJson(found.free), words);
-    const double compliance = options.compliance.value_or(found.compliance);
-    report.set("compliance", compliance, formatLength(compliance) + " a newton");
+    report.set("compliance", found.compliances[0],
+               formatLength(found.compliances[0]) + " a newton");
     report.set("together", found.together, rounded(found.together) + " samples in a row");
     report.set("evaluations", found.evaluations)
         .set("starts", static_cast<std::size_t>(found.starts));
@@ -234,7 +210,8 @@ Report reportOf(const Registration& found, const RegisterOptions& options, doubl
              "turned by " + rounded(turn.angle() * 180 / std::numbers::pi) +
                  " degrees, shifted by " + formatLength(found.mesh_from_path.translation().norm()));
   report.set("mean_distance", found.mean_distance);
-  if (found.noise > 0 && options.noise) report.set("noise", *options.noise);
+  if (scans.noise > 0) report.set("roughness", found.roughness);
+  if (found.noise > 0) report.set("noise", scans.noise);
   report.set("last_step",
              Json::object().set("turn", found.last_turn).set("shift", found.last_shift),
              rounded(1e3 * found.last_turn) + " mrad, " + formatLength(found.last_shift));
@@ -254,66 +231,50 @@ int runRegister(RegisterOptions options, Console& console) {
   }
   if (options.align && !options.initial.empty())
     throw Error("--align: --initial is a first guess too; one of them");
-  if (options.method != Method::distance && (options.tip_radius > 0 || options.compliance ||
-                                             options.noise || options.no_search || options.refine))
+  const ScanRegistrationOptions& fit = options.fit;
+  if (fit.method != Method::distance &&
+      (options.tip_radius > 0 || fit.compliance || fit.noise || !fit.search || fit.refine))
     throw Error("--method: --tip-radius, --compliance, --noise, --no-search and --refine are of "
                 "'distance'");
   ScaledMesh scaled = readScaledMesh(options.mesh, options.unit, console);
   TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
   if (mesh.triangles.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
-  const double length = bounds(mesh).diagonal().norm();
-  std::vector<PathSample> path = readTouching(options.path, length, console);
-  const auto own = static_cast<std::ptrdiff_t>(path.size());
-  for (const std::filesystem::path& file : options.also) {
-    const std::vector<PathSample> other = readTouching(file, length, console);
-    path.insert(path.end(), other.begin(), other.end());
-  }
-  if (path.size() < 3)
-    throw FileError(options.path.string(), 0, "has fewer than three samples in contact");
+  std::vector<std::string> warnings;
+  std::vector<std::vector<PathSample>> paths = {readPath(options.path, &warnings)};
+  for (const std::filesystem::path& file : options.also) paths.push_back(readPath(file, &warnings));
+  for (const std::string& line : warnings) console.warn(line);
   const std::optional<Pose> truth =
       options.truth.empty() ? std::nullopt
                             : std::optional(readPoseAt(options.truth, "mesh_from_camera"));
-  std::vector<Vec3> points;
-  for (const PathSample& sample : path) points.push_back(sample.position);
-  RegistrationOptions fitting = optionsFor(path);
-  if (options.compliance) {
-    fitting.force.clear();
-    for (const PathSample& sample : path)
-      fitting.pressed.push_back(*options.compliance * sample.force);
-  }
-  const Pose start = options.align             ? poseOf(*options.align)
-                     : options.initial.empty() ? middleOnMiddle(mesh, points)
-                                               : readPose(options.initial);
-  if (!options.noise) options.noise = fitting.noise;
-  fitting.noise = *options.noise;
-  fitting.search = fitting.rivals = !options.no_search;
-  const SurfaceTarget target(std::move(mesh), options.tip_radius,
-                             !fitting.force.empty() || options.compliance.value_or(0) > 0);
-  if (options.initial.empty() && !options.align) fitting.around = anywhereOn(target);
+  if (options.align) options.fit.guess = poseOf(*options.align);
+  if (!options.initial.empty()) options.fit.guess = readPose(options.initial);
+  const SurfaceTarget target(std::move(mesh), options.tip_radius, needsSides(paths, fit));
 
   const auto begin = std::chrono::steady_clock::now();
-  Registration found = options.method == Method::distance
-                           ? registerPath(target, points, start, fitting, console.progress())
-                           : byLoop(target, points, start, options.method == Method::literal,
-                                    console, options.path.string());
-  std::optional<JointFit> joint;
-  if (options.refine) {
-    JointOptions joining;
-    joining.compliance = options.compliance.value_or(found.compliance);
-    joint = refine(target, joining, fitting, path, found, console.progress());
+  RegisteredScans scans;
+  try {
+    scans = registerScans(target, std::move(paths), fit, console.progress());
+  } catch (const Error& error) {
+    throw FileError(options.path.string(), 0, error.what());
   }
+  const Registration& found = scans.registration;
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   console.progress().throwIfCancelled();
   std::optional<double> error;
   if (truth) {
-    double squares = 0;
-    for (const Vec3& p : points) squares += (found.mesh_from_path * p - *truth * p).squaredNorm();
-    error = std::sqrt(squares / static_cast<double>(points.size()));
+    double squares = 0, samples = 0;
+    for (const std::vector<PathSample>& path : scans.paths)
+      for (const PathSample& sample : path) {
+        squares +=
+            (found.mesh_from_path * sample.position - *truth * sample.position).squaredNorm();
+        ++samples;
+      }
+    error = std::sqrt(squares / samples);
   }
-  Report report = reportOf(found, options, taken.count(), error);
-  if (joint) addJoint(*joint, report);
-  path.resize(static_cast<std::size_t>(own));
-  writeRegisteredPath(options.output, path, found);
+  Report report = reportOf(scans, fit, taken.count(), error);
+  if (scans.joint) addJoint(*scans.joint, report);
+  for (const std::string& line : scans.warnings) console.warn(options.path.string() + ": " + line);
+  writeRegisteredPath(options.output, scans.paths[0], scans.of(0));
   if (!options.report.empty())
     writeFileAtomically(options.report, console.published(report).dump() + "\n");
   if (!found.converged)
@@ -373,20 +334,24 @@ Command registerCommand() {
             "z.",
             [options](const std::string& word) { options->align = parseAlignment(word); }},
            {"--method", "distance|loop|literal", "", "distance", "How it is found.",
-            parsedInto(options->method, parseMethod)},
+            parsedInto(options->fit.method, parseMethod)},
            {"--tip-radius", "LENGTH", "m", "0", "Of the probe: its middle stays that far off.",
             length(options->tip_radius)},
            {"--compliance", "M_PER_N", "m/N", "found by the forces",
             "How far the surface yields to a newton.",
-            inRange(0, 1, [options](double c) { options->compliance = c; })},
+            inRange(0, 1, [options](double c) { options->fit.compliance = c; })},
            {"--noise", "LENGTH", "m", "the path's median sigma", "Deviation of the samples.",
             inRange(
-                1e-9, 1, [options](double n) { options->noise = n; }, NumberKind::length)},
+                1e-9, 1, [options](double n) { options->fit.noise = n; }, NumberKind::length)},
+           {"--roughness", "LENGTH", "m", "0.2mm",
+            "The most that the surface's own relief may add to that.",
+            inRange(
+                0, 1, [options](double r) { options->fit.roughness = r; }, NumberKind::length)},
            {"--refine", "", "", "", "Also the tip's place in the probe and the clocks' offset.",
-            into(options->refine)},
+            into(options->fit.refine)},
            {"--no-search", "", "", "",
             "Fit from the first guess alone, and look for no other place.",
-            into(options->no_search)},
+            [options](const std::string&) { options->fit.search = false; }},
            {"--truth", "TRUTH.json", "", "", "Of a simulated scan, to compare with.",
             into(options->truth)},
            {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",

@@ -11,7 +11,7 @@
 #include "session/store/attach_scan.h"
 #include "session/store/replay.h"
 #ifdef PATINA_HAS_ACQUISITION
-#include "pipeline/scan_files.h"
+#include "scan/scan_files.h"
 #endif
 
 namespace patina::cli {

@@ -38,7 +38,6 @@ AlignDesk::AlignDesk(QWidget& window)
   connect(panel_, &AlignPanel::edited, this, [this](const PoseValues& values) {
     if (!alignment_.isReady() || work_) return;
     alignment_.setPose(poseOf(values));
-    found_.reset();
     around_.forget();
     stale_ = true;
     settle_.start(kSettle);
@@ -127,8 +126,6 @@ void AlignDesk::begin() {
 }
 
 void AlignDesk::showAnew() {
-  found_.reset();
-  fits_.clear();
   setPicking(false);
   panel_->setReady(alignment_.isReady(), false);
   panel_->setFit({});
@@ -137,7 +134,7 @@ void AlignDesk::showAnew() {
     reach_ =
         1.5 * alignment_.target()->extent() + alignment_.pose().translation().cwiseAbs().maxCoeff();
     draw();
-    around_.look(found_);
+    around_.look();
   } else {
     cells_->showMissing(!alignment_.path().empty());
   }
@@ -148,7 +145,6 @@ void AlignDesk::move(const Pose& pose) {
   if (!alignment_.isReady() || work_) return;
   alignment_.setPose(pose);
   settle_.stop();
-  found_.reset();
   around_.forget();
   draw();
 }
@@ -156,17 +152,15 @@ void AlignDesk::move(const Pose& pose) {
 void AlignDesk::settle(std::optional<Registration> fit) {
   if (!alignment_.isReady() || work_) return;
   settle_.stop();
-  alignment_.commit();
-  fits_.resize(alignment_.done());
-  fits_.push_back(std::move(fit));
+  alignment_.commit(std::move(fit));
   showPlace();
 }
 
 void AlignDesk::showPlace() {
-  found_ = alignment_.done() < fits_.size() ? fits_[alignment_.done()] : std::nullopt;
-  panel_->setFit(found_ ? fitWords(*found_) : QString());
+  const std::optional<Registration>& found = alignment_.found();
+  panel_->setFit(found ? fitWords(*found) : QString());
   draw();
-  around_.look(found_);
+  around_.look();
   emit changed();
 }
 
@@ -198,10 +192,10 @@ void AlignDesk::draw() {
                             false, false, foot});
     longest = std::max(longest, (at - foot).norm());
   };
-  if (found_) { // by its own numbers
-    for (std::size_t i = 0; i < found_->misses.size(); ++i)
-      if (found_->counts[i])
-        add(pose * alignment_.path()[i].position, found_->misses[i].distance, found_->misses[i].at);
+  if (const std::optional<Registration>& found = alignment_.found()) { // by its own numbers
+    for (std::size_t i = 0; i < found->misses.size(); ++i)
+      if (found->counts[i])
+        add(pose * alignment_.path()[i].position, found->misses[i].distance, found->misses[i].at);
   } else {
     for (std::size_t i = 0; i < alignment_.points().size(); ++i)
       add(pose * alignment_.points()[i], off.distances[i], off.feet[i]);
@@ -230,17 +224,16 @@ void AlignDesk::registerFromHere() {
   work_ = Work{title, title};
   panel_->setReady(true, true);
   emit changed();
-  std::vector<Vec3> points;
-  for (const PathSample& sample : alignment_.path()) points.push_back(sample.position);
-  const RegistrationOptions options = fitOptions(alignment_);
-  fit_job_.start([this, options, points, target = alignment_.target(), start = alignment_.pose()](
+  ScanRegistrationOptions options;
+  if (alignment_.isLaid()) options.guess = alignment_.pose();
+  fit_job_.start([this, options, path = alignment_.path(), target = alignment_.target()](
                      Progress& progress, const Background::Deliver& deliver) {
     const auto rest = [this] {
       work_.reset();
       panel_->setReady(alignment_.isReady(), false);
     };
     try {
-      const Registration found = registerPath(*target, points, start, options, progress);
+      const Registration found = registerScans(*target, {path}, options, progress).of(0);
       deliver(true, [this, rest, found] {
         rest();
         move(found.mesh_from_path);

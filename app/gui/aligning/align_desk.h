@@ -28,8 +28,6 @@ class AlignDesk : public QObject {
 
   AlignFiles& files() { return files_; }
   const Alignment& alignment() const { return alignment_; }
-  // Of the fit that put the path where it is; nullopt: a hand did.
-  const std::optional<Registration>& found() const { return found_; }
   const QString& name() const { return name_; } // of the path
   const std::optional<Work>& work() const { return work_; }
 
@@ -72,13 +70,11 @@ class AlignDesk : public QObject {
   AlignFiles files_;
   QTimer settle_;
   std::optional<std::pair<QString, AlignedPath>> offered_; // while a question stands before it
-  std::optional<Registration> found_;
-  std::vector<std::optional<Registration>> fits_; // by step: what was found, where one was
-  double reach_ = 1;                              // of the sliders [m]
-  Pose held_ = Pose::Identity();                  // as it was when a drag began
-  Pose kept_ = Pose::Identity();                  // in a file or in the workspace, or the first
-  bool stale_ = false;                            // moved since it was drawn
-  bool unseen_ = false;                           // the scene, here
+  double reach_ = 1;             // of the sliders [m]
+  Pose held_ = Pose::Identity(); // as it was when a drag began
+  Pose kept_ = Pose::Identity(); // in a file or in the workspace, or the first
+  bool stale_ = false;           // moved since it was drawn
+  bool unseen_ = false;          // the scene, here
   std::optional<Work> work_;
 };
 

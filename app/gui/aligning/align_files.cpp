@@ -110,8 +110,7 @@ bool AlignFiles::askKept(const QString& what) {
 void AlignFiles::keep(const std::filesystem::path& file) {
   try {
     const auto pose = std::filesystem::path(file).replace_extension(".txt");
-    writeRegisteredPath(file, alignment_.path(),
-                        registeredAt(*alignment_.target(), alignment_.path(), alignment_.pose()));
+    writeRegisteredPath(file, alignment_.path(), alignment_.registration());
     writeFileAtomically(pose, poseText(alignment_.pose(), "mesh_from_scan"));
     emit kept(alignment_.pose());
     emit said({tr("The path on the mesh is in %1, its pose in %2")

@@ -35,9 +35,7 @@ SceneScan alignedScan(const std::string& name, const Alignment& alignment) {
     scan.files[file] = std::make_shared<const std::string>(std::move(text));
   };
   put("path.csv", pathText(alignment.path()));
-  put("registered.csv",
-      registeredText(alignment.path(),
-                     registeredAt(*alignment.target(), alignment.path(), alignment.pose())));
+  put("registered.csv", registeredText(alignment.path(), alignment.registration()));
   put("registered.txt", poseText(alignment.pose(), "mesh_from_scan"));
   return scan;
 }

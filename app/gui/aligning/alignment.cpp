@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "acquisition/registration/first_guess.h"
-#include "acquisition/registration/scan_options.h"
 #include "geometry/mesh/mesh_report.h"
 
 namespace patina {
@@ -12,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLooked = 400; // points, while a hand moves them
 constexpr std::size_t kMapped = 120; // while a basin is made
-constexpr int kSteps = 21;           // across a basin
+constexpr int kAcross = 21;          // steps across a basin
 
 std::vector<Vec3> someOf(const std::vector<Vec3>& points, std::size_t count) {
   if (points.size() <= count) return points;
@@ -64,11 +63,11 @@ Basin basinOf(const SurfaceTarget& target, const std::vector<Vec3>& points,
   Basin basin;
   basin.shift = 0.15 * target.extent();
   basin.turn = 0.35;
-  basin.side = kSteps;
+  basin.side = kAcross;
   const Vec3 middle = mesh_from_path * middleOf(some);
-  const auto part = [](int step) { return 2. * step / (kSteps - 1) - 1; };
+  const auto part = [](int step) { return 2. * step / (kAcross - 1) - 1; };
   for (int axis = 0; axis < 3; ++axis)
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kAcross; ++step) {
       progress.throwIfCancelled();
       Pose shift = Pose::Identity(), turn = Pose::Identity();
       shift.translation() = part(step) * basin.shift * Vec3::Unit(axis);
@@ -79,8 +78,8 @@ Basin basinOf(const SurfaceTarget& target, const std::vector<Vec3>& points,
       basin.along[i].push_back(rmsOf(target, some, shift * mesh_from_path));
       basin.along[i + 3].push_back(rmsOf(target, some, turn * mesh_from_path));
     }
-  for (int row = 0; row < kSteps; ++row)
-    for (int column = 0; column < kSteps; ++column) {
+  for (int row = 0; row < kAcross; ++row)
+    for (int column = 0; column < kAcross; ++column) {
       progress.throwIfCancelled();
       Pose shift = Pose::Identity();
       shift.translation() = basin.shift * (part(column) * Vec3::Unit(basin.first) +
@@ -110,24 +109,29 @@ void Alignment::changeMesh(std::shared_ptr<const TriangleMesh> mesh) {
   if (steps_.empty()) return setMesh(std::move(mesh));
   target_.reset();
   mesh_ = std::move(mesh);
+  for (Step& step : steps_) step.fit.reset();
   makeTarget();
 }
 
 void Alignment::setPath(std::vector<PathSample> path) {
-  path_ = std::move(path);
-  std::vector<Vec3> all;
-  for (const PathSample& sample : path_) all.push_back(sample.position);
-  points_ = someOf(all, kLooked);
+  whole_ = std::move(path);
   begin();
 }
 
 void Alignment::begin() {
   steps_.clear();
   at_ = 0;
+  moved_ = false;
+  path_ = whole_;
   makeTarget();
+  std::vector<std::string> unsaid; // the registration says it
+  if (target_) path_ = touchingOn(target_->mesh(), std::move(path_), unsaid);
+  std::vector<Vec3> all;
+  for (const PathSample& sample : path_) all.push_back(sample.position);
+  points_ = someOf(all, kLooked);
   if (!isReady()) return;
   pose_ = middleOnMiddle(target_->mesh(), points_);
-  steps_ = {pose_};
+  steps_ = {{pose_, {}}};
 }
 
 void Alignment::makeTarget() {
@@ -141,30 +145,48 @@ Vec3 Alignment::middle() const {
   return pose_ * middleOf(points_);
 }
 
-void Alignment::commit() {
-  if (steps_.empty() || pose_.isApprox(steps_[at_], 1e-12)) return;
-  steps_.resize(at_ + 1);
-  steps_.push_back(pose_);
-  ++at_;
+const std::optional<Registration>& Alignment::found() const {
+  static const std::optional<Registration> kNobody;
+  return steps_.empty() || moved_ ? kNobody : steps_[at_].fit;
+}
+
+Registration Alignment::registration() const {
+  return found() ? *found() : registeredAt(*target_, path_, pose_);
+}
+
+void Alignment::setPose(const Pose& pose) {
+  moved_ = true;
+  pose_ = pose;
+}
+
+void Alignment::commit(std::optional<Registration> fit) {
+  if (steps_.empty()) return;
+  if (!pose_.isApprox(steps_[at_].pose, 1e-12)) {
+    steps_.resize(++at_);
+    steps_.push_back({pose_, {}});
+  }
+  moved_ = false;
+  if (fit) steps_[at_].fit = std::move(fit);
 }
 
 bool Alignment::undo() {
   commit();
   if (at_ == 0) return false;
-  pose_ = steps_[--at_];
+  pose_ = steps_[--at_].pose;
   return true;
 }
 
 bool Alignment::redo() {
   if (undone() == 0) return false;
-  pose_ = steps_[++at_];
+  pose_ = steps_[++at_].pose;
+  moved_ = false;
   return true;
 }
 
-RegistrationOptions fitOptions(const Alignment& alignment) {
-  RegistrationOptions options = optionsFor(alignment.path());
-  options.search = false; // the hand has said where
-  return options;
+std::vector<Pose> Alignment::steps() const {
+  std::vector<Pose> poses;
+  for (const Step& step : steps_) poses.push_back(step.pose);
+  return poses;
 }
 
 } // namespace patina

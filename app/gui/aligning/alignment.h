@@ -6,8 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "acquisition/registration/register_path.h"
-#include "acquisition/scan_samples.h"
+#include "scan/register_scans.h"
 
 namespace patina {
 
@@ -47,35 +46,43 @@ class Alignment {
   bool isReady() const { return target_ != nullptr && !path_.empty(); }
 
   const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
-  const std::vector<PathSample>& path() const { return path_; }
+  const std::vector<PathSample>& path() const { return path_; } // what of it takes part
   // So many of the path's positions, evenly, as are looked at while a hand moves it.
   const std::vector<Vec3>& points() const { return points_; }
   const std::shared_ptr<const SurfaceTarget>& target() const { return target_; }
 
   const Pose& pose() const { return pose_; } // mesh_from_path
   Vec3 middle() const;                       // of the path, where it lies
-  void setPose(const Pose& pose) { pose_ = pose; }
-  void commit(); // a step that can be undone, if the pose has changed
-  bool undo();   // what is not committed goes too; false: there is nothing
+  // Of the fit that put the path where it is; nullopt: a hand did.
+  const std::optional<Registration>& found() const;
+  // Where the path lies: what the fit says, or all samples where a hand has put them.
+  Registration registration() const;
+  bool isLaid() const { return done() > 0; } // by a hand or by a fit
+  void setPose(const Pose& pose);
+  // A step that can be undone, if the pose has changed; `fit` has put the path there.
+  void commit(std::optional<Registration> fit = {});
+  bool undo(); // what is not committed goes too; false: there is nothing
   bool redo();
-  const std::vector<Pose>& steps() const { return steps_; } // the first is the beginning
+  std::vector<Pose> steps() const; // the first is the beginning
   std::size_t done() const { return at_; }
   std::size_t undone() const { return steps_.empty() ? 0 : steps_.size() - 1 - at_; }
 
  private:
+  struct Step {
+    Pose pose;
+    std::optional<Registration> fit;
+  };
   void begin();
   void makeTarget();
 
   std::shared_ptr<const TriangleMesh> mesh_;
   std::shared_ptr<const SurfaceTarget> target_;
-  std::vector<PathSample> path_;
+  std::vector<PathSample> whole_, path_;
   std::vector<Vec3> points_;
   Pose pose_ = Pose::Identity();
-  std::vector<Pose> steps_;
+  bool moved_ = false; // since the step that is done
+  std::vector<Step> steps_;
   std::size_t at_ = 0;
 };
-
-// Of a fit that begins where a hand has put the path.
-RegistrationOptions fitOptions(const Alignment& alignment);
 
 } // namespace patina

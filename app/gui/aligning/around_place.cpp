@@ -12,7 +12,7 @@ void AroundPlace::forget() {
   emit errorChanged();
 }
 
-void AroundPlace::look(const std::optional<Registration>& found) {
+void AroundPlace::look() {
   plot_->setBasin(std::nullopt);
   forget();
   std::vector<double> rms;
@@ -21,10 +21,9 @@ void AroundPlace::look(const std::optional<Registration>& found) {
   rms.resize(alignment_.done() + 1);
   plot_->setSteps(rms);
   job_.start([this, target = alignment_.target(), points = alignment_.points(),
-              path = alignment_.path(), found,
+              at = alignment_.registration(),
               pose = alignment_.pose()](Progress& progress, const Background::Deliver& deliver) {
     try {
-      const Registration at = found ? *found : registeredAt(*target, path, pose);
       deliver(false,
               [this, error = errorMapOf(target->mesh(), at, kErrorReach * target->extent())] {
                 error_ = error;

@@ -15,8 +15,8 @@ class AroundPlace : public QObject {
   BasinPlot* plot() const { return plot_; }
   // One a vertex of the mesh [m]; empty: not known of where the path lies.
   const std::vector<float>& error() const { return error_; }
-  void look(const std::optional<Registration>& found); // that put it there; nullopt: a hand did
-  void forget();                                       // the path has left its place
+  void look();   // about where the path lies now
+  void forget(); // it has left its place
 
  signals:
   void errorChanged();

@@ -3,7 +3,7 @@
 #include <QFileInfo>
 
 #ifdef PATINA_HAS_ACQUISITION
-#include "pipeline/scan_files.h"
+#include "scan/scan_files.h"
 #endif
 #include "workspace/workspace.h"
 

@@ -5,7 +5,7 @@
 
 #include "acquisition/filtering/filtered_scan.h"
 #include "acquisition/tracking/rig_pose.h"
-#include "pipeline/scan_files.h"
+#include "scan/scan_files.h"
 
 namespace patina {
 

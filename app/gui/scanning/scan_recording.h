@@ -8,7 +8,7 @@
 #include "acquisition/recording/recorder.h"
 #include "app/gui/scanning/record_panel.h"
 #include "app/gui/window/background.h"
-#include "pipeline/scan_files.h"
+#include "scan/scan_files.h"
 
 namespace patina {
 

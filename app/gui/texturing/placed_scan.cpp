@@ -26,7 +26,8 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
   placed.probe = scan.files()->rig->probe;
   placed.gravity = scan.files()->rig->gravity;
   placed.mesh_from_scan = scene.objects[0].world_from_object.inverse() * align.alignment().pose();
-  if (align.found()) placed.compliance = align.found()->compliance;
+  if (const auto& found = align.alignment().found(); found && !found->compliances.empty())
+    placed.compliance = found->compliances[0];
   return placed;
 }
 

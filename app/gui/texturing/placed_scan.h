@@ -5,7 +5,7 @@
 
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/open_scan.h"
-#include "pipeline/scan_steps.h"
+#include "scan/scan_steps.h"
 #include "scene/scene.h"
 
 namespace patina {

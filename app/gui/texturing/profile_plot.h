@@ -6,7 +6,7 @@
 #include <QWidget>
 
 #include "app/gui/widgets/graph.h"
-#include "pipeline/demo.h"
+#include "demo/demo.h"
 
 namespace patina {
 

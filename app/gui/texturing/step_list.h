@@ -7,7 +7,7 @@
 #include <QLabel>
 #include <QPushButton>
 
-#include "pipeline/demo_report.h"
+#include "demo/demo_report.h"
 
 namespace patina {
 

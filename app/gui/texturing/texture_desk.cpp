@@ -7,7 +7,7 @@
 
 #include "app/gui/loading/load_dialogs.h"
 #include "core/error.h"
-#include "pipeline/demo_pictures.h"
+#include "demo/demo_pictures.h"
 
 namespace patina {
 namespace {

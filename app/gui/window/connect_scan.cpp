@@ -41,7 +41,7 @@ void MainWindow::connectScan() {
   connect(parts_.load_bar, &LoadBar::cancelled, parts_.texture, &TextureDesk::cancel);
   connect(&timer_, &QTimer::timeout, parts_.texture, &TextureDesk::refresh);
   parts_.texture->library().setSources(edits_.thread(), [this] {
-    const auto& found = parts_.align->found();
+    const auto& found = parts_.align->alignment().found();
     if (const QString doubt = found ? doubtWords(*found) : QString(); !doubt.isEmpty())
       say({tr("%1. The texture that is made of it is as unsure").arg(doubt), true});
     return placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);

@@ -31,7 +31,7 @@ GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, doub
   if (const ScanPath* path = parts.scan->scan().path()) facts.poses = path->poses.size();
   const Alignment& aligned = parts.align->alignment();
   facts.samples = aligned.path().size();
-  if (const auto& found = parts.align->found()) {
+  if (const auto& found = parts.align->alignment().found()) {
     facts.off = found->rms;
     facts.doubt = doubtWords(*found);
   }

@@ -13,13 +13,15 @@ constexpr std::size_t kFewest = 100; // samples of a stretch that tells a height
 
 } // namespace
 
-std::vector<PressSample> pressesOf(const std::vector<PathSample>& path, const CameraTrack& track,
+std::vector<PressSample> pressesOf(const std::vector<PathSample>& path,
+                                   const std::function<Vec3(std::size_t)>& velocityAt,
                                    const std::function<TipOver(const PathSample&)>& over) {
   std::vector<PressSample> samples;
-  for (const PathSample& sample : path) {
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const PathSample& sample = path[i];
     if (!sample.touching) continue;
     const TipOver here = over(sample);
-    const Vec3 velocity = motionAt(track, sample.t).velocity;
+    const Vec3 velocity = velocityAt(i);
     if ((velocity - here.normal * here.normal.dot(velocity)).norm() > kStandingSpeed) continue;
     samples.push_back({sample.t, -here.height, sample.force, sample.sigma});
   }
@@ -61,12 +63,13 @@ ScanHeights scanHeights(const FilteredScan& scan, const std::vector<CameraPose>&
   } else {
     found.plane = touchedPlane(scan.whole, probe.tip);
   }
-  found.compliance =
-      estimateCompliance(pressesOf(scan.whole, scan.track,
-                                   [&normal = found.plane.normal](const PathSample& sample) {
-                                     return TipOver{normal, normal.dot(sample.position)};
-                                   }),
-                         std::sqrt(probe.forceVariance()), true);
+  found.compliance = estimateCompliance(
+      pressesOf(
+          scan.whole, [&](std::size_t i) { return motionAt(scan.track, scan.whole[i].t).velocity; },
+          [&normal = found.plane.normal](const PathSample& sample) {
+            return TipOver{normal, normal.dot(sample.position)};
+          }),
+      std::sqrt(probe.forceVariance()), true);
   const bool told = found.compliance && found.compliance->isTold();
   const double compliance = given.value_or(told ? found.compliance->compliance : 0);
   std::vector<std::vector<TracedSample>> traces;

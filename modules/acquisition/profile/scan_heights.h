@@ -32,9 +32,10 @@ struct TipOver {
   Vec3 normal;
   double height;
 };
-// Samples of the touching path in which the probe stood and pressed; `over` says of a sample where
-// it is.
-std::vector<PressSample> pressesOf(const std::vector<PathSample>& path, const CameraTrack& track,
+// Samples of the touching path in which the probe stood and pressed. `velocityAt` says how the tip
+// moved at a sample [m/s], by its number, and `over` where it is.
+std::vector<PressSample> pressesOf(const std::vector<PathSample>& path,
+                                   const std::function<Vec3(std::size_t)>& velocityAt,
                                    const std::function<TipOver(const PathSample&)>& over);
 
 // `scan` is of a fused path, `poses` are those that it was made of. `normal`: outwards, in the

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/registration/yielding_fit.h"
 #include "core/decompose.h"
 
 namespace patina {
@@ -20,24 +19,24 @@ struct Blocks {
   VecX misses;
 };
 
-Blocks blocksOf(const std::vector<Vec3>& points, const PathFit& fit,
-                const std::vector<double>& force) {
+Blocks blocksOf(const std::vector<Vec3>& points, const PathFit& fit, const ScanForces& forces) {
   const MotionScale scale = scaleOf(points, fit.mesh_from_path);
-  const double usual = usualForce(force);
+  const auto columns = static_cast<Eigen::Index>(6 + forces.scans());
   std::vector<std::size_t> counting;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (fit.weights[i] > 0) counting.push_back(i);
   const std::size_t size = counting.size() / kBlocks + 1;
   const auto count = static_cast<Eigen::Index>((counting.size() + size - 1) / size);
-  Blocks blocks{static_cast<double>(size), 0, MatX::Zero(count, force.empty() ? 6 : 7),
-                VecX::Zero(count)};
+  Blocks blocks{static_cast<double>(size), 0, MatX::Zero(count, columns), VecX::Zero(count)};
   for (std::size_t k = 0; k < counting.size(); ++k) {
     const std::size_t i = counting[k], first = k / size * size;
     const double share = 1. / static_cast<double>(std::min(size, counting.size() - first));
     const auto row = static_cast<Eigen::Index>(k / size);
     blocks.gradients.row(row).head<6>() +=
         share * scale.gradient(fit.mesh_from_path * points[i], fit.misses[i].direction).transpose();
-    if (!force.empty()) blocks.gradients(row, 6) += share * force[i] / usual;
+    if (columns > 6)
+      blocks.gradients(row, static_cast<Eigen::Index>(6 + forces.scanOf(i))) +=
+          share * forces.over(i);
     blocks.misses[row] += share * fit.misses[i].distance;
   }
   for (std::size_t k = 0; k < counting.size(); ++k) {
@@ -86,21 +85,22 @@ void judgeLaw(TriedLaw& tried, const Blocks& blocks, const MatX& design) {
       tried.variance * product(blocks.gradients.transpose(), product(law, blocks.gradients));
 }
 
-// A surface that gives way by so much as kYields is nothing out of the ordinary: that keeps a force
-// which never changes from being taken for a shift.
-ErrorLaw withPrior(ErrorLaw law, double block, double force) {
-  if (law.normal.cols() == 6) return law;
-  const double known = kYields * force; // [m]
-  const double weight = law.deviation * law.deviation * law.together / block / (known * known);
-  law.normal(6, 6) += weight;
-  law.scatter(6, 6) += weight * weight * known * known;
+// What is expected of a compliance keeps a force that never changes from being taken for a shift.
+ErrorLaw withPrior(ErrorLaw law, double block, const ScanForces& forces) {
+  for (std::size_t scan = 0; scan < forces.scans(); ++scan) {
+    const auto column = static_cast<Eigen::Index>(6 + scan);
+    const double known = std::max(forces.depthDeviation(scan), 1e-12); // [m]
+    const double weight = law.deviation * law.deviation * law.together / block / (known * known);
+    law.normal(column, column) += weight;
+    law.scatter(column, column) += weight * weight * known * known;
+  }
   return law;
 }
 
 // Its columns' span by as many that are orthonormal: a force that never changes may lie in what the
 // motions span, and then no law would have a determinant.
 MatX spanOf(const MatX& columns) {
-  const MatX even = columns.colwise().normalized();
+  const MatX even = columns.array().rowwise() / columns.colwise().norm().cwiseMax(1e-300).array();
   const SymmetricEigen eigen(product(even.transpose(), even));
   Eigen::Index count = 0;
   while (count < even.cols() && eigen.values[even.cols() - 1 - count] > kSpanned) ++count;
@@ -119,7 +119,8 @@ Mat6 ErrorLaw::covariance(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free) 
   seen.topLeftCorner(6, count) =
       SymmetricEigen(product(free, free.transpose())).vectors.leftCols(count);
   seen.block(0, count, 6, more).setZero();
-  if (more > 0) seen.row(6).setZero(), seen(6, count) = 1;
+  seen.bottomRows(more).setZero();
+  seen.bottomRightCorner(more, more).setIdentity();
   const MatX turned = seen.transpose();
   const SymmetricSolver ours(product(turned, product(normal, seen)));
   const MatX half = ours.solveColumns(product(turned, product(scatter, seen)));
@@ -128,8 +129,8 @@ Mat6 ErrorLaw::covariance(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free) 
 }
 
 ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double noise,
-                  const std::vector<double>& force) {
-  const Blocks blocks = blocksOf(points, fit, force);
+                  const ScanForces& forces) {
+  const Blocks blocks = blocksOf(points, fit, forces);
   ErrorLaw law;
   law.normal = product(blocks.gradients.transpose(), blocks.gradients);
   const auto count = static_cast<double>(blocks.misses.size());
@@ -140,11 +141,12 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
     law.deviation = std::max(
         noise, fit.rms * std::sqrt(count / std::max(count - static_cast<double>(seen), 1.0)));
     law.scatter = law.deviation * law.deviation * law.normal;
-    return withPrior(std::move(law), 1, usualForce(force));
+    return withPrior(std::move(law), 1, forces);
   }
-  MatX design(blocks.gradients.rows(), seen + (force.empty() ? 0 : 1));
+  const auto scans = static_cast<Eigen::Index>(forces.scans());
+  MatX design(blocks.gradients.rows(), seen + scans);
   design.leftCols(seen) = product(blocks.gradients.leftCols(6), eigen.vectors.rightCols(seen));
-  if (!force.empty()) design.col(seen) = blocks.gradients.col(6);
+  design.rightCols(scans) = blocks.gradients.rightCols(scans);
   design = spanOf(design);
   std::vector<TriedLaw> all;
   for (const double alone : {1e-3, 0.03, 0.2, 0.6})
@@ -179,7 +181,7 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
   law.together = std::max(1., together);
   law.deviation = std::max(noise, std::sqrt(square));
   law.scatter = law.deviation * law.deviation / square * law.together / together / sum * scatter;
-  return withPrior(std::move(law), blocks.size, usualForce(force));
+  return withPrior(std::move(law), blocks.size, forces);
 }
 
 } // namespace patina

@@ -244,8 +244,10 @@ JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& 
 namespace {
 
 // From one place; `found` gets what the fit says but for its rivals.
-JointFit refineHere(const SurfaceTarget& target, JointOptions options, double noise,
-                    const std::vector<PathSample>& path, Registration& found) {
+JointFit refineHere(const SurfaceTarget& target, JointOptions options,
+                    const RegistrationOptions& registering, const std::vector<PathSample>& path,
+                    Registration& found) {
+  const double noise = registering.noise;
   options.together = 1; // what it seems with a wrong calibration is another thing
   const Pose start = found.mesh_from_path;
   JointFit joint;
@@ -290,7 +292,7 @@ JointFit refineHere(const SurfaceTarget& target, JointOptions options, double no
   found.noise = std::max(joint.rms, leastNoise(points, noise));
   found.converged =
       joint.converged && isExplained(joint.rms, count / static_cast<double>(path.size()), noise,
-                                     leastNoise(points, noise));
+                                     std::hypot(leastNoise(points, noise), registering.roughness));
   found.misses = std::move(fit.misses);
   return joint;
 }
@@ -304,7 +306,7 @@ JointFit refine(const SurfaceTarget& target, const JointOptions& options,
   registering.search = false;
   JointFit joint;
   for (int round = 0;; ++round) {
-    joint = refineHere(target, options, registering.noise, path, found);
+    joint = refineHere(target, options, registering, path, found);
     if (!registering.rivals) break;
     // Where else the path lies as well, now that its tip and clock are mended.
     std::vector<Vec3> points;

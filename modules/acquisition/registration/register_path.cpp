@@ -43,12 +43,15 @@ struct Places {
   }
 };
 
-Places placesOf(const std::vector<Vec3>& points, double reach) {
+Places placesOf(const std::vector<Vec3>& points, const std::vector<std::size_t>& scan,
+                double reach) {
   Places places;
   Vec3 first = Vec3::Zero();
   double count = 0;
-  for (const Vec3& point : points) {
-    if (count == 0 || !((point - first).norm() < reach)) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& point = points[i];
+    const bool begins = i > 0 && !scan.empty() && scan[i] != scan[i - 1];
+    if (count == 0 || begins || !((point - first).norm() < reach)) {
       first = point;
       count = 0;
       places.points.push_back(Vec3::Zero());
@@ -61,12 +64,16 @@ Places placesOf(const std::vector<Vec3>& points, double reach) {
 
 Registration registerPlaces(const SurfaceTarget& target, const std::vector<Vec3>& points,
                             const Pose& start, RegistrationOptions options, Progress& progress) {
-  const Places places = placesOf(points, options.place);
+  const Places places = placesOf(points, options.scan, options.place);
   std::vector<double> pressed = std::exchange(options.pressed, places.meansOf(options.pressed));
-  const std::vector<double> force = std::exchange(options.force, places.meansOf(options.force));
+  const ScanForces forces(options.force, options.scan);
+  options.force = places.meansOf(options.force);
+  std::vector<std::size_t> scan(options.scan.empty() ? 0 : places.points.size());
+  for (std::size_t i = 0; i < options.scan.size(); ++i) scan[places.of[i]] = options.scan[i];
+  options.scan = std::move(scan);
   options.place = 0;
   Registration found = registerPath(target, places.points, start, options, progress);
-  for (const double f : force) pressed.push_back(found.compliance * f);
+  if (forces.scans() > 0) pressed = forces.pressed(found.compliances);
   std::vector<Miss> misses;
   std::vector<bool> counts;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -99,6 +106,8 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     throw std::invalid_argument("registerPath: a depth for each point, or none");
   if (!options.force.empty() && (options.force.size() != points.size() || !options.pressed.empty()))
     throw std::invalid_argument("registerPath: a force for each point and no depth, or none");
+  if (!options.scan.empty() && options.scan.size() != points.size())
+    throw std::invalid_argument("registerPath: a scan's number for each point, or none");
   if (options.place > 0) return registerPlaces(target, points, start, options, progress);
   const double least = leastNoise(points, options.noise);
   // Whether it lies where it should; without a noise only a fit without any does.
@@ -148,15 +157,15 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   ErrorLaw law;
   FreeMotions free;
   FitOptions yielding = fitting; // with the depths that were found for `best`
+  const ScanForces forces(options.force, options.scan, options.expected);
   const auto judge = [&] {
-    law = errorLaw(points, best, noiseOf(best), options.force);
-    if (!options.force.empty()) {
-      YieldingFit found = fitYielding(target, points, options.force, best, law.together, fitting);
+    law = errorLaw(points, best, noiseOf(best), forces);
+    if (forces.scans() > 0) {
+      YieldingFit found = fitYielding(target, points, forces, best, law.together, fitting);
       best = std::move(found.fit);
-      result.compliance = found.compliance;
-      law = errorLaw(points, best, noiseOf(best), options.force);
-      yielding.pressed.clear();
-      for (const double f : options.force) yielding.pressed.push_back(result.compliance * f);
+      result.compliances = found.compliances;
+      law = errorLaw(points, best, noiseOf(best), forces);
+      yielding.pressed = forces.pressed(result.compliances);
     }
     free = freeMotions(target, points, best, noiseOf(best), law.together, yielding.pressed);
     addUnknown(free, law, scaleOf(points, best.mesh_from_path));
@@ -197,8 +206,10 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   result.middle = scale.centre;
   result.last_turn = best.last_turn;
   result.last_shift = best.last_shift;
-  result.converged =
-      best.converged && isExplained(best.rms, shareThatCounts(best), options.noise, least);
+  result.converged = best.converged && isExplained(best.rms, shareThatCounts(best), options.noise,
+                                                   std::hypot(least, options.roughness));
+  if (options.noise > 0)
+    result.roughness = std::sqrt(std::max(0., best.rms * best.rms - least * least));
   result.misses = std::move(best.misses);
   return result;
 }

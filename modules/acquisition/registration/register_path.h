@@ -5,6 +5,7 @@
 #include "acquisition/registration/coarse_search.h"
 #include "acquisition/registration/free_motions.h"
 #include "acquisition/registration/rivals.h"
+#include "acquisition/registration/yielding_fit.h"
 
 namespace patina {
 
@@ -12,13 +13,18 @@ struct RegistrationOptions {
   // Deviation of the points [m]; 0: unknown, and only a fit without any is trusted without a
   // search.
   double noise = 0;
+  // The most that the surface's own relief may add to it [m]: texture is what a scan is for.
+  double roughness = 0;
   std::vector<double> pressed; // see FitOptions
   std::vector<double> force;   // one a point [N]: how far the surface yields is found, too;
                                // `pressed` is empty then. Asks for a target with sides
-  bool robust = true;          // finds what counts; else all points do
-  bool search = true;          // where the fit from `start` is not as good as the noise lets expect
-  CoarseSearch around;         // how; `turn` of pi: nothing is known of the place
-  bool rivals = false;         // looks all over the mesh for other places, half a second or so
+  std::vector<ExpectedCompliance> expected; // with `force`: one a scan, or empty
+  std::vector<std::size_t> scan; // with `force`: the number of each point's scan, from 0, each of
+                                 // which has a compliance of its own; empty: all are of one
+  bool robust = true;            // finds what counts; else all points do
+  bool search = true;  // where the fit from `start` is not as good as the noise lets expect
+  CoarseSearch around; // how; `turn` of pi: nothing is known of the place
+  bool rivals = false; // looks all over the mesh for other places, half a second or so
   // Points in a row that lie within this of the first of them are one place, their mean, so that
   // where the probe stood counts no more than where it passed; 0: each point counts [m].
   double place = 0;
@@ -34,16 +40,17 @@ struct Registration {
   std::vector<FreeMotion> free; // the path stays where it was in these
   // Places that cannot be told from this one, the best first; nullopt: nobody looked.
   std::optional<std::vector<Rival>> rivals;
-  std::vector<Miss> misses;             // one a point
-  std::vector<bool> counts;             // one a point
-  double noise = 0;                     // that the fit shows [m]
-  double compliance = 0;                // where `force` let it be found [m/N]
+  std::vector<Miss> misses; // one a point
+  std::vector<bool> counts; // one a point
+  double noise = 0;         // that the fit shows [m]
+  double roughness = 0; // what of it the samples' noise leaves unexplained, where that was told [m]
+  std::vector<double> compliances;      // one a scan, where `force` let them be found [m/N]
   double together = 1;                  // so many samples in a row are worth one
   double last_turn = 0, last_shift = 0; // of the last step [rad, m]
   int iterations = 0, starts = 1;
   std::size_t evaluations = 0; // of a point's distance
   // Neither residual nor pose moved any more, most points count, and the noise, where it was told,
-  // explains the rms.
+  // and as much roughness as may be explain the rms.
   bool converged = false;
 };
 
@@ -57,7 +64,8 @@ inline bool isDoubtful(const Registration& found) {
 double leastNoise(const std::vector<Vec3>& points, double noise);
 bool isExplained(double rms, double share, double noise, double least);
 
-// Throws std::invalid_argument: no finite point, `pressed` of another number; Cancelled.
+// Throws std::invalid_argument: no finite point, `pressed`, `force` or `scan` of another number;
+// Cancelled.
 Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& points,
                           const Pose& start, const RegistrationOptions& options,
                           Progress& progress);

@@ -13,58 +13,86 @@ constexpr double kStill = 1e-2; // of rms / sqrt(n): a depth that changes by les
 
 } // namespace
 
-double usualForce(const std::vector<double>& force) {
-  double squares = 0;
-  for (const double f : force) squares += f * f;
-  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, force.size())));
+ScanForces::ScanForces(const std::vector<double>& force, const std::vector<std::size_t>& scan,
+                       const std::vector<ExpectedCompliance>& expected)
+    : force_(force), scan_(scan), expected_(expected) {
+  std::vector<double> counts;
+  for (std::size_t i = 0; i < force_.size(); ++i) {
+    const std::size_t of = scanOf(i);
+    usual_.resize(std::max(usual_.size(), of + 1));
+    counts.resize(usual_.size());
+    usual_[of] += force_[i] * force_[i];
+    ++counts[of];
+  }
+  for (std::size_t s = 0; s < usual_.size(); ++s)
+    usual_[s] = std::sqrt(usual_[s] / std::max(1., counts[s]));
+  expected_.resize(usual_.size());
+}
+
+double ScanForces::over(std::size_t point) const {
+  const double usual = usual_[scanOf(point)];
+  return usual > 0 ? force_[point] / usual : 0;
+}
+
+std::vector<double> ScanForces::pressed(const std::vector<double>& compliances) const {
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < force_.size(); ++i)
+    depths.push_back(compliances[scanOf(i)] * force_[i]);
+  return depths;
 }
 
 YieldingFit fitYielding(const SurfaceTarget& target, const std::vector<Vec3>& points,
-                        const std::vector<double>& force, const PathFit& hard, double together,
+                        const ScanForces& forces, const PathFit& hard, double together,
                         const FitOptions& options) {
-  using Vec7 = Eigen::Matrix<double, 7, 1>;
-  using Mat7 = Eigen::Matrix<double, 7, 7>;
-  const double usual = usualForce(force);
-  YieldingFit found{hard, 0};
-  double depth = 0; // at the usual force [m]
-  for (int round = 0; round < kYieldRounds && usual > 0; ++round) {
+  const std::size_t scans = forces.scans();
+  const auto columns = static_cast<Eigen::Index>(6 + scans);
+  YieldingFit found{hard, std::vector<double>(scans, 0)};
+  for (int round = 0; round < kYieldRounds; ++round) {
     const MotionScale scale = scaleOf(points, found.fit.mesh_from_path);
-    Mat7 normal = Mat7::Zero();
-    Vec7 right = Vec7::Zero();
+    MatX normal = MatX::Zero(columns, columns);
+    VecX right = VecX::Zero(columns);
     double counting = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (found.fit.weights[i] == 0) continue;
-      Vec7 g;
-      g << scale.gradient(found.fit.mesh_from_path * points[i], found.fit.misses[i].direction),
-          force[i] / usual;
+      VecX g = VecX::Zero(columns);
+      g.head<6>() =
+          scale.gradient(found.fit.mesh_from_path * points[i], found.fit.misses[i].direction);
+      g[static_cast<Eigen::Index>(6 + forces.scanOf(i))] = forces.over(i);
       normal.selfadjointView<Eigen::Lower>().rankUpdate(g);
       right -= found.fit.misses[i].distance * g;
       ++counting;
     }
-    const double known = kYields * usual;
-    const double weight = found.fit.rms * found.fit.rms * together / (known * known);
-    normal(6, 6) += weight;
-    right[6] -= weight * depth;
+    for (std::size_t s = 0; s < scans; ++s) {
+      if (!(forces.usual(s) > 0)) continue;
+      const auto column = static_cast<Eigen::Index>(6 + s);
+      const double known = forces.depthDeviation(s);
+      const double weight = found.fit.rms * found.fit.rms * together / (known * known);
+      normal(column, column) += weight;
+      right[column] += weight * (forces.expectedDepth(s) - found.compliances[s] * forces.usual(s));
+    }
     const SymmetricEigen eigen(normal); // reads the lower half
-    Vec7 step = Vec7::Zero();
-    for (int k = 0; k < 7; ++k)
-      if (eigen.values[k] > kBlind * eigen.values[6])
+    VecX step = VecX::Zero(columns);
+    for (Eigen::Index k = 0; k < columns; ++k)
+      if (eigen.values[k] > kBlind * eigen.values[columns - 1])
         step += eigen.vectors.col(k) * eigen.vectors.col(k).dot(right) / eigen.values[k];
-    const double before = depth;
-    depth = std::max(0., depth + step[6]);
+    double change = 0; // of a depth at the usual force [m]
+    for (std::size_t s = 0; s < scans; ++s) {
+      if (!(forces.usual(s) > 0)) continue;
+      const double before = found.compliances[s] * forces.usual(s);
+      const double depth = std::max(0., before + step[static_cast<Eigen::Index>(6 + s)]);
+      found.compliances[s] = depth / forces.usual(s);
+      change = std::max(change, std::abs(depth - before));
+    }
     Vec6 motion = step.head<6>();
     limit(motion, scale, target.extent());
     FitOptions fitting = options;
-    fitting.pressed.clear();
-    for (const double f : force) fitting.pressed.push_back(depth * f / usual);
+    fitting.pressed = forces.pressed(found.compliances);
     const int iterations = found.fit.iterations;
     const std::size_t evaluations = found.fit.evaluations;
     found.fit = fitPath(target, points, scale.motion(motion) * found.fit.mesh_from_path, fitting);
     found.fit.iterations += iterations;
     found.fit.evaluations += evaluations;
-    found.compliance = depth / usual;
-    if (std::abs(depth - before) < kStill * found.fit.rms / std::sqrt(std::max(counting, 1.)))
-      break;
+    if (change < kStill * found.fit.rms / std::sqrt(std::max(counting, 1.))) break;
   }
   return found;
 }

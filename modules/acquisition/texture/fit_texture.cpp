@@ -17,6 +17,7 @@ constexpr double kRounding = 1e-13;  // of the heights: what less remains is no 
 constexpr std::size_t kBesideTilt = 16;
 constexpr double kMostSamples = 1e6;
 constexpr double kSamePlace = 1e-3; // of a step
+constexpr double kSameBend = 0.5;   // of one step's: slopes of many steps that agree are no chance
 
 // Sorted by place; those that lie together are one.
 std::vector<ProfilePoint> inOrder(std::vector<ProfilePoint> points) {
@@ -146,19 +147,29 @@ template <class Leave> double leaveOut(FourierSeries& series, const Leave& leave
   return std::sqrt(sum);
 }
 
-void requireLine(const FourierTexture& texture) {
-  if (texture.kind != TextureKind::line) throw Error("is not a texture along a line");
+// Slope a step of the best line through `count` heights and one more, from `first`.
+double slopeOf(const std::vector<double>& heights, std::size_t first, std::size_t count) {
+  const double middle = 0.5 * static_cast<double>(count);
+  double along = 0, square = 0;
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double x = static_cast<double>(i) - middle;
+    along += x * heights[first + i];
+    square += x * x;
+  }
+  return along / square;
 }
 
-} // namespace
+// By how much the slope at the beginning is above that at the end, each of so many steps.
+double bendOf(const std::vector<double>& heights, std::size_t steps) {
+  return slopeOf(heights, 0, steps) - slopeOf(heights, heights.size() - 1 - steps, steps);
+}
 
-std::vector<double> seamless(std::vector<double> heights, std::size_t blend) {
+// The end blended into the beginning by a cubic over the last `blend` steps, with slopes of so many
+// steps at both ends.
+std::vector<double> closedBy(std::vector<double> heights, std::size_t blend, std::size_t steps) {
   const std::size_t last = heights.size() - 1;
-  if (heights.size() < 4 || blend < 2 || blend + 1 > last)
-    throw Error("blending takes two steps or more, and fewer than there are");
   // c(u) = p u^2 + q u^3 over the zone, 0 and level where it begins.
-  const double step = heights.front() - heights[last],
-               bend = (heights[1] - heights[0]) - (heights[last] - heights[last - 1]);
+  const double step = heights.front() - heights[last], bend = bendOf(heights, steps);
   const double u = 1 - 1 / static_cast<double>(blend);
   // c(1) = step; c(1) - c(u) = bend.
   const double square = 1 - u * u, cube = 1 - u * u * u;
@@ -169,6 +180,28 @@ std::vector<double> seamless(std::vector<double> heights, std::size_t blend) {
   }
   heights[last] = heights.front();
   return heights;
+}
+
+void requireLine(const FourierTexture& texture) {
+  if (texture.kind != TextureKind::line) throw Error("is not a texture along a line");
+}
+
+} // namespace
+
+std::vector<double> seamless(std::vector<double> heights, std::size_t blend) {
+  if (heights.size() < 4 || blend < 2 || blend + 2 > heights.size())
+    throw Error("blending takes two steps or more, and fewer than there are");
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  std::vector<double> closed = closedBy(heights, blend, 1);
+  const auto leaves = [least = *low, most = *high](double h) { return h < least || h > most; };
+  if (std::none_of(closed.begin(), closed.end(), leaves)) return closed;
+  // Of single steps the slopes of a rough profile are chance, of which a long zone makes hills.
+  const std::size_t steps = std::max<std::size_t>(1, blend / 4);
+  const double bend = bendOf(heights, 1);
+  if (std::abs(bendOf(heights, steps) - bend) < kSameBend * std::abs(bend)) return closed;
+  closed = closedBy(heights, blend, steps);
+  for (double& h : closed) h = std::clamp(h, *low, *high);
+  return closed;
 }
 
 FourierSeries seriesOf(const std::vector<double>& heights, int harmonics) {

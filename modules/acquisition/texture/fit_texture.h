@@ -11,9 +11,7 @@ namespace patina {
 
 struct FitOptions1d {
   int harmonics = 128;
-  // Of the profile's length, at its end (seamless()): no more than its waves are long, as a slope
-  // that turns over a wider zone lifts all of it.
-  double blend = 0.01;
+  double blend = 0.01;        // of the profile's length, at its end (seamless())
   std::optional<double> step; // of the even samples [m]; else the median of the points'
   // Longer waves are the body's shape, which its mesh has, and are left out [m]. Where the points'
   // speeds are known, so is what was drawn over too slowly to be known (drawn_heights.h).
@@ -44,7 +42,9 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& points, const FitOptio
 
 // Heights at even steps, the last of which is the first one of the next period: over the last
 // `blend` of them a cubic is added that makes value and slope there those of the beginning (A18).
-// What is before is not touched. blend: 2 or more, and not the first two heights.
+// The slopes are those of one step. Where that leaves the heights' range, and slopes of one step
+// are chance, they are those of lines through a quarter of the zone, and the range is kept. What is
+// before is not touched. blend: 2 or more, and not the first two heights.
 std::vector<double> seamless(std::vector<double> heights, std::size_t blend);
 
 // Coefficients of heights at even steps over one period, the first not repeated: f = 2/M Re, -2/M

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "acquisition/registration/path_course.h"
 #include "core/error.h"
 
 namespace patina {
@@ -105,9 +106,8 @@ Vec3 meanNormal(const SurfaceTarget& target, const Pose& mesh_from_path,
 
 std::optional<ComplianceEstimate> complianceOverMesh(const SurfaceTarget& target,
                                                      const Pose& mesh_from_path,
-                                                     const std::vector<PathSample>& path,
-                                                     const CameraTrack& track,
-                                                     const ProbeModel& probe) {
+                                                     const std::vector<PathSample>& path) {
+  const std::vector<Course> courses = coursesOf(path);
   std::int32_t warm = kNone;
   const auto over = [&](const PathSample& sample) {
     const Miss miss = target.miss(mesh_from_path * sample.position, warm);
@@ -115,7 +115,10 @@ std::optional<ComplianceEstimate> complianceOverMesh(const SurfaceTarget& target
     const Vec3 normal = faceNormal(target.mesh(), index(warm));
     return TipOver{mesh_from_path.linear().transpose() * normal, miss.distance};
   };
-  return estimateCompliance(pressesOf(path, track, over), std::sqrt(probe.forceVariance()), true);
+  // A path does not say how its force was measured; a press is many times the noise of any sensor.
+  return estimateCompliance(pressesOf(
+                                path, [&](std::size_t i) { return courses[i].speed; }, over),
+                            std::sqrt(ProbeModel().forceVariance()), true);
 }
 
 } // namespace patina

@@ -25,12 +25,9 @@ Vec3 meanNormal(const SurfaceTarget& target, const Pose& mesh_from_path,
                 const std::vector<PathSample>& path);
 
 // How far the mesh yields where the probe stood and pressed it, along its own normals; absent where
-// it never did. The target is sided. `path` touches where it says so; `track` is that of the camera
-// alone.
+// it never did. The target is sided. `path` touches where it says so, and tells how the tip moved.
 std::optional<ComplianceEstimate> complianceOverMesh(const SurfaceTarget& target,
                                                      const Pose& mesh_from_path,
-                                                     const std::vector<PathSample>& path,
-                                                     const CameraTrack& track,
-                                                     const ProbeModel& probe);
+                                                     const std::vector<PathSample>& path);
 
 } // namespace patina

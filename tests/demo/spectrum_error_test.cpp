@@ -1,4 +1,4 @@
-#include "pipeline/spectrum_error.h"
+#include "demo/spectrum_error.h"
 
 #include <cmath>
 #include <numbers>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/json.h"
-#include "pipeline/demo.h"
+#include "demo/demo.h"
 
 namespace patina {
 

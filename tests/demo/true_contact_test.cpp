@@ -1,4 +1,4 @@
-#include "pipeline/true_contact.h"
+#include "demo/true_contact.h"
 
 #include <cmath>
 #include <numbers>

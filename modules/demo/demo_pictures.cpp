@@ -1,4 +1,4 @@
-#include "pipeline/demo_pictures.h"
+#include "demo/demo_pictures.h"
 
 #include <cmath>
 

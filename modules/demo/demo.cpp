@@ -1,4 +1,4 @@
-#include "pipeline/demo.h"
+#include "demo/demo.h"
 
 #include <atomic>
 #include <chrono>
@@ -15,11 +15,10 @@
 #include "acquisition/tracking/track_frames.h"
 #include "core/csv.h"
 #include "core/file.h"
-#include "core/percentiles.h"
 #include "geometry/io/pose_file.h"
 #include "geometry/io/textured_obj.h"
 #include "haptics/servo/feel.h"
-#include "pipeline/true_contact.h"
+#include "demo/true_contact.h"
 #include "session/edit/editor.h"
 #include "workspace/texture_file.h"
 
@@ -126,41 +125,18 @@ void filter(Demo& demo, Progress& progress) {
   }
 }
 
-// From how a person would lay the path by hand: 10 mm and 15 degrees off.
-Pose firstGuess(const Demo& demo) {
-  Pose guess = demo.camera_from_object.inverse();
-  const Vec3 axis = Vec3(1, 2, 3).normalized();
-  guess = Eigen::AngleAxisd(0.26, axis) * Eigen::Translation3d(0.01 * axis.cross(Vec3::UnitX())) *
-          guess;
-  return guess;
-}
-
 void registerAll(Demo& demo, Progress& progress) {
-  std::vector<FilteredScan> scans;
-  std::vector<double> sigmas;
-  for (const DemoScan& one : demo.scans) {
-    scans.push_back(one.filtered);
-    for (const PathSample& sample : one.filtered.path) sigmas.push_back(sample.sigma);
-  }
-  RegistrationOptions options;
-  options.noise = 2 * percentiles(sigmas).p50; // and what texture there is
-  demo.registered =
-      registerScans(demo.target, scans, demo.rig.probe, firstGuess(demo), options, progress);
+  std::vector<std::vector<PathSample>> paths;
+  for (const DemoScan& one : demo.scans) paths.push_back(one.filtered.path);
+  demo.registered = registerScans(demo.target, paths, {}, progress);
   if (!demo.registered.registration.converged)
     throw Error("no pose was found at which the paths lie on the mesh");
   double squares = 0, count = 0;
-  std::size_t first = 0;
-  for (const DemoScan& one : demo.scans) {
-    Registration part = demo.registered.registration;
-    const auto begin = static_cast<std::ptrdiff_t>(first);
-    first += one.filtered.path.size();
-    const auto end = static_cast<std::ptrdiff_t>(first);
-    part.misses.assign(demo.registered.registration.misses.begin() + begin,
-                       demo.registered.registration.misses.begin() + end);
-    part.counts.assign(demo.registered.registration.counts.begin() + begin,
-                       demo.registered.registration.counts.begin() + end);
-    writeRegisteredPath(demo.folder / ("registered-" + one.name + ".csv"), one.filtered.path, part);
-    for (const PathSample& sample : one.filtered.path) {
+  for (std::size_t i = 0; i < demo.scans.size(); ++i) {
+    const std::vector<PathSample>& path = demo.registered.paths[i];
+    writeRegisteredPath(demo.folder / ("registered-" + demo.scans[i].name + ".csv"), path,
+                        demo.registered.of(i));
+    for (const PathSample& sample : path) {
       squares += (objectFromCamera(demo) * sample.position -
                   demo.camera_from_object.inverse() * sample.position)
                      .squaredNorm();
@@ -198,7 +174,7 @@ void fit(Demo& demo, Progress&) {
     DemoTexture& texture = demo.textures.back();
     texture.scanned =
         fitScan(demo.target, one.filtered, one.streams.poses, demo.rig.probe, demo.rig.gravity,
-                objectFromCamera(demo), demo.registered.compliances[i], options);
+                objectFromCamera(demo), demo.registered.registration.compliances[i], options);
     FourierTexture& fitted = texture.scanned.fitted.texture;
     fitted.name = one.name;
     writeHeights(demo.folder / ("heights-" + one.name + ".csv"), texture.scanned.heights);

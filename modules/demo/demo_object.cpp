@@ -1,4 +1,4 @@
-#include "pipeline/demo_object.h"
+#include "demo/demo_object.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pipeline/demo_report.h"
+#include "demo/demo_report.h"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 
 #include "core/decompose.h"
 #include "geometry/mesh/shapes.h"
-#include "pipeline/demo_report.h"
+#include "demo/demo_report.h"
 #include "support/fresh_folder.h"
 #include "support/longer.h"
 

@@ -1,5 +1,5 @@
 // The whole chain on its embedded scan, and that its figures would tell if it were broken.
-#include "pipeline/demo_report.h"
+#include "demo/demo_report.h"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,11 @@
 #include "acquisition/calibration/board.h"
 #include "acquisition/files/scan_files.h"
 #include "acquisition/simulation/path_error.h"
-#include "pipeline/demo_object.h"
-#include "pipeline/felt_error.h"
-#include "pipeline/scan_steps.h"
-#include "pipeline/spectrum_error.h"
+#include "demo/demo_object.h"
+#include "demo/felt_error.h"
+#include "demo/spectrum_error.h"
+#include "scan/register_scans.h"
+#include "scan/scan_steps.h"
 #include "session/build/compile_scene.h"
 
 namespace patina {

@@ -1,4 +1,4 @@
-#include "pipeline/felt_error.h"
+#include "demo/felt_error.h"
 
 #include <cmath>
 #include <functional>

@@ -1,9 +1,8 @@
-#include "pipeline/scan_steps.h"
+#include "scan/scan_steps.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/registration/scan_options.h"
 #include "core/error.h"
 #include "session/build/session.h"
 
@@ -47,37 +46,6 @@ FilteredScan touchedPath(const ScanStreams& streams, const ProbeModel& probe, co
   FilteredScan scan = filterScan(streams.poses, streams.samples, probe, filter, progress);
   if (scan.path.empty()) throw Error("the probe never touches");
   return scan;
-}
-
-RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<FilteredScan>& scans,
-                              const ProbeModel& probe, const Pose& start,
-                              const RegistrationOptions& options, Progress& progress) {
-  std::vector<PathSample> path;
-  std::vector<Vec3> points;
-  for (const FilteredScan& scan : scans)
-    path.insert(path.end(), scan.path.begin(), scan.path.end());
-  for (const PathSample& sample : path) points.push_back(sample.position);
-  RegistrationOptions fitting = options;
-  if (fitting.place == 0) fitting.place = optionsFor(path).place;
-  RegisteredScans found;
-  found.registration = registerPath(target, points, start, fitting, progress);
-  fitting.pressed.clear();
-  for (const FilteredScan& scan : scans) {
-    found.estimates.push_back(complianceOverMesh(target, found.registration.mesh_from_path,
-                                                 scan.path, scan.track, probe));
-    found.compliances.push_back(found.estimates.back() ? found.estimates.back()->compliance : 0);
-    for (const PathSample& sample : scan.path)
-      fitting.pressed.push_back(found.compliances.back() * sample.force);
-  }
-  fitting.search = false;
-  found.registration =
-      registerPath(target, points, found.registration.mesh_from_path, fitting, progress);
-  for (std::size_t s = 0; s < scans.size(); ++s) {
-    found.estimates[s] = complianceOverMesh(target, found.registration.mesh_from_path,
-                                            scans[s].path, scans[s].track, probe);
-    found.compliances[s] = found.estimates[s] ? found.estimates[s]->compliance : 0;
-  }
-  return found;
 }
 
 ScannedTexture fitScan(const SurfaceTarget& target, const FilteredScan& scan,

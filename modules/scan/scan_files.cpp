@@ -1,4 +1,4 @@
-#include "pipeline/scan_files.h"
+#include "scan/scan_files.h"
 
 #include <algorithm>
 

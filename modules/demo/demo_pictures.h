@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/demo.h"
+#include "demo/demo.h"
 #include "visualization/layers/path_layer.h"
 
 namespace patina {

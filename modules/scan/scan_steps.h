@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "acquisition/filtering/filtered_scan.h"
-#include "acquisition/registration/register_path.h"
+#include "acquisition/registration/surface_target.h"
 #include "acquisition/texture/fit_texture.h"
 #include "acquisition/texture/lay_texture.h"
 #include "acquisition/texture/mesh_heights.h"
@@ -23,17 +23,6 @@ struct ScanStreams {
 // never does, Cancelled.
 FilteredScan touchedPath(const ScanStreams& streams, const ProbeModel& probe, const Vec3& gravity,
                          Progress& progress);
-
-// Several paths in one camera's frame, put on the mesh together: once as if nothing yielded, then
-// with what each was pressed in. Compliances as found over the mesh, 0 where nobody pressed.
-struct RegisteredScans {
-  Registration registration;       // one miss a sample, scan upon scan
-  std::vector<double> compliances; // [m/N], one a scan
-  std::vector<std::optional<ComplianceEstimate>> estimates;
-};
-RegisteredScans registerScans(const SurfaceTarget& target, const std::vector<FilteredScan>& scans,
-                              const ProbeModel& probe, const Pose& start,
-                              const RegistrationOptions& options, Progress& progress);
 
 // Texture that one scan found.
 struct ScannedTexture {
