@@ -15,6 +15,7 @@ namespace {
 constexpr double kExpected = 1.5;      // times the noise: a larger rms says that it lies elsewhere
 constexpr std::size_t kDeciding = 600; // points that decide between places
 constexpr double kEnough = 0.6;        // of the points must count
+constexpr int kMoreFits = 3;
 constexpr double kBetter = 0.99;       // of the cost: what is better by less is not told apart
 
 double shareThatCounts(const PathFit& fit) {
@@ -180,11 +181,23 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     for (int round = 0;; ++round) {
       result.rivals = rivalsOf(target, points, places, best, yielding, law, free, progress);
       result.starts += static_cast<int>(places.size());
-      if (round == 3 || result.rivals->empty() || result.rivals->front().better <= better) break;
+      if (round == 3 || result.rivals->empty() || result.rivals->front().better <= 0) break;
       places.push_back(best.mesh_from_path);
+      const PathFit here = best;
       best = fitFrom(result.rivals->front().mesh_from_path, points);
       judge();
+      // By the errors of the better place: at a wrong one a misfit passes for errors that go
+      // together, by which no place could be told from another.
+      if (costOf(here.misses, law) - costOf(best.misses, law) > better) continue;
+      best = here;
+      judge();
+      break;
     }
+  }
+  // A long flat valley takes more steps than one fit has.
+  for (int again = 0; again < kMoreFits && !best.converged; ++again) {
+    best = fitFrom(best.mesh_from_path, points);
+    judge();
   }
   const MotionScale scale = scaleOf(points, best.mesh_from_path);
   result.mesh_from_path = best.mesh_from_path;
