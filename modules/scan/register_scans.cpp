@@ -126,15 +126,6 @@ std::vector<PathSample> touchingOn(const TriangleMesh& mesh, std::vector<PathSam
   return path;
 }
 
-bool needsSides(const Paths& paths, const ScanRegistrationOptions& options) {
-  if (options.method != Method::distance) return false;
-  if (options.compliance) return *options.compliance > 0;
-  return std::any_of(paths.begin(), paths.end(), [](const std::vector<PathSample>& path) {
-    return std::any_of(path.begin(), path.end(),
-                       [](const PathSample& sample) { return sample.force != 0; });
-  });
-}
-
 RegisteredScans registerScans(const SurfaceTarget& target, Paths paths,
                               const ScanRegistrationOptions& options, Progress& progress) {
   RegisteredScans all;
@@ -154,6 +145,7 @@ RegisteredScans registerScans(const SurfaceTarget& target, Paths paths,
   RegistrationOptions fitting = optionsFor(path);
   fitting.noise = all.noise = options.noise.value_or(fitting.noise);
   fitting.roughness = options.roughness;
+  fitting.outliers = options.outliers;
   fitting.search = fitting.rivals = options.search;
   if (!options.guess) fitting.around = anywhereOn(target);
   if (!fitting.force.empty()) fitting.scan = scan;

@@ -17,8 +17,9 @@ struct ScanRegistrationOptions {
   enum class Method { distance, loop, literal } method = Method::distance;
   std::optional<Pose> guess; // of mesh_from_scan; absent: nothing is known of the place
   bool search = true; // tries other poses about the guess, and looks for other places on the mesh
-  std::optional<double> noise;      // of the samples, one deviation [m]; absent: what they state
-  double roughness = 0.2e-3;        // the most that the surface's own relief may add to that [m]
+  std::optional<double> noise; // of the samples, one deviation [m]; absent: what they state
+  double roughness = 0.2e-3;   // the most that the surface's own relief may add to that [m]
+  double outliers = 0.2;       // the share of the samples that may lie elsewhere than on the mesh
   std::optional<double> compliance; // of all scans [m/N]; absent: of each as the forces tell
   bool refine = false;              // fits the tip's place and the clocks' offset, too
 };
@@ -44,13 +45,10 @@ std::vector<PathSample> touchingOn(const TriangleMesh& mesh, std::vector<PathSam
                                    std::vector<std::string>& warnings);
 
 // Scans of one body, the paths of which lie in one camera's frame; their order does not matter.
-// touchingOn() says what takes part. `target` is the mesh; it has sides where a compliance is
-// fitted (needsSides()). Throws Error where fewer than three samples take part, Cancelled.
+// touchingOn() says what takes part. `target` has sides. Throws Error where fewer than three
+// samples take part, Cancelled.
 RegisteredScans registerScans(const SurfaceTarget& target,
                               std::vector<std::vector<PathSample>> paths,
                               const ScanRegistrationOptions& options, Progress& progress);
-
-bool needsSides(const std::vector<std::vector<PathSample>>& paths,
-                const ScanRegistrationOptions& options);
 
 } // namespace patina

@@ -248,7 +248,7 @@ int runRegister(RegisterOptions options, Console& console) {
                             : std::optional(readPoseAt(options.truth, "mesh_from_camera"));
   if (options.align) options.fit.guess = poseOf(*options.align);
   if (!options.initial.empty()) options.fit.guess = readPose(options.initial);
-  const SurfaceTarget target(std::move(mesh), options.tip_radius, needsSides(paths, fit));
+  const SurfaceTarget target(std::move(mesh), options.tip_radius, true);
 
   const auto begin = std::chrono::steady_clock::now();
   RegisteredScans scans;
@@ -347,6 +347,9 @@ Command registerCommand() {
             "The most that the surface's own relief may add to that.",
             inRange(
                 0, 1, [options](double r) { options->fit.roughness = r; }, NumberKind::length)},
+           {"--outliers", "SHARE", "", "0.2",
+            "Of the samples, as many as may lie elsewhere than on the mesh.",
+            inRange(0, 0.6, [options](double share) { options->fit.outliers = share; })},
            {"--refine", "", "", "", "Also the tip's place in the probe and the clocks' offset.",
             into(options->fit.refine)},
            {"--no-search", "", "", "",

@@ -292,7 +292,8 @@ JointFit refineHere(const SurfaceTarget& target, JointOptions options,
   found.noise = std::max(joint.rms, leastNoise(points, noise));
   found.converged =
       joint.converged && isExplained(joint.rms, count / static_cast<double>(path.size()), noise,
-                                     std::hypot(leastNoise(points, noise), registering.roughness));
+                                     std::hypot(leastNoise(points, noise), registering.roughness),
+                                     registering.outliers);
   found.misses = std::move(fit.misses);
   return joint;
 }

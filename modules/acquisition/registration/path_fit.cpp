@@ -10,7 +10,7 @@ namespace patina {
 namespace {
 
 constexpr double kInlier = 3;      // deviations
-constexpr double kSettled = 1e-2;  // of what the misses leave unknown of the pose: less is no step
+constexpr double kSettled = 1e-2;  // of a standard deviation of the pose: less is no step
 constexpr double kNormal = 1.4826; // of a normal error, deviation over median
 
 // Deviation of the better half.
@@ -79,8 +79,7 @@ struct Working {
       const SymmetricEigen eigen(fit.normal);
       const double largest = std::max(eigen.values[5], 1e-300);
       const double before = cost(fit.misses);
-      const double enough =
-          std::max(tiny, kSettled * std::sqrt(before) / std::max(counting(), 1.0));
+      const double enough = kSettled * std::sqrt(before / std::max(counting(), 1.0));
       ++fit.iterations;
       for (;;) {
         Vec6 step = Vec6::Zero();
@@ -93,7 +92,7 @@ struct Working {
         std::vector<Miss> misses = fit.misses;
         evaluate(next, misses);
         const double after = cost(misses);
-        const bool still = step.norm() < enough;
+        const bool still = step.norm() < tiny || std::sqrt(step.dot(fit.normal * step)) < enough;
         if (after <= before || free || still) {
           fit.last_turn = step.head<3>().norm() / scale.radius;
           fit.last_shift = step.tail<3>().norm();

@@ -36,7 +36,8 @@ struct PathFit {
   int iterations = 0;
   std::size_t evaluations = 0;          // of a point's distance
   double last_turn = 0, last_shift = 0; // of the last step [rad, m]
-  // Neither residual nor pose moved any more, the pose by less than a hundredth of rms / sqrt(n).
+  // Neither residual nor pose moved any more, the pose by less than a hundredth of what the points
+  // tell it to.
   bool converged = false;
 };
 

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kExpected = 1.5;      // times the noise: a larger rms says that it lies elsewhere
 constexpr std::size_t kDeciding = 600; // points that decide between places
-constexpr double kEnough = 0.6;        // of the points must count
 constexpr int kMoreFits = 3;
-constexpr double kBetter = 0.99;       // of the cost: what is better by less is not told apart
+constexpr double kRound = 2e-3;  // of the points' radius: noise below it sees no curvature
+constexpr double kBetter = 0.99; // of the cost: what is better by less is not told apart
 
 double shareThatCounts(const PathFit& fit) {
   return static_cast<double>(std::count_if(fit.weights.begin(), fit.weights.end(),
@@ -90,14 +90,39 @@ Registration registerPlaces(const SurfaceTarget& target, const std::vector<Vec3>
   return found;
 }
 
+// Noise leads away from what is round: the mean distance of points about a place on a surface of
+// mean curvature H is noise^2 H (the distance's Laplacian), and the fit moves the path by it. The
+// mean is taken over six points that stand for a normal noise to the third degree.
+PathFit fitLessBias(const SurfaceTarget& target, const std::vector<Vec3>& points, PathFit best,
+                    const FitOptions& fitting, double noise) {
+  std::vector<double> bias(points.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (best.weights[i] == 0) continue;
+    const Miss& miss = best.misses[i];
+    const Vec3 place = miss.at + target.offset() * miss.direction;
+    for (int k = 0; k < 6; ++k) {
+      const Vec3 aside = (k % 2 ? 1 : -1) * std::sqrt(3.) * noise * Vec3::Unit(k / 2);
+      bias[i] += target.miss(place + aside, miss.foot.face).distance / 6;
+    }
+  }
+  FitOptions unbiased = fitting;
+  unbiased.pressed.resize(points.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) unbiased.pressed[i] -= bias[i];
+  const int iterations = best.iterations;
+  PathFit fit = fitPath(target, points, best.mesh_from_path, unbiased);
+  fit.iterations += iterations;
+  for (std::size_t i = 0; i < points.size(); ++i) fit.misses[i].distance += bias[i];
+  return fit;
+}
+
 } // namespace
 
 double leastNoise(const std::vector<Vec3>& points, double noise) {
   return std::max(noise, 1e-4 * scaleOf(points, Pose::Identity()).radius);
 }
 
-bool isExplained(double rms, double share, double noise, double least) {
-  return share >= kEnough && (noise <= 0 || rms <= kExpected * least);
+bool isExplained(double rms, double share, double noise, double least, double outliers) {
+  return share >= 1 - outliers && (noise <= 0 || rms <= kExpected * least);
 }
 
 Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& points,
@@ -113,7 +138,7 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   const double least = leastNoise(points, options.noise);
   // Whether it lies where it should; without a noise only a fit without any does.
   const auto isGood = [&](const PathFit& fit) {
-    return isExplained(fit.rms, shareThatCounts(fit), least, least);
+    return isExplained(fit.rms, shareThatCounts(fit), least, least, options.outliers);
   };
   FitOptions fitting;
   fitting.pressed = options.pressed;
@@ -199,6 +224,8 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     best = fitFrom(best.mesh_from_path, points);
     judge();
   }
+  if (options.noise > kRound * scaleOf(points, best.mesh_from_path).radius)
+    best = fitLessBias(target, points, std::move(best), yielding, std::min(noiseOf(best), least));
   const MotionScale scale = scaleOf(points, best.mesh_from_path);
   result.mesh_from_path = best.mesh_from_path;
   result.rms = best.rms;
@@ -219,8 +246,9 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
   result.middle = scale.centre;
   result.last_turn = best.last_turn;
   result.last_shift = best.last_shift;
-  result.converged = best.converged && isExplained(best.rms, shareThatCounts(best), options.noise,
-                                                   std::hypot(least, options.roughness));
+  result.converged =
+      best.converged && isExplained(best.rms, shareThatCounts(best), options.noise,
+                                    std::hypot(least, options.roughness), options.outliers);
   if (options.noise > 0)
     result.roughness = std::sqrt(std::max(0., best.rms * best.rms - least * least));
   result.misses = std::move(best.misses);

@@ -15,6 +15,7 @@ struct RegistrationOptions {
   double noise = 0;
   // The most that the surface's own relief may add to it [m]: texture is what a scan is for.
   double roughness = 0;
+  double outliers = 0.4;       // the share of the points that may lie elsewhere
   std::vector<double> pressed; // see FitOptions
   std::vector<double> force;   // one a point [N]: how far the surface yields is found, too;
                                // `pressed` is empty then. Asks for a target with sides
@@ -60,9 +61,10 @@ inline bool isDoubtful(const Registration& found) {
 }
 
 // What a place is judged by. The least noise that is taken for one, of points as they lie [m]; and
-// whether most points count and are as close as the noise lets expect, where that is told.
+// whether all points but as many `outliers` count, and are as close as the noise lets expect, where
+// that is told.
 double leastNoise(const std::vector<Vec3>& points, double noise);
-bool isExplained(double rms, double share, double noise, double least);
+bool isExplained(double rms, double share, double noise, double least, double outliers);
 
 // Throws std::invalid_argument: no finite point, `pressed`, `force` or `scan` of another number;
 // Cancelled.

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kRivalFew = 100, kMany = 400; // points that choose, and that decide
 constexpr std::size_t kStarts = 6000, kGuesses = 100;
 constexpr double kOnePlace = 0.05; // of the path's radius: fits as near as this are one
+constexpr double kNear = 0.15;     // the same of one place that has several lowest points
 constexpr double kDeviations = 3;  // deviations of a place: nearer it is the same
 constexpr double kLeftOut = 9;     // squared deviations at which a point is left out
 constexpr double kAlike = 0.8;     // of a cost: what is lower differs by more than chance
@@ -181,6 +182,10 @@ std::vector<Rival> rivalsOf(const SurfaceTarget& target, const std::vector<Vec3>
       static_cast<double>(points.size()) / static_cast<double>(many.points.size());
   for (const FoundFit& one : found) {
     // Along what is free the ends differ by chance, and nothing between them is worse than that.
+    if (between(one.fit.mesh_from_path, best.mesh_from_path, many.points) < kNear * radius &&
+        isOneValley(target, many, best.mesh_from_path, one.fit.mesh_from_path, law,
+                    (std::max(one.cost, here) + kToldApart) / stands_for))
+      continue;
     const double chance = 1.25 * std::max(one.cost, here) + kToldApart;
     if (free.basis.cols() > 0 && one.cost > std::max(here - kToldApart, kAlike * here) &&
         isOneValley(target, many, best.mesh_from_path, one.fit.mesh_from_path, law,
