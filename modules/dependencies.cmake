@@ -35,6 +35,7 @@ if(NOT PATINA_FUZZ)
     patina_need_module(libusb-1.0-0-dev LIBUSB libusb-1.0)
   endif()
   if(PATINA_ACQUISITION)
+    patina_need(libceres-dev Ceres)
     # OpenCV's own configuration asks for all of its libraries; these are found one by one. The
     # markers are in objdetect since OpenCV 4.7 and were in aruco before (vision/aruco.h).
     find_path(OPENCV_HEADERS opencv2/core.hpp PATH_SUFFIXES opencv4)

@@ -7,7 +7,9 @@
 
 #include "acquisition/registration/free_motions.h"
 #include "acquisition/registration/path_course.h"
+#include "acquisition/solver_library.h"
 #include "core/decompose.h"
+#include "core/error.h"
 
 namespace patina {
 namespace {
@@ -27,56 +29,93 @@ struct Values {
 struct Joint {
   const SurfaceTarget& target;
   const std::vector<PathSample>& path;
-  const std::vector<bool>& counts;
   double compliance;
   std::vector<Course> courses;
-  double speed = 0; // [m/s], that makes a length of the clock
+  std::vector<std::size_t> counting{}; // samples
+  double speed = 1;                    // [m/s], that makes a length of the clock
+  Values here{};
+  MotionScale scale{};
+  // Orthonormal ways to go from here, as ten lengths. How far to go along each is what Ceres finds.
+  Eigen::Matrix<double, kJointValues, Eigen::Dynamic> ways{};
+  // Of the samples that count, and the lengths from here that they were looked up after.
+  std::vector<Miss> misses{};
+  JointVector missed_at = JointVector::Constant(std::nan(""));
 
   // Where the probe was when it felt what it felt at the sample's time.
-  PathSample felt(std::size_t i, const Values& at) const {
+  PathSample felt(std::size_t i) const {
     const Course& course = courses[i];
     PathSample sample = path[i];
-    const Vec3 turn = at.clock * course.spin;
+    const Vec3 turn = here.clock * course.spin;
     if (const double angle = turn.norm(); angle > 0)
       sample.orientation = Eigen::AngleAxisd(angle, turn / angle) * sample.orientation;
-    sample.position +=
-        at.clock * (course.speed + 0.5 * at.clock * course.bend) + sample.orientation * at.tip;
+    sample.position += here.clock * (course.speed + 0.5 * here.clock * course.bend) +
+                       sample.orientation * here.tip;
     return sample;
   }
   // The places stay as they were measured, and what was felt there is looked up at its own time:
   // the surface tells nothing of the clock but by how far it yields, and a force is less noisy than
   // the path's speed.
-  Vec3 place(std::size_t i, const Values& at) const {
-    return path[i].position + path[i].orientation * at.tip;
+  Vec3 place(std::size_t i, const Vec3& tip) const {
+    return path[i].position + path[i].orientation * tip;
   }
-  double pressed(std::size_t i, const Values& at) const {
-    return compliance > 0 ? compliance * forceBefore(path, courses, i, at.clock).force : 0;
+  Values after(const JointVector& lengths) const {
+    return {scale.motion(lengths.head<6>()) * here.pose, here.tip + lengths.segment<3>(6),
+            here.clock + lengths[9] / speed};
   }
-  double missAt(std::size_t i, const Values& at, Miss& miss) const {
-    miss = target.miss(at.pose * place(i, at), miss.foot.face);
-    return miss.distance + pressed(i, at);
+  // So far along the ways, which are then counted from there.
+  void go(const double* gone) {
+    const JointVector lengths = ways * Eigen::Map<const VecX>(gone, ways.cols());
+    here = after(lengths);
+    missed_at -= lengths;
+    std::vector<Vec3> places;
+    for (const std::size_t i : counting) places.push_back(place(i, here.tip));
+    scale = scaleOf(places, here.pose);
   }
-  double squares(const Values& at, std::vector<Miss>& misses) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < path.size(); ++i)
-      if (counts[i]) {
-        const double r = missAt(i, at, misses[i]);
-        sum += r * r;
-      }
-    return sum;
+  // Distances of the samples that count and, unless it is nullptr, how each grows along the ways.
+  void evaluate(const double* gone, double* distances, double* slopes) {
+    const JointVector lengths = ways * Eigen::Map<const VecX>(gone, ways.cols());
+    const Values at = after(lengths);
+    if (missed_at != lengths)
+      for (std::size_t k = 0; k < counting.size(); ++k)
+        misses[k] = target.miss(at.pose * place(counting[k], at.tip), misses[k].foot.face);
+    missed_at = lengths;
+    const MotionScale there{scale.centre + lengths.segment<3>(3), scale.radius};
+    // Where a turn's vector w grows by dw, a small turn by J dw follows it. J, the left Jacobian of
+    // SO(3), is the mean of the turns by 0 to w: by Simpson's rule, to 1e-6 up to 0.25 rad.
+    const Vec6 half = lengths.head<6>() / 2;
+    auto along = ways;
+    along.topRows<3>() += (4 * scale.motion(half).linear() + scale.motion(2 * half).linear() -
+                           5 * Eigen::Matrix3d::Identity()) /
+                          6 * ways.topRows<3>();
+    for (std::size_t k = 0; k < counting.size(); ++k) {
+      const std::size_t i = counting[k];
+      SmoothForce pressed;
+      if (compliance > 0) pressed = forceBefore(path, courses, i, at.clock);
+      distances[k] = misses[k].distance + compliance * pressed.force;
+      if (!slopes) continue;
+      JointVector g;
+      g << there.gradient(at.pose * place(i, at.tip), misses[k].direction),
+          path[i].orientation.conjugate() * (at.pose.linear().transpose() * misses[k].direction),
+          -compliance * pressed.rise / speed;
+      Eigen::Map<VecX>(slopes, along.cols()).noalias() = along.transpose() * g;
+      slopes += along.cols();
+    }
   }
-  JointVector gradient(std::size_t i, const Values& at, const Miss& miss,
-                       const MotionScale& scale) const {
-    const Vec3 along = at.pose.linear().transpose() * miss.direction; // in the path's frame
-    JointVector g;
-    g << scale.gradient(at.pose * place(i, at), miss.direction),
-        path[i].orientation.conjugate() * along,
-        compliance > 0 ? -compliance * forceBefore(path, courses, i, at.clock).rise / speed : 0;
-    return g;
-  }
-  Values moved(const Values& at, const JointVector& step, const MotionScale& scale) const {
-    return {scale.motion(step.head<6>()) * at.pose, at.tip + step.segment<3>(6),
-            at.clock + step[9] / speed};
+  // Leaves those ways that the distances tell, and returns the others. Slopes: a column a sample;
+  // `blur`: what slopes of the force would say of the clock if it were all noise.
+  MatX keepTold(const MatX& slopes, double together, double blur) {
+    if (ways.cols() == 0) return ways;
+    const MatX normal = slopes * slopes.transpose();
+    const SymmetricEigen eigen(normal);
+    // Its deviation, noise sqrt(together / value), against kJointFar times the noise.
+    const double least =
+        std::max(together / (kJointFar * kJointFar), 1e-9 * eigen.values[ways.cols() - 1]);
+    const MatX all = ways * eigen.vectors;
+    std::vector<Eigen::Index> told, lost;
+    for (Eigen::Index k = 0; k < all.cols(); ++k)
+      (eigen.values[k] > std::max(least, blur * all(9, k) * all(9, k)) ? told : lost).push_back(k);
+    ways = all(Eigen::all, told);
+    return all(Eigen::all, lost);
   }
 };
 
@@ -104,140 +143,99 @@ std::string directionInWords(const JointVector& direction) {
   return words;
 }
 
+void requireSolved(const std::string& cause) {
+  if (!cause.empty()) throw Error("pose, tip and clock cannot be refined together: " + cause);
+}
+
 } // namespace
 
 JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& path,
                     const std::vector<bool>& counts, const Pose& mesh_from_path,
                     const JointOptions& options) {
-  const auto n = std::count(counts.begin(), counts.end(), true);
+  Joint joint{target, path, options.compliance, coursesOf(path)};
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i]) joint.counting.push_back(i);
+  const auto n = static_cast<double>(joint.counting.size());
   if (path.size() != counts.size() || n == 0)
     throw std::invalid_argument("fitJointly: no sample counts");
-  Joint joint{target, path, counts, options.compliance, coursesOf(path)};
   std::vector<Vec3> points; // that count
-  std::vector<double> pressed;
-  double speeds = 0, blurs = 0, roughness = 0;
-  for (std::size_t i = 0; i < path.size(); ++i)
-    if (counts[i]) {
-      points.push_back(path[i].position);
-      pressed.push_back(options.compliance * path[i].force);
-      speeds += joint.courses[i].speed.squaredNorm();
-      blurs += joint.courses[i].blur;
-      roughness += std::pow(path[i].force - joint.courses[i].force, 2) / static_cast<double>(n);
-    }
-  joint.speed = std::sqrt(speeds / static_cast<double>(n));
-
-  // Directions that are not asked for, or that the surface does not see.
-  std::vector<JointVector> shut;
   FitOptions plain;
-  if (options.compliance > 0) plain.pressed = pressed;
+  double speeds = 0, blurs = 0, roughness = 0;
+  for (const std::size_t i : joint.counting) {
+    points.push_back(path[i].position);
+    if (options.compliance > 0) plain.pressed.push_back(options.compliance * path[i].force);
+    speeds += joint.courses[i].speed.squaredNorm() / n;
+    blurs += joint.courses[i].blur;
+    roughness += std::pow(path[i].force - joint.courses[i].force, 2) / n;
+  }
+  if (speeds > 0) joint.speed = std::sqrt(speeds);
+  const double blur =
+      kJointClear * blurs * roughness * std::pow(options.compliance / joint.speed, 2);
+
+  // Ways that are asked for and that the surface sees.
   const PathFit alone = fitPath(target, points, mesh_from_path, plain);
   const FreeMotions free =
       freeMotions(target, points, alone, alone.rms, options.together, plain.pressed);
-  for (Eigen::Index k = 0; k < free.basis.cols(); ++k) {
-    shut.push_back(JointVector::Zero());
-    shut.back().head<6>() = free.basis.col(k);
-  }
-  for (int k = 6; k < kJointValues; ++k)
-    if (k < 9 ? !options.tip : !options.clock || !(joint.speed > 0))
-      shut.push_back(JointVector::Unit(k));
-  if (!(joint.speed > 0)) joint.speed = 1;
-
-  JointFit fit;
-  for (const FreeMotion& motion : free.named) fit.frozen.push_back(inWords(motion));
-  Values at{mesh_from_path};
-  std::vector<Miss> misses(path.size());
-  double sum = joint.squares(at, misses), damping = 0;
-  // What slopes of the force would say of the clock if it were all noise.
-  const double blur =
-      kJointClear * blurs * roughness * std::pow(options.compliance / joint.speed, 2);
+  JointMatrix shut = JointMatrix::Zero();
+  shut.topLeftCorner<6, 6>() = free.basis * free.basis.transpose();
+  if (!options.tip) shut.block<3, 3>(6, 6).setIdentity();
   // A tip that is off would pass for noise in which the clock is lost.
   bool clock_waits = options.tip && options.clock;
-  while (fit.iterations < kJointMostSteps && !fit.converged) {
-    ++fit.iterations;
-    std::vector<Vec3> places;
-    for (std::size_t i = 0; i < path.size(); ++i)
-      if (counts[i]) places.push_back(joint.place(i, at));
-    const MotionScale scale = scaleOf(places, at.pose);
-    JointMatrix normal = JointMatrix::Zero();
-    JointVector right = JointVector::Zero();
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      if (!counts[i]) continue;
-      JointVector g = joint.gradient(i, at, misses[i], scale);
-      if (clock_waits) g[9] = 0;
-      for (const JointVector& each : shut) g -= each * each.dot(g);
-      const double r = misses[i].distance + joint.pressed(i, at);
-      normal += g * g.transpose();
-      right -= r * g;
-    }
-    const double worth = options.together;
-    const SymmetricEigen eigen(normal);
-    const double largest = std::max(eigen.values[kJointValues - 1], 1e-300);
-    // Its deviation, noise sqrt(worth / value), against kJointFar times the noise.
-    const double least = std::max(worth / (kJointFar * kJointFar), 1e-9 * largest);
-    const double noise = std::sqrt(sum / std::max(static_cast<double>(n) - kJointValues, 1.0));
-    const auto told = [&](int k) {
-      const double of_clock = eigen.vectors(9, k);
-      return eigen.values[k] > std::max(least, blur * of_clock * of_clock);
-    };
-    for (;;) {
-      JointVector step = JointVector::Zero();
-      double deviations = 0; // of the step, in those that are stated
-      for (int k = 0; k < kJointValues; ++k) {
-        const double value = eigen.values[k];
-        if (!told(k)) continue;
-        const double along = eigen.vectors.col(k).dot(right) / (value + damping * largest);
-        step += along * eigen.vectors.col(k);
-        deviations = std::max(deviations,
-                              std::abs(along) * std::sqrt(value / worth) / std::max(noise, 1e-12));
-      }
-      const Values next = joint.moved(at, step, scale);
-      std::vector<Miss> there = misses;
-      const double after = joint.squares(next, there);
-      const bool still = deviations < kJointSettled;
-      if (after <= sum || still) {
-        fit.converged = still;
-        if (after <= sum) {
-          at = next;
-          misses = std::move(there);
-          sum = after;
-        }
-        damping = damping < 1e-6 ? 0 : damping / 10;
-        break;
-      }
-      damping = std::max(1e-4, damping * 10);
-    }
-    if (clock_waits && fit.converged) {
-      clock_waits = fit.converged = false;
-      continue;
-    }
-    if (!fit.converged && fit.iterations < kJointMostSteps) continue;
-    // What is left unknown, in the values' own units.
-    double tip_frozen = 0, clock_frozen = 0; // squares of what is not told
-    JointVector units;
-    units << Vec3::Constant(1 / scale.radius), Vec3::Ones(), Vec3::Ones(), 1 / joint.speed;
-    for (int k = 0; k < kJointValues; ++k) {
-      const JointVector direction = eigen.vectors.col(k);
-      if (told(k)) {
-        const JointVector unit = units.cwiseProduct(direction);
-        fit.covariance += noise * noise * worth / eigen.values[k] * unit * unit.transpose();
-        continue;
-      }
-      tip_frozen += direction.segment<3>(6).squaredNorm();
-      clock_frozen += direction[9] * direction[9];
-      double of_shut = 0; // of which nothing more is said
-      for (const JointVector& each : shut) of_shut += std::pow(each.dot(direction), 2);
-      if (of_shut < 0.5) fit.frozen.push_back("free to move " + directionInWords(direction));
-    }
-    if (tip_frozen < 0.5)
-      fit.tip_deviation = std::sqrt(fit.covariance.block<3, 3>(6, 6).trace() / 3);
-    if (clock_frozen < 0.5) fit.clock_deviation = std::sqrt(fit.covariance(9, 9));
-    fit.middle = scale.centre;
+
+  JointFit fit;
+  joint.here.pose = mesh_from_path;
+  joint.misses = alone.misses; // faces to look for the nearest one at first
+  joint.go(nullptr);
+  LeastSquares task;
+  task.residuals = static_cast<int>(points.size());
+  task.settled = kJointSettled * kJointSettled * options.together / n;
+  task.evaluate = [&](const double* gone, double* residuals, double* slopes) {
+    joint.evaluate(gone, residuals, slopes);
+  };
+  VecX distances(points.size());
+  MatX lost;
+  std::vector<double> gone, covariance;
+  for (;;) {
+    shut(9, 9) = options.clock && speeds > 0 && !clock_waits ? 0 : 1;
+    const SymmetricEigen open(shut);
+    joint.ways = open.vectors.leftCols((open.values.array() < 0.5).count());
+    gone.assign(kJointValues, 0);
+    MatX slopes(joint.ways.cols(), distances.size());
+    joint.evaluate(gone.data(), distances.data(), slopes.data());
+    lost = joint.keepTold(slopes, options.together, blur);
+    gone.resize(static_cast<std::size_t>(joint.ways.cols()));
+    task.values = static_cast<int>(gone.size());
+    task.most_steps = kJointMostSteps - fit.iterations;
+    if (fit.converged || task.most_steps <= 0) break;
+    LeastSquaresSteps steps;
+    requireSolved(solverLibrary().solve(task, gone, steps));
+    joint.go(gone.data());
+    fit.iterations += std::max(steps.tried, 1);
+    // Which ways are told depends on the place: it is final where no step leads from it.
+    fit.converged = steps.settled && !clock_waits && (lost.cols() == 0 || steps.taken == 0);
+    clock_waits = false;
   }
-  fit.mesh_from_path = at.pose;
-  fit.tip = at.tip;
-  fit.clock = at.clock;
-  fit.rms = std::sqrt(sum / static_cast<double>(n));
-  for (std::size_t i = 0; i < path.size(); ++i) fit.path.push_back(joint.felt(i, at));
+  requireSolved(solverLibrary().covariance(task, gone, covariance));
+
+  JointVector units; // the values' own
+  units << Vec3::Constant(1 / joint.scale.radius), Vec3::Ones(), Vec3::Ones(), 1 / joint.speed;
+  const MatX spread = units.asDiagonal() * joint.ways;
+  fit.covariance = distances.squaredNorm() / std::max(n - kJointValues, 1.0) * options.together *
+                   spread * Eigen::Map<const MatX>(covariance.data(), task.values, task.values) *
+                   spread.transpose();
+  for (const FreeMotion& motion : free.named) fit.frozen.push_back(inWords(motion));
+  for (const JointVector each : lost.colwise())
+    fit.frozen.push_back("free to move " + directionInWords(each));
+  const VecX told = joint.ways.rowwise().squaredNorm(); // of each value, how much of it
+  if (told.segment<3>(6).sum() > 2.5)
+    fit.tip_deviation = std::sqrt(fit.covariance.block<3, 3>(6, 6).trace() / 3);
+  if (told[9] > 0.5) fit.clock_deviation = std::sqrt(fit.covariance(9, 9));
+  fit.middle = joint.scale.centre;
+  fit.mesh_from_path = joint.here.pose;
+  fit.tip = joint.here.tip;
+  fit.clock = joint.here.clock;
+  fit.rms = distances.norm() / std::sqrt(n);
+  for (std::size_t i = 0; i < path.size(); ++i) fit.path.push_back(joint.felt(i));
   return fit;
 }
 

@@ -44,7 +44,7 @@ struct JointFit {
 // samples. A direction is frozen where its predicted deviation, as a length over the path's extent,
 // is above ten times that of the samples; so is what the surface does not see of the pose
 // (freeMotions). Throws std::invalid_argument where the numbers of samples and counts differ, or
-// none counts.
+// none counts, and Error where Ceres cannot be loaded.
 JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& path,
                     const std::vector<bool>& counts, const Pose& mesh_from_path,
                     const JointOptions& options = {});
