@@ -15,10 +15,11 @@
 #include "acquisition/tracking/track_frames.h"
 #include "core/csv.h"
 #include "core/file.h"
-#include "geometry/io/pose_file.h"
-#include "geometry/io/textured_obj.h"
-#include "haptics/servo/feel.h"
 #include "demo/true_contact.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/pose_file.h"
+#include "geometry/mesh/mesh_unit.h"
+#include "haptics/servo/feel.h"
 #include "session/edit/editor.h"
 #include "workspace/texture_file.h"
 
@@ -26,12 +27,10 @@ namespace patina {
 namespace {
 
 const char* const kFamily = "4x4_50";
-constexpr double kCutoff = 8e-3; // longer waves are shape [m]
-constexpr double kBlend = 0.05;  // of a profile
+constexpr double kEnds = 0.05; // of a profile: where it was blended, or the hand was slow
 // Harmonics are compared that in the truth are higher than this times the square of their
 // wavelength: 10 times what such a scan leaves of noise [1/m].
 constexpr double kFloor = 5;
-constexpr int kRings = 2;           // of faces beside a stroke
 constexpr double kMillimetre = 1e3; // of an .obj in a metre
 
 Pose objectFromCamera(const Demo& demo) {
@@ -48,11 +47,14 @@ std::string truthText(const Demo& demo) {
 
 // Each scan as a folder that every command and the Scan desk open.
 void scan(Demo& demo, Progress& progress) {
+  std::filesystem::create_directories(demo.folder);
+  writeMesh(demo.folder / "toy.obj", demo.in_file);
   const TriangleMesh turned =
       transformed(demo.object.mesh, Eigen::Affine3d(demo.object.plane_from_object.matrix()));
   const Pose camera_from_plane =
       cameraOver(bounds(turned), bounds(turned).sizes().z() / 2 - demo.rig.probe.tip.z());
   demo.camera_from_object = camera_from_plane * demo.object.plane_from_object;
+  demo.rig.accelerometers = true;
   demo.rig.gravity = camera_from_plane.linear() * kGravity;
   const std::vector<RigMarker> cube = markerCube(kFamily, markerFamily(kFamily).side, kCubeEdge);
   std::uint32_t seed = demo.seed * 100;
@@ -94,7 +96,9 @@ void trackOne(const Demo& demo, DemoScan& one, Progress& progress) {
   progress.throwIfCancelled();
   if (found.poses.empty()) throw Error(one.name + ": no frame shows a pose of the markers");
   writePoses(folder / "poses.tum", found.poses, found.without);
-  one.streams.poses = found.poses;
+  // As any command reads them.
+  one.streams.poses = readPoses(folder / "poses.tum").values;
+  one.streams.samples = readProbeStream(folder / "probe.csv").values;
   double squares = 0;
   for (const CameraPose& pose : found.poses) {
     const Vec3 tip = pose.position + pose.orientation * demo.rig.probe.tip;
@@ -117,7 +121,7 @@ void track(Demo& demo, Progress& progress) {
 
 void filter(Demo& demo, Progress& progress) {
   for (DemoScan& one : demo.scans) {
-    one.filtered = touchedPath(one.streams, demo.rig.probe, demo.rig.gravity, progress);
+    one.filtered = touchedPath(one.streams, demo.rig, progress);
     std::vector<double> times;
     for (const PathSample& sample : one.filtered.path) times.push_back(sample.t);
     one.path_error = errorOf(one.filtered.path, truthAt(one.hand, cameraFromPlane(demo), times));
@@ -165,41 +169,31 @@ std::vector<ProfilePoint> trueProfile(const DemoObject& object, const DemoMateri
 }
 
 void fit(Demo& demo, Progress&) {
-  FitOptions1d options;
-  options.blend = kBlend;
-  options.cutoff = kCutoff;
   for (std::size_t i = 0; i < demo.object.materials.size(); ++i) {
     const DemoScan& one = demo.scans[i];
     demo.textures.emplace_back();
     DemoTexture& texture = demo.textures.back();
-    texture.scanned =
-        fitScan(demo.target, one.filtered, one.streams.poses, demo.rig.probe, demo.rig.gravity,
-                objectFromCamera(demo), demo.registered.registration.compliances[i], options);
+    texture.scanned = fitScanTexture(demo.target, one.filtered, one.streams.poses, demo.rig,
+                                     demo.registered.paths[i], demo.registered.of(i));
     FourierTexture& fitted = texture.scanned.fitted.texture;
-    fitted.name = one.name;
+    fitted.name = "scan-" + one.name; // as its folder
     writeHeights(demo.folder / ("heights-" + one.name + ".csv"), texture.scanned.heights);
     writeTexture(demo.folder / (one.name + ".json"), fitted);
-    texture.spectrum =
-        spectrumError(fitted, trueProfile(demo.object, demo.object.materials[i]), kCutoff, kFloor);
+    texture.spectrum = spectrumError(fitted, trueProfile(demo.object, demo.object.materials[i]),
+                                     *scanFitOptions().cutoff, kFloor);
   }
 }
 
 void map(Demo& demo, Progress& progress) {
-  const PathGround ground(demo.object.mesh);
   LayOptions options;
-  options.rings = kRings;
   std::vector<TexturedFace> faces;
   for (std::size_t i = 0; i < demo.textures.size(); ++i) {
     ScannedTexture& scanned = demo.textures[i].scanned;
     options.texture = static_cast<std::int32_t>(i + 1);
-    scanned.laid = layTexture(ground, {scanned.stroke}, options, progress);
+    scanned.laid = layScanTexture(demo.object.mesh, scanned.strokes, options, progress);
     faces = laidOver(scanned.laid.faces, faces);
   }
-  TriangleMesh in_millimetres = demo.object.mesh;
-  for (Vec3& p : in_millimetres.positions) p *= kMillimetre;
-  for (TexturedFace& face : faces)
-    for (Vec2& at : face.at) at *= kMillimetre;
-  writeTexturedObj(demo.folder / "textured.obj", in_millimetres, faces);
+  writeTexturedMesh(demo.folder / "textured.obj", demo.in_file, faces, 1 / kMillimetre);
 }
 
 // Along the way that was scanned, coloured; friction where nothing was scanned.
@@ -211,10 +205,10 @@ std::vector<Stroke> paintStrokes(const Demo& demo) {
     stroke.brush.color = {color.x(), color.y(), color.z()};
     stroke.brush.radius = 6e-3;
     stroke.brush.falloff = 4;
-    const std::vector<Vec3>& points = demo.textures[i].scanned.stroke.points;
-    for (std::size_t k = 0; k < points.size(); k += 4)
-      stroke.samples.push_back(
-          {static_cast<double>(stroke.samples.size()) * 8e-3, points[k], 1, {}});
+    for (const PathOnMesh& part : demo.textures[i].scanned.strokes)
+      for (std::size_t k = 0; k < part.points.size(); k += 4)
+        stroke.samples.push_back(
+            {static_cast<double>(stroke.samples.size()) * 8e-3, part.points[k], 1, {}});
     strokes.push_back(std::move(stroke));
   }
   const Pose object_from_plane = demo.object.plane_from_object.inverse();
@@ -258,7 +252,7 @@ void feelOne(Demo& demo, std::size_t i, Progress& progress) {
     return Vec3(place.x(), place.y(), ground(place)) + height * hand.normal(place);
   };
   // Where the ends were blended, and the hand was slow, nothing is claimed.
-  const double begin = 0.08 * length, end = (1 - kBlend - 0.02) * length;
+  const double begin = 0.08 * length, end = (1 - kEnds - 0.02) * length;
   std::vector<TimedTip> tips;
   std::vector<Vec3> in_plane;
   const auto add = [&](const Vec3& tip) {
@@ -316,9 +310,19 @@ void feelAll(Demo& demo, Progress& progress) {
 
 } // namespace
 
+namespace {
+
+// The mesh as its file has it, and as every command reads that: to the last bit.
+const TriangleMesh& throughFile(TriangleMesh& in_file, TriangleMesh& mesh) {
+  for (Vec3& p : in_file.positions) p *= kMillimetre;
+  return mesh = inMetres(in_file, MeshUnit::mm).mesh;
+}
+
+} // namespace
+
 Demo::Demo(std::filesystem::path where, std::uint32_t chosen, DemoObject scanned)
-    : folder(std::move(where)), seed(chosen), object(std::move(scanned)),
-      target(object.mesh, 0, true) {}
+    : folder(std::move(where)), seed(chosen), object(std::move(scanned)), in_file(object.mesh),
+      target(throughFile(in_file, object.mesh), 0, true) {}
 
 const std::vector<DemoStep>& demoSteps() {
   static const std::vector<DemoStep> kSteps = {

@@ -10,8 +10,9 @@
 #include "demo/demo_object.h"
 #include "demo/felt_error.h"
 #include "demo/spectrum_error.h"
+#include "scan/filter_scan.h"
 #include "scan/register_scans.h"
-#include "scan/scan_steps.h"
+#include "scan/scan_texture.h"
 #include "session/build/compile_scene.h"
 
 namespace patina {
@@ -42,6 +43,7 @@ struct Demo {
   std::filesystem::path folder;
   std::uint32_t seed;
   DemoObject object;
+  TriangleMesh in_file; // the object's, in its file's millimetres
   SurfaceTarget target;
   Pose camera_from_object = Pose::Identity(); // the truth
   Rig rig;

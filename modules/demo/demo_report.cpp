@@ -169,19 +169,18 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
   for (const std::string& picture : pictures)
     text += "\n![" + picture.substr(0, picture.find('.')) + "](" + picture + ")\n";
   text += "\n## The same by commands\n\n"
-          "Each scan is a folder that every command and the window's Scan desk open. `patina "
-          "register` takes one compliance\nfor all scans, where the demo finds one for each, so "
-          "that its place is less exact here:\n\n"
+          "Each scan is a folder that every command and the window's Scan desk open. All steps at "
+          "once, with the same\nresult to the last bit:\n\n"
+          "    patina scan scan-ribs scan-weave scan-grain scan-survey --mesh toy.obj -o mine\n\n"
+          "and one by one:\n\n"
           "    patina track scan-ribs -o scan-ribs/poses.tum\n"
           "    patina filter scan-ribs -o path-ribs.csv\n"
-          "    patina register textured.obj path-ribs.csv --also path-weave.csv --also "
-          "path-grain.csv \\\n        --also path-survey.csv --compliance 0.0004 --noise 0.1mm "
-          "--truth scan-ribs/truth.json -o "
-          "registered.csv --report r.json\n"
-          "    patina filter scan-ribs -o path.csv --heights heights.csv --over textured.obj "
+          "    patina register toy.obj path-ribs.csv --also path-weave.csv --also path-grain.csv "
+          "\\\n        --also path-survey.csv -o registered.csv --report r.json\n"
+          "    patina filter scan-ribs -o path.csv --heights heights.csv --over toy.obj "
           "--registration r.json\n"
-          "    patina fit-texture heights.csv -o texture.json --cutoff 8mm --stiffness 3000\n"
-          "    patina map-texture textured.obj registered.csv -o mine.obj --heights heights.csv\n"
+          "    patina fit-texture heights.csv -o texture.json --registration r.json --name ribs\n"
+          "    patina map-texture toy.obj registered.csv -o mine.obj --heights heights.csv\n"
           "    patina feel mine.obj --texture 1=texture.json --path tip-ribs.csv -o forces.csv\n"
           "    patina gui workspace\n";
   return text;

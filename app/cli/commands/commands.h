@@ -27,6 +27,7 @@ Command filterCommand();
 Command registerCommand();
 Command fitTextureCommand();
 Command mapTextureCommand();
+Command scanCommand();
 Command demoCommand();
 #endif
 Command studyCommand();
@@ -46,7 +47,7 @@ inline std::vector<Command> allCommands() {
 #ifdef PATINA_HAS_ACQUISITION
           simulateScanCommand(),   recordCommand(),   calibrateCommand(),  trackCommand(),
           filterCommand(),         registerCommand(), fitTextureCommand(), mapTextureCommand(),
-          demoCommand(),
+          scanCommand(),           demoCommand(),
 #endif
           simulateDeviceCommand(), studyCommand(),    modelCommand(),      devicesCommand(),
           latencyTestCommand(),    guiCommand(),      helpCommand(),       manCommand(),

@@ -33,7 +33,8 @@ int runField(const FieldOptions& options, Console& console) {
   }
   console.progress().throwIfCancelled();
   if (scene.objects.size() == 1 && !baked)
-    for (const std::string& line : surfaceWarnings(built.report, scene.field.sides, worldMesh(scene)))
+    for (const std::string& line :
+         surfaceWarnings(built.report, scene.field.sides, worldMesh(scene)))
       console.warn(line);
   writeField(options.output, *built.field);
   return console.report(fieldReport(*built.field, built.report));

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/files/registered_file.h"
 #include "acquisition/files/scan_files.h"
 #include "acquisition/filtering/filtered_scan.h"
 #include "acquisition/simulation/path_error.h"
-#include "acquisition/texture/mesh_heights.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/mesh_input.h"
 #include "app/cli/output/height_report.h"
@@ -18,6 +18,8 @@
 #include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
+#include "scan/filter_scan.h"
+#include "scan/scan_texture.h"
 
 namespace patina::cli {
 
@@ -155,13 +157,14 @@ Inputs read(const FilterOptions& options, Console& console) {
 }
 
 PathModel chosenModel(const FilterOptions& options, const Inputs& in) {
-  const bool able = in.rig.accelerometers && !in.samples.values.empty();
-  const PathModel model =
-      options.model.value_or(able && !options.forward ? PathModel::fused : PathModel::acceleration);
+  const bool heard = !in.samples.values.empty();
+  const PathModel able = options.forward ? PathModel::acceleration : filterOf(in.rig, heard).model;
+  const PathModel model = options.model.value_or(able);
   if (model != PathModel::fused) return model;
   if (options.forward) throw Error("--forward: the fused path is smoothed; choose another --model");
-  if (in.samples.values.empty()) throw Error("--model: fused needs the probe's stream, --probe");
-  if (!able) throw Error("--model: fused needs 'accelerometers' and 'gravity' in the rig, --rig");
+  if (!heard) throw Error("--model: fused needs the probe's stream, --probe");
+  if (!in.rig.accelerometers)
+    throw Error("--model: fused needs 'accelerometers' and 'gravity' in the rig, --rig");
   return model;
 }
 
@@ -191,10 +194,10 @@ void warnOf(const std::vector<Gap>& gaps, const std::filesystem::path& path,
 
 // Heights over a mesh that the scan was registered to.
 struct Over {
-  Over(TriangleMesh mesh, double tip_radius, const Pose& pose)
-      : target(std::move(mesh), tip_radius, true), mesh_from_scan(pose) {}
+  Over(TriangleMesh mesh, double tip_radius, const std::filesystem::path& registration)
+      : target(std::move(mesh), tip_radius, true), found(readRegistrationReport(registration)) {}
   SurfaceTarget target;
-  Pose mesh_from_scan;
+  RegistrationReport found;
 };
 
 std::optional<Over> readOver(const FilterOptions& options, Console& console) {
@@ -205,8 +208,7 @@ std::optional<Over> readOver(const FilterOptions& options, Console& console) {
   if (options.normal) throw Error("--normal: over a mesh its own normals count");
   ScaledMesh scaled = readScaledMesh(options.over, options.unit, console);
   return std::optional<Over>(std::in_place, cleaned(std::move(scaled.mesh)).mesh,
-                             options.tip_radius,
-                             readPoseAt(options.registration, "mesh_from_scan"));
+                             options.tip_radius, options.registration);
 }
 
 void requireTouch(const FilteredScan& scan, const FilterOptions& options) {
@@ -222,21 +224,12 @@ ScanHeights heightsOf(const FilteredScan& scan, const std::optional<Over>& over,
   const std::vector<CameraPose>& poses = in.poses.values;
   const ProbeModel& probe = in.rig.probe;
   if (!over) return scanHeights(scan, poses, probe, in.rig.gravity, options.normal);
-  Vec3 normal;
   try {
-    normal = meanNormal(over->target, over->mesh_from_scan, scan.path);
+    return heightsOverMesh(over->target, scan, poses, in.rig, over->found.mesh_from_scan,
+                           over->found.compliance);
   } catch (const Error& error) {
     throw FileError(options.over.string(), 0, error.what());
   }
-  const auto presses =
-      complianceOverMesh(over->target, over->mesh_from_scan, scan.path);
-  ScanHeights found = scanHeights(scan, poses, probe, in.rig.gravity, normal,
-                                  presses && presses->isTold() ? presses->compliance : 0);
-  found.compliance = presses;
-  found.heights = heightsOverMesh(over->target, over->mesh_from_scan, scan.path, found);
-  if (found.heights.empty())
-    throw FileError(options.over.string(), 0, "nowhere on it is there a height of the scan");
-  return found;
 }
 
 int runFilter(FilterOptions options, Console& console) {

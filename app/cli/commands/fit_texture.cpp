@@ -3,6 +3,7 @@
 #include <map>
 
 #include "acquisition/files/measured.h"
+#include "acquisition/files/registered_file.h"
 #include "acquisition/texture/fit_plane.h"
 #include "acquisition/texture/fit_texture.h"
 #include "app/cli/commands/commands.h"
@@ -11,6 +12,7 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "pictures/picture_file.h"
+#include "scan/scan_texture.h"
 #include "workspace/texture_file.h"
 
 namespace patina::cli {
@@ -18,7 +20,7 @@ namespace patina::cli {
 namespace {
 
 struct FitTextureOptions {
-  std::filesystem::path profile, output;
+  std::filesystem::path profile, registration, output;
   FitOptions1d fit;
   std::optional<double> length, height; // of a picture
   PlaneFitOptions plane;
@@ -48,16 +50,18 @@ const Keys kFitKeys = {
     {"quiet", "", "quiet", "harmonics that --over-noise left out", Shown::if_any},
     {"blended", "m", "blended", "rms of what was changed so that the ends meet", Shown::if_any},
     {"wavelength", "m", "wavelength", "of the strongest harmonic", Shown::if_any},
+    {"finest", "m", "finest wave", "that the texture can have, of its period over the harmonics"},
     {"low", "m", "lowest point", "of the texture, from its mean"},
     {"compliance", "m/N", "compliance", "", Shown::if_any}};
 
 // The stretch that was asked for, or the one that goes farthest.
-std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console& console) {
+std::vector<ProfilePoint> readProfile(FitTextureOptions& options, Console& console) {
   CsvReader reader(options.profile,
                    {{"along [m]", "height [m]"}, {"sigma [m]", "stretch", "speed [m/s]", "t [s]"}});
   const std::vector<std::string>& columns = reader.columns();
   const bool sigma = reader.has("sigma [m]"), stretch = reader.has("stretch"),
              speed = reader.has("speed [m/s]");
+  if (stretch && speed && !options.fit.cutoff) options.fit.cutoff = scanFitOptions().cutoff;
   std::map<std::int64_t, std::vector<ProfilePoint>> stretches;
   for (std::vector<double> row; reader.next(row);) {
     for (std::size_t i = 0; i < row.size(); ++i)
@@ -90,6 +94,7 @@ std::vector<ProfilePoint> readProfile(const FitTextureOptions& options, Console&
   return longest->second;
 }
 
+constexpr double kUsualSpeed = 0.1; // of a hand that strokes [m/s]
 constexpr const char* kKinds[] = {"line", "spectrum", "crossed", "plane", "products"};
 using Kind = FitTextureOptions::Kind;
 
@@ -136,10 +141,13 @@ int runFitPlane(const FitTextureOptions& options, Console& console) {
 }
 
 int runFitTexture(FitTextureOptions options, Console& console) {
-  requireWritable(options.output, {options.profile}, FileKind::json);
+  requireWritable(options.output, {options.profile, options.registration}, FileKind::json);
+  if (options.stiffness && !options.registration.empty())
+    throw Error("--stiffness: --registration tells it too; one of them");
   if (options.kind != Kind::spectrum) console.warnOfNoEffect({"--seed"}, "without --kind spectrum");
   if (options.kind == Kind::plane || options.kind == Kind::products) {
-    console.warnOfNoEffect({"--step", "--cutoff", "--over-noise", "--stretch"}, "on a picture");
+    console.warnOfNoEffect({"--step", "--cutoff", "--over-noise", "--stretch", "--registration"},
+                           "on a picture");
     return runFitPlane(options, console);
   }
   if (options.length || options.height || options.plane.rank)
@@ -158,6 +166,9 @@ int runFitTexture(FitTextureOptions options, Console& console) {
   const FourierSeries line = texture.series;
   texture.name = options.name;
   if (options.stiffness) texture.compliance = 1 / *options.stiffness;
+  if (!options.registration.empty())
+    if (const auto found = readRegistrationReport(options.registration).compliance; found > 0)
+      texture.compliance = found;
   const int harmonics = patina::harmonics(texture);
   if (options.kind == Kind::spectrum) texture = spectrumOf(texture, options.seed);
   if (options.kind == Kind::crossed) texture = crossCorrelation(texture, texture);
@@ -171,7 +182,7 @@ int runFitTexture(FitTextureOptions options, Console& console) {
   for (std::size_t j = 1; j < line.a.size(); ++j)
     if (std::hypot(line.a[j], line.b[j]) > std::hypot(line.a[strongest], line.b[strongest]))
       strongest = j;
-  const double rms = std::sqrt(fitted.variance);
+  const double rms = std::sqrt(fitted.variance), finest = fitted.length / harmonics;
   Report report(kFitKeys);
   report.set("kind", kKinds[static_cast<std::size_t>(options.kind)])
       .set("harmonics", static_cast<std::size_t>(harmonics))
@@ -187,6 +198,9 @@ int runFitTexture(FitTextureOptions options, Console& console) {
       .set("quiet", fitted.quiet)
       .set("blended", fitted.blended)
       .set("wavelength", fitted.length / static_cast<double>(strongest + 1))
+      .set("finest", finest,
+           formatLength(finest) + ", felt as " + rounded(kUsualSpeed / finest) + " Hz at " +
+               rounded(1e3 * kUsualSpeed) + " mm/s")
       .set("low", texture.low);
   if (texture.compliance)
     report.set("compliance", *texture.compliance, formatNumber(*texture.compliance) + " m/N");
@@ -220,7 +234,7 @@ Command fitTextureCommand() {
           "blended so that it does. plane keeps every harmonic over x and y; products is its best "
           "sum of products of a line along x and one along y, the fewest that lack a hundredth of "
           "its rms, or --rank of them.",
-      .examples = {"patina fit-texture heights.csv -o grain.json --cutoff 8mm --stiffness 2900",
+      .examples = {"patina fit-texture heights.csv -o grain.json --registration r.json",
                    "patina fit-texture profile.csv -o grain.json --harmonics 64 --kind crossed",
                    "patina fit-texture cloth.png -o cloth.json --kind products --length 20mm "
                    "--height 0.3mm"},
@@ -258,7 +272,7 @@ Command fitTextureCommand() {
            {"--step", "LENGTH", "m", "the points' median", "Of the even samples.",
             inRange(
                 1e-9, 1, [options](double step) { options->fit.step = step; }, NumberKind::length)},
-           {"--cutoff", "LENGTH", "m", "",
+           {"--cutoff", "LENGTH", "m", "of a scan 8mm",
             "Leave out longer waves: the shape of what was scanned, which its mesh has. Of a scan, "
             "what the tip was drawn over too slowly to be known, too.",
             inRange(
@@ -273,6 +287,9 @@ Command fitTextureCommand() {
                 NumberKind::whole)},
            {"--stiffness", "K", "N/m", "", "Of the material, where it was measured.",
             inRange(1e-3, 1e9, [options](double k) { options->stiffness = k; })},
+           {"--registration", "R.json", "", "",
+            "In its place: of the scan, whose compliance patina register has found.",
+            into(options->registration)},
            {"--name", "NAME", "", "", "Of the texture.",
             [options](const std::string& name) { options->name = name; }}},
       .run = [options](Console& console) { return runFitTexture(*options, console); }};

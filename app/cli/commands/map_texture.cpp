@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "acquisition/files/registered_file.h"
-#include "acquisition/texture/lay_texture.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
@@ -11,17 +10,16 @@
 #include "geometry/io/textured_obj.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
+#include "scan/scan_texture.h"
 
 namespace patina::cli {
 
 namespace {
 
-constexpr double kFarOfSize = 0.05; // of the mesh's size: a path so far off is of another unit
-
 struct MapOptions {
   std::filesystem::path mesh, path, heights, output;
   MeshUnit unit = MeshUnit::mm;
-  LayOptions lay{1, 1, Neighbours::by_vertex, 2};
+  LayOptions lay{.texture = 1};
 };
 
 const Keys kMapKeys = {
@@ -53,37 +51,20 @@ int runMapTexture(const MapOptions& options, Console& console) {
   for (const std::string& line : file.warnings) console.warn(options.mesh.string() + ": " + line);
   ScaledMesh scaled = inMetres(file.mesh, options.unit);
   if (!scaled.warning.empty()) console.warn(options.mesh.string() + ": " + scaled.warning);
-  // Faces that nothing can lie on keep their place in the file.
-  const std::vector<std::int32_t> usable = usableTriangles(scaled.mesh);
-  if (usable.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
-  TriangleMesh usable_mesh;
-  usable_mesh.positions = scaled.mesh.positions;
-  for (const std::int32_t face : usable)
-    usable_mesh.triangles.push_back(scaled.mesh.triangles[static_cast<std::size_t>(face)]);
   std::vector<std::string> warnings;
   const std::vector<PathOnMesh> strokes = readStrokes(options.path, options.heights, &warnings);
   for (const std::string& line : warnings) console.warn(line);
-  const PathGround ground(std::move(usable_mesh));
   LaidTexture laid;
   try {
-    laid = layTexture(ground, strokes, options.lay, console.progress());
+    laid = layScanTexture(scaled.mesh, strokes, options.lay, console.progress());
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
     throw FileError(options.path.string(), 0, error.what());
   }
-  const double size = bounds(ground.mesh).sizes().norm();
-  if (laid.farthest > kFarOfSize * size)
-    throw FileError(options.path.string(), 0,
-                    "lies up to " + formatLength(laid.farthest) + " from a mesh of " +
-                        formatLength(size) + "; is it registered, and --unit right?");
-  if (laid.faces.empty())
-    throw FileError(options.path.string(), 0, "no face on its way can take coordinates");
 
-  for (TexturedFace& face : laid.faces) {
-    face.face = usable[static_cast<std::size_t>(face.face)];
+  for (TexturedFace& face : laid.faces)
     for (Vec2& at : face.at) at /= scaled.scale;
-  }
   const std::vector<TexturedFace> merged = laidOver(laid.faces, file.textured);
   writeTexturedObj(options.output, file.mesh, merged);
 
@@ -133,7 +114,7 @@ Command mapTextureCommand() {
                      "Of this path, by patina filter: what the texture was made of tells how far "
                      "along each sample lies.",
                      into(options->heights)},
-                    {"--rings", "N", "", "1", "Of neighbours beyond the faces on the way.",
+                    {"--rings", "N", "", "2", "Of neighbours beyond the faces on the way.",
                      inRange(
                          0, 1000, [&lay](double rings) { lay.rings = static_cast<int>(rings); },
                          NumberKind::whole)},

@@ -70,8 +70,8 @@ class AlignDesk : public QObject {
   AlignFiles files_;
   QTimer settle_;
   std::optional<std::pair<QString, AlignedPath>> offered_; // while a question stands before it
-  double reach_ = 1;             // of the sliders [m]
-  Pose held_ = Pose::Identity(); // as it was when a drag began
+  double reach_ = 1;                                       // of the sliders [m]
+  Pose held_ = Pose::Identity();                           // as it was when a drag began
   Pose kept_ = Pose::Identity(); // in a file or in the workspace, or the first
   bool stale_ = false;           // moved since it was drawn
   bool unseen_ = false;          // the scene, here

@@ -7,6 +7,7 @@
 
 #include "app/gui/widgets/words.h"
 #include "core/numbers.h"
+#include "scan/filter_scan.h"
 
 namespace patina {
 namespace {
@@ -112,11 +113,8 @@ void addRejected(const ScanPath& path, const Vec3& tip, std::vector<Finding>& fi
 }
 
 ScanFilter filterFor(const ScanFiles& files) {
-  ScanFilter filter;
-  const bool fuses = files.rig && files.rig->accelerometers && !files.probe.empty();
-  filter.model = fuses ? PathModel::fused : PathModel::acceleration;
+  ScanFilter filter = filterOf(files.rig, !files.probe.empty());
   filter.touching_only = false;
-  if (files.rig) filter.gravity = files.rig->gravity;
   return filter;
 }
 

@@ -23,11 +23,12 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
   placed.filtered = path.filtered;
   std::erase_if(placed.filtered.path, [](const PathSample& sample) { return !sample.touching; });
   placed.poses = path.poses;
-  placed.probe = scan.files()->rig->probe;
-  placed.gravity = scan.files()->rig->gravity;
-  placed.mesh_from_scan = scene.objects[0].world_from_object.inverse() * align.alignment().pose();
-  if (const auto& found = align.alignment().found(); found && !found->compliances.empty())
-    placed.compliance = found->compliances[0];
+  placed.rig = *scan.files()->rig;
+  placed.path = align.alignment().path();
+  placed.registration = align.alignment().registration();
+  placed.registration.mesh_from_path =
+      scene.objects[0].world_from_object.inverse() * align.alignment().pose();
+  placed.by_hand = !align.alignment().found();
   return placed;
 }
 

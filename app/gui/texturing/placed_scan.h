@@ -5,7 +5,7 @@
 
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/open_scan.h"
-#include "scan/scan_steps.h"
+#include "scan/scan_texture.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -14,12 +14,10 @@ struct PlacedScan {
   std::string name;
   FilteredScan filtered; // its path only where it touches
   std::vector<CameraPose> poses;
-  ProbeModel probe;
-  Vec3 gravity = Vec3::Zero();            // in the camera's frame [m/s^2]
-  Pose mesh_from_scan = Pose::Identity(); // mesh: of the scene's one object
-  // The surface's compliance that the registration found [m/N]; nullopt if the path was placed by
-  // hand, so that no registration has estimated it.
-  std::optional<double> compliance;
+  Rig rig;
+  std::vector<PathSample> path; // what of it was placed
+  Registration registration;    // on the mesh of the scene's one object
+  bool by_hand = false;         // nothing was fitted, so that no compliance is known
 };
 
 // Throws Error that says what is missing, and where to get it.

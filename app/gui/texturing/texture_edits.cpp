@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/error.h"
-#include "geometry/mesh/mesh_report.h"
+#include "scan/scan_texture.h"
 
 namespace patina {
 namespace {
@@ -51,19 +50,10 @@ Scene withLaid(const Scene& scene, std::size_t object, const std::vector<PathOnM
                const TextureRow& row, int rings, const Progress& progress) {
   Scene made = scene;
   SceneObject& on = made.objects.at(object);
-  // Faces that nothing can lie on keep their number.
-  const std::vector<std::int32_t> usable = usableTriangles(*on.mesh);
-  if (usable.empty()) throw Error("the mesh has no face that a texture can lie on");
-  TriangleMesh ground;
-  ground.positions = on.mesh->positions;
-  for (const std::int32_t face : usable)
-    ground.triangles.push_back(on.mesh->triangles[static_cast<std::size_t>(face)]);
   LayOptions options;
   options.texture = row.number;
   options.rings = rings;
-  LaidTexture laid = layTexture(PathGround(std::move(ground)), strokes, options, progress);
-  if (laid.faces.empty()) throw Error("no face on its way can take the texture");
-  for (TexturedFace& face : laid.faces) face.face = usable[static_cast<std::size_t>(face.face)];
+  const LaidTexture laid = layScanTexture(*on.mesh, strokes, options, progress);
   const LaidTextures* before = texturesOn(on);
   LaidTextures merged = before ? *before : LaidTextures();
   merged.faces = laidOver(laid.faces, merged.faces);

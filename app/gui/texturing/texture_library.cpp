@@ -10,8 +10,6 @@
 namespace patina {
 namespace {
 
-constexpr double kShape = 8e-3; // waves longer than this are the body's own [m]
-
 QFileDialog* textureDialog(QWidget& window, const QString& title) {
   auto* dialog = new QFileDialog(&window, title, {}, TextureLibrary::tr("Textures (*.json)"));
   dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -209,24 +207,22 @@ void TextureLibrary::takeFromScan() {
   job_.start([this, scan, number, rings = card_->rings(),
               mesh = scene_->scene.objects[0].mesh](Progress&, const Background::Deliver& deliver) {
     try {
-      const SurfaceTarget target(*mesh, 0, true);
-      FitOptions1d options;
-      options.cutoff = kShape;
-      ScannedTexture found = fitScan(target, scan.filtered, scan.poses, scan.probe, scan.gravity,
-                                     scan.mesh_from_scan, scan.compliance.value_or(0), options);
+      const SurfaceTarget target(cleaned(*mesh).mesh, 0, true);
+      ScannedTexture found =
+          fitScanTexture(target, scan.filtered, scan.poses, scan.rig, scan.path, scan.registration);
       found.fitted.texture.name = scan.name;
       const auto felt = feltTexture(std::move(found.fitted.texture));
       // Without a registration the texture is as stiff as the scene; the user is told so.
       const QString hint =
-          scan.compliance ? QString()
-                          : tr("The texture has no stiffness of its own: its scan was placed by "
-                               "hand. Fit the path on the desk Align to estimate it.");
-      deliver(true, [this, felt, number, rings, hint, stroke = found.stroke] {
+          !scan.by_hand ? QString()
+                        : tr("The texture has no stiffness of its own: its scan was placed by "
+                             "hand. Fit the path on the desk Align to estimate it.");
+      deliver(true, [this, felt, number, rings, hint, strokes = found.strokes] {
         work_.reset();
         card_->setHint(hint);
-        apply("lay " + felt->value.name, [felt, number, rings, stroke](const Scene& scene) {
+        apply("lay " + felt->value.name, [felt, number, rings, strokes](const Scene& scene) {
           const Progress quiet;
-          return withLaid(scene, 0, {stroke}, {number, felt, 0}, rings, quiet);
+          return withLaid(scene, 0, strokes, {number, felt, 0}, rings, quiet);
         });
         emit changed();
       });

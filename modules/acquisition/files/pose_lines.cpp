@@ -16,7 +16,8 @@
 namespace patina {
 namespace {
 
-constexpr double kUnit = 0.01; // by how much a quaternion's length may differ from 1
+constexpr double kUnit = 0.01;      // by how much a quaternion's length may differ from 1
+constexpr double kRounding = 1e-12; // of a length that should be 1
 
 const std::vector<std::string> kColumns = {
     "t [s]", "tx [m]", "ty [m]", "tz [m]",    "qx",
@@ -60,7 +61,8 @@ void addPose(const std::vector<double>& values, const PoseSigmas& unsaid, const 
     throw FileError(name, line,
                     "the quaternion's length is " + formatNumber(pose.orientation.norm()) +
                         ", not 1");
-  pose.orientation.normalize();
+  // What we wrote is unit but for rounding, and stays as it was.
+  if (std::abs(pose.orientation.norm() - 1) > kRounding) pose.orientation.normalize();
   if (!(pose.sigma_position > 0 && pose.sigma_angle > 0))
     throw FileError(name, line, "deviations must be above 0");
   if (!file.values.empty() && !(pose.t > file.values.back().t))

@@ -1,15 +1,14 @@
 #include "acquisition/files/registered_file.h"
 
 #include <cmath>
-#include <map>
-#include <optional>
 
 #include "acquisition/files/measured.h"
+#include "acquisition/texture/path_strokes.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/numbers.h"
-#include "core/percentiles.h"
+#include "core/json.h"
+#include "geometry/io/pose_file.h"
 
 namespace patina {
 
@@ -38,27 +37,34 @@ std::string registeredText(const std::vector<PathSample>& samples,
   return text;
 }
 
+RegistrationReport readRegistrationReport(const std::filesystem::path& path) {
+  RegistrationReport report{readPoseAt(path, "mesh_from_scan"), {}};
+  try {
+    const Json json = parseJson(readFile(path), path.string());
+    if (const Json* compliance = json.find("compliance"))
+      report.compliance = compliance->asNumber();
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    throw FileError(path.string(), 0, error.what());
+  }
+  return report;
+}
+
 namespace {
 
-struct Place {
-  double along = 0;
-  double stretch = 0;
-};
-
-// By time.
-std::map<double, Place> readPlaces(const std::filesystem::path& heights,
-                                   std::vector<std::string>* warnings) {
+StretchPlaces readPlaces(const std::filesystem::path& heights, std::vector<std::string>* warnings) {
   const CsvColumns columns = {
       {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"}, {}, {"speed [m/s]"}};
   CsvReader reader(heights, columns);
   warnOfColumns(reader, warnings);
-  std::map<double, Place> places;
+  StretchPlaces places;
   for (std::vector<double> row; reader.next(row);) {
     for (std::size_t i = 0; i < row.size(); ++i)
       requireMeasured(row[i], reader.columns()[i], heights.string(), reader.line());
     if (!places.empty() && !(row[0] > places.rbegin()->first))
       throw FileError(heights.string(), reader.line(), "time does not increase");
-    places[row[0]] = {row[1], row[4]};
+    places[row[0]] = {row[1], static_cast<std::size_t>(std::llround(row[4]))};
   }
   return places;
 }
@@ -68,61 +74,30 @@ std::map<double, Place> readPlaces(const std::filesystem::path& heights,
 std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
                                     const std::filesystem::path& heights,
                                     std::vector<std::string>* warnings) {
-  constexpr double kPause = 5; // times the median interval
   CsvReader reader(path, {{"x [m]", "y [m]", "z [m]"},
                           {"t [s]"},
                           {"qx", "qy", "qz", "qw", "sigma [m]", "force [N]", "face", "b0", "b1",
                            "b2", "distance [m]"}});
   warnOfColumns(reader, warnings);
   const bool timed = reader.has("t [s]");
-  const std::map<double, Place> places =
-      heights.empty() ? std::map<double, Place>() : readPlaces(heights, warnings);
+  const StretchPlaces places = heights.empty() ? StretchPlaces() : readPlaces(heights, warnings);
   if (!heights.empty() && places.empty()) throw FileError(heights.string(), 0, "has no height");
   if (!heights.empty() && !timed)
     throw FileError(path.string(), 1, "has no times to find the heights' by");
-  std::vector<Vec3> points;
-  std::vector<double> times, intervals;
+  std::vector<TimedPoint> points;
   for (std::vector<double> row; reader.next(row);) {
     for (std::size_t i = 0; i < (timed ? row.size() : 3); ++i)
       requireMeasured(row[i], reader.columns()[i], path.string(), reader.line());
-    if (timed) {
-      if (!times.empty() && !(row[3] > times.back()))
-        throw FileError(path.string(), reader.line(), "time does not increase");
-      if (!times.empty()) intervals.push_back(row[3] - times.back());
-      times.push_back(row[3]);
-    }
-    points.emplace_back(row[0], row[1], row[2]);
+    if (timed && !points.empty() && !(row[3] > points.back().t))
+      throw FileError(path.string(), reader.line(), "time does not increase");
+    points.push_back({timed ? row[3] : 0, Vec3(row[0], row[1], row[2])});
   }
   if (points.empty()) throw FileError(path.string(), 0, "has no point");
-  const double pause = intervals.empty() ? 0 : kPause * percentiles(intervals).p50;
-  std::vector<PathOnMesh> strokes(1);
-  std::optional<Place> last;
-  double last_time = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::optional<Place> place;
-    if (!places.empty()) {
-      const auto found = places.find(times[i]);
-      if (found == places.end()) continue;
-      place = found->second;
-    }
-    const bool other = place && last && place->stretch != last->stretch;
-    if (!strokes.back().points.empty() && timed && (other || times[i] - last_time > pause))
-      strokes.emplace_back();
-    // Where the probe stood there is no way.
-    const bool goes_on = place && !strokes.back().along.empty();
-    const bool stood = goes_on && place->along == strokes.back().along.back();
-    if (goes_on && !(place->along >= strokes.back().along.back()))
-      throw FileError(heights.string(), 0,
-                      "the way falls at " + formatNumber(times[i]) + " s, within one stretch");
-    last = place;
-    if (timed) last_time = times[i];
-    if (stood) continue;
-    strokes.back().points.push_back(points[i]);
-    if (place) strokes.back().along.push_back(place->along);
+  try {
+    return strokesOf(points, places);
+  } catch (const Error& error) {
+    throw FileError(heights.string(), 0, error.what());
   }
-  if (strokes.back().points.empty())
-    throw FileError(heights.string(), 0, "has no height at a time of " + path.string());
-  return strokes;
 }
 
 } // namespace patina

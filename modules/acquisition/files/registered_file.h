@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@ void writeRegisteredPath(const std::filesystem::path& path, const std::vector<Pa
                          const Registration& registration);
 std::string registeredText(const std::vector<PathSample>& samples,
                            const Registration& registration);
+
+// Where a scan lies on its mesh, of the report that `patina register` writes. Throws FileError.
+struct RegistrationReport {
+  Pose mesh_from_scan = Pose::Identity();
+  std::optional<double> compliance; // of the surface [m/N]; absent where nobody asked
+};
+RegistrationReport readRegistrationReport(const std::filesystem::path& path);
 
 // Strokes of such a file, of any path's (t [s],x [m],y [m],z [m], ...) or of points alone (x [m],
 // y [m],z [m], ...): one wherever the time between two samples is more than five times the median.

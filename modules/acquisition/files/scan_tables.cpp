@@ -18,6 +18,7 @@ const std::vector<std::string> kHeightColumns = {"t [s]",     "along [m]", "heig
                                                  "sigma [m]", "stretch",   "speed [m/s]"};
 
 constexpr double kUnitQuaternion = 1e-3; // off 1
+constexpr double kRounded = 1e-12;       // of a length that should be 1
 
 // Finite numbers, the first of them a time after `last`.
 void requireTimed(const std::vector<double>& row, const std::vector<std::string>& columns,
@@ -123,7 +124,8 @@ std::vector<PathSample> pathIn(CsvReader reader, const std::string& name,
         PathSample sample;
         sample.t = row[0];
         sample.position = {row[1], row[2], row[3]};
-        sample.orientation = turn.normalized();
+        // What we wrote is unit but for rounding, and stays as it was.
+        sample.orientation = std::abs(turn.norm() - 1) < kRounded ? turn : turn.normalized();
         sample.sigma = row[8];
         sample.force = row[9];
         samples.push_back(sample);

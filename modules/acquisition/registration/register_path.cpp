@@ -213,7 +213,8 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
       judge();
       // By the errors of the better place: at a wrong one a misfit passes for errors that go
       // together, by which no place could be told from another.
-      if (costOf(here.misses, law) - costOf(best.misses, law) > better) continue;
+      const double gain = costOf(here.misses, law) - costOf(best.misses, law);
+      if (gain > (isNear(here.mesh_from_path, best.mesh_from_path, points) ? 0 : better)) continue;
       best = here;
       judge();
       break;

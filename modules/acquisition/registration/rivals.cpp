@@ -117,6 +117,10 @@ double costOf(const std::vector<Miss>& misses, const ErrorLaw& law) {
   return sum / law.together;
 }
 
+bool isNear(const Pose& mesh_from_path, const Pose& other, const std::vector<Vec3>& points) {
+  return between(mesh_from_path, other, points) < kNear * scaleOf(points, mesh_from_path).radius;
+}
+
 bool isOnePlace(const Pose& mesh_from_path, const Pose& other, const std::vector<Vec3>& points) {
   return between(mesh_from_path, other, points) <
          kOnePlace * scaleOf(points, mesh_from_path).radius;
@@ -182,9 +186,9 @@ std::vector<Rival> rivalsOf(const SurfaceTarget& target, const std::vector<Vec3>
       static_cast<double>(points.size()) / static_cast<double>(many.points.size());
   for (const FoundFit& one : found) {
     // Along what is free the ends differ by chance, and nothing between them is worse than that.
-    if (between(one.fit.mesh_from_path, best.mesh_from_path, many.points) < kNear * radius &&
+    if (one.cost > here && isNear(best.mesh_from_path, one.fit.mesh_from_path, many.points) &&
         isOneValley(target, many, best.mesh_from_path, one.fit.mesh_from_path, law,
-                    (std::max(one.cost, here) + kToldApart) / stands_for))
+                    (one.cost + kToldApart) / stands_for))
       continue;
     const double chance = 1.25 * std::max(one.cost, here) + kToldApart;
     if (free.basis.cols() > 0 && one.cost > std::max(here - kToldApart, kAlike * here) &&

@@ -30,6 +30,9 @@ constexpr double kToldApart = 16.81;
 // Whether the points lie nearly as at the other pose, to a twentieth of the path's radius.
 bool isOnePlace(const Pose& mesh_from_path, const Pose& other, const std::vector<Vec3>& points);
 
+// The same to a seventh of it: one place, which may have several lowest points.
+bool isNear(const Pose& mesh_from_path, const Pose& other, const std::vector<Vec3>& points);
+
 // Poses all over the mesh at which a part of the path fits best nearby; the same ones each time.
 // Throws Cancelled.
 std::vector<Pose> placesAllOver(const SurfaceTarget& target, const std::vector<Vec3>& points,

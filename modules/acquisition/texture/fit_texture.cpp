@@ -129,6 +129,20 @@ double meanSquare(const std::vector<double>& values, std::size_t count) {
   return sum / static_cast<double>(count);
 }
 
+// Mean square of the first `count` values off their least-squares line.
+double offLine(const std::vector<double>& values, std::size_t count) {
+  const double middle = 0.5 * static_cast<double>(count - 1);
+  double mean = 0, along = 0, square = 0, sum = 0;
+  for (std::size_t i = 0; i < count; ++i) mean += values[i] / static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = static_cast<double>(i) - middle;
+    along += x * values[i];
+    square += x * x;
+    sum += (values[i] - mean) * (values[i] - mean);
+  }
+  return std::max(0., sum - along * along / square) / static_cast<double>(count);
+}
+
 double rmsOf(const FourierSeries& series) {
   double sum = 0;
   for (std::size_t j = 0; j < series.a.size(); ++j)
@@ -258,7 +272,7 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
   fitted.length = length;
   fitted.samples = m;
   fitted.tilt = flatten(heights) / step;
-  fitted.variance = meanSquare(heights, m);
+  fitted.variance = offLine(heights, m);
   double highest = 0;
   for (const ProfilePoint& point : points) highest = std::max(highest, std::abs(point.height));
   if (!(std::sqrt(fitted.variance) > kRounding * highest)) throw Error("the profile is flat");

@@ -8,7 +8,7 @@ namespace patina {
 
 struct LayOptions {
   std::int32_t texture = 0;
-  int rings = 1; // of neighbours that are textured too
+  int rings = 2; // of neighbours that are textured too
   Neighbours neighbours = Neighbours::by_vertex;
   double most_stretch = 2;
 };

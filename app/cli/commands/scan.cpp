@@ -1,0 +1,104 @@
+#include "app/cli/commands/commands.h"
+#include "app/cli/output/reports.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "scan/run_scan.h"
+#include "session/store/workspace_link.h"
+
+namespace patina::cli {
+
+namespace {
+
+const Keys kScanKeys = {
+    {"steps",
+     "",
+     "steps",
+     "that ran; what each found is in the folder's scan.json, too",
+     Shown::never,
+     {{"step", "", ""}, {"folder", "", ""}, {"found", "", ""}, {"seconds", "s", ""}}},
+    {"done", "", "done", "false: the place on the mesh is not certain, and nothing is laid"},
+    {"workspace", "", "workspace", "with the mesh and its textures", Shown::if_any},
+    {"textured", "", "textured", "the mesh as an OBJ with haptic coordinates", Shown::if_any}};
+
+ScanStep parseStep(const std::string& word) {
+  const std::vector<std::string>& names = scanStepNames();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (word == names[i]) return static_cast<ScanStep>(i);
+  throw Error("'" + word + "' is none of " + joined(names));
+}
+
+int runScanCommand(const RunScanOptions& options, Console& console) {
+  if (options.from && *options.from > options.to)
+    throw Error("--from: that step comes after the one of --to");
+  if (options.to == ScanStep::lay && options.workspace.empty())
+    throw Error("-o: names the workspace to be made; --to fit ends before it");
+  if (!options.workspace.empty()) requireWorkspacePlace(options.workspace);
+  const RunScanReport found = runScan(options, console.progress());
+  for (const std::string& line : found.warnings) console.warn(line);
+  Report report(kScanKeys);
+  Json steps = Json::array();
+  for (const RunScanReport::Step& step : found.steps) {
+    const std::string& name = scanStepNames()[static_cast<std::size_t>(step.step)];
+    steps.push(Json::object()
+                   .set("step", name)
+                   .set("folder", step.folder.string())
+                   .set("found", step.found)
+                   .set("seconds", step.seconds));
+    report.tell(name, (step.folder.empty() ? "" : step.folder.string() + ": ") + step.found);
+  }
+  report.set("steps", steps).set("done", found.done);
+  if (found.done && options.to == ScanStep::lay)
+    report.set("workspace", options.workspace.string())
+        .set("textured", (options.folders.front() / "textured.obj").string());
+  if (!found.done) {
+    const Registration& place = found.registered->registration;
+    console.warn(options.mesh.string() +
+                 (place.converged
+                      ? ": the place of the scans is not unique: " + inWords(*place.rivals)
+                      : ": no pose was found at which the scans lie on it as their "
+                        "noise lets expect") +
+                 ", so nothing is laid onto it");
+  }
+  return console.report(report, found.done ? kDone : kNotSolved);
+}
+
+} // namespace
+
+Command scanCommand() {
+  auto options = std::make_shared<RunScanOptions>();
+  return {
+      .name = "scan",
+      .summary = "scan folders become a workspace whose mesh feels as what was scanned",
+      .description =
+          "Runs the steps from frames to a feel: track (poses.tum), filter (path.csv), register "
+          "(registered.csv, registration.json), fit (heights.csv, texture.json) and lay (the "
+          "workspace, and textured.obj in the first FOLDER). Each leaves in the folder of its scan "
+          "the files that the command of its name leaves, bit for bit, and what it found in "
+          "scan.json. Steps whose files are all there are not run again unless --from names them.\n"
+          "All folders are scans of one body, the poses of which one camera saw from one place. "
+          "Exit code 1 where the place on the mesh is not certain: the steps before it are kept.",
+      .examples = {"patina scan ribs weave --also survey --mesh toy.obj -o toy",
+                   "patina scan ribs --mesh toy.obj --from register -o toy"},
+      .keys = kScanKeys,
+      .arguments =
+          {input("FOLDER", "Scan folder: frames or poses.tum, probe.csv, rig.json.",
+                 into(options->folders), Times::at_least_once),
+           {"--mesh", "MESH", "", "", "Of the body that was scanned.", into(options->mesh),
+            Times::once},
+           {"-o,--output", "WORKSPACE", "", "", "The workspace to be made.",
+            outInto(options->workspace), Times::at_most_once, true},
+           {"--also", "FOLDER", "", "",
+            "Another scan of the body, which only helps to find the place: no texture is made of "
+            "it.",
+            into(options->also), Times::any},
+           {"--from", "STEP", "", "the first without its files",
+            "Run this step and those after it: track, filter, register, fit or lay.",
+            [options](const std::string& word) { options->from = parseStep(word); }},
+           {"--to", "STEP", "", "lay", "The last step to run.",
+            [options](const std::string& word) { options->to = parseStep(word); }},
+           {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",
+            parsedInto(options->unit, parseMeshUnit)}},
+      .run = [options](Console& console) { return runScanCommand(*options, console); }};
+}
+
+} // namespace patina::cli

@@ -1,0 +1,253 @@
+#include "scan/run_scan.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "acquisition/files/registered_file.h"
+#include "acquisition/tracking/track_frames.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/json.h"
+#include "core/numbers.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/pose_file.h"
+#include "geometry/mesh/mesh_report.h"
+#include "scan/filter_scan.h"
+#include "scan/scan_files.h"
+#include "scan/scan_texture.h"
+#include "session/edit/editor.h"
+#include "workspace/texture_file.h"
+
+namespace patina {
+namespace {
+
+const std::vector<std::vector<const char*>>& filesOfSteps() {
+  static const std::vector<std::vector<const char*>> kFiles = {
+      {"poses.tum"},
+      {"path.csv"},
+      {"registered.csv", "registration.json"},
+      {"heights.csv", "texture.json"}};
+  return kFiles;
+}
+
+// One scan on its way.
+struct Run {
+  std::filesystem::path folder;
+  bool textured = false;
+  ScanFiles files;
+  std::optional<FilteredScan> filtered;
+};
+
+class Runner {
+ public:
+  Runner(const RunScanOptions& options, Progress& progress)
+      : options_(options), progress_(progress) {
+    for (const auto& folder : options.folders) runs_.push_back({folder, true, {}, {}});
+    for (const auto& folder : options.also) runs_.push_back({folder, false, {}, {}});
+    if (options.folders.empty()) throw Error("a scan needs a folder");
+  }
+
+  RunScanReport run() {
+    readMeshFile();
+    for (Run& one : runs_) {
+      one.files = readScanFolder(one.folder, progress_);
+      report_.warnings.insert(report_.warnings.end(), one.files.warnings.begin(),
+                              one.files.warnings.end());
+    }
+    const ScanStep from = options_.from.value_or(firstToRun());
+    for (Run& one : runs_)
+      if (from <= ScanStep::track) track(one);
+    if (options_.to >= ScanStep::filter)
+      for (Run& one : runs_) filter(one, from <= ScanStep::filter);
+    if (options_.to >= ScanStep::register_paths && from <= ScanStep::register_paths &&
+        !registerAll())
+      return std::move(report_);
+    if (options_.to >= ScanStep::fit) fitAndLay();
+    report_.done = true;
+    return std::move(report_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void note(ScanStep step, const std::filesystem::path& folder, Clock::time_point begin,
+            const std::string& found, const Json& json) {
+    report_.steps.push_back(
+        {step, folder, found, std::chrono::duration<double>(Clock::now() - begin).count()});
+    if (folder.empty()) return;
+    const std::filesystem::path file = folder / "scan.json";
+    Json all =
+        std::filesystem::exists(file) ? parseJson(readFile(file), file.string()) : Json::object();
+    all.set(scanStepNames()[static_cast<std::size_t>(step)], json);
+    writeFileAtomically(file, all.dump() + "\n");
+  }
+
+  void readMeshFile() {
+    in_file_ = readMesh(options_.mesh, &report_.warnings);
+    ScaledMesh scaled = inMetres(in_file_, options_.unit);
+    if (!scaled.warning.empty())
+      report_.warnings.push_back(options_.mesh.string() + ": " + scaled.warning);
+    scale_ = scaled.scale;
+    mesh_ = std::move(scaled.mesh);
+    TriangleMesh clean = cleaned(mesh_).mesh;
+    if (clean.triangles.empty()) throw FileError(options_.mesh.string(), 0, "has no triangle");
+    target_.emplace(std::move(clean), 0, true);
+  }
+
+  ScanStep firstToRun() const {
+    for (std::size_t step = 0; step < filesOfSteps().size(); ++step)
+      for (const Run& one : runs_)
+        for (const char* name : filesOfSteps()[step])
+          if ((one.textured || static_cast<ScanStep>(step) < ScanStep::fit) &&
+              !std::filesystem::exists(one.folder / name))
+            return static_cast<ScanStep>(step);
+    return ScanStep::lay;
+  }
+
+  void track(Run& one) {
+    const auto begin = Clock::now();
+    if (!one.files.canTrack())
+      throw FileError(one.folder.string(), 0,
+                      "has no frames with a camera.yml and a rig.json that names markers");
+    const auto frames = openFrames(one.folder.string(), 0);
+    const TrackedFrames found =
+        trackFrames(*frames, *one.files.camera, one.files.markers, {}, progress_);
+    progress_.throwIfCancelled();
+    if (found.poses.empty())
+      throw FileError(one.folder.string(), 0, "no frame shows a pose of the markers");
+    writePoses(one.folder / "poses.tum", found.poses, found.without);
+    one.files.poses = readPoses(one.folder / "poses.tum").values;
+    note(ScanStep::track, one.folder, begin,
+         formatCount(found.poses.size()) + " of " + formatCount(found.frames) +
+             " frames with a pose",
+         Json::object()
+             .set("frames", found.frames)
+             .set("frames_with_pose", found.poses.size())
+             .set("reprojection_rms_px", found.rms));
+  }
+
+  void filter(Run& one, bool writes) {
+    const auto begin = Clock::now();
+    if (one.files.poses.empty()) throw FileError(one.folder.string(), 0, "has no poses.tum");
+    try {
+      one.filtered = touchedPath({one.files.poses, one.files.probe}, one.files.rig, progress_);
+    } catch (const Error& error) {
+      throw FileError(one.folder.string(), 0, error.what());
+    }
+    if (!writes) return;
+    for (const std::string& doubt : one.filtered->doubts)
+      report_.warnings.push_back(one.folder.string() + ": " + doubt);
+    writePath(one.folder / "path.csv", one.filtered->path);
+    note(ScanStep::filter, one.folder, begin, formatCount(one.filtered->path.size()) + " samples",
+         Json::object()
+             .set("samples", one.filtered->path.size())
+             .set("nis_mean", one.filtered->track.nis_mean));
+  }
+
+  // Returns false where the place is not certain.
+  bool registerAll() {
+    const auto begin = Clock::now();
+    std::vector<std::vector<PathSample>> paths;
+    for (const Run& one : runs_) paths.push_back(readPath(one.folder / "path.csv"));
+    report_.registered =
+        registerScans(*target_, std::move(paths), options_.registration, progress_);
+    const RegisteredScans& found = *report_.registered;
+    report_.warnings.insert(report_.warnings.end(), found.warnings.begin(), found.warnings.end());
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      const Registration own = found.of(i);
+      writeRegisteredPath(runs_[i].folder / "registered.csv", found.paths[i], own);
+      const auto counts =
+          static_cast<std::size_t>(std::count(own.counts.begin(), own.counts.end(), true));
+      const Json json =
+          Json::object()
+              .set("mesh_from_scan", poseJson(own.mesh_from_path))
+              .set("compliance", own.compliances[0])
+              .set("rms", own.rms)
+              .set("samples", Json::object().set("all", own.counts.size()).set("count", counts))
+              .set("converged", own.converged);
+      writeFileAtomically(runs_[i].folder / "registration.json", json.dump() + "\n");
+      note(ScanStep::register_paths, runs_[i].folder, begin,
+           formatLength(own.rms) + " rms off the mesh, " + formatLength(own.compliances[0]) +
+               " a newton",
+           json);
+    }
+    return !isDoubtful(found.registration);
+  }
+
+  void fitAndLay() {
+    const bool lays = options_.to >= ScanStep::lay;
+    std::vector<ScannedTexture> textures;
+    std::vector<TexturedFace> faces;
+    for (const Run& one : runs_)
+      if (one.textured) {
+        textures.push_back(fit(one));
+        if (!lays) continue;
+        LayOptions options;
+        options.texture = static_cast<std::int32_t>(textures.size());
+        try {
+          textures.back().laid = layScanTexture(mesh_, textures.back().strokes, options, progress_);
+        } catch (const Error& error) {
+          throw FileError((one.folder / "registered.csv").string(), 0, error.what());
+        }
+        faces = laidOver(textures.back().laid.faces, faces);
+      }
+    if (!lays) return;
+    const auto begin = Clock::now();
+    writeTexturedMesh(runs_[0].folder / "textured.obj", in_file_, faces, scale_);
+    Editor(texturedScene(mesh_, options_.mesh.stem().string(), textures), progress_)
+        .saveAs(options_.workspace);
+    note(ScanStep::lay, {}, begin, formatCount(faces.size()) + " faces with a texture", {});
+  }
+
+  ScannedTexture fit(const Run& one) {
+    const auto begin = Clock::now();
+    if (!one.files.rig) throw FileError(one.folder.string(), 0, "has no rig.json");
+    const RegistrationReport placed = readRegistrationReport(one.folder / "registration.json");
+    ScannedTexture texture;
+    try {
+      texture.heights = heightsOverMesh(*target_, *one.filtered, one.files.poses, *one.files.rig,
+                                        placed.mesh_from_scan, placed.compliance)
+                            .heights;
+      texture.fitted = fitTexture(profileOf(texture.heights), scanFitOptions());
+    } catch (const FileError&) {
+      throw;
+    } catch (const Error& error) {
+      throw FileError(one.folder.string(), 0, error.what());
+    }
+    FourierTexture& fitted = texture.fitted.texture;
+    if (placed.compliance && *placed.compliance > 0) fitted.compliance = placed.compliance;
+    fitted.name = one.files.scan.name;
+    writeHeights(one.folder / "heights.csv", texture.heights);
+    writeTexture(one.folder / "texture.json", fitted);
+    texture.strokes = readStrokes(one.folder / "registered.csv", one.folder / "heights.csv");
+    note(ScanStep::fit, one.folder, begin,
+         formatLength(std::sqrt(texture.fitted.variance)) + " rms along " +
+             formatLength(texture.fitted.length),
+         Json::object()
+             .set("length", texture.fitted.length)
+             .set("rms", std::sqrt(texture.fitted.variance))
+             .set("residual", texture.fitted.residual));
+    return texture;
+  }
+
+  const RunScanOptions& options_;
+  Progress& progress_;
+  RunScanReport report_;
+  std::vector<Run> runs_;
+  TriangleMesh in_file_, mesh_; // the latter in metres
+  double scale_ = 1;
+  std::optional<SurfaceTarget> target_;
+};
+
+} // namespace
+
+const std::vector<std::string>& scanStepNames() {
+  static const std::vector<std::string> kNames = {"track", "filter", "register", "fit", "lay"};
+  return kNames;
+}
+
+RunScanReport runScan(const RunScanOptions& options, Progress& progress) {
+  return Runner(options, progress).run();
+}
+
+} // namespace patina

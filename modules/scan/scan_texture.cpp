@@ -1,0 +1,126 @@
+#include "scan/scan_texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/texture/path_strokes.h"
+#include "core/error.h"
+#include "core/numbers.h"
+#include "geometry/io/textured_obj.h"
+#include "geometry/mesh/mesh_report.h"
+#include "session/build/session.h"
+
+namespace patina {
+namespace {
+
+constexpr double kShape = 8e-3;     // waves longer than this are the body's own [m]
+constexpr double kFarOfSize = 0.05; // of the mesh's size: strokes so far off are of another unit
+
+} // namespace
+
+FitOptions1d scanFitOptions() {
+  FitOptions1d options;
+  options.cutoff = kShape;
+  return options;
+}
+
+ScanHeights heightsOverMesh(const SurfaceTarget& target, const FilteredScan& scan,
+                            const std::vector<CameraPose>& poses, const Rig& rig,
+                            const Pose& mesh_from_scan, const std::optional<double>& compliance) {
+  if (scan.whole.empty())
+    throw Error("rig.json names no accelerometers, from which heights are made");
+  const auto presses = complianceOverMesh(target, mesh_from_scan, scan.path);
+  const double yields = presses && presses->isTold() ? presses->compliance : 0;
+  ScanHeights found =
+      scanHeights(scan, poses, rig.probe, rig.gravity,
+                  meanNormal(target, mesh_from_scan, scan.path), compliance.value_or(yields));
+  found.compliance = presses;
+  found.heights = heightsOverMesh(target, mesh_from_scan, scan.path, found);
+  if (found.heights.empty()) throw Error("nowhere along the path is there a height over the mesh");
+  return found;
+}
+
+std::vector<ProfilePoint> profileOf(const std::vector<ScanHeight>& heights) {
+  std::vector<ScanHeight> longest;
+  const auto length = [](auto begin, auto end) {
+    return (end - 1)->point.along - begin->point.along;
+  };
+  for (auto begin = heights.begin(); begin != heights.end();) {
+    const auto end = std::find_if(begin, heights.end(), [&](const ScanHeight& height) {
+      return height.stretch != begin->stretch;
+    });
+    if (longest.empty() || length(begin, end) > length(longest.begin(), longest.end()))
+      longest.assign(begin, end);
+    begin = end;
+  }
+  std::vector<ProfilePoint> profile;
+  for (const ScanHeight& height : longest) profile.push_back(height.point);
+  return profile;
+}
+
+ScannedTexture fitScanTexture(const SurfaceTarget& target, const FilteredScan& scan,
+                              const std::vector<CameraPose>& poses, const Rig& rig,
+                              const std::vector<PathSample>& path, const Registration& registration,
+                              const FitOptions1d& options) {
+  const double compliance = registration.compliances.empty() ? 0 : registration.compliances.front();
+  ScannedTexture found;
+  found.heights =
+      heightsOverMesh(target, scan, poses, rig, registration.mesh_from_path, compliance).heights;
+  std::vector<TimedPoint> points;
+  for (std::size_t i = 0; i < path.size(); ++i)
+    if (registration.counts[i])
+      points.push_back({path[i].t, registration.mesh_from_path * path[i].position});
+  found.strokes = strokesOf(points, placesOf(found.heights));
+  found.fitted = fitTexture(profileOf(found.heights), options);
+  if (compliance > 0) found.fitted.texture.compliance = compliance;
+  return found;
+}
+
+LaidTexture layScanTexture(const TriangleMesh& mesh, const std::vector<PathOnMesh>& strokes,
+                           const LayOptions& options, const Progress& progress) {
+  const std::vector<std::int32_t> usable = usableTriangles(mesh);
+  if (usable.empty()) throw Error("the mesh has no face that a texture can lie on");
+  TriangleMesh on;
+  on.positions = mesh.positions;
+  for (const std::int32_t face : usable)
+    on.triangles.push_back(mesh.triangles[static_cast<std::size_t>(face)]);
+  const PathGround ground(std::move(on));
+  LaidTexture laid = layTexture(ground, strokes, options, progress);
+  const double size = bounds(ground.mesh).sizes().norm();
+  if (laid.farthest > kFarOfSize * size)
+    throw Error("lies up to " + formatLength(laid.farthest) + " from a mesh of " +
+                formatLength(size) + "; is it registered, and the mesh's unit right?");
+  if (laid.faces.empty()) throw Error("no face on its way can take coordinates");
+  for (TexturedFace& face : laid.faces) face.face = usable[static_cast<std::size_t>(face.face)];
+  return laid;
+}
+
+void writeTexturedMesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                       std::vector<TexturedFace> faces, double scale) {
+  for (TexturedFace& face : faces)
+    for (Vec2& at : face.at) at /= scale;
+  writeTexturedObj(path, mesh, faces);
+}
+
+Scene texturedScene(TriangleMesh mesh, const std::string& name,
+                    const std::vector<ScannedTexture>& textures) {
+  Scene scene = sceneOf(std::move(mesh), name);
+  LaidTextures laid;
+  double stiffness = 0, known = 0;
+  for (const ScannedTexture& scanned : textures) {
+    const auto number = static_cast<std::int32_t>(laid.library.size() + 1);
+    std::vector<TexturedFace> faces = scanned.laid.faces;
+    for (TexturedFace& face : faces) face.texture = number;
+    laid.faces = laidOver(faces, laid.faces);
+    laid.library[number] = feltTexture(scanned.fitted.texture);
+    stiffness += laid.library[number]->stiffness;
+    known += laid.library[number]->stiffness > 0;
+  }
+  if (known > 0) scene.haptics.stiffness = std::round(stiffness / known);
+  ObjectPaint paint;
+  paint.textures = std::make_shared<const LaidTextures>(std::move(laid));
+  scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
+  return scene;
+}
+
+} // namespace patina
