@@ -93,6 +93,7 @@ void pressAgain(const SurfaceTarget& target, const std::vector<Vec3>& points, co
   again.starts += all.registration.starts;
   again.iterations += all.registration.iterations;
   again.evaluations += all.registration.evaluations;
+  again.compliances.resize(paths.size());
   for (std::size_t s = 0; s < paths.size(); ++s)
     if (all.presses[s] && all.presses[s]->isTold())
       again.compliances[s] = all.presses[s]->compliance;
@@ -126,21 +127,23 @@ std::vector<PathSample> touchingOn(const TriangleMesh& mesh, std::vector<PathSam
   return path;
 }
 
-RegisteredScans registerScans(const SurfaceTarget& target, Paths paths,
-                              const ScanRegistrationOptions& options, Progress& progress) {
+namespace {
+
+// In the order of orderOf().
+RegisteredScans registerSorted(const SurfaceTarget& target, Paths paths,
+                               const ScanRegistrationOptions& options, Progress& progress) {
   RegisteredScans all;
-  for (std::vector<PathSample>& path : paths)
-    path = touchingOn(target.mesh(), std::move(path), all.warnings);
-  const std::vector<std::size_t> order = orderOf(paths);
   std::vector<PathSample> path;
   std::vector<Vec3> points;
   std::vector<std::size_t> scan;
-  for (const std::size_t s : order)
+  for (std::size_t s = 0; s < paths.size(); ++s) {
+    all.first.push_back(path.size());
     for (const PathSample& sample : paths[s]) {
       path.push_back(sample);
       points.push_back(sample.position);
       scan.push_back(s);
     }
+  }
   if (path.size() < kFewest) throw Error("has fewer than three samples in contact");
   RegistrationOptions fitting = optionsFor(path);
   fitting.noise = all.noise = options.noise.value_or(fitting.noise);
@@ -163,24 +166,45 @@ RegisteredScans registerScans(const SurfaceTarget& target, Paths paths,
   all.presses.resize(paths.size());
   if (!fitting.force.empty() && options.method == Method::distance)
     pressAgain(target, points, paths, fitting, all, progress);
-  if (all.registration.compliances.empty())
-    all.registration.compliances.assign(paths.size(), options.compliance.value_or(0));
+  all.registration.compliances.resize(paths.size(), options.compliance.value_or(0));
   if (options.refine && options.method == Method::distance) {
     std::vector<double> pressed = fitting.pressed;
     if (!fitting.force.empty())
       pressed = ScanForces(fitting.force, fitting.scan).pressed(all.registration.compliances);
     all.joint = refineAll(target, pressed, fitting, path, all.registration, progress);
   }
-
-  all.first.resize(paths.size());
-  std::size_t next = 0;
-  for (const std::size_t s : order) {
-    all.first[s] = next;
-    const auto begin = path.begin() + static_cast<std::ptrdiff_t>(next);
-    next += paths[s].size();
-    paths[s].assign(begin, path.begin() + static_cast<std::ptrdiff_t>(next));
+  for (std::size_t s = 0; s < paths.size(); ++s) {
+    const auto begin = path.begin() + static_cast<std::ptrdiff_t>(all.first[s]);
+    paths[s].assign(begin, begin + static_cast<std::ptrdiff_t>(paths[s].size()));
   }
   all.paths = std::move(paths);
+  return all;
+}
+
+// Of a list that is sorted, as it was before.
+template <class Value>
+void unsort(std::vector<Value>& sorted, const std::vector<std::size_t>& order) {
+  std::vector<Value> before(sorted.size());
+  for (std::size_t i = 0; i < order.size(); ++i) before[order[i]] = std::move(sorted[i]);
+  sorted = std::move(before);
+}
+
+} // namespace
+
+RegisteredScans registerScans(const SurfaceTarget& target, Paths paths,
+                              const ScanRegistrationOptions& options, Progress& progress) {
+  std::vector<std::string> warnings;
+  for (std::vector<PathSample>& path : paths)
+    path = touchingOn(target.mesh(), std::move(path), warnings);
+  const std::vector<std::size_t> order = orderOf(paths);
+  Paths sorted;
+  for (const std::size_t s : order) sorted.push_back(std::move(paths[s]));
+  RegisteredScans all = registerSorted(target, std::move(sorted), options, progress);
+  unsort(all.paths, order);
+  unsort(all.first, order);
+  unsort(all.presses, order);
+  unsort(all.registration.compliances, order);
+  all.warnings.insert(all.warnings.begin(), warnings.begin(), warnings.end());
   return all;
 }
 
