@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "geometry/mesh/mesh_report.h"
+#include "scan/scan_doubts.h"
 
 namespace patina {
 namespace {
@@ -118,7 +119,10 @@ Registration RegisteredScans::of(std::size_t scan) const {
 std::vector<PathSample> touchingOn(const TriangleMesh& mesh, std::vector<PathSample> path,
                                    std::vector<std::string>& warnings) {
   path = inContact(std::move(path));
-  const std::vector<PathSample> far = leaveOutFar(path, 2 * bounds(mesh).diagonal().norm());
+  std::vector<PathSample> near = path;
+  const std::vector<PathSample> far = leaveOutFar(near, 2 * bounds(mesh).diagonal().norm());
+  if (far.size() > near.size()) return path; // of another unit, which the registration finds out
+  path = std::move(near);
   if (!far.empty())
     warnings.push_back(
         "the sample at " + formatNumber(far.front().t) +
@@ -167,6 +171,8 @@ RegisteredScans registerSorted(const SurfaceTarget& target, Paths paths,
   if (!fitting.force.empty() && options.method == Method::distance)
     pressAgain(target, points, paths, fitting, all, progress);
   all.registration.compliances.resize(paths.size(), options.compliance.value_or(0));
+  if (options.search && options.method == Method::distance)
+    all.doubts = scanDoubts(target, points, fitting, all.registration, progress);
   if (options.refine && options.method == Method::distance) {
     std::vector<double> pressed = fitting.pressed;
     if (!fitting.force.empty())

@@ -34,13 +34,15 @@ struct RegisteredScans {
   std::optional<JointFit> joint; // where it was asked for
   double noise = 0;              // that was expected of the samples [m]
   std::vector<std::string> warnings;
+  std::vector<std::string> doubts; // of the mesh, see scanDoubts(): to be told with its name
 
   // What the registration says of one scan: its own misses, counts and compliance, all else of all.
   Registration of(std::size_t scan) const;
 };
 
 // The samples of a path that take part: those in contact (inContact()), no farther from the path's
-// middle than twice the mesh's diagonal. Appends a line to `warnings` for those that are so far.
+// middle than twice the mesh's diagonal, unless most are. Appends a line to `warnings` for those
+// that are so far.
 std::vector<PathSample> touchingOn(const TriangleMesh& mesh, std::vector<PathSample> path,
                                    std::vector<std::string>& warnings);
 

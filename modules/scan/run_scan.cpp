@@ -152,6 +152,8 @@ class Runner {
     report_.registered =
         registerScans(*target_, std::move(paths), options_.registration, progress_);
     const RegisteredScans& found = *report_.registered;
+    for (const std::string& line : found.doubts)
+      report_.warnings.push_back(options_.mesh.string() + ": " + line);
     report_.warnings.insert(report_.warnings.end(), found.warnings.begin(), found.warnings.end());
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       const Registration own = found.of(i);

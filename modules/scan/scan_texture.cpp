@@ -89,7 +89,7 @@ LaidTexture layScanTexture(const TriangleMesh& mesh, const std::vector<PathOnMes
   const double size = bounds(ground.mesh).sizes().norm();
   if (laid.farthest > kFarOfSize * size)
     throw Error("lies up to " + formatLength(laid.farthest) + " from a mesh of " +
-                formatLength(size) + "; is it registered, and the mesh's unit right?");
+                formatLength(size) + "; is it registered, and --unit right?");
   if (laid.faces.empty()) throw Error("no face on its way can take coordinates");
   for (TexturedFace& face : laid.faces) face.face = usable[static_cast<std::size_t>(face.face)];
   return laid;

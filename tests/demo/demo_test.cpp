@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/file.h"
 #include "geometry/io/textured_obj.h"
+#include "scan/run_scan.h"
 #include "support/fresh_folder.h"
 #include "workspace/workspace.h"
 
@@ -36,6 +38,34 @@ TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
   EXPECT_GT(readTexturedObj(demo.folder / "textured.obj").textured.size(), 1000u);
   EXPECT_TRUE(demoJson(demo).at("holds").asBool());
   EXPECT_NE(demoMarkdown(demo, {"paths.png"}).find("![paths](paths.png)"), std::string::npos);
+
+  // All steps at once from the same frames give the same bytes.
+  RunScanOptions again;
+  for (const DemoScan& one : demo.scans)
+    (one.name == "survey" ? again.also : again.folders).push_back(folder / ("scan-" + one.name));
+  again.mesh = folder / "toy.obj";
+  again.workspace = folder / "again";
+  for (const auto& scan : again.folders) std::filesystem::remove(scan / "poses.tum");
+  const RunScanReport ran = runScan(again, progress);
+  EXPECT_TRUE(ran.done);
+  EXPECT_EQ(ran.steps.size(), 4U + 4 + 4 + 3 + 1);
+  const auto areAlike = [&](const std::string& a, const std::string& b) {
+    EXPECT_TRUE(readFile(folder / a) == readFile(folder / b)) << a << " and " << b;
+  };
+  for (const DemoMaterial& material : demo.object.materials) {
+    const std::string scan = "scan-" + material.name + "/";
+    areAlike("path-" + material.name + ".csv", scan + "path.csv");
+    areAlike("registered-" + material.name + ".csv", scan + "registered.csv");
+    areAlike("heights-" + material.name + ".csv", scan + "heights.csv");
+    areAlike(material.name + ".json", scan + "texture.json");
+  }
+  areAlike("textured.obj", "scan-ribs/textured.obj");
+  EXPECT_EQ(loadWorkspace(folder / "again").objects.at(0).paint->textures->library.size(), 3U);
+  // A step again, from the files of those before it.
+  std::filesystem::rename(folder / "scan-ribs" / "texture.json", folder / "first.json");
+  again.workspace = folder / "once-more";
+  EXPECT_EQ(runScan(again, progress).steps.size(), 3U + 1);
+  areAlike("first.json", "scan-ribs/texture.json");
 
   // Felt again without its textures, the figures fail.
   Scene bare = demo.compiled->scene;

@@ -3,12 +3,18 @@
 #include <QComboBox>
 
 #include "acquisition/files/camera_file.h"
+#include "acquisition/files/registered_file.h"
 #include "acquisition/simulation/frame_renderer.h"
 #include "acquisition/tracking/lens.h"
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/aligning/aligned_scan.h"
 #include "core/error.h"
+#include "core/file.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/textured_obj.h"
 #include "gui/scan_fixture.h"
+#include "scan/run_scan.h"
+#include "workspace/texture_file.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -129,6 +135,40 @@ TEST_F(SceneScansTest, ATextureOfAFittedScanYieldsAsTheFitFound) {
   ASSERT_TRUE(paint && paint->textures);
   EXPECT_EQ(paint->textures->library.at(1)->value.compliance, compliance);
   EXPECT_EQ(find<QLabel>("texture_hint")->text(), QString());
+}
+
+// To the last bit what the command makes of the same folder and mesh.
+TEST_F(SceneScansTest, OneButtonLaysWhatPatinaScanLays) {
+  const TriangleMesh ball = icosphere(0.04, 12);
+  fs::copy(scan_, folder_ / "again" / scan_.filename(), fs::copy_options::recursive);
+  openWorkspace(ball);
+  clickAction("desk_scan");
+  ASSERT_TRUE(openScan());
+  clickOn("scan_texture");
+  ASSERT_TRUE(waitUntil([&] { return status().done == 1; }, 60000));
+  const auto& paint = scene().objects.at(0).paint;
+  ASSERT_TRUE(paint && paint->textures);
+  keepPicture("scan_texture");
+
+  const fs::path again = folder_ / "again" / scan_.filename();
+  writeMesh(folder_ / "ball.ply", ball);
+  RunScanOptions options;
+  options.folders = {again};
+  options.mesh = folder_ / "ball.ply";
+  options.unit = MeshUnit::m;
+  options.workspace = folder_ / "by-command";
+  Progress progress;
+  ASSERT_TRUE(runScan(options, progress).done);
+  writeTexture(folder_ / "texture.json", paint->textures->library.at(1)->value);
+  EXPECT_EQ(readFile(folder_ / "texture.json"), readFile(again / "texture.json"));
+  const Alignment& laid = window_->findChild<AlignDesk*>()->alignment();
+  EXPECT_EQ(registeredText(laid.path(), laid.registration()), readFile(again / "registered.csv"));
+  const std::vector<TexturedFace> faces = readTexturedObj(again / "textured.obj").textured;
+  ASSERT_EQ(faces.size(), paint->textures->faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    EXPECT_EQ(faces[i].face, paint->textures->faces[i].face);
+    EXPECT_EQ(faces[i].at, paint->textures->faces[i].at);
+  }
 }
 
 // The second is asked for before the first is done.

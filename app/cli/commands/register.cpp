@@ -277,6 +277,7 @@ int runRegister(RegisterOptions options, Console& console) {
   writeRegisteredPath(options.output, scans.paths[0], scans.of(0));
   if (!options.report.empty())
     writeFileAtomically(options.report, console.published(report).dump() + "\n");
+  for (const std::string& line : scans.doubts) console.warn(options.mesh.string() + ": " + line);
   if (!found.converged)
     console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
                                          "noise lets expect");

@@ -238,12 +238,15 @@ void AlignDesk::registerFromHere() {
         rest();
         move(found.mesh_from_path);
         settle(found);
+        emit fitted(!isDoubtful(found));
       });
     } catch (const std::exception& error) {
       deliver(true, [this, rest, problem = QString::fromStdString(error.what())] {
         rest();
         panel_->setFit(problem);
         emit changed();
+        emit said({problem, true});
+        emit fitted(false);
       });
     }
   });

@@ -39,6 +39,7 @@ class AlignDesk : public QObject {
   void changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // the path stays where it lies
   bool isKept() const;    // where the path lies, or nobody has laid it there
   bool settlePlacement(); // kept or given up; false: the person goes on
+  void registerFromHere(); // from where a hand has put the path, or from nowhere
   void cancel();
   void undo();
   void redo();
@@ -46,6 +47,7 @@ class AlignDesk : public QObject {
 
  signals:
   void changed();
+  void fitted(bool is_certain); // a fit has ended, and the path lies where it says
   void said(const patina::Message& message);
 
  private:
@@ -56,7 +58,6 @@ class AlignDesk : public QObject {
   void showPlace();                                  // of the step that is done
   void draw();
   void drawMap();
-  void registerFromHere();
   void setPicking(bool on);
   void pick(const Ray& sight, double reach);
 

@@ -89,6 +89,7 @@ void ScanDesk::connectScan() {
   });
   connect(cells_, &ScanCells::openAsked, this, &ScanDesk::openDialog);
   connect(panel_, &ScanPanel::openAsked, this, &ScanDesk::openDialog);
+  connect(panel_, &ScanPanel::textureAsked, this, &ScanDesk::textureAsked);
   connect(panel_, &ScanPanel::closeAsked, &scan_, &OpenScan::close);
   connect(panel_, &ScanPanel::keepAsked, this, [this] {
     try {

@@ -37,6 +37,7 @@ class ScanDesk : public QObject {
 
  signals:
   void pathMade(const QString& name, const std::vector<patina::PathSample>& path);
+  void textureAsked();
   void opened(); // a person has asked for it, and there it is
   void changed();
   void said(const patina::Message& message);

@@ -29,6 +29,7 @@ ScanPanel::ScanPanel(OpenScan& scan, QWidget* parent)
       color_(new QComboBox(this)), mesh_(new QCheckBox(tr("Mesh"), this)),
       camera_(new QCheckBox(tr("Camera"), this)), open_(new QPushButton(tr("Open scan…"), this)),
       keep_(new QPushButton(tr("Keep poses and path"), this)),
+      texture_(new QPushButton(tr("Texture of this scan"), this)),
       close_(new QPushButton(tr("Close scan"), this)) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
@@ -56,12 +57,17 @@ ScanPanel::ScanPanel(OpenScan& scan, QWidget* parent)
   keep_->setObjectName(QStringLiteral("keep_path"));
   keep_->setToolTip(tr("Writes poses.tum and path.csv into the scan's folder, as patina track and "
                        "patina filter do; what is there stays"));
+  texture_->setObjectName(QStringLiteral("scan_texture"));
+  texture_->setToolTip(
+      tr("All that is left to do, as patina scan does it: finds where the path lies "
+         "on the open mesh, and lays the texture that was scanned onto it"));
   close_->setObjectName(QStringLiteral("close_scan"));
   close_->setToolTip(tr("The scan goes from the window, and stays where it is on disk"));
   column->addWidget(shown_);
-  for (QPushButton* button : {open_, keep_, close_}) column->addWidget(button);
+  for (QPushButton* button : {open_, keep_, texture_, close_}) column->addWidget(button);
   connect(open_, &QPushButton::clicked, this, &ScanPanel::openAsked);
   connect(keep_, &QPushButton::clicked, this, &ScanPanel::keepAsked);
+  connect(texture_, &QPushButton::clicked, this, &ScanPanel::textureAsked);
   connect(close_, &QPushButton::clicked, this, &ScanPanel::closeAsked);
   connect(color_, qOverload<int>(&QComboBox::currentIndexChanged), this, &ScanPanel::shownChanged);
   for (QCheckBox* box : {mesh_, camera_})
@@ -101,6 +107,7 @@ void ScanPanel::refresh() {
   shown_->setVisible(open);
   close_->setVisible(open);
   keep_->setVisible(open && canKeep(scan_));
+  texture_->setVisible(open && scan_.path() != nullptr && !scan_.path()->filtered.whole.empty());
 }
 
 void ScanPanel::fill() {

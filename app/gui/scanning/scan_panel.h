@@ -26,6 +26,7 @@ class ScanPanel : public QGroupBox {
  signals:
   void openAsked();
   void keepAsked();
+  void textureAsked();
   void closeAsked();
   void shownChanged();
 
@@ -39,7 +40,7 @@ class ScanPanel : public QGroupBox {
   QWidget* shown_;
   QComboBox* color_;
   QCheckBox *mesh_, *camera_;
-  QPushButton *open_, *keep_, *close_;
+  QPushButton *open_, *keep_, *texture_, *close_;
 };
 
 } // namespace patina

@@ -19,7 +19,7 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
   if (!align.alignment().isReady() || (align.name() != scan.name() && align.name() != stored))
     throw Error("the scan's path is not laid onto the mesh: do that on the desk Align");
   PlacedScan placed;
-  placed.name = scan.name().toStdString();
+  placed.name = scan.files()->scan.name;
   placed.filtered = path.filtered;
   std::erase_if(placed.filtered.path, [](const PathSample& sample) { return !sample.touching; });
   placed.poses = path.poses;

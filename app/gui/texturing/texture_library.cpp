@@ -198,6 +198,7 @@ void TextureLibrary::takeFromScan() {
     scan = placed_();
   } catch (const Error& error) {
     card_->setHint(QString::fromStdString(error.what()));
+    emit said({QString::fromStdString(error.what()), true});
     return;
   }
   const QString title = tr("A texture of the scan %1").arg(QString::fromStdString(scan.name));
@@ -220,6 +221,8 @@ void TextureLibrary::takeFromScan() {
       deliver(true, [this, felt, number, rings, hint, strokes = found.strokes] {
         work_.reset();
         card_->setHint(hint);
+        emit said({tr("The texture of %1 lies on the mesh")
+                       .arg(QString::fromStdString(felt->value.name))});
         apply("lay " + felt->value.name, [felt, number, rings, strokes](const Scene& scene) {
           const Progress quiet;
           return withLaid(scene, 0, strokes, {number, felt, 0}, rings, quiet);
@@ -230,6 +233,7 @@ void TextureLibrary::takeFromScan() {
       deliver(true, [this, problem = QString::fromStdString(error.what())] {
         work_.reset();
         card_->setHint(problem);
+        emit said({problem, true});
         emit changed();
       });
     }

@@ -27,6 +27,7 @@ class TextureLibrary : public QObject {
   const std::optional<Work>& work() const { return work_; }
 
   // Who edits; asks for a scan's texture have `placed` say which, by a throw why there is none.
+  void takeFromScan(); // lays what the scan that is open says
   void setSources(EditThread& edits, std::function<PlacedScan()> placed);
   void setScene(std::shared_ptr<const CompiledScene> scene);
   void read(const std::filesystem::path& file); // a texture, into the list
@@ -47,7 +48,6 @@ class TextureLibrary : public QObject {
   void lay(int object, const std::vector<Vec3>& points);
   void swap(const std::filesystem::path& file);
   void takeOff();
-  void takeFromScan();
   void apply(const std::string& what, std::function<Scene(const Scene&)> edit);
   std::shared_ptr<const FeltTexture> readOrTell(const std::filesystem::path& file);
 

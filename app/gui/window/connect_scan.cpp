@@ -56,6 +56,22 @@ void MainWindow::connectScan() {
             parts_.align->cells()->offerMesh(
                 std::filesystem::exists(mesh) ? mesh : std::filesystem::path());
           });
+  // The steps that are left, one after the other.
+  const auto goes_on = std::make_shared<bool>(false);
+  connect(parts_.scan, &ScanDesk::textureAsked, parts_.align, [this, goes_on] {
+    if (!parts_.align->alignment().isReady()) {
+      say({tr("Open the mesh that was scanned first, so that the path can lie on it"), true});
+      return;
+    }
+    *goes_on = true;
+    parts_.align->registerFromHere();
+  });
+  connect(parts_.align, &AlignDesk::fitted, parts_.texture, [this, goes_on](bool is_certain) {
+    if (!std::exchange(*goes_on, false)) return;
+    if (is_certain) return parts_.texture->library().takeFromScan();
+    if (const auto& found = parts_.align->alignment().found())
+      say({tr("%1. No texture was made of it").arg(doubtWords(*found)), true});
+  });
   connect(parts_.align->cells(), &AlignCells::meshAsked, &documents_, [this](const QString& file) {
     LoadRequest request;
     request.path = file.toStdString();

@@ -146,8 +146,10 @@ void addUnknown(FreeMotions& free, const ErrorLaw& law, const MotionScale& scale
   const Eigen::Index before = free.basis.cols();
   while (free.basis.cols() < 6) {
     const SymmetricEigen eigen(law.covariance(free.basis));
-    if (!(std::sqrt(eigen.values[5]) > scale.radius / 2)) break;
-    add(free, eigen.vectors.col(5));
+    // Of what is nearly singular rounding may make a variance below 0.
+    const int most = -eigen.values[0] > eigen.values[5] ? 0 : 5;
+    if (!(std::sqrt(std::abs(eigen.values[most])) > scale.radius / 2)) break;
+    add(free, eigen.vectors.col(most));
   }
   if (free.basis.cols() > before) free.named = named(free.basis, scale);
 }
