@@ -56,9 +56,10 @@ Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec
   return to.inverse() * m * from;
 }
 
-std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board) {
+std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board, bool quick) {
   std::vector<Vec2> found;
-  const std::string cause = visionLibrary().chessboard(image, board.columns, board.rows, found);
+  const std::string cause =
+      visionLibrary().chessboard(image, board.columns, board.rows, quick, found);
   if (!cause.empty()) throw Error(cause);
   if (found.empty()) return std::nullopt;
   BoardView view;
@@ -249,8 +250,8 @@ Board parseBoard(const std::string& text) {
   return board;
 }
 
-std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board) {
-  auto view = board.family.empty() ? chessboardIn(image, board) : charucoIn(image, board);
+std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board, bool quick) {
+  auto view = board.family.empty() ? chessboardIn(image, board, quick) : charucoIn(image, board);
   if (view && view->pixel.size() < kFewestCorners) view.reset();
   return view;
 }

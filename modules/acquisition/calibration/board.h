@@ -21,9 +21,10 @@ struct Board {
 // "chessboard:9x6:25mm", "charuco:5x7:40mm:20mm:6x6_250". Throws Error saying what is expected.
 Board parseBoard(const std::string& text);
 
-// Inner corners; nothing where fewer than six are seen. Of a chessboard all or nothing. Throws
-// Error where the family has too few markers for the board.
-std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board);
+// Inner corners; nothing where fewer than six are seen. Of a chessboard all or nothing; `quick`
+// takes a tenth of the time where there is none, and may miss one. Throws Error where the family
+// has too few markers for the board.
+std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board, bool quick = false);
 
 // Where the view has the board's four outer corners [px], from the plane's map.
 std::array<Vec2, 4> outlineOf(const BoardView& view, const Board& board);

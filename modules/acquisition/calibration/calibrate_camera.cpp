@@ -29,9 +29,9 @@ double apart(const std::array<Vec2, 4>& a, const std::array<Vec2, 4>& b, double 
   return std::sqrt(squares) / diagonal;
 }
 
-std::optional<BoardView> boardIn(const GreyFrame& image, const Board& board,
+std::optional<BoardView> boardIn(const GreyFrame& image, const Board& board, bool quick,
                                  const std::string& name) try {
-  return findBoard(image, board);
+  return findBoard(image, board, quick);
 } catch (const FileError&) {
   throw;
 } catch (const Error& error) {
@@ -162,7 +162,7 @@ CalibratedCamera calibrateCamera(FrameSource& frames, const Board& board,
     const GreyFrame size{image.width, image.height, {}, image.orientation};
     sizes.add(size, frame->name);
     turns.add(image, frame->name);
-    const auto view = boardIn(image, board, frame->name);
+    const auto view = boardIn(image, board, !pictures, frame->name);
     if (seen) seen(i, view);
     if (!view) {
       if (found.first_rejected.empty()) found.first_rejected = frame->name;
