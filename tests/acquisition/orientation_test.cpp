@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
+#include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
+#include "acquisition/recording/recorder.h"
 #include "acquisition/tracking/lens.h"
 #include "acquisition/tracking/track_frames.h"
 #include "core/error.h"
@@ -126,6 +131,35 @@ TEST_F(OrientedFrames, OfJpegFilesDifferByTheirCompressionOnly) {
   }
   std::printf("poses differ by %.2g at most\n", most);
   EXPECT_LT(most, 0.01);
+}
+
+TEST_F(OrientedFrames, AreRecordedAsShownWithTheirCamera) {
+  store(6, test::writeTiff);
+  const TrackedFrames shown = tracked(rig.camera);
+  const fs::path made = test::freshFolder("recorded"), known = test::freshFolder("known");
+  writeFileAtomically(known / "camera.yml", cameraText(storedCamera(6)));
+  writeFileAtomically(known / "rig.json", rigText({}, rig.markers));
+  RecordingSetup setup;
+  setup.folder = made / "scan";
+  setup.camera = known / "camera.yml";
+  setup.rig = known / "rig.json";
+  {
+    Recorder recorder(openFrames(folder.string(), 30), nullptr, setup);
+    while (recorder.poll().state.running) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const RecordingState state = recorder.poll().state;
+    EXPECT_EQ(state.error, "");
+    ASSERT_EQ(state.notes.size(), 1u);
+    EXPECT_NE(state.notes[0].find("is turned along"), std::string::npos) << state.notes[0];
+  }
+  const Camera camera = readCamera(setup.folder / "camera.yml");
+  EXPECT_NEAR(camera.cx, rig.camera.cx, 1e-9);
+  EXPECT_NEAR(camera.distortion[2], rig.camera.distortion[2], 1e-12);
+  Progress progress;
+  const TrackedFrames again =
+      trackFrames(*openFrames(setup.folder.string(), 0), camera, rig.markers, {}, progress);
+  EXPECT_LT(apart(again, shown), 1e-6);
+  fs::remove_all(made);
+  fs::remove_all(known);
 }
 
 TEST_F(OrientedFrames, ThatAreNotTurnedAlikeSaySo) {

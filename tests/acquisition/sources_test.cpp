@@ -463,6 +463,9 @@ TEST_F(ProbedVideos, HaveTheTimesThatFfprobeTells) {
   const std::string whole = (folder / "reordered.mp4").string(), cut = folder / "cut.mp4";
   (void)output("ffmpeg -v error -y -ss 0.33 -i " + whole + " -c copy " + cut + " 2>/dev/null");
   ASSERT_TRUE(fs::exists(cut));
+  EXPECT_EQ(timesOf(*openFrames(cut, 30)).size(), probed(cut).size());
+  EXPECT_EQ(timesOf(*openFrames((folder / "reordered.mkv").string(), 30)).size(),
+            probed(folder / "reordered.mkv").size());
   EXPECT_EQ(timesOf(*openFrames(cut, 0)).size(), probed(cut).size());
   // Nothing but pictures: FFmpeg supposes 25 a second.
   const std::string raw = folder / "raw.mjpeg";

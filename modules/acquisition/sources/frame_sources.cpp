@@ -163,7 +163,7 @@ class VideoFrames : public FrameSource {
     const auto said = static_cast<std::size_t>(reader_->count);
     if (at_ + 2 + said / 100 >= said) return true;
     const double seconds = reader_->rate > 0 ? reader_->count / reader_->rate : 0;
-    if (!untimed_ && !(told_rate_ > 0) && stamp_ + 2 * gap_ >= 0.99 * seconds) return true;
+    if (!untimed_ && stamp_ + 2 * gap_ >= 0.99 * seconds) return true;
     return reader_->held >= reader_->count;
   }
 
