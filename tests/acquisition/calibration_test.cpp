@@ -121,6 +121,27 @@ TEST(Board, CornersAreFoundWhereTheyAreRendered) {
   EXPECT_LT(std::sqrt(squares), 0.1);
 }
 
+// Its squares are markers without codes.
+TEST(Board, IsFoundQuicklyAsPreciselyAsAtLeisure) {
+  const Board board = parseBoard("chessboard:9x6:25mm");
+  std::vector<PrintedMarker> printed;
+  for (int y = 0; y < 7; ++y)
+    for (int x = y % 2; x < 10; x += 2) {
+      PrintedMarker one{{"4x4_50", 0, 0.025, Pose::Identity()}, 4, 0, 0};
+      one.place.probe_from_marker.translation() = 0.025 * Vec3(x + 0.5, -(y + 0.5), 0);
+      printed.push_back(one);
+    }
+  std::mt19937 random(5);
+  const Pose pose = test::boardPose(board, random, 0.4);
+  const GreyFrame image =
+      FrameRenderer(test::largeCamera(), printed).render({pose}, test::boardLook(), 1);
+  const auto view = findBoard(image, board), quick = findBoard(image, board, true);
+  ASSERT_TRUE(view && quick);
+  ASSERT_EQ(quick->pixel.size(), 54u);
+  for (std::size_t i = 0; i < 54; ++i)
+    EXPECT_LT((quick->pixel[i] - view->pixel[i]).norm(), 1e-3) << i;
+}
+
 TEST(Calibration, OfTheSharedChessboardIsNoWorseThanOpenCvs) {
   const Board board = parseBoard("chessboard:9x6:25mm");
   CameraFit fit;

@@ -12,6 +12,7 @@
 namespace patina {
 namespace {
 
+constexpr int kQuickSide = 960;           // of the picture that a quick search looks at [px]
 constexpr std::size_t kFewestCorners = 6; // corners of a view that is of use
 
 std::vector<std::string> partsOf(const std::string& text, char between) {
@@ -56,12 +57,29 @@ Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec
   return to.inverse() * m * from;
 }
 
+// Means of squares of `cells` pixels a side.
+GreyFrame shrunk(const GreyFrame& image, int cells) {
+  GreyFrame small{image.width / cells, image.height / cells, {}};
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      int sum = 0;
+      for (int k = 0; k < cells * cells; ++k)
+        sum += image.row(cells * y + k / cells)[cells * x + k % cells];
+      small.pixel.push_back(static_cast<std::uint8_t>(sum / (cells * cells)));
+    }
+  return small;
+}
+
 std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board, bool quick) {
+  // Corners are looked for to a pixel of what is searched, and then found anew.
+  const int cells = quick ? 1 + std::max(image.width, image.height) / kQuickSide : 1;
+  const GreyFrame smaller = cells > 1 ? shrunk(image, cells) : GreyFrame();
   std::vector<Vec2> found;
   const std::string cause =
-      visionLibrary().chessboard(image, board.columns, board.rows, quick, found);
+      visionLibrary().chessboard(cells > 1 ? smaller : image, board.columns, board.rows, found);
   if (!cause.empty()) throw Error(cause);
   if (found.empty()) return std::nullopt;
+  for (Vec2& corner : found) corner = cells * (corner + Vec2(0.5, 0.5)) - Vec2(0.5, 0.5);
   BoardView view;
   for (int y = 0; y < board.rows; ++y)
     for (int x = 0; x < board.columns; ++x) {

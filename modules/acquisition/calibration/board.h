@@ -22,8 +22,8 @@ struct Board {
 Board parseBoard(const std::string& text);
 
 // Inner corners; nothing where fewer than six are seen. Of a chessboard all or nothing; `quick`
-// takes a tenth of the time where there is none, and may miss one. Throws Error where the family
-// has too few markers for the board.
+// looks for it in a smaller picture, as a large one without any takes seconds. Throws Error where
+// the family has too few markers for the board.
 std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board, bool quick = false);
 
 // Where the view has the board's four outer corners [px], from the plane's map.

@@ -76,15 +76,12 @@ std::string family(const std::string& name, MarkerFamily& out) {
   });
 }
 
-std::string chessboard(const GreyFrame& image, int columns, int rows, bool quick,
-                       std::vector<Vec2>& corners) {
+std::string chessboard(const GreyFrame& image, int columns, int rows, std::vector<Vec2>& corners) {
   return guarded([&]() -> std::string {
     corners.clear();
     const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
     std::vector<cv::Point2f> found;
-    const int way = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE |
-                    (quick ? cv::CALIB_CB_FAST_CHECK : 0);
-    if (!cv::findChessboardCorners(view, {columns, rows}, found, way)) return "";
+    if (!cv::findChessboardCorners(view, {columns, rows}, found)) return "";
     for (const cv::Point2f& point : found) corners.emplace_back(point.x, point.y);
     return "";
   });

@@ -34,10 +34,8 @@ enum class VisionRefinement { none, subpix, contour, apriltag };
 struct VisionLibrary {
   // Its codes; not how many bits are forgiven.
   std::string (*family)(const std::string& name, MarkerFamily& out);
-  // Inner corners of a chessboard by rows, to about a pixel; none if it is not seen. Where there is
-  // none it takes seconds to say so, unless it may be `quick` and now and then miss one.
-  std::string (*chessboard)(const GreyFrame&, int columns, int rows, bool quick,
-                            std::vector<Vec2>& corners);
+  // Inner corners of a chessboard by rows, to about a pixel; none if it is not seen.
+  std::string (*chessboard)(const GreyFrame&, int columns, int rows, std::vector<Vec2>& corners);
   std::string (*markers)(const GreyFrame&, const std::string& family, VisionRefinement refinement,
                          std::vector<VisionMarker>& found);
   std::string (*calibrate)(const std::vector<BoardView>&, CameraFit& fit);
