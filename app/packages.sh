@@ -5,7 +5,7 @@
 # The last two are only read when the Debian package is made.
 PATINA_BUILD_PACKAGES="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libopenmesh-dev
   nlohmann-json3-dev libssl-dev libusb-1.0-0-dev libvtk9-qt-dev qtbase5-dev
-  libopenimageio-dev libopencv-contrib-dev libopencv-videoio-dev
+  libopenimageio-dev libopencv-contrib-dev libopencv-videoio-dev libavformat-dev
   libceres-dev dpkg-dev file"
 # For a machine without a display.
 PATINA_HEADLESS_PACKAGES="xvfb xauth libgl1-mesa-dri"

@@ -53,6 +53,8 @@ if(NOT PATINA_FUZZ)
         list(APPEND patina_missing libopencv-${part}-dev)
       endif()
     endforeach()
+    # OpenCV reads videos by it, and tells less of their times than they hold.
+    patina_need_module(libavformat-dev AVFORMAT libavformat libavcodec libavutil)
   endif()
   set(PATINA_VTK_COMPONENTS
     CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersGeneral FiltersSources

@@ -33,6 +33,7 @@ struct Camera {
 struct GreyFrame {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixel;
+  int orientation = 1; // EXIF's, by which it was turned to be as it is shown (orientation.h)
 
   const std::uint8_t* row(int y) const {
     return pixel.data() + static_cast<std::ptrdiff_t>(y) * width;
@@ -42,9 +43,9 @@ struct GreyFrame {
 // Square markers of one size of code. A bit is 1 where it is white; rows from the top, each from
 // the left, the first bit the highest. Around the bits lies a black border one bit wide.
 struct MarkerFamily {
-  std::string name;                // "4x4_50", "apriltag_36h11"
-  int side = 0;                    // bits a side
-  int correctable = 0;             // wrong bits that are forgiven: the rest tells codes from what is none
+  std::string name;    // "4x4_50", "apriltag_36h11"
+  int side = 0;        // bits a side
+  int correctable = 0; // wrong bits that are forgiven: the rest tells codes from what is none
   std::vector<std::uint64_t> code; // by id
 };
 

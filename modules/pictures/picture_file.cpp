@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -39,6 +41,30 @@ std::string extensionOf(const std::filesystem::path& path) {
 
 } // namespace
 
+bool isPictureByContent(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(32, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  const std::string_view all(head);
+  const auto has = [&](std::string_view magic, std::size_t at = 0) {
+    return all.substr(at, magic.size()) == magic;
+  };
+  using namespace std::string_view_literals;
+  // A bitmap's two letters are too few: its next field is the size of a header.
+  const bool bitmap =
+      has("BM"sv) && (all[14] == 12 || (all[14] >= 40 && all[14] <= 124)) && has("\0\0\0"sv, 15);
+  const bool portable = head[0] == 'P' &&
+                        ((head[1] >= '1' && head[1] <= '6') || head[1] == 'f' || head[1] == 'F') &&
+                        (head[2] == '\n' || head[2] == '\r' || head[2] == ' ' || head[2] == '\t');
+  const bool heif = has("ftyp"sv, 4) &&
+                    (has("heic"sv, 8) || has("heix"sv, 8) || has("mif1"sv, 8) || has("avif"sv, 8));
+  return has("\xff\xd8\xff"sv) || has("\x89PNG\r\n\x1a\n"sv) || has("II*\0"sv) || has("MM\0*"sv) ||
+         has("II+\0"sv) || has("MM\0+"sv) || (has("RIFF"sv) && has("WEBP"sv, 8)) || has("GIF8"sv) ||
+         has("\x76\x2f\x31\x01"sv) || has("#?RADIANCE"sv) || has("\0\0\0\x0cjP  "sv) ||
+         has("\xff\x4f\xff\x51"sv) || has("8BPS"sv) || has("SDPX"sv) || has("XPDS"sv) || bitmap ||
+         portable || heif;
+}
+
 Picture readPicture(const std::filesystem::path& path) {
   const std::string name = path.string();
   // Our own words for what the library would put in its own, or crash on.
@@ -52,7 +78,7 @@ Picture readPicture(const std::filesystem::path& path) {
   requireFinite(rows, name);
   if (rows.premultiplied) divideByAlpha(rows);
   flip(rows);
-  return {rows.width, rows.height, rows.channels, std::move(rows.value)};
+  return {rows.width, rows.height, rows.channels, std::move(rows.value), rows.orientation};
 }
 
 void writePicture(const std::filesystem::path& path, const Picture& picture, int bits) {

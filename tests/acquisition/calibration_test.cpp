@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "acquisition/calibration/board.h"
+#include "acquisition/calibration/calibrate_camera.h"
 #include "acquisition/calibration/pivot.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/simulation/simulated_pivot.h"
@@ -11,6 +12,8 @@
 #include "acquisition/vision_library.h"
 #include "core/decompose.h"
 #include "core/error.h"
+#include "support/oriented_pictures.h"
+#include "support/printed_board.h"
 #include "support/rendered_rig.h"
 #include "support/shared_data.h"
 
@@ -93,31 +96,10 @@ TEST(Board, IsReadFromItsWordsOrRefused) {
     EXPECT_THROW((void)parseBoard(wrong), Error) << wrong;
 }
 
-// A ChArUco board as printed markers: its white squares carry codes, its black ones are markers
-// without any.
-std::vector<PrintedMarker> printedBoard(const Board& board) {
-  const MarkerFamily& family = markerFamily(board.family);
-  std::vector<PrintedMarker> printed;
-  int id = 0;
-  for (int y = 0; y < board.rows; ++y)
-    for (int x = 0; x < board.columns; ++x) {
-      PrintedMarker one{{board.family, 0, board.square, Pose::Identity()}, family.side, 0};
-      one.place.probe_from_marker.translation() = board.square * Vec3(x + 0.5, -(y + 0.5), 0);
-      if ((x + y) % 2) {
-        one.code = family.code[static_cast<std::size_t>(id++)];
-        one.place.size = board.marker;
-      } else {
-        one.margin = 0;
-      }
-      printed.push_back(one);
-    }
-  return printed;
-}
-
 TEST(Board, CornersAreFoundWhereTheyAreRendered) {
   // Markers wide enough for their margins to fill the white squares.
   const Board board = parseBoard("charuco:5x7:30mm:22.5mm:4x4_50");
-  std::vector<PrintedMarker> printed = printedBoard(board);
+  const std::vector<PrintedMarker> printed = test::printedBoard(board);
   const Camera camera = test::largeCamera();
   const FrameRenderer renderer(camera, printed);
   Pose pose = Pose::Identity();
@@ -137,6 +119,27 @@ TEST(Board, CornersAreFoundWhereTheyAreRendered) {
   std::printf("%zu corners, %.3f px\n", view->board.size(), std::sqrt(squares));
   EXPECT_GE(view->board.size(), 20u);
   EXPECT_LT(std::sqrt(squares), 0.1);
+}
+
+// Its squares are markers without codes.
+TEST(Board, IsFoundQuicklyAsPreciselyAsAtLeisure) {
+  const Board board = parseBoard("chessboard:9x6:25mm");
+  std::vector<PrintedMarker> printed;
+  for (int y = 0; y < 7; ++y)
+    for (int x = y % 2; x < 10; x += 2) {
+      PrintedMarker one{{"4x4_50", 0, 0.025, Pose::Identity()}, 4, 0, 0};
+      one.place.probe_from_marker.translation() = 0.025 * Vec3(x + 0.5, -(y + 0.5), 0);
+      printed.push_back(one);
+    }
+  std::mt19937 random(5);
+  const Pose pose = test::boardPose(board, random, 0.4);
+  const GreyFrame image =
+      FrameRenderer(test::largeCamera(), printed).render({pose}, test::boardLook(), 1);
+  const auto view = findBoard(image, board), quick = findBoard(image, board, true);
+  ASSERT_TRUE(view && quick);
+  ASSERT_EQ(quick->pixel.size(), 54u);
+  for (std::size_t i = 0; i < 54; ++i)
+    EXPECT_LT((quick->pixel[i] - view->pixel[i]).norm(), 1e-3) << i;
 }
 
 TEST(Calibration, OfTheSharedChessboardIsNoWorseThanOpenCvs) {
@@ -195,6 +198,141 @@ TEST(Calibration, FindsAKnownCameraWithinItsDeviations) {
     EXPECT_LT(std::abs(errors[i]), 4 * fit.deviation[i]);
     EXPECT_GT(fit.deviation[i], 0.01);
   }
+}
+
+// Views of a board as a camera that goes on, a video or pictures give them.
+class BoardFrames : public FrameSource {
+ public:
+  BoardFrames(std::vector<GreyFrame> images, double step, bool pictures)
+      : images_(std::move(images)), step_(step), pictures_(pictures) {}
+  std::optional<SourceFrame> next() override {
+    if (at_ == images_.size()) return std::nullopt;
+    const double t = step_ * static_cast<double>(at_);
+    const std::string name = "frame " + std::to_string(at_);
+    return SourceFrame{t, name, images_[at_++], {}};
+  }
+  std::optional<std::size_t> count() const override { return images_.size(); }
+  bool isLive() const override { return false; }
+  void stop() noexcept override {}
+  bool arePictures() const override { return pictures_; }
+
+ private:
+  std::vector<GreyFrame> images_;
+  double step_;
+  bool pictures_;
+  std::size_t at_ = 0;
+};
+
+class Boards : public testing::Test {
+ protected:
+  CalibratedCamera calibrated(std::vector<GreyFrame> images, bool pictures = true) const {
+    BoardFrames frames(std::move(images), 1 / 30., pictures);
+    Progress progress;
+    return calibrateCamera(frames, board, "the board", "views", progress);
+  }
+  std::vector<GreyFrame> views(int count, bool white_first, double blur = 0.6) const {
+    const FrameRenderer renderer(camera, test::printedBoard(board, white_first));
+    FrameLook look = test::boardLook();
+    look.blur = blur;
+    std::mt19937 random(4);
+    std::vector<GreyFrame> images;
+    for (int i = 0; i < count; ++i)
+      images.push_back(renderer.render({test::boardPose(board, random, 0.35)}, look, 1));
+    return images;
+  }
+
+  Board board = parseBoard("charuco:6x8:25mm:18.75mm:4x4_50");
+  Camera camera = test::smallCamera();
+};
+
+TEST_F(Boards, OfBothLayoutsCalibrateAlike) {
+  for (const bool white_first : {false, true}) {
+    const CalibratedCamera found = calibrated(views(10, white_first));
+    std::printf("rms %.3f px, fx %.2f +- %.2f\n", found.fit.rms, found.fit.camera.fx,
+                found.fit.deviation[0]);
+    EXPECT_EQ(found.views, 10u);
+    EXPECT_EQ(found.doubt, "");
+    EXPECT_LT(found.fit.rms, 0.2);
+    EXPECT_NEAR(found.fit.camera.fx, camera.fx, 4 * found.fit.deviation[0] + 1);
+  }
+}
+
+TEST_F(Boards, OfAnotherNumberOfSquaresAreDoubted) {
+  const auto images = views(6, false);
+  board = parseBoard("charuco:7x8:25mm:18.75mm:4x4_50");
+  const CalibratedCamera found = calibrated(images);
+  std::printf("rms %.1f px\n", found.fit.rms);
+  EXPECT_NE(found.doubt.find("views: corners miss by "), std::string::npos) << found.doubt;
+  EXPECT_NE(found.doubt.find("the number of its squares"), std::string::npos) << found.doubt;
+}
+
+// A camera that is held upright for some pictures: its pixels are the same ones.
+TEST_F(Boards, InPicturesThatAreTurnedInSeveralWaysCalibrateOneCamera) {
+  std::vector<GreyFrame> images = views(10, false);
+  const CalibratedCamera before = calibrated(images);
+  for (const std::size_t i : {1u, 4u, 7u}) images[i] = turned(images[i], i == 4 ? 3 : 6);
+  const CalibratedCamera found = calibrated(images);
+  EXPECT_NEAR(found.fit.camera.cx, before.fit.camera.cx, 0.5);
+  EXPECT_NEAR(found.fit.camera.cy, before.fit.camera.cy, 0.5);
+  EXPECT_LT(found.fit.rms, before.fit.rms + 0.05);
+  ASSERT_EQ(found.notes.size(), 1u);
+  EXPECT_NE(found.notes[0].find("the camera was held in several ways"), std::string::npos)
+      << found.notes[0];
+  // Half turns leave the size as it is: the fit tells.
+  images = views(10, false);
+  for (const std::size_t i : {1u, 4u, 7u}) images[i] = turned(images[i], 3);
+  EXPECT_NEAR(calibrated(images).fit.camera.cx, before.fit.camera.cx, 0.5);
+  // Files that were written in several ways are of one camera as they are shown.
+  images = views(10, false);
+  for (const std::size_t i : {1u, 4u, 7u}) images[i].orientation = 3;
+  EXPECT_NEAR(calibrated(images).fit.camera.cx, before.fit.camera.cx, 0.5);
+}
+
+// Thirty places, each for ten frames, of which three are blurred.
+TEST_F(Boards, InAVideoAreChosenSharpAndApart) {
+  const auto sharp = views(30, true), blurred = views(30, true, 3);
+  std::vector<GreyFrame> images;
+  for (std::size_t i = 0; i < 30; ++i)
+    for (int k = 0; k < 10; ++k) images.push_back(k % 3 == 2 ? blurred[i] : sharp[i]);
+  const CalibratedCamera found = calibrated(images, false);
+  std::printf("%zu of %zu, rms %.3f px, fx %.2f +- %.2f\n", found.views, found.frames,
+              found.fit.rms, found.fit.camera.fx, found.fit.deviation[0]);
+  EXPECT_EQ(found.frames, 300u);
+  EXPECT_GE(found.views, 25u);
+  EXPECT_LE(found.views, 30u);
+  EXPECT_LT(found.fit.rms, 0.2);
+  EXPECT_NEAR(found.fit.camera.fx, camera.fx, 4 * found.fit.deviation[0] + 1);
+}
+
+TEST_F(Boards, ThatHardlyMoveInAVideoTellNoCamera) {
+  const std::vector<GreyFrame> images(20, views(1, false)[0]);
+  try {
+    (void)calibrated(images, false);
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(
+        std::string(error.what())
+            .find("is seen in 20 of 20 views, of which 1 are sharp and differ; three at least"),
+        std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Views, AreChosenApartFirstAndNeverMoreThanAskedFor) {
+  std::vector<ViewChoice> views;
+  for (int i = 0; i < 100; ++i) {
+    const Vec2 at(5 * i, 0);
+    views.push_back({{at, at + Vec2(100, 0), at + Vec2(100, 80), at + Vec2(0, 80)},
+                     i % 2 ? 0.1 : 1.0,
+                     0.1 * i});
+  }
+  const auto two = chooseViews(views, 800, 2);
+  EXPECT_EQ(two, (std::vector<std::size_t>{0, 98}));
+  const auto all = chooseViews(views, 800, 60);
+  EXPECT_EQ(all.size(), 50u); // the sharp ones
+  for (const std::size_t i : all) EXPECT_EQ(i % 2, 0u);
+  EXPECT_EQ(chooseViews(views, 800, 10).size(), 10u);
+  EXPECT_TRUE(chooseViews({}, 800, 10).empty());
 }
 
 } // namespace

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <fcntl.h>
 #include <future>
 #include <opencv2/videoio.hpp>
+#include <sstream>
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
@@ -15,6 +18,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "support/fresh_folder.h"
+#include "support/oriented_pictures.h"
 
 namespace patina {
 namespace {
@@ -75,6 +79,36 @@ TEST_F(Sources, GiveAFoldersFramesInTheirOrder) {
       EXPECT_EQ(frame->image.pixel, frameOf(i).pixel);
   }
   EXPECT_FALSE(source->next());
+}
+
+TEST_F(Sources, TellPicturesByTheirContentAndCountTheRest) {
+  const fs::path pictures = folder / "pictures";
+  fs::create_directories(pictures);
+  writeFileAtomically(pictures / "IMG_10.JPG", test::jpegOf(frameOf(3)));
+  writeFileAtomically(pictures / "IMG_9.jpeg", test::jpegOf(frameOf(2)));
+  writeGrey(folder / "one.png", frameOf(0));
+  fs::rename(folder / "one.png", pictures / "IMG_0001.PNG");
+  writeGrey(folder / "two.png", frameOf(1));
+  fs::rename(folder / "two.png", pictures / "IMG_2.webp"); // whatever it calls itself
+  test::writeTiff(pictures / "IMG_11", frameOf(4), 1);
+  for (const char* other : {"Thumbs.db", "readme.txt", ".DS_Store", "._IMG_9.jpeg"})
+    writeFileAtomically(pictures / other, "no picture");
+  writeFileAtomically(pictures / "camera.yml", "of the scan");
+  writeFileAtomically(pictures / "IMG_12.JPG", "damaged");
+  const auto source = openFrames(pictures.string(), 10);
+  for (int i = 0; i < 5; ++i) {
+    const auto frame = source->next();
+    ASSERT_TRUE(frame);
+    EXPECT_DOUBLE_EQ(frame->t, 0.1 * i);
+    ASSERT_EQ(frame->image.width, 64) << frame->fault;
+    EXPECT_NEAR(frame->image.row(20)[30], 20 + 10 * i, 2) << frame->name;
+  }
+  // One that was a picture is a frame that cannot be read.
+  EXPECT_NE(source->next()->fault.find("IMG_12.JPG: cannot be read"), std::string::npos);
+  EXPECT_FALSE(source->next());
+  EXPECT_EQ(source->notes(),
+            std::vector{pictures.string() +
+                        ": 4 files are no pictures and are left out: .DS_Store, ..."});
 }
 
 TEST_F(Sources, ReplayFramesAndSamplesAtTheirOwnPace) {
@@ -300,6 +334,156 @@ TEST_F(Videos, GiveTheirFramesByNumberAtTheirRate) {
     }
     EXPECT_FALSE(source->next());
   }
+}
+
+// Matroska with Motion JPEG pictures, each with a time of its own [ms], as its format has it.
+std::string matroska(const std::vector<std::string>& pictures, const std::vector<int>& times) {
+  const auto element = [](std::uint32_t id, const std::string& body) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8)
+      if (id >> shift) text += static_cast<char>(id >> shift & 0xff);
+    text += '\x08'; // seven bytes of size follow
+    text.back() = '\x01';
+    for (int shift = 48; shift >= 0; shift -= 8)
+      text += static_cast<char>(std::uint64_t{body.size()} >> shift & 0xff);
+    return text + body;
+  };
+  const auto number = [](std::uint32_t value) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift & 0xff);
+    return text;
+  };
+  std::string blocks = element(0xE7, number(0));
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    blocks += element(0xA3, std::string("\x81") + static_cast<char>(times[i] >> 8) +
+                                static_cast<char>(times[i] & 0xff) + '\x80' + pictures[i]);
+  const std::string track = element(0xD7, number(1)) + element(0x73C5, number(1)) +
+                            element(0x83, number(1)) + element(0x86, "V_MJPEG") +
+                            element(0xE0, element(0xB0, number(64)) + element(0xBA, number(48)));
+  return element(0x1A45DFA3, element(0x4282, "matroska")) +
+         element(0x18538067, element(0x1549A966, element(0x2AD7B1, number(1000000))) +
+                                 element(0x1654AE6B, element(0xAE, track)) +
+                                 element(0x1F43B675, blocks));
+}
+
+// Of the next frames, to the end.
+std::vector<double> timesOf(FrameSource& source) {
+  std::vector<double> times;
+  while (const auto frame = source.next()) {
+    EXPECT_EQ(frame->fault, "");
+    times.push_back(frame->t);
+  }
+  return times;
+}
+
+TEST_F(Videos, HaveTheTimesOfTheirContainer) {
+  const std::vector<int> times{0, 40, 73, 106, 371, 404, 410, 900, 933};
+  std::vector<std::string> pictures;
+  for (std::size_t i = 0; i < times.size(); ++i)
+    pictures.push_back(test::jpegOf(frameOf(static_cast<int>(i))));
+  const std::string path = (folder / "varies.mkv").string();
+  writeFileAtomically(path, matroska(pictures, times));
+  const auto source = openFrames(path, 0);
+  const auto found = timesOf(*source);
+  ASSERT_EQ(found.size(), times.size());
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(found[i], 1e-3 * times[i], 1e-9);
+  EXPECT_TRUE(source->notes().empty());
+  // A rate that was told overrules them.
+  const auto even = timesOf(*openFrames(path, 50));
+  ASSERT_EQ(even.size(), times.size());
+  EXPECT_DOUBLE_EQ(even.back(), 0.16);
+}
+
+TEST_F(Videos, WithoutTimesNeedARate) {
+  std::string bytes;
+  for (int i = 0; i < 5; ++i) bytes += test::jpegOf(frameOf(i));
+  const std::string path = (folder / "raw.mjpeg").string();
+  writeFileAtomically(path, bytes);
+  EXPECT_NE(causeOf([&] {
+              (void)timesOf(*openFrames(path, 0));
+            }).find("raw.mjpeg: holds no times of its frames and does not say"),
+            std::string::npos);
+  const auto told = openFrames(path, 10);
+  EXPECT_DOUBLE_EQ(timesOf(*told)[4], 0.4);
+  EXPECT_TRUE(told->notes().empty());
+}
+
+// What the program ffprobe says of a file's frames is the truth; both come with FFmpeg.
+class ProbedVideos : public Videos {
+ protected:
+  static std::string output(const std::string& command) {
+    std::string text;
+    FILE* pipe = popen(command.c_str(), "r");
+    if (!pipe) return text;
+    char part[4096];
+    while (const std::size_t got = fread(part, 1, sizeof part, pipe)) text.append(part, got);
+    pclose(pipe);
+    return text;
+  }
+  static std::vector<double> probed(const std::string& path) {
+    std::istringstream lines(output("ffprobe -v error -select_streams v -show_entries "
+                                    "frame=best_effort_timestamp_time -of csv=p=0 " +
+                                    path));
+    std::vector<double> times;
+    for (std::string line; std::getline(lines, line);)
+      if (!line.empty()) times.push_back(std::stod(line));
+    return times;
+  }
+};
+
+TEST_F(ProbedVideos, HaveTheTimesThatFfprobeTells) {
+  if (output("ffmpeg -version 2>/dev/null").empty() || output("ffprobe -version").empty())
+    GTEST_SKIP() << "ffmpeg is absent (Debian: ffmpeg)";
+  // Frames of 60 a second of which some are left out, so that two steps of time differ by 265 ms.
+  const std::string source =
+      "ffmpeg -v error -y -f lavfi -i testsrc2=size=160x120:rate=60:duration=1.5 -vf "
+      "\"select='not(eq(mod(n\\,7)\\,3))*not(between(n\\,30\\,45))'\" -vsync vfr "
+      "-enc_time_base 1:90000 -pix_fmt yuv420p ";
+  double most = 0;
+  for (const auto& [options, name] : std::vector<std::pair<std::string, std::string>>{
+           {"-c:v libx264", "reordered.mp4"},
+           {"-c:v libx264 -bf 0", "plain.mp4"},
+           {"-c:v libx264", "reordered.mkv"},
+           {"-c:v libx265 -x265-params log-level=none", "hevc.mp4"},
+           {"-c:v libvpx-vp9", "vp9.webm"},
+           {"-c:v libx264", "stream.ts"},
+           {"-c:v mjpeg -pix_fmt yuvj420p", "fine.avi"}}) {
+    const std::string path = (folder / name).string();
+    (void)output(source + options + " " + path + " 2>/dev/null");
+    if (!fs::exists(path) || fs::file_size(path) == 0) continue; // built without that coder
+    const auto truth = probed(path), found = timesOf(*openFrames(path, 0));
+    ASSERT_EQ(found.size(), truth.size()) << name;
+    ASSERT_GT(found.size(), 50u) << name;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      most = std::max(most, std::abs(found[i] - (truth[i] - truth[0])));
+  }
+  std::printf("off by %.3g ms at most\n", 1e3 * most);
+  EXPECT_LE(most, 1e-3);
+  // The beginning is cut off, yet in the file: nothing is damaged.
+  const std::string whole = (folder / "reordered.mp4").string(), cut = folder / "cut.mp4";
+  (void)output("ffmpeg -v error -y -ss 0.33 -i " + whole + " -c copy " + cut + " 2>/dev/null");
+  ASSERT_TRUE(fs::exists(cut));
+  EXPECT_EQ(timesOf(*openFrames(cut, 30)).size(), probed(cut).size());
+  EXPECT_EQ(timesOf(*openFrames((folder / "reordered.mkv").string(), 30)).size(),
+            probed(folder / "reordered.mkv").size());
+  EXPECT_EQ(timesOf(*openFrames(cut, 0)).size(), probed(cut).size());
+  // Nothing but pictures: FFmpeg supposes 25 a second.
+  const std::string raw = folder / "raw.mjpeg";
+  (void)output(source + "-c:v mjpeg -pix_fmt yuvj420p " + raw + " 2>/dev/null");
+  const auto even = openFrames(raw, 0);
+  EXPECT_NEAR(timesOf(*even)[10], 0.4, 1e-9);
+  ASSERT_EQ(even->notes().size(), 1u);
+  EXPECT_NE(even->notes()[0].find("raw.mjpeg: holds no times of its frames, so 25 a second are"),
+            std::string::npos)
+      << even->notes()[0];
+  // A phone held upright says so.
+  const std::string upright = folder / "upright.mp4";
+  (void)output("ffmpeg -v error -y -i " + whole + " -c copy -metadata:s:v rotate=90 " + upright +
+               " 2>/dev/null");
+  const auto first = openFrames(upright, 0)->next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->image.orientation, 6);
+  EXPECT_EQ(first->image.width, 120);
 }
 
 TEST_F(Videos, ThatAreDamagedSayWhereTheyEnd) {

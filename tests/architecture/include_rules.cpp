@@ -71,6 +71,7 @@ const std::vector<Library>& libraries() {
         {"modules/acquisition/vision/", false},
         {"modules/acquisition/video/", false}}},
       {"Ceres", {"ceres/", "glog/"}, {{"modules/acquisition/solver/", false}}},
+      {"FFmpeg", {"libav"}, {{"modules/acquisition/video/", false}}},
       {"OpenSSL", {"openssl/"}, {{"modules/core/sha256.cpp", false}}},
       {"pthread", {"pthread.h", "semaphore.h"}, {{"modules/haptics/", false}}},
       {"Qt", {"Q", "qt"}, {{"app/gui/", true}}},

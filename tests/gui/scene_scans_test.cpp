@@ -1,6 +1,7 @@
 // Scans and calibrations of the workspace, put in, taken out and undone as a person does it.
 #ifdef PATINA_HAS_ACQUISITION
 #include <QComboBox>
+#include <random>
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/registered_file.h"
@@ -14,6 +15,7 @@
 #include "geometry/io/textured_obj.h"
 #include "gui/scan_fixture.h"
 #include "scan/run_scan.h"
+#include "support/printed_board.h"
 #include "workspace/texture_file.h"
 #include "workspace/workspace.h"
 
@@ -278,6 +280,46 @@ TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
   clickOn("calibrate_camera");
   EXPECT_TRUE(waitUntil(
       [&] { return found->text().contains(QStringLiteral("chessboard:COLUMNSxROWS")); }, 5000))
+      << found->text().toStdString();
+  EXPECT_FALSE(find<QPushButton>("calibrate_use")->isVisible());
+}
+
+TEST_F(SceneScansTest, ABoardInAReplayBecomesACameraThatIsKeptWhereAsked) {
+  const QString words = QStringLiteral("charuco:6x8:25mm:18.75mm:4x4_50");
+  const Board board = parseBoard(words.toStdString());
+  const Camera known{640, 480, 610, 606, 325, 236, {-0.1, 0.04, 0, 0, 0}};
+  const FrameRenderer renderer(known, test::printedBoard(board, true));
+  const fs::path seen = folder_ / "seen", kept = folder_ / "kept";
+  fs::create_directories(seen / "frames");
+  fs::create_directories(kept);
+  std::mt19937 random(4);
+  std::string list = "frame,t [s]\n";
+  for (int i = 0; i < 6; ++i) {
+    writeGrey(seen / "frames" / (frameStem(i) + ".png"),
+              renderer.render({test::boardPose(board, random, 0.35)}, test::boardLook(), 1));
+    list += std::to_string(i) + "," + std::to_string(0.05 * i) + "\n";
+  }
+  writeFileAtomically(seen / "frames.csv", list);
+  clickAction("desk_scan");
+  find<QLineEdit>("calibrate_source")
+      ->setText(QStringLiteral("replay:%1").arg(QString::fromStdString(seen.string())));
+  find<QLineEdit>("calibrate_board")->setText(words);
+  wait(300);
+  clickOn("calibrate_camera");
+  const auto* found = find<QLabel>("calibrate_found");
+  ASSERT_TRUE(waitUntil([&] { return !found->text().isEmpty() && !desk().work(); }, 30000));
+  EXPECT_TRUE(found->text().contains(QStringLiteral("in 6 of 6"))) << found->text().toStdString();
+  wait(400); // the column has scrolled to what was found
+  answerWithPath(kept);
+  clickOn("calibrate_use");
+  ASSERT_TRUE(waitUntil([&] { return fs::exists(kept / "camera.yml"); }, 10000));
+  EXPECT_NEAR(readCamera(kept / "camera.yml").fx, known.fx, 5);
+  // Another board is doubted, and nothing is offered.
+  ASSERT_TRUE(waitUntil([&] { return !desk().work(); }, 10000));
+  find<QLineEdit>("calibrate_board")->setText(QStringLiteral("charuco:7x8:25mm:18.75mm:4x4_50"));
+  clickOn("calibrate_camera");
+  EXPECT_TRUE(waitUntil(
+      [&] { return found->text().contains(QStringLiteral("which is no calibration")); }, 30000))
       << found->text().toStdString();
   EXPECT_FALSE(find<QPushButton>("calibrate_use")->isVisible());
 }

@@ -8,8 +8,11 @@
 
 #include <Eigen/Geometry>
 
+#include "acquisition/files/frame_files.h"
 #include "core/file.h"
 #include "integration/scans.h"
+#include "support/printed_board.h"
+#include "support/rendered_rig.h"
 
 namespace patina::test {
 namespace {
@@ -114,6 +117,60 @@ TEST_F(Scans, CalibrateSaysWhoseTipItTakesWithForces) {
   EXPECT_EQ(told.exit, 0) << told.err;
   EXPECT_NE(told.err.find("without --rig the tip is that of a common probe"), std::string::npos)
       << told.err;
+}
+
+// Boards as OpenCV had them before 4.6, in files as cameras name them.
+class BoardPictures : public Scans {
+ protected:
+  void SetUp() override {
+    const Board board = parseBoard(kBoard);
+    const Camera camera = smallCamera();
+    const FrameRenderer renderer(camera, printedBoard(board, true));
+    std::mt19937 random(4);
+    std::string list = "frame,t [s]\n";
+    pictures = folder / "pictures";
+    scan = folder / "scan";
+    std::filesystem::create_directories(pictures);
+    std::filesystem::create_directories(scan + "/frames");
+    for (int i = 0; i < 6; ++i) {
+      const GreyFrame view = renderer.render({boardPose(board, random, 0.35)}, boardLook(), 1);
+      const std::string frame = scan + "/frames/" + frameStem(i) + ".png";
+      writeGrey(frame, view);
+      std::filesystem::copy_file(frame, pictures + "/IMG_" + std::to_string(7 + i) + ".JPG");
+      list += std::to_string(i) + "," + std::to_string(0.05 * i) + "\n";
+    }
+    writeFileAtomically(pictures + "/Thumbs.db", "of a viewer");
+    writeFileAtomically(scan + "/frames.csv", list);
+  }
+
+  static constexpr const char* kBoard = "charuco:6x8:25mm:18.75mm:4x4_50";
+  std::string pictures;
+};
+
+TEST_F(BoardPictures, CalibrateACameraWhateverTheyAreCalledAndSayWhatIsLeftOut) {
+  const std::string camera = folder / "camera.yml";
+  const Outcome told = run({"calibrate", pictures, "--board", kBoard, "-o", camera});
+  EXPECT_EQ(told.exit, 0) << told.err;
+  EXPECT_NE(told.out.find("6 of 6 frames"), std::string::npos) << told.out;
+  EXPECT_NE(told.err.find("pictures: 1 file is no picture and is left out: Thumbs.db"),
+            std::string::npos)
+      << told.err;
+  const Json report = runJson({"calibrate", pictures, "--board", kBoard, "-o", camera});
+  EXPECT_LT(report.at("rms_px").asNumber(), 0.35);
+  const Json live = runJson({"calibrate", "replay:" + scan, "--board", kBoard, "-o", camera});
+  EXPECT_EQ(live.at("views").asNumber(), 6);
+  EXPECT_LT(live.at("rms_px").asNumber(), 0.35);
+}
+
+TEST_F(BoardPictures, OfAnotherBoardAreDoubtedAndNothingIsWritten) {
+  const std::string camera = folder / "camera.yml";
+  const Outcome told =
+      run({"calibrate", pictures, "--board", "charuco:7x8:25mm:18.75mm:4x4_50", "-o", camera});
+  EXPECT_EQ(told.exit, 1);
+  EXPECT_NE(told.err.find("px, which is no calibration; is it charuco:7x8"), std::string::npos)
+      << told.err;
+  EXPECT_NE(told.err.find("the number of its squares"), std::string::npos) << told.err;
+  EXPECT_FALSE(std::filesystem::exists(camera));
 }
 
 } // namespace

@@ -6,10 +6,11 @@
 #include "acquisition/calibration/force_fit.h"
 #include "acquisition/calibration/pivot.h"
 #include "acquisition/calibration/still_probe.h"
-#include "acquisition/files/frame_files.h"
 #include "acquisition/files/measured.h"
 #include "acquisition/files/scan_files.h"
+#include "acquisition/sources/sources.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/input_files.h"
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
 #include "core/error.h"
@@ -27,6 +28,7 @@ struct CalibrateOptions {
   std::optional<Board> board;
   std::string board_text;
   bool still = false, force = false;
+  double rate = 0;
 };
 
 const Keys kParameterParts = {{"value", "", ""}, {"deviation", "", ""}};
@@ -38,6 +40,9 @@ const Keys kCalibrateKeys = {
     {"views", "", "used", "views, poses, attitudes held still, or readings"},
     {"rejected", "", "rejected",
      "views without the board, or poses or readings that contradict the others"},
+    {"unlike", "", "not needed", "views of a video or camera that are blurred or like others",
+     Shown::if_any},
+    {"frames", "", "frames", "of the pictures, the video or the camera", Shown::never},
     {"axis_deviation", "rad", "axes within", "standard deviation of the least known direction",
      Shown::if_any},
     {"parameters", "", "parameters",
@@ -64,21 +69,31 @@ void tellParameter(Json& parameters, Report& report, const std::string& name, do
 }
 
 int reportCamera(const CalibrateOptions& options, Console& console) {
-  const std::vector<Frame> frames = framesOf(options.input, 1);
-  const CalibratedCamera found = calibrateCamera(frames, *options.board, options.board_text,
-                                                 options.input.string(), console.progress());
+  const std::string from = options.input.string();
+  // Nobody needs to know when pictures were taken.
+  const double rate = std::filesystem::is_directory(options.input) ? 1 : 0;
+  const auto frames = openFrames(from, options.rate > 0 ? options.rate : rate);
+  const CalibratedCamera found =
+      calibrateCamera(*frames, *options.board, options.board_text, from, console.progress());
   Report report(kCalibrateKeys);
   report.set("rms_px", found.fit.rms, rounded(found.fit.rms) + " px");
-  report.set("views", frames.size() - found.rejected.size());
-  report.set("rejected", found.rejected.size());
+  report.set("views", found.views,
+             formatCount(found.views) + " of " + formatCount(found.frames) + " frames");
+  report.set("rejected", found.rejected.size()).set("unlike", found.unlike);
+  report.set("frames", found.frames);
   Json parameters = Json::object();
   for (std::size_t i = 0; i < 9; ++i)
     tellParameter(parameters, report, kCameraParameters[i], parametersOf(found.fit.camera)[i],
                   found.fit.deviation[i], 1, i < 4 ? " px" : "");
   report.set("parameters", parameters);
+  for (const std::string& line : found.notes) console.warn(line);
+  if (!found.doubt.empty()) {
+    console.warn(found.doubt + "; nothing is written");
+    return console.report(report, kNotSolved);
+  }
   writeFileAtomically(options.output, calibratedText(found.fit, options.board_text));
-  if (!found.rejected.empty())
-    console.warn(frames[found.rejected[0]].file.string() + ": the board is not seen" +
+  if (!found.first_rejected.empty())
+    console.warn(found.first_rejected + ": the board is not seen" +
                  (found.rejected.size() > 1
                       ? ", nor in " + formatCount(found.rejected.size() - 1) + " others"
                       : ""));
@@ -210,9 +225,14 @@ Command calibrateCommand() {
       .name = "calibrate",
       .summary = "a camera from views of a board, a probe's tip or its accelerometers",
       .description =
-          "With --board INPUT is a folder of pictures, and CAMERA.yml gets what OpenCV calls "
-          "camera_matrix and distortion_coefficients, with the deviation of each. Views without "
-          "the board are named and left out.\n"
+          "With --board INPUT is a folder of pictures, a video, camera:0 and so on, or "
+          "replay:SCAN, "
+          "and CAMERA.yml gets what OpenCV calls camera_matrix and distortion_coefficients, with "
+          "the deviation of each. Views without the board are named and left out. Of pictures all "
+          "are used; of a video or a camera at most 60 frames that are sharp and show the board in "
+          "different places: a camera is read until there are as many, or until Ctrl-C. Both "
+          "layouts of ChArUco boards are known, that of OpenCV before 4.6 and that since. Where "
+          "corners miss by more than 1.5 px nothing is written, and the exit code is 1.\n"
           "With --still INPUT is a scan folder (poses.tum, probe.csv) of a probe that was held "
           "still in "
           "the air, leaning to all sides, and RIG.json gets the accelerometers' axes, gravity and "
@@ -222,27 +242,34 @@ Command calibrateCommand() {
           "Poses that contradict the others are left out.",
       .examples = {"patina calibrate views --board chessboard:9x6:25mm -o camera.yml",
                    "patina calibrate views --board charuco:5x7:40mm:20mm:6x6_250 -o camera.yml",
+                   "patina calibrate board.mp4 --board chessboard:9x6:25mm -o camera.yml",
                    "patina calibrate turning.tum --rig rig.json -o rig-with-tip.json",
                    "patina calibrate held --still --rig rig-with-tip.json -o rig-of-probe.json",
                    "patina calibrate weights.csv --force --rig rig.json -o rig-with-force.json"},
       .keys = kCalibrateKeys,
-      .arguments = {input("INPUT", "Folder of pictures, scan folder, poses as TUM, or weights.",
-                          into(options->input)),
-                    outputTo(options->output, "FILE", "CAMERA.yml, or RIG.json."),
-                    {"--board", "BOARD", "", "",
-                     "chessboard:COLUMNSxROWS:SQUARE, counted in inner corners, or "
-                     "charuco:COLUMNSxROWS:SQUARE:MARKER:FAMILY, counted in squares.",
-                     [options](const std::string& text) {
-                       options->board = parseBoard(text);
-                       options->board_text = text;
-                     }},
-                    {"--still", "", "", "", "The accelerometers of a probe held still.",
-                     into(options->still)},
-                    {"--force", "", "", "",
-                     "INPUT is a table of known weights and readings (force [N],reading).",
-                     into(options->force)},
-                    {"--rig", "RIG.json", "", "", "What else RIG.json is to hold.",
-                     into(options->rig)}},
+      .arguments =
+          {input("INPUT",
+                 "Folder of pictures, video, camera:N, replay:SCAN, scan folder, poses as TUM, or "
+                 "weights.",
+                 Setter([options](const std::string& text) { options->input = text; },
+                        filesOfSource)),
+           outputTo(options->output, "FILE", "CAMERA.yml, or RIG.json."),
+           {"--board", "BOARD", "", "",
+            "chessboard:COLUMNSxROWS:SQUARE, counted in inner corners, or "
+            "charuco:COLUMNSxROWS:SQUARE:MARKER:FAMILY, counted in squares.",
+            [options](const std::string& text) {
+              options->board = parseBoard(text);
+              options->board_text = text;
+            }},
+           {"--rate", "HZ", "Hz", "",
+            "Frames a second of a video that does not say when they were taken.",
+            inRange(1e-3, 1e5, [options](double rate) { options->rate = rate; })},
+           {"--still", "", "", "", "The accelerometers of a probe held still.",
+            into(options->still)},
+           {"--force", "", "", "",
+            "INPUT is a table of known weights and readings (force [N],reading).",
+            into(options->force)},
+           {"--rig", "RIG.json", "", "", "What else RIG.json is to hold.", into(options->rig)}},
       .run = [options](Console& console) { return runCalibrate(*options, console); }};
 }
 

@@ -77,6 +77,7 @@ int runRecord(RecordOptions options, Console& console) {
   report.set("dropouts", now.dropouts);
   if (now.probe) setHealth(*now.probe, report);
   console.warn(now.left_out);
+  for (const std::string& line : now.notes) console.warn(line);
   if (now.frames == 0)
     console.warn(setup.folder.string() + ": no frame came, so the scan is empty");
   if (!now.error.empty()) console.warn(now.error + "; what had reached the disk by then is kept");

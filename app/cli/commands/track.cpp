@@ -105,6 +105,7 @@ int runTrack(TrackOptions options, Console& console) {
     writePoses(options.output, found.poses, found.without);
   }
   report.set("seconds", taken.count());
+  for (const std::string& line : found.notes) console.warn(line);
   if (found.unreadable > 0)
     console.warn(options.frames + ": " + formatCount(found.unreadable) + " of " +
                  formatCount(found.frames) +

@@ -20,17 +20,18 @@ QString withDeviation(double value, double deviation, int digits) {
   return QStringLiteral("%1 ± %2").arg(value, 0, 'f', digits).arg(deviation, 0, 'g', 2);
 }
 
-QString wordsOf(const CalibratedCamera& found, std::size_t frames) {
+QString wordsOf(const CalibratedCamera& found) {
   const auto values = parametersOf(found.fit.camera);
   QString words = CalibrationCard::tr("rms %1 px, the board in %2 of %3")
                       .arg(found.fit.rms, 0, 'f', 3)
-                      .arg(frames - found.rejected.size())
-                      .arg(frames);
+                      .arg(found.views)
+                      .arg(found.frames);
   for (std::size_t i = 0; i < values.size(); ++i)
     words += QStringLiteral("\n%1 %2%3")
                  .arg(QString::fromUtf8(kCameraParameters[i]),
                       withDeviation(values[i], found.fit.deviation[i], i < 4 ? 2 : 5),
                       i < 4 ? QStringLiteral(" px") : "");
+  for (const std::string& line : found.notes) words += "\n" + QString::fromStdString(line);
   return words;
 }
 
@@ -50,7 +51,7 @@ QString wordsOf(const PivotFit& fit, std::size_t poses) {
 
 CalibrationCard::CalibrationCard(OpenScan& scan, QWidget* parent)
     : QGroupBox(tr("Calibrate"), parent), scan_(scan), job_(this), board_(new QLineEdit(this)),
-      found_(new QLabel(this)) {
+      source_(new QLineEdit(this)), found_(new QLabel(this)) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(6);
@@ -59,6 +60,11 @@ CalibrationCard::CalibrationCard(OpenScan& scan, QWidget* parent)
   board_->setToolTip(tr("chessboard:COLUMNSxROWS:SQUARE, counted in inner corners, or "
                         "charuco:COLUMNSxROWS:SQUARE:MARKER:FAMILY, counted in squares"));
   column->addWidget(board_);
+  source_->setObjectName(QStringLiteral("calibrate_source"));
+  source_->setPlaceholderText(tr("a video, camera:0 or replay:FOLDER"));
+  source_->setToolTip(tr("Where the board is seen, in place of what is open: sharp frames that "
+                         "differ are chosen, and a camera is watched until there are 60"));
+  column->addWidget(source_);
   pictures_ = button("calibrate_pictures", tr("Open pictures…"),
                      tr("A folder of pictures of the board, without times"));
   camera_ = button("calibrate_camera", tr("Camera from the board"),
@@ -78,6 +84,7 @@ CalibrationCard::CalibrationCard(OpenScan& scan, QWidget* parent)
   connect(camera_, &QPushButton::clicked, this, &CalibrationCard::findCamera);
   connect(tip_, &QPushButton::clicked, this, &CalibrationCard::findTip);
   connect(use_, &QPushButton::clicked, this, [this] { emit useAsked(file_, text_); });
+  connect(source_, &QLineEdit::textChanged, this, &CalibrationCard::refresh);
   connect(&job_, &Background::progressed, this,
           [this](double fraction, const QString&) { emit progressed(fraction); });
   connect(&scan_, &OpenScan::opened, this, [this] {
@@ -108,8 +115,9 @@ void CalibrationCard::refresh() {
   const bool frames = scan_.files() != nullptr && !scan_.grows() && !scan_.files()->frames.empty();
   const bool poses =
       scan_.path() != nullptr && !scan_.grows() && scan_.path()->poses.size() >= kLeastPoses;
-  board_->setVisible(frames);
-  camera_->setVisible(frames);
+  const bool seen = frames || !source_->text().trimmed().isEmpty();
+  board_->setVisible(seen);
+  camera_->setVisible(seen);
   tip_->setVisible(poses);
   for (QPushButton* each : {pictures_, camera_, tip_}) each->setEnabled(!job_.busy());
   found_->setVisible(!found_->text().isEmpty());
@@ -146,17 +154,20 @@ void CalibrationCard::findCamera() {
     return refuse(QString::fromStdString(error.what()));
   }
   offer({}, {}, {});
-  job_.start([this, frames = scan_.files()->frames, board = *board, words,
-              from = scan_.files()->folder.string()](Progress& progress,
-                                                     const Background::Deliver& deliver) {
+  const std::string source = source_->text().trimmed().toStdString();
+  const std::string from = source.empty() ? scan_.files()->folder.string() : source;
+  job_.start([this, board = *board, words, from,
+              is_open = source.empty()](Progress& progress, const Background::Deliver& deliver) {
     try {
       const auto seen = [&](std::size_t i, const std::optional<BoardView>& view) {
-        if (view) deliver(false, [this, i, found = *view] { emit boardSeen(i, found); });
+        if (view && is_open) deliver(false, [this, i, found = *view] { emit boardSeen(i, found); });
       };
-      const CalibratedCamera found = calibrateCamera(frames, board, words, from, progress, seen);
-      deliver(true, [this, found, words, count = frames.size()] {
-        offer(wordsOf(found, count), QStringLiteral("camera.yml"),
-              calibratedText(found.fit, words));
+      // Nobody needs to know when pictures were taken.
+      const auto frames = openFrames(from, std::filesystem::is_directory(from) ? 1 : 0);
+      const CalibratedCamera found = calibrateCamera(*frames, board, words, from, progress, seen);
+      deliver(true, [this, found, words] {
+        if (!found.doubt.empty()) return refuse(QString::fromStdString(found.doubt));
+        offer(wordsOf(found), QStringLiteral("camera.yml"), calibratedText(found.fit, words));
       });
     } catch (const std::exception& error) {
       deliver(true, [this, problem = QString::fromStdString(error.what())] { refuse(problem); });

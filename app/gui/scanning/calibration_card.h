@@ -1,5 +1,5 @@
-// A camera from the open scan's pictures of a board, a tip from its poses: found, looked at, and
-// then used.
+// A camera from the open scan's pictures of a board, from a video or a live camera, a tip from the
+// scan's poses: found, looked at, and then used.
 #pragma once
 
 #include <map>
@@ -24,7 +24,7 @@ class CalibrationCard : public QGroupBox {
  signals:
   void picturesAsked();
   void boardSeen(std::size_t frame, const patina::BoardView& view); // in a frame of the scan
-  void useAsked(const QString& file, const QString& text);          // of the scan, in its place
+  void useAsked(const QString& file, const QString& text); // of the scan that is open, if one is
   void progressed(double fraction);
   void changed();
 
@@ -39,7 +39,7 @@ class CalibrationCard : public QGroupBox {
 
   OpenScan& scan_;
   Background job_;
-  QLineEdit* board_;
+  QLineEdit *board_, *source_;
   QPushButton *pictures_, *camera_, *tip_, *use_;
   QLabel* found_;
   QString file_, text_; // that is offered; empty: nothing is

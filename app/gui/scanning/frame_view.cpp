@@ -7,6 +7,7 @@
 #include <QVBoxLayout>
 #include <QWheelEvent>
 
+#include "acquisition/orientation.h"
 #include "acquisition/tracking/lens.h"
 #include "acquisition/tracking/track_frames.h"
 #include "app/gui/window/theme.h"
@@ -36,6 +37,15 @@ void drawTag(QPainter& painter, const QColor& color, const QPointF& at, const QS
   painter.fillRect(room.translated(at), kSeam);
   painter.setPen(color);
   painter.drawText(at, words);
+}
+
+// What is drawn needs no calibration of the picture's own size.
+std::optional<Camera> cameraOfPicture(const std::optional<Camera>& camera, const GreyFrame& image) {
+  try {
+    if (camera) return cameraOf(image, *camera, "");
+  } catch (const FileError&) {
+  }
+  return camera;
 }
 
 } // namespace
@@ -219,7 +229,8 @@ void FrameView::showLive(const RecordedFrame& frame) {
   FrameMarks marks;
   marks.markers = outlinesOf(frame.markers);
   if (frame.pose) marks.camera_from_probe = poseOf(*frame.pose);
-  canvas_->show(imageOf(frame.image), marks, files.camera, files.tip());
+  canvas_->show(imageOf(frame.image), marks, cameraOfPicture(files.camera, frame.image),
+                files.tip());
   title_->setText(tr("Live · %1 s").arg(frame.t, 0, 'f', 2));
   sayWhy(QString::fromStdString(frame.why));
 }
@@ -248,19 +259,22 @@ void FrameView::load() {
     QString fault;
     QImage picture;
     std::vector<FrameMarks::Outline> markers;
+    std::optional<Camera> shown = camera;
     try {
       const GreyFrame image = readGrey(path);
       picture = imageOf(image);
-      if (camera && !rig.empty()) {
-        RigTracker tracker(*camera, rig);
+      shown = cameraOfPicture(camera, image);
+      if (shown && !rig.empty()) {
+        RigTracker tracker(*shown, rig);
         tracker.track(image, 0);
         markers = outlinesOf(tracker.markers());
       }
     } catch (const std::exception& error) {
       fault = QString::fromStdString(error.what());
     }
-    deliver(true, [this, picture, markers, fault] {
+    deliver(true, [this, picture, shown, markers, fault] {
       picture_ = picture;
+      camera_ = shown;
       markers_ = markers;
       fault_ = fault;
       refresh();
@@ -282,7 +296,7 @@ void FrameView::refresh() {
     if (pose) marks.camera_from_probe = poseOf(path->poses[*pose]);
     marks.left_out = pose && *pose < verdicts.size() && verdicts[*pose] != PoseVerdict::used;
   }
-  canvas_->show(picture_, marks, files->camera, files->tip(), fault_);
+  canvas_->show(picture_, marks, camera_, files->tip(), fault_);
   describe();
 }
 

@@ -83,6 +83,7 @@ class FrameView : public QWidget {
   Background job_;
   std::optional<std::size_t> asked_; // the frame
   QImage picture_;
+  std::optional<Camera> camera_; // of the picture as it is shown
   std::vector<FrameMarks::Outline> markers_;
   std::map<std::size_t, std::vector<Vec2>> boards_; // corners by frame
   QString fault_;

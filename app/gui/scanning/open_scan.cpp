@@ -58,7 +58,9 @@ void OpenScan::openPictures(const std::filesystem::path& folder) {
     files.pictures = true;
     files.folder = folder;
     files.scan.name = scanNameOf(folder);
-    files.frames = framesOf(folder, 1);
+    std::string left_out;
+    files.frames = framesOf(folder, 1, &left_out);
+    if (!left_out.empty()) files.warnings.push_back(left_out);
     return files;
   });
 }
@@ -112,6 +114,9 @@ void OpenScan::run(const Read& read, Progress& progress, const Background::Deliv
                     if (i + 1 - told == kBatch) tell(i + 1);
                   });
   tell(all.size());
+  deliver(false, [this, notes = found.notes] {
+    for (const std::string& line : notes) emit noted(QString::fromStdString(line));
+  });
   filter(files->poses.empty() ? found.poses : files->poses, all);
 }
 

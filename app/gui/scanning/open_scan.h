@@ -43,6 +43,7 @@ class OpenScan : public QObject {
   void opened();     // another scan, or none
   void framesSeen(); // some more of them
   void pathMade();
+  void noted(const QString& line); // of its frames, once they are tracked
   void progressed(double fraction, const QString& what);
   void finished(); // nothing is under way any more
   void failed(const QString& message);

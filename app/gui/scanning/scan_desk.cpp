@@ -10,6 +10,7 @@
 #include "app/gui/scanning/frame_strip.h"
 #include "app/gui/scanning/scan_traces.h"
 #include "core/error.h"
+#include "core/file.h"
 
 namespace patina {
 namespace {
@@ -138,6 +139,22 @@ void ScanDesk::connectCalibration() {
 }
 
 void ScanDesk::use(const QString& file, const QString& text) {
+  if (scan_.files() == nullptr) {
+    connect(askForFolder(window_, tr("Keep %1 in").arg(file)), &QFileDialog::fileSelected, this,
+            [this, file, text](const QString& folder) {
+              try {
+                writeFileAtomically(std::filesystem::path(folder.toStdString()) /
+                                        file.toStdString(),
+                                    text.toStdString());
+                emit said({tr("%1 is in %2").arg(file, folder)});
+              } catch (const std::exception& error) {
+                showProblem(&window_, tr("The calibration cannot be kept"),
+                            QString::fromStdString(error.what()),
+                            tr("Make room, or the folder writable."));
+              }
+            });
+    return;
+  }
   const ScanFiles& files = *scan_.files();
   const Calibration found{file.toStdString(),
                           std::make_shared<const std::string>(text.toStdString()),
@@ -186,6 +203,9 @@ void ScanDesk::connectRecording() {
               showProblem(&window_, tr("The recording has ended"), problem,
                           tr("What came before it is in %1.").arg(folder));
           });
+  const auto tell = [this](const QString& line) { emit said({line, true}); };
+  connect(&recording_, &ScanRecording::noted, this, tell);
+  connect(&scan_, &OpenScan::noted, this, tell);
   connect(&recording_, &ScanRecording::failed, this, [this](const QString& message) {
     showProblem(&window_, tr("Nothing can be recorded"), message,
                 tr("Nothing was written. The tooltips say what each line takes."));

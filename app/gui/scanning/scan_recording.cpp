@@ -49,8 +49,9 @@ void ScanRecording::end() {
   job_.start([this, recorder = std::move(recorder_),
               folder = folder_](Progress&, const Background::Deliver& deliver) {
     recorder->stop();
-    const std::string problem = recorder->poll().state.error;
-    deliver(true, [this, folder, problem] {
+    const RecordingState state = recorder->poll().state;
+    deliver(true, [this, folder, problem = state.error, notes = state.notes] {
+      for (const std::string& line : notes) emit noted(QString::fromStdString(line));
       emit ended(QString::fromStdString(folder.string()), QString::fromStdString(problem));
     });
   });

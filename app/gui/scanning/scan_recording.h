@@ -28,6 +28,7 @@ class ScanRecording : public QObject {
   void came(const patina::RecordingNews& news);
   void ended(const QString& folder, const QString& problem); // it is all on disk
   void failed(const QString& message);                       // it did not begin
+  void noted(const QString& line);                           // of its frames, before it has ended
 
  private:
   std::shared_ptr<Recorder> recorder_; // its last user may be the thread that ends it

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "acquisition/vision_library.h"
 #include "core/decompose.h"
@@ -11,6 +12,7 @@
 namespace patina {
 namespace {
 
+constexpr int kQuickSide = 960;           // of the picture that a quick search looks at [px]
 constexpr std::size_t kFewestCorners = 6; // corners of a view that is of use
 
 std::vector<std::string> partsOf(const std::string& text, char between) {
@@ -55,11 +57,29 @@ Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec
   return to.inverse() * m * from;
 }
 
-std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board) {
+// Means of squares of `cells` pixels a side.
+GreyFrame shrunk(const GreyFrame& image, int cells) {
+  GreyFrame small{image.width / cells, image.height / cells, {}};
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      int sum = 0;
+      for (int k = 0; k < cells * cells; ++k)
+        sum += image.row(cells * y + k / cells)[cells * x + k % cells];
+      small.pixel.push_back(static_cast<std::uint8_t>(sum / (cells * cells)));
+    }
+  return small;
+}
+
+std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board, bool quick) {
+  // Corners are looked for to a pixel of what is searched, and then found anew.
+  const int cells = quick ? 1 + std::max(image.width, image.height) / kQuickSide : 1;
+  const GreyFrame smaller = cells > 1 ? shrunk(image, cells) : GreyFrame();
   std::vector<Vec2> found;
-  const std::string cause = visionLibrary().chessboard(image, board.columns, board.rows, found);
+  const std::string cause =
+      visionLibrary().chessboard(cells > 1 ? smaller : image, board.columns, board.rows, found);
   if (!cause.empty()) throw Error(cause);
   if (found.empty()) return std::nullopt;
+  for (Vec2& corner : found) corner = cells * (corner + Vec2(0.5, 0.5)) - Vec2(0.5, 0.5);
   BoardView view;
   for (int y = 0; y < board.rows; ++y)
     for (int x = 0; x < board.columns; ++x) {
@@ -76,19 +96,37 @@ std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board
   return view;
 }
 
-// Where the board has its marker, top left first.
-Quad markerOn(const Board& board, int id) {
-  int next = 0;
+// Where the board has its markers, top left first, if its top left square is white or black.
+std::vector<Quad> markersOn(const Board& board, bool white_first) {
+  std::vector<Quad> places;
   for (int y = 0; y < board.rows; ++y)
     for (int x = 0; x < board.columns; ++x) {
-      if ((x + y) % 2 == 0 || next++ != id) continue;
+      if (((x + y) % 2 == 0) != white_first) continue;
       const Vec2 middle(board.square * (x + 0.5), board.square * (y + 0.5));
       const double h = board.marker / 2;
-      return {middle + Vec2(-h, -h), middle + Vec2(h, -h), middle + Vec2(h, h),
-              middle + Vec2(-h, h)};
+      places.push_back(
+          {middle + Vec2(-h, -h), middle + Vec2(h, -h), middle + Vec2(h, h), middle + Vec2(-h, h)});
     }
-  throw Error("marker " + std::to_string(id) + " is not on a board of " +
-              std::to_string(board.columns) + " x " + std::to_string(board.rows) + " squares");
+  return places;
+}
+
+BoardView markersSeen(const std::vector<SeenMarker>& seen, const std::vector<Quad>& places) {
+  BoardView view;
+  for (const SeenMarker& marker : seen)
+    for (std::size_t i = 0; i < 4; ++i) {
+      view.board.push_back(places[index(marker.id)][i]);
+      view.pixel.push_back(marker.corner[i].pixel);
+    }
+  return view;
+}
+
+// By how much the plane's map misses [px^2].
+double missOf(const BoardView& view) {
+  const Eigen::Matrix3d map = homography(view.board, view.pixel);
+  double squares = 0;
+  for (std::size_t i = 0; i < view.board.size(); ++i)
+    squares += ((map * view.board[i].homogeneous()).hnormalized() - view.pixel[i]).squaredNorm();
+  return squares;
 }
 
 std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
@@ -99,14 +137,13 @@ std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
                 std::to_string(family.code.size()) + " markers");
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<int>(i);
   const auto seen = findMarkers(image, {CodeBook(family, ids)}, nullptr);
-  BoardView markers, view;
-  for (const SeenMarker& marker : seen) {
-    const Quad place = markerOn(board, marker.id);
-    for (std::size_t i = 0; i < 4; ++i) {
-      markers.board.push_back(place[i]);
-      markers.pixel.push_back(marker.corner[i].pixel);
-    }
-  }
+  BoardView markers = markersSeen(seen, markersOn(board, false)), view;
+  // In the other layout every other row is a square further: no plane's map does that. Markers of
+  // one row fit both, and then it is only the board that is a square further.
+  if (board.rows % 2 == 0 && seen.size() > 1)
+    if (BoardView other = markersSeen(seen, markersOn(board, true));
+        missOf(other) < missOf(markers))
+      markers = std::move(other);
   for (int y = 1; y < board.rows; ++y)
     for (int x = 1; x < board.columns; ++x) {
       // From the corners near by only: the lens bends the rest.
@@ -134,6 +171,43 @@ std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
 }
 
 } // namespace
+
+std::array<Vec2, 4> outlineOf(const BoardView& view, const Board& board) {
+  const Eigen::Matrix3d map = homography(view.board, view.pixel);
+  const double wide = board.square * board.columns, high = board.square * board.rows;
+  std::array<Vec2, 4> outline{Vec2(0, 0), Vec2(wide, 0), Vec2(wide, high), Vec2(0, high)};
+  for (Vec2& corner : outline) corner = (map * corner.homogeneous()).hnormalized();
+  return outline;
+}
+
+double sharpnessOf(const GreyFrame& image, const BoardView& view) {
+  constexpr int kReach = 4;
+  std::vector<double> each;
+  for (const Vec2& corner : view.pixel) {
+    const int left = static_cast<int>(corner.x()) - kReach,
+              top = static_cast<int>(corner.y()) - kReach, size = 2 * kReach + 1;
+    if (left < 1 || top < 1 || left + size >= image.width || top + size >= image.height) continue;
+    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+    double darkest = 255, brightest = 0;
+    for (int y = top; y < top + size; ++y)
+      for (int x = left; x < left + size; ++x) {
+        const auto grey = [&](int column, int row) {
+          return static_cast<double>(image.row(row)[column]);
+        };
+        const Vec2 slope(grey(x + 1, y) - grey(x - 1, y), grey(x, y + 1) - grey(x, y - 1));
+        squares += slope * slope.transpose();
+        darkest = std::min(darkest, grey(x, y));
+        brightest = std::max(brightest, grey(x, y));
+      }
+    const double half = squares.trace() / 2,
+                 least = half - std::sqrt(std::max(0., half * half - squares.determinant()));
+    each.push_back(least / std::max(1., (brightest - darkest) * (brightest - darkest)));
+  }
+  if (each.empty()) return 0;
+  const auto middle = each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2);
+  std::nth_element(each.begin(), middle, each.end());
+  return *middle;
+}
 
 std::optional<Vec2> saddleNear(const GreyFrame& image, const Vec2& corner, double cell) {
   const double reach = std::clamp(0.45 * cell, 2., 8.);
@@ -194,8 +268,8 @@ Board parseBoard(const std::string& text) {
   return board;
 }
 
-std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board) {
-  auto view = board.family.empty() ? chessboardIn(image, board) : charucoIn(image, board);
+std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board, bool quick) {
+  auto view = board.family.empty() ? chessboardIn(image, board, quick) : charucoIn(image, board);
   if (view && view->pixel.size() < kFewestCorners) view.reset();
   return view;
 }

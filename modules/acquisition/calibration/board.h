@@ -1,6 +1,7 @@
 // Boards that a camera is calibrated with, and their corners in a picture (A05).
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "acquisition/tracking/marker_finder.h"
@@ -9,8 +10,8 @@
 namespace patina {
 
 // Squares of `square` [m]. A chessboard counts its inner corners. A ChArUco board counts its
-// squares, the top left one black, with markers of `marker` [m] in the white ones, from 0 on by
-// rows.
+// squares, with markers of `marker` [m] in the white ones, from 0 on by rows. Its top left square
+// is black; until 4.6 OpenCV made it white where the number of rows is even, which a picture tells.
 struct Board {
   int columns = 0, rows = 0;
   double square = 0, marker = 0;
@@ -20,9 +21,17 @@ struct Board {
 // "chessboard:9x6:25mm", "charuco:5x7:40mm:20mm:6x6_250". Throws Error saying what is expected.
 Board parseBoard(const std::string& text);
 
-// Inner corners; nothing where fewer than six are seen. Of a chessboard all or nothing. Throws
-// Error where markers do not fit the board.
-std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board);
+// Inner corners; nothing where fewer than six are seen. Of a chessboard all or nothing; `quick`
+// looks for it in a smaller picture, as a large one without any takes seconds. Throws Error where
+// the family has too few markers for the board.
+std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board, bool quick = false);
+
+// Where the view has the board's four outer corners [px], from the plane's map.
+std::array<Vec2, 4> outlineOf(const BoardView& view, const Board& board);
+
+// How sharp the picture is at the view's corners: squares of the slopes across the blurrier of the
+// directions, in parts of the contrast. Motion and focus lower it, light does not.
+double sharpnessOf(const GreyFrame& image, const BoardView& view);
 
 // The saddle of grey near a corner where four squares meet, `cell` [px] being the least of their
 // sides; nothing if there is none within a third of it.

@@ -1,16 +1,20 @@
 #include "acquisition/files/frame_files.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 #include "acquisition/files/measured.h"
+#include "acquisition/orientation.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
 #include "pictures/picture_file.h"
+#include "scene/scene_scan.h"
 
 namespace patina {
 namespace {
@@ -19,19 +23,67 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> kFrameColumns = {"frame", "t [s]"};
 
-bool isPicture(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg" ||
-         extension == ".tif" || extension == ".tiff" || extension == ".bmp" || extension == ".pgm";
+// A damaged picture is a frame that cannot be read, not a file among others.
+bool isNamedAsPicture(const std::string& name) {
+  std::string extension = name.substr(std::min(name.rfind('.'), name.size()));
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm", ".webp"})
+    if (extension == known) return true;
+  return false;
 }
 
-std::vector<fs::path> picturesIn(const fs::path& folder) {
-  std::vector<fs::path> files;
+// Files of a scan may lie beside its pictures.
+bool isOfScan(const std::string& name) {
+  return std::any_of(kScanFiles.begin(), kScanFiles.end(),
+                     [&](const ScanFile& file) { return file.name == name; });
+}
+
+// Numbers within names count as numbers: IMG_9 comes before IMG_10.
+bool isBefore(const std::string& a, const std::string& b) {
+  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!isDigit(a[i]) || !isDigit(b[j])) {
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+      ++i, ++j;
+      continue;
+    }
+    while (i < a.size() && a[i] == '0') ++i;
+    while (j < b.size() && b[j] == '0') ++j;
+    const std::size_t first = i, second = j;
+    while (i < a.size() && isDigit(a[i])) ++i;
+    while (j < b.size() && isDigit(b[j])) ++j;
+    if (i - first != j - second) return i - first < j - second;
+    if (const int order = a.compare(first, i - first, b, second, j - second); order != 0)
+      return order < 0;
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
+std::vector<fs::path> picturesIn(const fs::path& folder, std::string* left_out) {
+  std::vector<fs::path> files, others;
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end;
-       entry.increment(code))
-    if (isPicture(entry->path())) files.push_back(entry->path());
-  std::sort(files.begin(), files.end());
+       entry.increment(code)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code none;
+    if (entry->is_directory(none) || isOfScan(name)) continue;
+    const bool hidden = name[0] == '.';
+    const bool picture = !hidden && (isPictureByContent(entry->path()) || isNamedAsPicture(name));
+    (picture ? files : others).push_back(entry->path());
+  }
+  const auto byName = [](const fs::path& a, const fs::path& b) {
+    return isBefore(a.filename().string(), b.filename().string());
+  };
+  std::sort(files.begin(), files.end(), byName);
+  if (left_out && !others.empty()) {
+    const fs::path first = *std::min_element(others.begin(), others.end(), byName);
+    *left_out =
+        folder.string() + ": " + formatCount(others.size()) +
+        (others.size() == 1 ? " file is no picture and is" : " files are no pictures and are") +
+        " left out: " + first.filename().string() + (others.size() > 1 ? ", ..." : "");
+  }
   return files;
 }
 
@@ -51,7 +103,7 @@ GreyFrame readGrey(const fs::path& path) {
           static_cast<std::uint8_t>(std::lround(255 * std::clamp(grey, 0.f, 1.f))));
     }
   }
-  return image;
+  return turned(std::move(image), picture.orientation);
 }
 
 void writeGrey(const fs::path& path, const GreyFrame& image) {
@@ -63,11 +115,11 @@ void writeGrey(const fs::path& path, const GreyFrame& image) {
   writePicture(path, picture, 8);
 }
 
-std::vector<Frame> framesOf(const fs::path& folder, double rate) {
+std::vector<Frame> framesOf(const fs::path& folder, double rate, std::string* left_out) {
   std::error_code code;
   if (!fs::is_directory(folder, code)) throw FileError(folder.string(), 0, "is not a folder");
   const bool inner = fs::is_directory(folder / "frames", code);
-  const std::vector<fs::path> files = picturesIn(inner ? folder / "frames" : folder);
+  const std::vector<fs::path> files = picturesIn(inner ? folder / "frames" : folder, left_out);
   std::vector<Frame> frames;
   const fs::path list = folder / "frames.csv";
   if (!fs::exists(list, code)) {

@@ -5,9 +5,11 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
+#include "acquisition/orientation.h"
 #include "acquisition/recording/arrival_clock.h"
 #include "acquisition/recording/row_file.h"
 #include "core/append_file.h"
@@ -145,7 +147,7 @@ class Recorder::Work {
   void readFrames() {
     int number = 0;
     while (std::optional<SourceFrame> frame = frames_->next()) {
-      if (frame->fault.empty()) requireSize(frame->image, camera_, frame->name);
+      if (frame->fault.empty()) takeCamera(*frame);
       if (frames_->isLive()) frame->t = frame_clock_.timeOf(frame->t, now());
       const bool write = !isPaused();
       if (write && frame->fault.empty())
@@ -171,6 +173,25 @@ class Recorder::Work {
       waiting_ = Arrived{std::move(*frame), write};
       changed_.notify_all();
     }
+    std::vector<std::string> notes = frames_->notes();
+    const bool along = taken_ && shown_.width != camera_.width;
+    if (const std::string line = turns_.line(along ? &camera_ : nullptr, kTurnedUnlike);
+        !line.empty())
+      notes.push_back(line);
+    const std::lock_guard lock(mutex_);
+    state_.notes = std::move(notes);
+  }
+
+  // The camera turns along with the first frame; one camera is that of all.
+  void takeCamera(const SourceFrame& frame) {
+    if (!std::exchange(taken_, true)) {
+      shown_ = cameraOf(frame.image, camera_, frame.name);
+      tracker_.setCamera(shown_); // before it has a frame
+      if (shown_.width != camera_.width)
+        writeFileAtomically(folder_ / "camera.yml", cameraText(shown_));
+    }
+    requireSize(frame.image, shown_, frame.name);
+    turns_.add(frame.image, frame.name);
   }
 
   bool isPaused() {
@@ -289,8 +310,12 @@ class Recorder::Work {
   const std::unique_ptr<FrameSource> frames_;
   const std::unique_ptr<ProbeSource> probe_;
   const fs::path folder_;
-  const Camera camera_;
-  RigTracker tracker_; // the tracking thread's
+  const Camera camera_; // as its file has it
+  RigTracker tracker_;  // the tracking thread's
+  // The frames' thread's.
+  bool taken_ = false; // what follows
+  Camera shown_;       // as the frames are shown
+  TurnedFrames turns_;
   const SteadyClock::time_point begin_;
   ArrivalClock frame_clock_, probe_clock_; // each its thread's
 

@@ -40,6 +40,7 @@ struct RecordingState {
   bool probe_ended = false;         // it sends no more
   std::optional<ProbeHealth> probe; // of one that sends packets
   std::string left_out;             // names columns of the probe's table that nobody reads
+  std::vector<std::string> notes;   // of the frames' source, a line each, once it has ended
   std::string error;                // why it ended, if that was not asked for; one line
 };
 
@@ -61,6 +62,8 @@ struct RecordingNews {
 // runs on more evenly than its data arrive: a time on disk is the source's, moved by the least
 // delay with which anything has arrived so far (ArrivalClock). Sources that are not live keep their
 // times, and then both must be files. What is left of an offset finds filter's fitClock().
+//
+// Frames that are turned (orientation.h) are written as they are shown, and camera.yml with them.
 //
 // Pictures are frames/NNNNNN.pgm; rows of frames.csv, probe.csv and poses.tum follow them to the
 // disk every quarter of a second. So a program that is killed loses at most that, and each file

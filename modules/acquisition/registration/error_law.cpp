@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kBlocks = 128; // points are averaged down to about so many
 constexpr double kSpanned = 1e-10;   // squared: columns less apart than that are the same
-constexpr double kFewest = 16;       // points: fewer tell nothing of how they go together
+constexpr double kFewestPoints = 16; // points: fewer tell nothing of how they go together
 
 struct Blocks {
   double size = 1;   // points in one
@@ -137,7 +137,7 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
   const SymmetricEigen eigen(law.normal.topLeftCorner<6, 6>());
   Eigen::Index seen = 0;
   while (seen < 6 && eigen.values[5 - seen] > kBlind * eigen.values[5]) ++seen;
-  if (count < kFewest) {
+  if (count < kFewestPoints) {
     law.deviation = std::max(
         noise, fit.rms * std::sqrt(count / std::max(count - static_cast<double>(seen), 1.0)));
     law.scatter = law.deviation * law.deviation * law.normal;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <deque>
 #include <future>
 #include <thread>
@@ -16,6 +17,19 @@
 namespace patina {
 namespace {
 
+constexpr double kHighestRate = 1000; // [Hz]; what is beyond is a clock's and not a video's
+constexpr double kLongest = 1e7;      // seconds of a video
+
+// Frames of a folder, and a line about what else is in it.
+struct FolderList {
+  std::vector<Frame> frames;
+  bool timed;
+  std::string left_out;
+  std::vector<std::string> notes() const {
+    return left_out.empty() ? std::vector<std::string>() : std::vector{left_out};
+  }
+};
+
 SourceFrame readFrame(const Frame& frame) {
   SourceFrame read{frame.t, frame.file.string(), {}, {}};
   try {
@@ -29,20 +43,22 @@ SourceFrame readFrame(const Frame& frame) {
 // Reads one frame ahead, in a thread of its own, while the caller works on the one before.
 class FolderFrames : public FrameSource {
  public:
-  FolderFrames(std::vector<Frame> frames) : frames_(std::move(frames)) {}
+  FolderFrames(FolderList list) : list_(std::move(list)) {}
   std::optional<SourceFrame> next() override {
-    if (stopped_ || at_ == frames_.size()) return std::nullopt;
-    SourceFrame frame = ahead_.valid() ? ahead_.get() : readFrame(frames_[at_]);
-    if (++at_ < frames_.size())
-      ahead_ = std::async(std::launch::async, readFrame, std::cref(frames_[at_]));
+    if (stopped_ || at_ == list_.frames.size()) return std::nullopt;
+    SourceFrame frame = ahead_.valid() ? ahead_.get() : readFrame(list_.frames[at_]);
+    if (++at_ < list_.frames.size())
+      ahead_ = std::async(std::launch::async, readFrame, std::cref(list_.frames[at_]));
     return frame;
   }
-  std::optional<std::size_t> count() const override { return frames_.size(); }
+  std::optional<std::size_t> count() const override { return list_.frames.size(); }
   bool isLive() const override { return false; }
   void stop() noexcept override { stopped_ = true; }
+  bool arePictures() const override { return !list_.timed; }
+  std::vector<std::string> notes() const override { return list_.notes(); }
 
  private:
-  std::vector<Frame> frames_;
+  FolderList list_;
   std::size_t at_ = 0;
   std::atomic<bool> stopped_{false};
   std::future<SourceFrame> ahead_; // the last member: it waits for its thread before they go
@@ -50,21 +66,22 @@ class FolderFrames : public FrameSource {
 
 class ReplayedFrames : public FrameSource {
  public:
-  ReplayedFrames(std::vector<Frame> frames, double start)
-      : frames_(std::move(frames)), start_(start), ahead_(readFrame(frames_[0])) {}
+  ReplayedFrames(FolderList list, double start)
+      : list_(std::move(list)), start_(start), ahead_(readFrame(list_.frames[0])) {}
   std::optional<SourceFrame> next() override {
-    if (at_ == frames_.size()) return std::nullopt;
-    if (!ahead_) ahead_ = readFrame(frames_[at_]);
+    if (at_ == list_.frames.size()) return std::nullopt;
+    if (!ahead_) ahead_ = readFrame(list_.frames[at_]);
     if (!pace_.waitUntil(ahead_->t - start_)) return std::nullopt;
     ++at_;
     return std::exchange(ahead_, std::nullopt);
   }
-  std::optional<std::size_t> count() const override { return frames_.size(); }
+  std::optional<std::size_t> count() const override { return list_.frames.size(); }
   bool isLive() const override { return true; }
   void stop() noexcept override { pace_.stop(); }
+  std::vector<std::string> notes() const override { return list_.notes(); }
 
  private:
-  std::vector<Frame> frames_;
+  FolderList list_;
   double start_;
   std::size_t at_ = 0;
   // Read before it is due, as reading takes its time, and the first as long as loading a library.
@@ -74,41 +91,87 @@ class ReplayedFrames : public FrameSource {
 
 class VideoFrames : public FrameSource {
  public:
-  VideoFrames(const std::string& path, double rate) : path_(path) {
+  VideoFrames(const std::string& path, double rate) : path_(path), told_rate_(rate) {
     const std::string cause = videoLibrary().openFile(path, reader_);
     if (!cause.empty()) throw FileError(path, 0, cause);
-    rate_ = rate > 0 ? rate : reader_->rate;
-    if (!(rate_ > 0))
-      throw FileError(path, 0, "does not say how many frames there are a second: --rate");
   }
   std::optional<SourceFrame> next() override {
     if (stopped_ || ended_) return std::nullopt;
-    SourceFrame frame{
-        static_cast<double>(at_) / rate_, path_ + " frame " + std::to_string(at_), {}, {}};
-    double stamp = 0;
+    SourceFrame frame{0, path_ + " frame " + std::to_string(at_), {}, {}};
+    double stamp = NAN;
     frame.fault = reader_->next(frame.image, stamp, ended_);
     if (ended_) {
-      // Containers round their count; more than that is a part that is missing.
-      const std::size_t said = static_cast<std::size_t>(reader_->count);
-      if (at_ + 2 + said / 100 >= said) return std::nullopt;
+      if (isWhole()) return std::nullopt;
       frame.fault = path_ + ": ends after frame " + std::to_string(at_) + " of " +
-                    std::to_string(said) + ": damaged, or not whole";
+                    std::to_string(reader_->count) + ": damaged, or not whole";
     }
+    frame.t = timeOf(stamp, frame);
     if (!frame.fault.empty()) frame.image = {};
     ++at_;
     return frame;
   }
   std::optional<std::size_t> count() const override {
-    if (reader_->count == 0) return std::nullopt;
+    if (reader_->count == 0 || reader_->rate > kHighestRate) return std::nullopt;
     return static_cast<std::size_t>(reader_->count);
   }
   bool isLive() const override { return false; }
   void stop() noexcept override { stopped_ = true; }
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> lines;
+    if (untimed_ && !(told_rate_ > 0))
+      lines.push_back(path_ + ": holds no times of its frames, so " + formatNumber(reader_->rate) +
+                      " a second are taken; --rate tells another number");
+    if (reader_->lost > 0 && !untimed_ && !(told_rate_ > 0))
+      lines.push_back(path_ + ": " + formatCount(index(reader_->lost)) +
+                      " of its pictures cannot be decoded, and as nobody knows which, frames may "
+                      "have the time of one before them");
+    return lines;
+  }
 
  private:
+  // Frames of an even rate, where one was told or the container has no times.
+  double evenTime() const {
+    const double said = reader_->rate <= kHighestRate ? reader_->rate : 0;
+    const double rate = told_rate_ > 0 ? told_rate_ : said;
+    if (at_ > 0 && !(rate > 0))
+      throw FileError(path_, 0,
+                      "holds no times of its frames and does not say how many there are a second: "
+                      "--rate");
+    return at_ > 0 ? static_cast<double>(at_) / rate : 0;
+  }
+
+  double timeOf(double stamp, SourceFrame& frame) {
+    const bool readable = std::abs(stamp) < kLongest, later = readable && stamp > stamp_;
+    // A container without times has none, or one for all.
+    if (!ended_ && ((at_ == 0 && !readable) || (at_ == 1 && !later))) untimed_ = true;
+    if (at_ > 0 && later) gap_ = std::max(gap_, stamp - stamp_);
+    if (later) stamp_ = stamp;
+    if (told_rate_ > 0 || untimed_) return evenTime();
+    if (ended_) return stamp_ + gap_;
+    if (at_ > 0 && !later) {
+      if (frame.fault.empty())
+        frame.fault = frame.name + ": its time in the container is not after that of the frame "
+                                   "before it";
+      stamp_ += 1e-6; // so that no two frames have one time
+    }
+    return stamp_;
+  }
+
+  // Containers round their count, or know only how long they last; and what was cut out of a video
+  // may still be in it. What else is missing is damage.
+  bool isWhole() const {
+    const auto said = static_cast<std::size_t>(reader_->count);
+    if (at_ + 2 + said / 100 >= said) return true;
+    const double seconds = reader_->rate > 0 ? reader_->count / reader_->rate : 0;
+    if (!untimed_ && stamp_ + 2 * gap_ >= 0.99 * seconds) return true;
+    return reader_->held >= reader_->count;
+  }
+
   std::string path_;
   std::unique_ptr<VideoReader> reader_;
-  double rate_ = 0;
+  double told_rate_;           // [Hz]; 0: not told
+  double stamp_ = 0, gap_ = 0; // of the last frame, and the longest step of time
+  bool untimed_ = false;
   std::size_t at_ = 0;
   bool ended_ = false;
   std::atomic<bool> stopped_{false};
@@ -186,16 +249,17 @@ int cameraNumber(const std::string& word) {
 
 // One missing frame is a gap; where all are missing nothing can be read. One that cannot be looked
 // at is another matter, which reading it tells.
-std::vector<Frame> framesToRead(const std::filesystem::path& folder, double rate) {
-  std::vector<Frame> list = framesOf(folder, rate);
+FolderList framesToRead(const std::filesystem::path& folder, double rate) {
+  FolderList list{{}, std::filesystem::exists(folder / "frames.csv"), {}};
+  list.frames = framesOf(folder, rate, &list.left_out);
   const auto isMissing = [](const Frame& frame) {
     std::error_code code;
     return std::filesystem::status(frame.file, code).type() ==
            std::filesystem::file_type::not_found;
   };
-  if (std::all_of(list.begin(), list.end(), isMissing))
+  if (std::all_of(list.frames.begin(), list.frames.end(), isMissing))
     throw FileError((folder / "frames").string(), 0,
-                    "holds none of the " + std::to_string(list.size()) +
+                    "holds none of the " + std::to_string(list.frames.size()) +
                         " pictures that frames.csv lists");
   return list;
 }
@@ -221,8 +285,8 @@ std::unique_ptr<FrameSource> openFrames(const std::string& frames, double rate) 
     return std::make_unique<CameraFrames>(cameraNumber(frames.substr(7)));
   if (frames.starts_with("replay:")) {
     const std::string folder = frames.substr(7);
-    std::vector<Frame> list = framesToRead(folder, rate);
-    const double start = replayStart(folder, list[0].t);
+    FolderList list = framesToRead(folder, rate);
+    const double start = replayStart(folder, list.frames[0].t);
     return std::make_unique<ReplayedFrames>(std::move(list), start);
   }
   if (!std::filesystem::exists(frames)) throw FileError(frames, 0, "does not exist");

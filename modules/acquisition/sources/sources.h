@@ -30,6 +30,11 @@ class FrameSource {
   virtual std::optional<std::size_t> count() const = 0;
   virtual bool isLive() const = 0;
   virtual void stop() noexcept = 0; // from any thread: next() returns nullopt within 0.2 s
+  // Whether a person took them one by one, none like another.
+  virtual bool arePictures() const { return false; }
+  // What is told of it, a line each, by the thread that reads: files that are left out, times that
+  // a video does not have.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
 // FRAMES is a scan folder or folder of pictures (framesOf()), a video file, "camera:0", "camera:1"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "acquisition/orientation.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
@@ -10,10 +11,6 @@ namespace patina {
 namespace {
 
 constexpr double kLately = 0.15; // how long a pose helps to choose the next one [s]
-
-std::string sizeOf(int width, int height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
 
 } // namespace
 
@@ -25,14 +22,6 @@ CameraPose cameraPose(const SeenRig& seen, double t) {
   pose.sigma_position = std::sqrt(seen.covariance.topLeftCorner<3, 3>().trace() / 3);
   pose.sigma_angle = std::sqrt(seen.covariance.bottomRightCorner<3, 3>().trace() / 3);
   return pose;
-}
-
-void requireSize(const GreyFrame& image, const Camera& camera, const std::string& name) {
-  if (image.width != camera.width || image.height != camera.height)
-    throw FileError(name, 0,
-                    "is " + sizeOf(image.width, image.height) +
-                        ", but the camera was calibrated at " +
-                        sizeOf(camera.width, camera.height));
 }
 
 RigTracker::RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
@@ -67,6 +56,8 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
   RigTracker tracker(camera, rig, options);
   TrackedFrames result;
   double squares = 0, corners = 0;
+  TurnedFrames turns;
+  std::optional<Camera> shown; // the camera, turned along with the first frame
   const std::optional<std::size_t> count = frames.count();
   const auto goWithout = [&](double t, const SeenRig& seen, const std::string& why) {
     result.without.push_back({t, why});
@@ -82,7 +73,9 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
       if (result.unreadable++ == 0) result.first_fault = frame->fault;
       continue;
     }
-    requireSize(frame->image, camera, frame->name);
+    if (!shown) tracker.setCamera(*(shown = cameraOf(frame->image, camera, frame->name)));
+    requireSize(frame->image, *shown, frame->name);
+    turns.add(frame->image, frame->name);
     const SeenRig seen = tracker.track(frame->image, frame->t);
     result.dropped += seen.dropped;
     if (!seen.repeated.empty() && result.repeated++ == 0)
@@ -100,6 +93,11 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
     squares += n * seen.rms * seen.rms;
     corners += n;
   }
+  result.notes = frames.notes();
+  if (const std::string line =
+          turns.line(shown && shown->width != camera.width ? &camera : nullptr, kTurnedUnlike);
+      !line.empty())
+    result.notes.push_back(line);
   if (corners > 0) result.rms = std::sqrt(squares / corners);
   return result;
 }

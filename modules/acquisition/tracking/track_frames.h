@@ -15,6 +15,8 @@ class RigTracker {
   // Throws Error: a family or an id that there is not.
   RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
              const FinderOptions& options = {});
+  // The camera of frames that are turned.
+  void setCamera(const Camera& camera) { camera_ = camera; }
   // `t` tells how long ago the last pose was.
   SeenRig track(const GreyFrame& image, double t);
   const std::vector<SeenMarker>& markers() const { return markers_; } // in that image
@@ -31,8 +33,6 @@ class RigTracker {
 
 // Of a rig that was seen, with the rms of its deviations.
 CameraPose cameraPose(const SeenRig& seen, double t);
-// Throws FileError unless the image is as large as those that the camera was calibrated with.
-void requireSize(const GreyFrame& image, const Camera& camera, const std::string& name);
 
 struct TrackedFrames {
   std::size_t frames = 0;
@@ -42,8 +42,9 @@ struct TrackedFrames {
   std::size_t dropped = 0;                               // markers that contradicted the others
   double rms = 0;                                        // of all corners [px]
   std::string first_fault = {};                          // of the first that cannot be read
-  std::size_t repeated = 0;        // frames in which a marker of the rig is seen more than once
-  std::string first_repeated = {}; // the first of them, its marker and places
+  std::size_t repeated = 0;            // frames in which a marker of the rig is seen more than once
+  std::string first_repeated = {};     // the first of them, its marker and places
+  std::vector<std::string> notes = {}; // a line each: of the source, and of frames that were turned
 };
 
 // Each frame once it was looked at, in their order; `why` says why it has no pose, if it has none.
@@ -51,7 +52,8 @@ using FrameListener =
     std::function<void(std::size_t frame, const SeenRig& seen, const std::string& why)>;
 
 // All frames of a source that ends; a live one until it is cancelled, which then is no error. A
-// frame of another size than the camera's throws FileError: its calibration is not theirs.
+// frame of another size than the camera's, as it is shown or as it is stored, throws FileError: its
+// calibration is not theirs.
 TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
                           const std::vector<RigMarker>& rig, const FinderOptions& options,
                           Progress& progress, const FrameListener& listener = {});

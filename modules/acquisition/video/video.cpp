@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "acquisition/video/picture_times.h"
+
 namespace patina {
 namespace {
 
@@ -28,28 +30,36 @@ double steadySeconds() {
 
 class CaptureReader : public VideoReader {
  public:
-  CaptureReader(cv::VideoCapture capture, bool camera)
-      : capture_(std::move(capture)), camera_(camera) {
+  // `times`: of a file; nullptr: a camera.
+  CaptureReader(cv::VideoCapture capture, std::unique_ptr<PictureTimes> times)
+      : capture_(std::move(capture)), times_(std::move(times)) {
     const double said = capture_.get(cv::CAP_PROP_FPS),
                  frames = capture_.get(cv::CAP_PROP_FRAME_COUNT);
     if (std::isfinite(said) && said > 0) rate = said;
-    if (!camera && frames > 0 && frames < 1e9) count = static_cast<int>(frames);
+    if (times_ && frames > 0 && frames < 1e9) count = static_cast<int>(frames);
+    // OpenCV turns them as the container says, and tells by how many degrees clockwise.
+    if (times_ && capture_.get(cv::CAP_PROP_ORIENTATION_AUTO) != 0) {
+      const double degrees = capture_.get(cv::CAP_PROP_ORIENTATION_META);
+      orientation_ = degrees == 90 ? 6 : degrees == 180 ? 3 : degrees == 270 ? 8 : 1;
+    }
   }
 
   std::string next(GreyFrame& image, double& t, bool& ended) override {
     return guarded([&]() -> std::string {
       ended = !capture_.read(picture_);
+      if (ended && times_) {
+        held = times_->held();
+        lost = times_->left();
+      }
       if (ended) return "";
-      // The driver's stamp is the frame's own, where it has one on this clock.
-      const double now = steadySeconds(), stamp = capture_.get(cv::CAP_PROP_POS_MSEC) / 1e3;
-      t = camera_ && stamp <= now && stamp > now - 1 ? stamp : now;
+      t = times_ ? times_->next() : cameraTime();
       if (picture_.depth() != CV_8U) return "has no 8 bits a channel";
       if (picture_.channels() == 1)
         picture_.copyTo(grey_);
       else
         cv::cvtColor(picture_, grey_,
                      picture_.channels() == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
-      image = {grey_.cols, grey_.rows, {}};
+      image = {grey_.cols, grey_.rows, {}, orientation_};
       for (int y = 0; y < grey_.rows; ++y)
         image.pixel.insert(image.pixel.end(), grey_.ptr(y), grey_.ptr(y) + grey_.cols);
       return "";
@@ -57,16 +67,23 @@ class CaptureReader : public VideoReader {
   }
 
  private:
+  // The driver's stamp is the frame's own, where it has one on this clock.
+  double cameraTime() const {
+    const double now = steadySeconds(), stamp = capture_.get(cv::CAP_PROP_POS_MSEC) / 1e3;
+    return stamp <= now && stamp > now - 1 ? stamp : now;
+  }
+
   cv::VideoCapture capture_;
+  std::unique_ptr<PictureTimes> times_;
   cv::Mat picture_, grey_;
-  bool camera_;
+  int orientation_ = 1;
 };
 
 std::string openFile(const std::string& path, std::unique_ptr<VideoReader>& out) {
   return guarded([&]() -> std::string {
     cv::VideoCapture capture(path, cv::CAP_FFMPEG);
     if (!capture.isOpened()) return "is no video that can be read";
-    out = std::make_unique<CaptureReader>(std::move(capture), false);
+    out = std::make_unique<CaptureReader>(std::move(capture), std::make_unique<PictureTimes>(path));
     return "";
   });
 }
@@ -76,7 +93,7 @@ std::string openCamera(int number, std::unique_ptr<VideoReader>& out) {
     cv::VideoCapture capture(number, cv::CAP_V4L2);
     if (!capture.isOpened())
       return "there is no /dev/video" + std::to_string(number) + " that can be opened";
-    out = std::make_unique<CaptureReader>(std::move(capture), true);
+    out = std::make_unique<CaptureReader>(std::move(capture), nullptr);
     return "";
   });
 }

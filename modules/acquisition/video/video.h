@@ -14,11 +14,15 @@ class VideoReader {
  public:
   virtual ~VideoReader() = default;
   // An empty text, or why it could not. `t` is when the camera took it, on the machine's steady
-  // clock [s], and nothing of a file.
+  // clock; of a file when its container has it shown, from the first picture on, and NaN where it
+  // does not say [s].
   virtual std::string next(GreyFrame& image, double& t, bool& ended) = 0;
 
-  double rate = 0; // [Hz]; 0: not said
+  double rate = 0; // [Hz], or one by a container's fine clock; 0: not said
   int count = 0;   // frames, as the file says; 0: not said
+  // Once it has ended: how many pictures are in the file, shown or not, and how many of those that
+  // are shown could not be decoded.
+  int held = 0, lost = 0;
 };
 
 // Each returns an empty text, or why it could not.

@@ -53,6 +53,11 @@ std::string readOpened(OIIO::ImageInput& input, const ImageLimits& limits, Image
   const bool alpha = spec.alpha_channel == out.channels - 1 && out.channels % 2 == 0;
   out.premultiplied = alpha && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0 &&
                       spec.get_int_attribute(kStraight, 0) == 0;
+  // Of formats that carry EXIF as it is. Others are turned by their reader, or mean something else.
+  const std::string format = input.format_name();
+  if (format == "jpeg" || format == "png" || format == "tiff" || format == "webp")
+    out.orientation = spec.get_int_attribute("Orientation", 1);
+  if (out.orientation < 1 || out.orientation > 8) out.orientation = 1;
   return "";
 }
 

@@ -13,6 +13,7 @@ struct ImageRows {
   int width = 0, height = 0, channels = 0;
   std::vector<float> value; // channel fastest, the top row first
   bool premultiplied = false;
+  int orientation = 1; // EXIF's
 
   std::size_t rowSize() const { // values
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
