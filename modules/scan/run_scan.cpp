@@ -113,6 +113,8 @@ class Runner {
     const TrackedFrames found =
         trackFrames(*frames, *one.files.camera, one.files.markers, {}, progress_);
     progress_.throwIfCancelled();
+    for (const std::string& line : warningsOf(found, one.folder.string(), one.folder / "rig.json"))
+      report_.warnings.push_back(line);
     if (found.poses.empty())
       throw FileError(one.folder.string(), 0, "no frame shows a pose of the markers");
     writePoses(one.folder / "poses.tum", found.poses, found.without);

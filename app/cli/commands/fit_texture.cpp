@@ -41,7 +41,8 @@ const Keys kFitKeys = {
     {"samples", "", "samples", "even ones, in a period"},
     {"rank", "", "rank", "products of a line along x and one along y", Shown::if_any},
     {"lacking", "", "lacking", "of the plane's rms, what the products lack of it", Shown::if_any},
-    {"rms", "m", "rms", "of the profile's heights from its best line, a picture's from their mean"},
+    {"rms", "m", "rms",
+     "of the profile's heights from their least-squares line, a picture's from their mean"},
     {"residual", "m", "residual", "rms of what the texture lacks of them"},
     {"variance_explained", "", "explained", "of the profile's variance"},
     {"left_out", "m", "left out", "rms of what --cutoff leaves out", Shown::if_any},
@@ -225,7 +226,8 @@ Command fitTextureCommand() {
       .summary = "heights become a Fourier texture",
       .description =
           "PROFILE.csv has the columns along [m],height [m], or those of patina filter --heights, "
-          "with sigmas and stretches of contact. The best line is taken off, the end is blended "
+          "with sigmas and stretches of contact. A line is taken off, the best one beside the "
+          "lowest harmonics, so that no whole wave passes for a slope; the end is blended "
           "into the beginning with one slope, and the rest becomes harmonics of a fundamental of "
           "one period a profile.\n"
           "line: a height along x. spectrum: its amplitudes with phases that a seed draws. "

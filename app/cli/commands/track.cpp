@@ -105,21 +105,7 @@ int runTrack(TrackOptions options, Console& console) {
     writePoses(options.output, found.poses, found.without);
   }
   report.set("seconds", taken.count());
-  for (const std::string& line : found.notes) console.warn(line);
-  if (found.unreadable > 0)
-    console.warn(options.frames + ": " + formatCount(found.unreadable) + " of " +
-                 formatCount(found.frames) +
-                 " frames cannot be read; the first: " + found.first_fault);
-  if (found.repeated > 0)
-    console.warn(options.frames + ": in " + formatCount(found.repeated) + " of " +
-                 formatCount(found.frames) + " frames a marker of the rig is seen more than once " +
-                 "and does not count; the first: " + found.first_repeated +
-                 ": cover or print again whatever else shows it");
-  if (2 * found.dropped > found.poses.size())
-    console.warn(options.rig.string() + ": in " + formatCount(found.poses.size()) + " frames " +
-                 formatCount(found.dropped) +
-                 " markers were not where it has them, so that poses may be those of the wrong "
-                 "ones: look at ids, sizes and places, and at the camera's focal length");
+  for (const std::string& line : warningsOf(found, options.frames, options.rig)) console.warn(line);
   if (found.poses.empty())
     console.warn(options.frames + ": no frame shows a pose of the rig, so nothing is written");
   return console.report(report, found.poses.empty() ? kNotSolved : kDone);

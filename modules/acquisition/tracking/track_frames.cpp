@@ -50,6 +50,25 @@ SeenRig RigTracker::track(const GreyFrame& image, double t) {
   return seen;
 }
 
+std::vector<std::string> warningsOf(const TrackedFrames& found, const std::string& frames,
+                                    const std::filesystem::path& rig) {
+  std::vector<std::string> lines = found.notes;
+  const std::string of = " of " + formatCount(found.frames) + " frames ";
+  if (found.unreadable > 0)
+    lines.push_back(frames + ": " + formatCount(found.unreadable) + of +
+                    "cannot be read; the first: " + found.first_fault);
+  if (found.repeated > 0)
+    lines.push_back(frames + ": in " + formatCount(found.repeated) + of +
+                    "a marker of the rig is seen more than once and does not count; the first: " +
+                    found.first_repeated + ": cover or print again whatever else shows it");
+  if (2 * found.dropped > found.poses.size())
+    lines.push_back(rig.string() + ": in " + formatCount(found.poses.size()) + " frames " +
+                    formatCount(found.dropped) +
+                    " markers were not where it has them, so that poses may be those of the wrong "
+                    "ones: look at ids, sizes and places, and at the camera's focal length");
+  return lines;
+}
+
 TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
                           const std::vector<RigMarker>& rig, const FinderOptions& options,
                           Progress& progress, const FrameListener& listener) {

@@ -47,6 +47,11 @@ struct TrackedFrames {
   std::vector<std::string> notes = {}; // a line each: of the source, and of frames that were turned
 };
 
+// Lines for a person: its notes, and what of the frames or of the rig may be wrong. `frames` and
+// `rig` are how they were named.
+std::vector<std::string> warningsOf(const TrackedFrames& found, const std::string& frames,
+                                    const std::filesystem::path& rig);
+
 // Each frame once it was looked at, in their order; `why` says why it has no pose, if it has none.
 using FrameListener =
     std::function<void(std::size_t frame, const SeenRig& seen, const std::string& why)>;

@@ -58,7 +58,10 @@ class ObjParser {
     if (texture_points_.missing == 0 && all_textured_) gatherTexture();
     const PolygonFaults faults = splitPolygons(mesh_, fans_);
     if (warnings_) addWarnings(faults);
-    if (colors_) keepVertexColors();
+    if (colors_ && colored_vertices_ > 0) {
+      colors_->vertices.resize(mesh_.positions.size());
+      scaleColors(colors_->vertices, 0);
+    }
     readMaterials(materials_, name_, mesh_, colors_, warnings_);
     return std::move(mesh_);
   }
@@ -90,30 +93,26 @@ class ObjParser {
 
   // One line without its comment; lines that end in a backslash are joined with the next.
   bool nextStatement(std::string_view& statement) {
-    std::string_view line;
-    if (!lines_.next(line)) return false;
+    if (!lines_.next(whole_)) return false;
     line_ = lines_.number();
-    if (!endsInBackslash(line)) {
-      statement = withoutComment(whole_ = line);
-      return true;
-    }
+    if (endsInBackslash(whole_)) joinLines();
+    statement = whole_.substr(0, whole_.find('#'));
+    return true;
+  }
+  void joinLines() {
     joined_.clear();
     bool more = true;
-    while (more && endsInBackslash(line)) {
-      joined_.append(line.substr(0, line.size() - 1));
+    while (more && endsInBackslash(whole_)) {
+      joined_.append(whole_.substr(0, whole_.size() - 1));
       joined_ += ' ';
-      more = lines_.next(line);
+      more = lines_.next(whole_);
     }
-    if (more) joined_.append(withoutComment(line));
-    statement = whole_ = joined_;
-    return true;
+    if (more) joined_.append(whole_);
+    whole_ = joined_;
   }
   static bool endsInBackslash(std::string_view& line) {
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     return !line.empty() && line.back() == '\\' && line.find('#') == std::string_view::npos;
-  }
-  static std::string_view withoutComment(std::string_view line) {
-    return line.substr(0, line.find('#'));
   }
 
   void readVertex(text::Words& words) {
@@ -138,12 +137,6 @@ class ObjParser {
     colors_->vertices.resize(mesh_.positions.size());
     Rgba& color = colors_->vertices.emplace_back(Rgba{0, 0, 0, 1});
     for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<float>(rgb[k]);
-  }
-
-  void keepVertexColors() {
-    if (colored_vertices_ == 0) return;
-    colors_->vertices.resize(mesh_.positions.size());
-    scaleColors(colors_->vertices, 0);
   }
 
   void readTexturePoint(text::Words& words) {
@@ -224,7 +217,7 @@ class ObjParser {
   std::int32_t readVertexIndex(const char*& at, const char* end, std::string_view word) {
     const auto so_far = static_cast<std::int64_t>(mesh_.positions.size());
     std::int64_t index = 0;
-    const auto [stop, error] = std::from_chars(at, end, index);
+    const auto [stop, error] = text::wholeNumber(at, end, index);
     if (error == std::errc::invalid_argument) throwBadCorner(word);
     if (error != std::errc() || index > kMostIndices || index < -kMostIndices)
       fail("the face names vertex " + text::quoted(word) + ", more than a file can hold");
@@ -244,7 +237,7 @@ class ObjParser {
   std::int32_t readReference(const char*& at, const char* end, std::string_view word,
                              std::int64_t so_far, References& references) {
     std::int64_t index = 0;
-    const auto [stop, error] = std::from_chars(at, end, index);
+    const auto [stop, error] = text::wholeNumber(at, end, index);
     if (error == std::errc::invalid_argument) throwBadCorner(word);
     at = stop;
     if (index < 0) index += so_far + 1;

@@ -362,14 +362,10 @@ template <typename Source> class PlyParser {
 TriangleMesh parsePly(std::string_view bytes, const std::string& name,
                       std::vector<std::string>* warnings, MeshColors* colors) {
   const PlyHeader header = parsePlyHeader(bytes, name);
-  switch (header.format) {
-  case PlyFormat::ascii:
+  if (header.format == PlyFormat::ascii)
     return PlyParser<PlyAsciiSource>(header, name, warnings, colors).parse();
-  case PlyFormat::little_endian:
+  if (header.format == PlyFormat::little_endian)
     return PlyParser<PlyBinarySource<false>>(header, name, warnings, colors).parse();
-  case PlyFormat::big_endian:
-    break;
-  }
   return PlyParser<PlyBinarySource<true>>(header, name, warnings, colors).parse();
 }
 

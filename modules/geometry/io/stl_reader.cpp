@@ -1,4 +1,4 @@
-#include <cstring>
+#include <bit>
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/text_scan.h"
@@ -134,7 +134,7 @@ class AsciiParser {
     } while (skipsColor());
   }
   bool skipsColor() { // of Magics: a line of its own
-    const bool skips = text::equalIgnoringCase(word_, "color");
+    const bool skips = (word_[0] | 0x20) == 'c' && text::equalIgnoringCase(word_, "color");
     if (skips) words_ = text::Words({});
     colored_ = colored_ || skips;
     return skips;
@@ -147,10 +147,6 @@ class AsciiParser {
     expect(wanted);
   }
   // "endloop", or "end loop" as some programs write it.
-  void nextMustEnd(const char* wanted, const char* what) {
-    nextWord(wanted);
-    expectEnd(wanted, what);
-  }
   void expectEnd(const char* wanted, const char* what) {
     if (!text::equalIgnoringCase(word_, "end")) return expect(wanted);
     nextWord(what);
@@ -188,8 +184,10 @@ class AsciiParser {
       }
       corner = weld_.index(p);
     }
-    nextMustEnd("endloop", "loop");
-    nextMustEnd("endfacet", "facet");
+    nextWord("endloop");
+    expectEnd("endloop", "loop");
+    nextWord("endfacet");
+    expectEnd("endfacet", "facet");
     triangles_.push_back(triangle);
   }
 
