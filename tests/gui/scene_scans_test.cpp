@@ -142,6 +142,7 @@ TEST_F(SceneScansTest, ATextureOfAFittedScanYieldsAsTheFitFound) {
 // To the last bit what the command makes of the same folder and mesh.
 TEST_F(SceneScansTest, OneButtonLaysWhatPatinaScanLays) {
   const TriangleMesh ball = icosphere(0.04, 12);
+  fs::create_directories(folder_ / "again");
   fs::copy(scan_, folder_ / "again" / scan_.filename(), fs::copy_options::recursive);
   openWorkspace(ball);
   clickAction("desk_scan");

@@ -10,7 +10,7 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kMostVertices = 64; // the triangulation takes the cube of their number
-constexpr double kFlat = 1e-4;            // distance from a plane, of the root of the area
+constexpr double kFlatHole = 1e-4;        // distance from a plane, of the root of the area
 
 Vec3 meanOf(const std::vector<Vec3>& loop) {
   Vec3 sum = Vec3::Zero();
@@ -139,7 +139,7 @@ Hole spanned(const std::vector<Vec3>& loop) {
   double off = 0;
   for (const Vec3& p : loop) off = std::max(off, std::abs(normal.dot(p - mean)));
   Vec3 moment = Vec3::Zero(); // about the mean
-  if (off <= kFlat * std::sqrt(across.norm())) {
+  if (off <= kFlatHole * std::sqrt(across.norm())) {
     hole.area = across.norm();
     for (std::size_t i = 0; i < loop.size(); ++i)
       moment += 0.5 * normal.dot((loop[i] - mean).cross(next(i))) * (loop[i] - mean + next(i)) / 3;
