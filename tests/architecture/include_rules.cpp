@@ -131,6 +131,22 @@ Cause ofApp(const std::string& path, const std::string& included) {
   return std::nullopt;
 }
 
+// From a scan to a feel commands and window call the functions of modules/scan. Of these rooms they
+// know values, and what is no step: a guess, a map of errors, a texture of a picture.
+Cause ofStep(const std::string& path, const std::string& included) {
+  static const Names kRooms{"acquisition/filtering/", "acquisition/registration/",
+                            "acquisition/texture/"};
+  static const Names kKnown{
+      "acquisition/filtering/filtered_scan.h",  "acquisition/registration/error_map.h",
+      "acquisition/registration/first_guess.h", "acquisition/registration/register_path.h",
+      "acquisition/registration/rigid_fit.h",   "acquisition/texture/fit_plane.h",
+      "acquisition/texture/fit_texture.h",      "acquisition/texture/lay_texture.h"};
+  if (!path.starts_with("app/cli/") && !path.starts_with("app/gui/")) return std::nullopt;
+  const std::string room = included.substr(0, included.rfind('/') + 1);
+  if (!kRooms.contains(room) || kKnown.contains(included)) return std::nullopt;
+  return "a step of a scan is called through modules/scan";
+}
+
 Cause ofModule(const std::string& path, const std::string& target) {
   const std::string module = moduleOf(path);
   if (module.empty() || module == target) return std::nullopt;
@@ -144,6 +160,7 @@ Cause causeAgainst(const std::string& path, const std::string& included, bool qu
   if (quoted) {
     const std::string target = firstPart(included);
     if (target == "app") return ofApp(path, included);
+    if (const Cause step = ofStep(path, included)) return step;
     if (visibleModules().contains(target)) return ofModule(path, target);
     return "write it from the root, as \"module/file.h\"";
   }
