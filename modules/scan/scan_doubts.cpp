@@ -61,8 +61,8 @@ std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vect
   std::vector<double> pressed = fitting.pressed;
   if (!fitting.force.empty())
     pressed = ScanForces(fitting.force, fitting.scan).pressed(found.compliances);
-  const SimilarityFit sized =
-      fitSimilarity(target, points, found.mesh_from_path, found.counts, pressed, found.together);
+  const SimilarityFit sized = fitSimilarity(target, points, found.mesh_from_path, found.counts,
+                                            pressed, leastNoise(points, fitting.noise));
   const double off = sized.scale - 1;
   const bool says = sized.converged && std::abs(off) < kOneSize && std::abs(off) > kLeastScale &&
                     std::abs(off) > kDeviations * sized.deviation &&

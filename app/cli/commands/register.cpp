@@ -31,8 +31,7 @@ struct RegisterOptions {
 };
 
 const Keys kRegisterKeys = {
-    {"rms", "m", "off the mesh",
-     "rms distance of the samples that count from where they should be"},
+    {"rms", "m", "residual", "rms distance of the samples that count from where they should be"},
     {"samples",
      "",
      "samples",
@@ -41,9 +40,10 @@ const Keys kRegisterKeys = {
      {{"all", "", ""}, {"count", "", ""}}},
     {"deviation",
      "",
-     "place known to",
-     "one deviation of the pose, rms of the axes; of what is seen, errors of neighbouring samples "
-     "counted once",
+     "uncertainty",
+     "one standard deviation of the pose, rms of the axes; of what is seen, errors that "
+     "neighbouring "
+     "samples share counted once",
      Shown::if_any,
      {{"turn", "rad", ""}, {"shift", "m", ""}}},
     {"unique", "", "unique",
@@ -184,7 +184,7 @@ Report reportOf(const RegisteredScans& scans, const ScanRegistrationOptions& opt
                  shifts = std::sqrt(found.covariance.bottomRightCorner<3, 3>().trace() / 3);
     report.set("deviation", Json::object().set("turn", turns).set("shift", shifts),
                formatLength(shifts) + ", " + rounded(turns * 180 / std::numbers::pi) +
-                   " degrees (one deviation)");
+                   " degrees (1 sigma)");
     std::string words;
     for (const FreeMotion& motion : found.free)
       words += (words.empty() ? "" : "; ") + inWords(motion);

@@ -13,7 +13,7 @@ namespace {
 
 QString countWords(const Registration& found) {
   const auto count = std::count(found.counts.begin(), found.counts.end(), true);
-  return QObject::tr("rms %1 of the %2 samples that count, %3 left out")
+  return QObject::tr("residual %1 rms of the %2 samples that count, %3 left out")
       .arg(inWords(found.rms))
       .arg(count)
       .arg(static_cast<std::ptrdiff_t>(found.counts.size()) - count);
@@ -34,7 +34,7 @@ QString fitWords(const Registration& found) {
   const auto deviation = [&](int from) {
     return std::sqrt(found.covariance.block<3, 3>(from, from).trace() / 3);
   };
-  QString words = QObject::tr("Fitted: %1; place known to %2 and %3°")
+  QString words = QObject::tr("Fitted: %1; uncertainty of the place (1σ) %2 and %3°")
                       .arg(countWords(found), inWords(deviation(3)))
                       .arg(deviation(0) * 180 / M_PI, 0, 'g', 2);
   if (!doubt.isEmpty()) words += QStringLiteral(". ") + doubt;

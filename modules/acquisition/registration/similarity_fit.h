@@ -1,7 +1,7 @@
 // A path and a mesh of another size: how much larger the path would have to be to lie on it best.
 #pragma once
 
-#include "acquisition/registration/path_fit.h"
+#include "acquisition/registration/error_law.h"
 
 namespace patina {
 
@@ -13,10 +13,11 @@ struct SimilarityFit {
   bool converged = false;
 };
 
-// Gauss-Newton over pose and scale, from a fit whose weights say what counts. Points that are worth
-// one in `together` say as much of the scale. `pressed`: see FitOptions.
+// Gauss-Newton over pose and scale, from a fit that says what counts. Its deviation is by the
+// errors that this fit leaves (errorLaw(): `noise` is the least), for those of a fit without a
+// scale hold the misfit, too. `pressed`: see FitOptions.
 SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>& points,
                             const Pose& mesh_from_path, const std::vector<bool>& counts,
-                            const std::vector<double>& pressed, double together);
+                            const std::vector<double>& pressed, double noise);
 
 } // namespace patina
