@@ -72,9 +72,7 @@ JointFit refineAll(const SurfaceTarget& target, const std::vector<double>& press
   return joint;
 }
 
-// Once more from there with what presses of a standing probe say of the compliances, and what they
-// say it stays: a probe that slides presses harder on a ridge than in a groove, so that the fit
-// takes texture for stiffness.
+// Once more from there, with what presses of a standing probe say of the compliances beforehand.
 void pressAgain(const SurfaceTarget& target, const std::vector<Vec3>& points, const Paths& paths,
                 RegistrationOptions fitting, RegisteredScans& all, Progress& progress) {
   fitting.expected.resize(paths.size());
@@ -94,10 +92,6 @@ void pressAgain(const SurfaceTarget& target, const std::vector<Vec3>& points, co
   again.starts += all.registration.starts;
   again.iterations += all.registration.iterations;
   again.evaluations += all.registration.evaluations;
-  again.compliances.resize(paths.size());
-  for (std::size_t s = 0; s < paths.size(); ++s)
-    if (all.presses[s] && all.presses[s]->isTold())
-      again.compliances[s] = all.presses[s]->compliance;
   all.registration = std::move(again);
 }
 
@@ -113,6 +107,13 @@ Registration RegisteredScans::of(std::size_t scan) const {
   cut(part.misses);
   cut(part.counts);
   part.compliances = {registration.compliances[scan]};
+  double squares = 0, n = 0;
+  for (std::size_t i = 0; i < part.misses.size(); ++i)
+    if (part.counts[i]) {
+      squares += part.misses[i].distance * part.misses[i].distance;
+      ++n;
+    }
+  if (paths.size() > 1) part.rms = std::sqrt(squares / std::max(n, 1.));
   return part;
 }
 
@@ -148,7 +149,12 @@ RegisteredScans registerSorted(const SurfaceTarget& target, Paths paths,
       scan.push_back(s);
     }
   }
-  if (path.size() < kFewest) throw Error("has fewer than three samples in contact");
+  for (const std::vector<PathSample>& one : paths)
+    if (one.size() < kFewest) {
+      const std::string which =
+          paths.size() > 1 ? "one of the " + formatCount(paths.size()) + " scans " : "";
+      throw Error(which + "has fewer than three samples in contact");
+    }
   RegistrationOptions fitting = optionsFor(path);
   fitting.noise = all.noise = options.noise.value_or(fitting.noise);
   fitting.roughness = options.roughness;
@@ -179,6 +185,11 @@ RegisteredScans registerSorted(const SurfaceTarget& target, Paths paths,
       pressed = ScanForces(fitting.force, fitting.scan).pressed(all.registration.compliances);
     all.joint = refineAll(target, pressed, fitting, path, all.registration, progress);
   }
+  // A probe that slides presses harder on a ridge than in a groove, so that the fit takes texture
+  // for stiffness; what presses say is the scan's.
+  for (std::size_t s = 0; s < paths.size(); ++s)
+    if (all.presses[s] && all.presses[s]->isTold() && !options.compliance)
+      all.registration.compliances[s] = all.presses[s]->compliance;
   for (std::size_t s = 0; s < paths.size(); ++s) {
     const auto begin = path.begin() + static_cast<std::ptrdiff_t>(all.first[s]);
     paths[s].assign(begin, begin + static_cast<std::ptrdiff_t>(paths[s].size()));

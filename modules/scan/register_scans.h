@@ -36,7 +36,8 @@ struct RegisteredScans {
   std::vector<std::string> warnings;
   std::vector<std::string> doubts; // of the mesh, see scanDoubts(): to be told with its name
 
-  // What the registration says of one scan: its own misses, counts and compliance, all else of all.
+  // What the registration says of one scan: its own misses, counts, rms and compliance, all else
+  // of all.
   Registration of(std::size_t scan) const;
 };
 
@@ -48,7 +49,7 @@ std::vector<PathSample> touchingOn(const TriangleMesh& mesh, std::vector<PathSam
 
 // Scans of one body, the paths of which lie in one camera's frame; their order does not matter.
 // touchingOn() says what takes part. `target` has sides. Throws Error where fewer than three
-// samples take part, Cancelled.
+// samples of a scan take part, Cancelled.
 RegisteredScans registerScans(const SurfaceTarget& target,
                               std::vector<std::vector<PathSample>> paths,
                               const ScanRegistrationOptions& options, Progress& progress);

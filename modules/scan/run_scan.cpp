@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/numbers.h"
+#include "core/sha256.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_report.h"
@@ -21,30 +22,37 @@
 namespace patina {
 namespace {
 
-const std::vector<std::vector<const char*>>& filesOfSteps() {
-  static const std::vector<std::vector<const char*>> kFiles = {
-      {"poses.tum"},
-      {"path.csv"},
-      {"registered.csv", "registration.json"},
-      {"heights.csv", "texture.json"}};
-  return kFiles;
-}
-
 // One scan on its way.
 struct Run {
   std::filesystem::path folder;
   bool textured = false;
-  ScanFiles files;
-  std::optional<FilteredScan> filtered;
+  ScanFiles files{};
+  ScanStep from = ScanStep::track; // of track and filter
+  std::optional<FilteredScan> filtered{};
 };
+
+bool areOne(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code none;
+  return std::filesystem::equivalent(a, b, none);
+}
 
 class Runner {
  public:
   Runner(const RunScanOptions& options, Progress& progress)
       : options_(options), progress_(progress) {
-    for (const auto& folder : options.folders) runs_.push_back({folder, true, {}, {}});
-    for (const auto& folder : options.also) runs_.push_back({folder, false, {}, {}});
+    for (const auto& folder : options.folders) runs_.push_back({folder, true});
+    for (const auto& folder : options.also) runs_.push_back({folder, false});
     if (options.folders.empty()) throw Error("a scan needs a folder");
+    for (std::size_t i = 0; i < runs_.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (areOne(runs_[i].folder, runs_[k].folder))
+          throw Error(runs_[i].folder.string() + ": is named twice");
+    if (!options.workspace.empty() && std::filesystem::exists(options.workspace))
+      throw FileError(options.workspace.string(), 0,
+                      "is there already; name another, or remove it");
+    if (areOne(options.mesh, options.folders[0] / "textured.obj"))
+      throw FileError(options.mesh.string(), 0,
+                      "is what the scan's mesh is written to; name another");
   }
 
   RunScanReport run() {
@@ -53,16 +61,16 @@ class Runner {
       one.files = readScanFolder(one.folder, progress_);
       report_.warnings.insert(report_.warnings.end(), one.files.warnings.begin(),
                               one.files.warnings.end());
+      one.from = options_.from.value_or(firstToRun(one));
     }
-    const ScanStep from = options_.from.value_or(firstToRun());
     for (Run& one : runs_)
-      if (from <= ScanStep::track) track(one);
+      if (one.from <= ScanStep::track) track(one);
     if (options_.to >= ScanStep::filter)
-      for (Run& one : runs_) filter(one, from <= ScanStep::filter);
-    if (options_.to >= ScanStep::register_paths && from <= ScanStep::register_paths &&
-        !registerAll())
+      for (Run& one : runs_)
+        if (one.from <= ScanStep::filter) filter(one, true);
+    if (options_.to >= ScanStep::register_paths && registers() && !registerAll())
       return std::move(report_);
-    if (options_.to >= ScanStep::fit) fitAndLay();
+    if (options_.to >= ScanStep::texture) fitAndLay();
     report_.done = true;
     return std::move(report_);
   }
@@ -74,7 +82,6 @@ class Runner {
             const std::string& found, const Json& json) {
     report_.steps.push_back(
         {step, folder, found, std::chrono::duration<double>(Clock::now() - begin).count()});
-    if (folder.empty()) return;
     const std::filesystem::path file = folder / "scan.json";
     Json all =
         std::filesystem::exists(file) ? parseJson(readFile(file), file.string()) : Json::object();
@@ -94,14 +101,32 @@ class Runner {
     target_.emplace(std::move(clean), 0, true);
   }
 
-  ScanStep firstToRun() const {
-    for (std::size_t step = 0; step < filesOfSteps().size(); ++step)
-      for (const Run& one : runs_)
-        for (const char* name : filesOfSteps()[step])
-          if ((one.textured || static_cast<ScanStep>(step) < ScanStep::fit) &&
-              !std::filesystem::exists(one.folder / name))
-            return static_cast<ScanStep>(step);
-    return ScanStep::lay;
+  static ScanStep firstToRun(const Run& one) {
+    if (std::filesystem::exists(one.folder / "path.csv")) return ScanStep::register_paths;
+    return one.files.poses.empty() ? ScanStep::track : ScanStep::filter;
+  }
+
+  // What a registration follows from, as one word.
+  std::string inputs() const {
+    std::vector<std::string> parts;
+    for (const Run& one : runs_) parts.push_back(sha256OfFile(one.folder / "path.csv"));
+    std::sort(parts.begin(), parts.end());
+    std::string all = sha256OfFile(options_.mesh) + std::string(name(options_.unit));
+    for (const std::string& part : parts) all += part;
+    return sha256(all);
+  }
+
+  bool registers() const {
+    if (options_.from) return *options_.from <= ScanStep::register_paths;
+    const std::string now = inputs();
+    return std::any_of(runs_.begin(), runs_.end(), [&](const Run& one) {
+      const std::filesystem::path file = one.folder / "registration.json";
+      if (!std::filesystem::exists(file) || !std::filesystem::exists(one.folder / "registered.csv"))
+        return true;
+      const Json json = parseJson(readFile(file), file.string());
+      const Json *before = json.find("inputs"), *certain = json.find("certain");
+      return !before || before->asString() != now || !certain || !certain->asBool();
+    });
   }
 
   void track(Run& one) {
@@ -151,9 +176,16 @@ class Runner {
     const auto begin = Clock::now();
     std::vector<std::vector<PathSample>> paths;
     for (const Run& one : runs_) paths.push_back(readPath(one.folder / "path.csv"));
-    report_.registered =
-        registerScans(*target_, std::move(paths), options_.registration, progress_);
+    try {
+      report_.registered =
+          registerScans(*target_, std::move(paths), options_.registration, progress_);
+    } catch (const Error& error) {
+      throw FileError(options_.mesh.string(), 0, error.what());
+    }
     const RegisteredScans& found = *report_.registered;
+    for (const FreeMotion& motion : found.registration.free)
+      report_.warnings.push_back(options_.mesh.string() + ": the scans are " + inWords(motion) +
+                                 ": the mesh does not say where along that they lie");
     for (const std::string& line : found.doubts)
       report_.warnings.push_back(options_.mesh.string() + ": " + line);
     report_.warnings.insert(report_.warnings.end(), found.warnings.begin(), found.warnings.end());
@@ -168,7 +200,9 @@ class Runner {
               .set("compliance", own.compliances[0])
               .set("rms", own.rms)
               .set("samples", Json::object().set("all", own.counts.size()).set("count", counts))
-              .set("converged", own.converged);
+              .set("converged", own.converged)
+              .set("certain", !isDoubtful(found.registration))
+              .set("inputs", inputs());
       writeFileAtomically(runs_[i].folder / "registration.json", json.dump() + "\n");
       note(ScanStep::register_paths, runs_[i].folder, begin,
            formatLength(own.rms) + " rms off the mesh, " + formatLength(own.compliances[0]) +
@@ -179,28 +213,24 @@ class Runner {
   }
 
   void fitAndLay() {
-    const bool lays = options_.to >= ScanStep::lay;
     std::vector<ScannedTexture> textures;
     std::vector<TexturedFace> faces;
-    for (const Run& one : runs_)
-      if (one.textured) {
-        textures.push_back(fit(one));
-        if (!lays) continue;
-        LayOptions options;
-        options.texture = static_cast<std::int32_t>(textures.size());
-        try {
-          textures.back().laid = layScanTexture(mesh_, textures.back().strokes, options, progress_);
-        } catch (const Error& error) {
-          throw FileError((one.folder / "registered.csv").string(), 0, error.what());
-        }
-        faces = laidOver(textures.back().laid.faces, faces);
+    for (Run& one : runs_) {
+      if (!one.textured) continue;
+      if (!one.filtered) filter(one, false);
+      textures.push_back(fit(one));
+      LayOptions options;
+      options.texture = static_cast<std::int32_t>(textures.size());
+      try {
+        textures.back().laid = layScanTexture(mesh_, textures.back().strokes, options, progress_);
+      } catch (const Error& error) {
+        throw FileError((one.folder / "registered.csv").string(), 0, error.what());
       }
-    if (!lays) return;
-    const auto begin = Clock::now();
+      faces = laidOver(textures.back().laid.faces, faces);
+    }
     writeTexturedMesh(runs_[0].folder / "textured.obj", in_file_, faces, scale_);
     Editor(texturedScene(mesh_, options_.mesh.stem().string(), textures), progress_)
         .saveAs(options_.workspace);
-    note(ScanStep::lay, {}, begin, formatCount(faces.size()) + " faces with a texture", {});
   }
 
   ScannedTexture fit(const Run& one) {
@@ -224,12 +254,11 @@ class Runner {
     writeHeights(one.folder / "heights.csv", texture.heights);
     writeTexture(one.folder / "texture.json", fitted);
     texture.strokes = readStrokes(one.folder / "registered.csv", one.folder / "heights.csv");
-    note(ScanStep::fit, one.folder, begin,
-         formatLength(std::sqrt(texture.fitted.variance)) + " rms along " +
-             formatLength(texture.fitted.length),
+    note(ScanStep::texture, one.folder, begin,
+         formatLength(texture.fitted.rms) + " rms along " + formatLength(texture.fitted.length),
          Json::object()
              .set("length", texture.fitted.length)
-             .set("rms", std::sqrt(texture.fitted.variance))
+             .set("rms", texture.fitted.rms)
              .set("residual", texture.fitted.residual));
     return texture;
   }
@@ -246,7 +275,7 @@ class Runner {
 } // namespace
 
 const std::vector<std::string>& scanStepNames() {
-  static const std::vector<std::string> kNames = {"track", "filter", "register", "fit", "lay"};
+  static const std::vector<std::string> kNames = {"track", "filter", "register", "texture"};
   return kNames;
 }
 

@@ -14,11 +14,11 @@
 
 namespace patina {
 
-// In their order: frames become poses.tum, poses and the probe path.csv, paths registered.csv and
-// registration.json, heights heights.csv and texture.json, textures the workspace and textured.obj,
-// which is in the first folder.
-enum class ScanStep { track, filter, register_paths, fit, lay };
-const std::vector<std::string>& scanStepNames(); // "track", "filter", "register", "fit", "lay"
+// In their order: frames become poses.tum; poses and the probe path.csv; paths registered.csv and
+// registration.json; heights heights.csv and texture.json, and these the workspace and
+// textured.obj, which is in the first folder.
+enum class ScanStep { track, filter, register_paths, texture };
+const std::vector<std::string>& scanStepNames(); // "track", "filter", "register", "texture"
 
 struct RunScanOptions {
   std::vector<std::filesystem::path> folders; // one at least; each gives a texture
@@ -26,17 +26,19 @@ struct RunScanOptions {
   std::filesystem::path mesh;
   MeshUnit unit = MeshUnit::mm;
   std::filesystem::path workspace; // to be made; empty where `to` comes before the last step
-  // Absent: the first whose files are not all there. Steps before it are not run.
+  // Steps before it are not run. Absent: the first that a folder lacks the files of; paths are
+  // registered again where mesh, unit or paths are others than those that were, or where the place
+  // was not certain.
   std::optional<ScanStep> from;
-  ScanStep to = ScanStep::lay;
+  ScanStep to = ScanStep::texture;
   ScanRegistrationOptions registration;
 };
 
 struct RunScanReport {
   struct Step {
     ScanStep step = ScanStep::track;
-    std::filesystem::path folder; // empty for the last step
-    std::string found;            // in words
+    std::filesystem::path folder;
+    std::string found; // in words
     double seconds = 0;
   };
   std::vector<Step> steps; // that ran
@@ -46,7 +48,8 @@ struct RunScanReport {
   bool done = false;
 };
 
-// Throws Error and FileError as the steps do, Cancelled. What the steps before have made stays.
+// Throws Error where a folder is named twice or the workspace is there, Error and FileError as the
+// steps do, Cancelled. What the steps before have made stays.
 RunScanReport runScan(const RunScanOptions& options, Progress& progress);
 
 } // namespace patina

@@ -10,7 +10,7 @@
 namespace patina {
 namespace {
 
-constexpr double kDeviations = 4, kLeastScale = 2e-3;
+constexpr double kDeviations = 4, kLeastScale = 5e-3;
 constexpr double kClearlyBetter = 0.8;                // of the rms
 constexpr double kLeastCover = 0.1, kMostCover = 1.1; // of the mesh's half diagonal
 constexpr double kOneSize = 0.15;                     // a scale so near to one is no unit

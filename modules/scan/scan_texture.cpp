@@ -62,17 +62,21 @@ ScannedTexture fitScanTexture(const SurfaceTarget& target, const FilteredScan& s
                               const std::vector<CameraPose>& poses, const Rig& rig,
                               const std::vector<PathSample>& path, const Registration& registration,
                               const FitOptions1d& options) {
-  const double compliance = registration.compliances.empty() ? 0 : registration.compliances.front();
+  std::optional<double> compliance;
+  if (!registration.compliances.empty()) compliance = registration.compliances.front();
+  const ScanHeights over =
+      heightsOverMesh(target, scan, poses, rig, registration.mesh_from_path, compliance);
+  if (!compliance && over.compliance && over.compliance->isTold())
+    compliance = over.compliance->compliance;
   ScannedTexture found;
-  found.heights =
-      heightsOverMesh(target, scan, poses, rig, registration.mesh_from_path, compliance).heights;
+  found.heights = over.heights;
   std::vector<TimedPoint> points;
   for (std::size_t i = 0; i < path.size(); ++i)
     if (registration.counts[i])
       points.push_back({path[i].t, registration.mesh_from_path * path[i].position});
   found.strokes = strokesOf(points, placesOf(found.heights));
   found.fitted = fitTexture(profileOf(found.heights), options);
-  if (compliance > 0) found.fitted.texture.compliance = compliance;
+  if (compliance && *compliance > 0) found.fitted.texture.compliance = compliance;
   return found;
 }
 

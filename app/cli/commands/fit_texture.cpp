@@ -183,14 +183,14 @@ int runFitTexture(FitTextureOptions options, Console& console) {
   for (std::size_t j = 1; j < line.a.size(); ++j)
     if (std::hypot(line.a[j], line.b[j]) > std::hypot(line.a[strongest], line.b[strongest]))
       strongest = j;
-  const double rms = std::sqrt(fitted.variance), finest = fitted.length / harmonics;
+  const double finest = fitted.length / harmonics;
   Report report(kFitKeys);
   report.set("kind", kKinds[static_cast<std::size_t>(options.kind)])
       .set("harmonics", static_cast<std::size_t>(harmonics))
       .set("length", fitted.length)
       .set("omega", texture.omega)
       .set("samples", fitted.samples)
-      .set("rms", rms)
+      .set("rms", fitted.rms)
       .set("residual", fitted.residual)
       .set("variance_explained", 1 - fitted.residual * fitted.residual / fitted.variance)
       .set("left_out", fitted.left_out)

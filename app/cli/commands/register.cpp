@@ -210,7 +210,8 @@ Report reportOf(const RegisteredScans& scans, const ScanRegistrationOptions& opt
              "turned by " + rounded(turn.angle() * 180 / std::numbers::pi) +
                  " degrees, shifted by " + formatLength(found.mesh_from_path.translation().norm()));
   report.set("mean_distance", found.mean_distance);
-  if (scans.noise > 0) report.set("roughness", found.roughness);
+  if (scans.noise > 0 && options.method == Method::distance)
+    report.set("roughness", found.roughness);
   if (found.noise > 0) report.set("noise", scans.noise);
   report.set("last_step",
              Json::object().set("turn", found.last_turn).set("shift", found.last_shift),

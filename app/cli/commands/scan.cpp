@@ -30,8 +30,8 @@ ScanStep parseStep(const std::string& word) {
 int runScanCommand(const RunScanOptions& options, Console& console) {
   if (options.from && *options.from > options.to)
     throw Error("--from: that step comes after the one of --to");
-  if (options.to == ScanStep::lay && options.workspace.empty())
-    throw Error("-o: names the workspace to be made; --to fit ends before it");
+  if (options.to == ScanStep::texture && options.workspace.empty())
+    throw Error("-o: names the workspace to be made; --to register ends before it");
   if (!options.workspace.empty()) requireWorkspacePlace(options.workspace);
   const RunScanReport found = runScan(options, console.progress());
   for (const std::string& line : found.warnings) console.warn(line);
@@ -44,10 +44,10 @@ int runScanCommand(const RunScanOptions& options, Console& console) {
                    .set("folder", step.folder.string())
                    .set("found", step.found)
                    .set("seconds", step.seconds));
-    report.tell(name, (step.folder.empty() ? "" : step.folder.string() + ": ") + step.found);
+    report.tell(name, step.folder.string() + ": " + step.found);
   }
   report.set("steps", steps).set("done", found.done);
-  if (found.done && options.to == ScanStep::lay)
+  if (found.done && options.to == ScanStep::texture)
     report.set("workspace", options.workspace.string())
         .set("textured", (options.folders.front() / "textured.obj").string());
   if (!found.done) {
@@ -71,10 +71,14 @@ Command scanCommand() {
       .summary = "scan folders become a workspace whose mesh feels as what was scanned",
       .description =
           "Runs the steps from frames to a feel: track (poses.tum), filter (path.csv), register "
-          "(registered.csv, registration.json), fit (heights.csv, texture.json) and lay (the "
-          "workspace, and textured.obj in the first FOLDER). Each leaves in the folder of its scan "
-          "the files that the command of its name leaves, bit for bit, and what it found in "
-          "scan.json. Steps whose files are all there are not run again unless --from names them.\n"
+          "(registered.csv, registration.json) and texture (heights.csv, texture.json, the "
+          "workspace, "
+          "and textured.obj in the first FOLDER). Each leaves in the folder of its scan what the "
+          "commands leave, tables and textures to the last bit, and what it found in scan.json. "
+          "What "
+          "is there is not made again, unless --from names its step; paths are registered again "
+          "where "
+          "mesh, unit or paths are others, or where the place was not certain.\n"
           "All folders are scans of one body, the poses of which one camera saw from one place. "
           "Exit code 1 where the place on the mesh is not certain: the steps before it are kept.",
       .examples = {"patina scan ribs weave --also survey --mesh toy.obj -o toy",
@@ -91,10 +95,10 @@ Command scanCommand() {
             "Another scan of the body, which only helps to find the place: no texture is made of "
             "it.",
             into(options->also), Times::any},
-           {"--from", "STEP", "", "the first without its files",
-            "Run this step and those after it: track, filter, register, fit or lay.",
+           {"--from", "STEP", "", "the first whose files are not there",
+            "Run this step and those after it: track, filter, register or texture.",
             [options](const std::string& word) { options->from = parseStep(word); }},
-           {"--to", "STEP", "", "lay", "The last step to run.",
+           {"--to", "STEP", "", "texture", "The last step to run.",
             [options](const std::string& word) { options->to = parseStep(word); }},
            {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",
             parsedInto(options->unit, parseMeshUnit)}},

@@ -225,19 +225,23 @@ void AlignDesk::registerFromHere() {
   panel_->setReady(true, true);
   emit changed();
   ScanRegistrationOptions options;
-  if (alignment_.isLaid()) options.guess = alignment_.pose();
-  fit_job_.start([this, options, path = alignment_.path(), target = alignment_.target()](
+  if (alignment_.isLaidByHand()) options.guess = alignment_.pose();
+  fit_job_.start([this, options, path = alignment_.whole(), target = alignment_.target()](
                      Progress& progress, const Background::Deliver& deliver) {
     const auto rest = [this] {
       work_.reset();
       panel_->setReady(alignment_.isReady(), false);
     };
     try {
-      const Registration found = registerScans(*target, {path}, options, progress).of(0);
-      deliver(true, [this, rest, found] {
+      const RegisteredScans scans = registerScans(*target, {path}, options, progress);
+      deliver(true, [this, rest, scans, found = scans.of(0)] {
         rest();
         move(found.mesh_from_path);
         settle(found);
+        for (const std::string& line : scans.warnings)
+          emit said({QString::fromStdString(line), true});
+        for (const std::string& line : scans.doubts)
+          emit said({tr("The mesh: %1").arg(QString::fromStdString(line)), true});
         emit fitted(!isDoubtful(found));
       });
     } catch (const std::exception& error) {
@@ -258,6 +262,7 @@ void AlignDesk::cancel() {
   work_.reset();
   panel_->setReady(alignment_.isReady(), false);
   emit changed();
+  emit fitted(false);
 }
 
 void AlignDesk::setPicking(bool on) {

@@ -37,8 +37,8 @@ class AlignDesk : public QObject {
   // nullptr: no scene is open. Where no path is laid yet its first scan's is, once it is seen.
   void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);
   void changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // the path stays where it lies
-  bool isKept() const;    // where the path lies, or nobody has laid it there
-  bool settlePlacement(); // kept or given up; false: the person goes on
+  bool isKept() const;     // where the path lies, or nobody has laid it there
+  bool settlePlacement();  // kept or given up; false: the person goes on
   void registerFromHere(); // from where a hand has put the path, or from nowhere
   void cancel();
   void undo();
@@ -47,7 +47,7 @@ class AlignDesk : public QObject {
 
  signals:
   void changed();
-  void fitted(bool is_certain); // a fit has ended, and the path lies where it says
+  void fitted(bool is_certain); // a fit has ended; false: by an error or a cancel, too
   void said(const patina::Message& message);
 
  private:

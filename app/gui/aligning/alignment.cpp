@@ -150,6 +150,10 @@ const std::optional<Registration>& Alignment::found() const {
   return steps_.empty() || moved_ ? kNobody : steps_[at_].fit;
 }
 
+bool Alignment::isLaidByHand() const {
+  return !steps_.empty() && !found() && !pose_.isApprox(steps_[0].pose, 1e-12);
+}
+
 Registration Alignment::registration() const {
   return found() ? *found() : registeredAt(*target_, path_, pose_);
 }

@@ -47,6 +47,7 @@ class Alignment {
 
   const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
   const std::vector<PathSample>& path() const { return path_; } // what of it takes part
+  const std::vector<PathSample>& whole() const { return whole_; }
   // So many of the path's positions, evenly, as are looked at while a hand moves it.
   const std::vector<Vec3>& points() const { return points_; }
   const std::shared_ptr<const SurfaceTarget>& target() const { return target_; }
@@ -57,7 +58,7 @@ class Alignment {
   const std::optional<Registration>& found() const;
   // Where the path lies: what the fit says, or all samples where a hand has put them.
   Registration registration() const;
-  bool isLaid() const { return done() > 0; } // by a hand or by a fit
+  bool isLaidByHand() const; // and not where it began
   void setPose(const Pose& pose);
   // A step that can be undone, if the pose has changed; `fit` has put the path there.
   void commit(std::optional<Registration> fit = {});

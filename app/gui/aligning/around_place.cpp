@@ -21,9 +21,10 @@ void AroundPlace::look() {
   rms.resize(alignment_.done() + 1);
   plot_->setSteps(rms);
   job_.start([this, target = alignment_.target(), points = alignment_.points(),
-              at = alignment_.registration(),
+              path = alignment_.path(), found = alignment_.found(),
               pose = alignment_.pose()](Progress& progress, const Background::Deliver& deliver) {
     try {
+      const Registration at = found ? *found : registeredAt(*target, path, pose);
       deliver(false,
               [this, error = errorMapOf(target->mesh(), at, kErrorReach * target->extent())] {
                 error_ = error;

@@ -13,7 +13,7 @@ namespace {
 
 QString countWords(const Registration& found) {
   const auto count = std::count(found.counts.begin(), found.counts.end(), true);
-  return QObject::tr("residual %1 rms of the %2 samples that count, %3 left out")
+  return QObject::tr("residual rms %1 of the %2 samples that count, %3 left out")
       .arg(inWords(found.rms))
       .arg(count)
       .arg(static_cast<std::ptrdiff_t>(found.counts.size()) - count);

@@ -109,8 +109,7 @@ void ObjectPanel::showScene(const CompiledScene& scene) {
            "rim."));
   if (!found.holes.empty())
     row(tr("Largest hole"), text(describeHole(found.holes.front())),
-        tr("Closed over: what lies behind it is solid"),
-        true);
+        tr("Closed over: what lies behind it is solid"), true);
   const auto defect = [&](const QString& caption, std::size_t count, const QString& tip) {
     if (count > 0) row(caption, text(formatCount(count)), tip, true);
   };

@@ -22,7 +22,7 @@ class ValueRow : public QWidget {
 
   void setValue(double value); // sends no signal
   double value() const { return number_->value(); }
-  void setReach(double reach); // the slider's, to both sides of 0; the number's stays
+  void setReach(double reach);           // the slider's, to both sides of 0; the number's stays
   void setRemovable(const QString& tip); // shows a cross that sends removed()
 
  signals:

@@ -143,10 +143,13 @@ void ScanDesk::use(const QString& file, const QString& text) {
     connect(askForFolder(window_, tr("Keep %1 in").arg(file)), &QFileDialog::fileSelected, this,
             [this, file, text](const QString& folder) {
               try {
-                writeFileAtomically(std::filesystem::path(folder.toStdString()) /
-                                        file.toStdString(),
-                                    text.toStdString());
-                emit said({tr("%1 is in %2").arg(file, folder)});
+                const std::filesystem::path kept =
+                    std::filesystem::path(folder.toStdString()) / file.toStdString();
+                const bool was_there = std::filesystem::exists(kept);
+                if (was_there) std::filesystem::rename(kept, kept.string() + "~");
+                writeFileAtomically(kept, text.toStdString());
+                emit said({was_there ? tr("%1 is in %2; the one before is %1~").arg(file, folder)
+                                     : tr("%1 is in %2").arg(file, folder)});
               } catch (const std::exception& error) {
                 showProblem(&window_, tr("The calibration cannot be kept"),
                             QString::fromStdString(error.what()),

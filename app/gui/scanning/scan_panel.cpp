@@ -59,8 +59,9 @@ ScanPanel::ScanPanel(OpenScan& scan, QWidget* parent)
                        "patina filter do; what is there stays"));
   texture_->setObjectName(QStringLiteral("scan_texture"));
   texture_->setToolTip(
-      tr("All that is left to do, as patina scan does it: finds where the path lies "
-         "on the open mesh, and lays the texture that was scanned onto it"));
+      tr("All that is left to do, as patina scan does it: finds where the path lies on "
+         "the open mesh, and lays the texture that was scanned onto it. The "
+         "scene's own stiffness stays"));
   close_->setObjectName(QStringLiteral("close_scan"));
   close_->setToolTip(tr("The scan goes from the window, and stays where it is on disk"));
   column->addWidget(shown_);

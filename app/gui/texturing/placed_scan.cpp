@@ -25,10 +25,12 @@ PlacedScan placedScan(const OpenScan& scan, const AlignDesk& align, const Scene&
   placed.poses = path.poses;
   placed.rig = *scan.files()->rig;
   placed.path = align.alignment().path();
-  placed.registration = align.alignment().registration();
+  if (const auto& found = align.alignment().found())
+    placed.registration = *found;
+  else
+    placed.registration.counts.assign(placed.path.size(), true);
   placed.registration.mesh_from_path =
       scene.objects[0].world_from_object.inverse() * align.alignment().pose();
-  placed.by_hand = !align.alignment().found();
   return placed;
 }
 

@@ -16,8 +16,7 @@ struct PlacedScan {
   std::vector<CameraPose> poses;
   Rig rig;
   std::vector<PathSample> path; // what of it was placed
-  Registration registration;    // on the mesh of the scene's one object
-  bool by_hand = false;         // nothing was fitted, so that no compliance is known
+  Registration registration;    // on the mesh of the scene's one object; by hand: pose and counts
 };
 
 // Throws Error that says what is missing, and where to get it.

@@ -213,16 +213,15 @@ void TextureLibrary::takeFromScan() {
           fitScanTexture(target, scan.filtered, scan.poses, scan.rig, scan.path, scan.registration);
       found.fitted.texture.name = scan.name;
       const auto felt = feltTexture(std::move(found.fitted.texture));
-      // Without a registration the texture is as stiff as the scene; the user is told so.
+      // Without a compliance the texture is as stiff as the scene; the user is told so.
       const QString hint =
-          !scan.by_hand ? QString()
-                        : tr("The texture has no stiffness of its own: its scan was placed by "
-                             "hand. Fit the path on the desk Align to estimate it.");
+          felt->value.compliance
+              ? QString()
+              : tr("The texture has no stiffness of its own: its scan was placed by "
+                   "hand. Fit the path on the desk Align to estimate it.");
       deliver(true, [this, felt, number, rings, hint, strokes = found.strokes] {
         work_.reset();
         card_->setHint(hint);
-        emit said({tr("The texture of %1 lies on the mesh")
-                       .arg(QString::fromStdString(felt->value.name))});
         apply("lay " + felt->value.name, [felt, number, rings, strokes](const Scene& scene) {
           const Progress quiet;
           return withLaid(scene, 0, strokes, {number, felt, 0}, rings, quiet);

@@ -5,6 +5,7 @@
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #include "app/gui/window/main_window.h"
+#include "core/error.h"
 
 namespace patina {
 namespace {
@@ -63,14 +64,21 @@ void MainWindow::connectScan() {
       say({tr("Open the mesh that was scanned first, so that the path can lie on it"), true});
       return;
     }
+    try { // what is missing is told before a fit
+      (void)placedScan(parts_.scan->scan(), *parts_.align, edits_.scene()->scene);
+    } catch (const Error& error) {
+      say({QString::fromStdString(error.what()), true});
+      return;
+    }
     *goes_on = true;
     parts_.align->registerFromHere();
   });
   connect(parts_.align, &AlignDesk::fitted, parts_.texture, [this, goes_on](bool is_certain) {
     if (!std::exchange(*goes_on, false)) return;
     if (is_certain) return parts_.texture->library().takeFromScan();
-    if (const auto& found = parts_.align->alignment().found())
-      say({tr("%1. No texture was made of it").arg(doubtWords(*found)), true});
+    const auto& found = parts_.align->alignment().found();
+    if (const QString doubt = found ? doubtWords(*found) : QString(); !doubt.isEmpty())
+      say({tr("%1. No texture was made of it").arg(doubt), true});
   });
   connect(parts_.align->cells(), &AlignCells::meshAsked, &documents_, [this](const QString& file) {
     LoadRequest request;

@@ -137,7 +137,7 @@ ErrorLaw errorLaw(const std::vector<Vec3>& points, const PathFit& fit, double no
   const SymmetricEigen eigen(law.normal.topLeftCorner<6, 6>());
   Eigen::Index seen = 0;
   while (seen < 6 && eigen.values[5 - seen] > kBlind * eigen.values[5]) ++seen;
-  if (count < kFewestPoints) {
+  if (count < kFewestPoints + static_cast<double>(forces.scans())) {
     law.deviation = std::max(
         noise, fit.rms * std::sqrt(count / std::max(count - static_cast<double>(seen), 1.0)));
     law.scatter = law.deviation * law.deviation * law.normal;

@@ -292,6 +292,9 @@ JointFit refineHere(const SurfaceTarget& target, JointOptions options,
       joint.converged && isExplained(joint.rms, count / static_cast<double>(path.size()), noise,
                                      std::hypot(leastNoise(points, noise), registering.roughness),
                                      registering.outliers);
+  if (noise > 0)
+    found.roughness =
+        std::sqrt(std::max(0., joint.rms * joint.rms - std::pow(leastNoise(points, noise), 2)));
   found.misses = std::move(fit.misses);
   return joint;
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kExpected = 1.5;      // times the noise: a larger rms says that it lies elsewhere
 constexpr std::size_t kDeciding = 600; // points that decide between places
 constexpr int kMoreFits = 3;
-constexpr double kRound = 2e-3;  // of the points' radius: noise below it sees no curvature
+constexpr double kRound = 5e-3;  // of the points' radius: noise below it sees no curvature
 constexpr double kBetter = 0.99; // of the cost: what is better by less is not told apart
 
 double shareThatCounts(const PathFit& fit) {
@@ -92,7 +92,8 @@ Registration registerPlaces(const SurfaceTarget& target, const std::vector<Vec3>
 
 // Noise leads away from what is round: the mean distance of points about a place on a surface of
 // mean curvature H is noise^2 H (the distance's Laplacian), and the fit moves the path by it. The
-// mean is taken over six points that stand for a normal noise to the third degree.
+// mean is taken over six points that stand for a normal noise to the third degree. Asks
+// for a target with sides.
 PathFit fitLessBias(const SurfaceTarget& target, const std::vector<Vec3>& points, PathFit best,
                     const FitOptions& fitting, double noise) {
   std::vector<double> bias(points.size(), 0);
@@ -225,8 +226,8 @@ Registration registerPath(const SurfaceTarget& target, const std::vector<Vec3>& 
     best = fitFrom(best.mesh_from_path, points);
     judge();
   }
-  if (options.noise > kRound * scaleOf(points, best.mesh_from_path).radius)
-    best = fitLessBias(target, points, std::move(best), yielding, std::min(noiseOf(best), least));
+  if (target.hasSides() && options.noise > kRound * scaleOf(points, best.mesh_from_path).radius)
+    best = fitLessBias(target, points, std::move(best), yielding, std::min(best.rms, least));
   const MotionScale scale = scaleOf(points, best.mesh_from_path);
   result.mesh_from_path = best.mesh_from_path;
   result.rms = best.rms;

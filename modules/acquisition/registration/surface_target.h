@@ -31,6 +31,7 @@ class SurfaceTarget {
   const TriangleMesh& mesh() const { return mesh_; }
   const TriangleTree& tree() const { return tree_; }
   double offset() const { return offset_; }
+  bool hasSides() const { return side_.has_value(); }
   double extent() const { return extent_; } // the bounding box's diagonal [m]
   // By how much its flat faces leave the surface that they stand for, about this face [m].
   double facetError(std::int32_t face) const;

@@ -17,7 +17,7 @@ constexpr double kRounding = 1e-13;  // of the heights: what less remains is no 
 constexpr std::size_t kBesideTilt = 16;
 constexpr double kMostSamples = 1e6;
 constexpr double kSamePlace = 1e-3; // of a step
-constexpr double kSameBend = 0.5;   // of one step's: slopes of many steps that agree are no chance
+constexpr double kSameBend = 0.25;  // of one step's
 
 // Sorted by place; those that lie together are one.
 std::vector<ProfilePoint> inOrder(std::vector<ProfilePoint> points) {
@@ -210,10 +210,13 @@ std::vector<double> seamless(std::vector<double> heights, std::size_t blend) {
   const auto leaves = [least = *low, most = *high](double h) { return h < least || h > most; };
   if (std::none_of(closed.begin(), closed.end(), leaves)) return closed;
   // Of single steps the slopes of a rough profile are chance, of which a long zone makes hills.
-  const std::size_t steps = std::max<std::size_t>(1, blend / 4);
+  // Those of a few steps agree where they are none.
   const double bend = bendOf(heights, 1);
-  if (std::abs(bendOf(heights, steps) - bend) < kSameBend * std::abs(bend)) return closed;
-  closed = closedBy(heights, blend, steps);
+  const auto agrees = [&](std::size_t steps) {
+    return std::abs(bendOf(heights, std::min(steps, blend)) - bend) < kSameBend * std::abs(bend);
+  };
+  if (agrees(2) && agrees(4) && agrees(8)) return closed;
+  closed = closedBy(heights, blend, std::max<std::size_t>(1, blend / 4));
   for (double& h : closed) h = std::clamp(h, *low, *high);
   return closed;
 }
@@ -272,7 +275,8 @@ FittedTexture fitTexture(const std::vector<ProfilePoint>& given, const FitOption
   fitted.length = length;
   fitted.samples = m;
   fitted.tilt = flatten(heights) / step;
-  fitted.variance = offLine(heights, m);
+  fitted.rms = std::sqrt(offLine(heights, m));
+  fitted.variance = meanSquare(heights, m);
   double highest = 0;
   for (const ProfilePoint& point : points) highest = std::max(highest, std::abs(point.height));
   if (!(std::sqrt(fitted.variance) > kRounding * highest)) throw Error("the profile is flat");

@@ -25,7 +25,8 @@ struct FittedTexture {
   double length = 0;       // of the profile [m]
   std::size_t samples = 0; // even ones, in a period
   double tilt = 0;         // of the line that was taken off
-  double variance = 0;     // of the profile off its least-squares line [m^2]
+  double rms = 0;          // of the profile off its least-squares line [m]
+  double variance = 0;     // of the profile without the line that was taken off [m^2]
   double residual = 0;     // rms of what the texture lacks of that, where nothing was blended [m]
   double left_out = 0;     // rms of what the cutoff leaves out [m]
   double blended = 0;      // rms of what blending changed, over the whole [m]
