@@ -64,8 +64,8 @@ std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vect
   const SimilarityFit sized = fitSimilarity(target, points, found.mesh_from_path, found.counts,
                                             pressed, leastNoise(points, fitting.noise));
   const double off = sized.scale - 1;
-  const bool says = sized.converged && std::abs(off) < kOneSize && std::abs(off) > kLeastScale &&
-                    std::abs(off) > kDeviations * sized.deviation &&
+  const bool says = found.free.empty() && sized.converged && std::abs(off) < kOneSize &&
+                    std::abs(off) > kLeastScale && std::abs(off) > kDeviations * sized.deviation &&
                     (found.converged || sized.rms < kClearlyBetter * found.rms);
   if (says)
     doubts.push_back("the mesh looks " + percent(off / sized.scale) +
