@@ -236,7 +236,12 @@ class Runner {
   ScannedTexture fit(const Run& one) {
     const auto begin = Clock::now();
     if (!one.files.rig) throw FileError(one.folder.string(), 0, "has no rig.json");
-    const RegistrationReport placed = readRegistrationReport(one.folder / "registration.json");
+    const std::filesystem::path registration = one.folder / "registration.json";
+    const RegistrationReport placed = readRegistrationReport(registration);
+    const Json said = parseJson(readFile(registration), registration.string());
+    if (const Json* certain = said.find("certain"); certain && !certain->asBool())
+      report_.warnings.push_back(registration.string() +
+                                 ": its place is not certain, and the texture is laid there");
     ScannedTexture texture;
     try {
       texture.heights = heightsOverMesh(*target_, *one.filtered, one.files.poses, *one.files.rig,

@@ -54,9 +54,9 @@ class Alignment {
 
   const Pose& pose() const { return pose_; } // mesh_from_path
   Vec3 middle() const;                       // of the path, where it lies
-  // Of the fit that put the path where it is; nullopt: a hand did.
+  // Returns the fit that put the path where it is; nullopt where a hand did.
   const std::optional<Registration>& found() const;
-  // Where the path lies: what the fit says, or all samples where a hand has put them.
+  // Returns what the fit says of the path; where a hand has put it all samples count.
   Registration registration() const;
   bool isLaidByHand() const; // and not where it began
   void setPose(const Pose& pose);

@@ -39,7 +39,8 @@ void drawTag(QPainter& painter, const QColor& color, const QPointF& at, const QS
   painter.drawText(at, words);
 }
 
-// What is drawn needs no calibration of the picture's own size.
+// Returns the camera turned as the picture is, or as it was given where it was calibrated for
+// pictures of another size: drawing over them needs no right scale.
 std::optional<Camera> cameraOfPicture(const std::optional<Camera>& camera, const GreyFrame& image) {
   try {
     if (camera) return cameraOf(image, *camera, "");

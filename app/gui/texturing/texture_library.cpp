@@ -213,7 +213,7 @@ void TextureLibrary::takeFromScan() {
           fitScanTexture(target, scan.filtered, scan.poses, scan.rig, scan.path, scan.registration);
       found.fitted.texture.name = scan.name;
       const auto felt = feltTexture(std::move(found.fitted.texture));
-      // Without a compliance the texture is as stiff as the scene; the user is told so.
+      // A texture without a compliance is as stiff as the scene; the hint says so.
       const QString hint =
           felt->value.compliance
               ? QString()

@@ -96,7 +96,8 @@ std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board
   return view;
 }
 
-// Where the board has its markers, top left first, if its top left square is white or black.
+// Returns the places of the board's markers, top left first, for a white or a black top left
+// square.
 std::vector<Quad> markersOn(const Board& board, bool white_first) {
   std::vector<Quad> places;
   for (int y = 0; y < board.rows; ++y)
@@ -120,7 +121,7 @@ BoardView markersSeen(const std::vector<SeenMarker>& seen, const std::vector<Qua
   return view;
 }
 
-// By how much the plane's map misses [px^2].
+// Returns the mean square by which the view's homography misses its corners [px^2].
 double missOf(const BoardView& view) {
   const Eigen::Matrix3d map = homography(view.board, view.pixel);
   double squares = 0;
@@ -138,8 +139,8 @@ std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<int>(i);
   const auto seen = findMarkers(image, {CodeBook(family, ids)}, nullptr);
   BoardView markers = markersSeen(seen, markersOn(board, false)), view;
-  // In the other layout every other row is a square further: no plane's map does that. Markers of
-  // one row fit both, and then it is only the board that is a square further.
+  // The other layout has every other row a square further, which no homography maps. The markers of
+  // one row fit both layouts, and then only the board lies a square further.
   if (board.rows % 2 == 0 && seen.size() > 1)
     if (BoardView other = markersSeen(seen, markersOn(board, true));
         missOf(other) < missOf(markers))

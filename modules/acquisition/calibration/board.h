@@ -26,11 +26,11 @@ Board parseBoard(const std::string& text);
 // the family has too few markers for the board.
 std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board, bool quick = false);
 
-// Where the view has the board's four outer corners [px], from the plane's map.
+// Returns where the board's four outer corners lie in the picture [px], by the view's homography.
 std::array<Vec2, 4> outlineOf(const BoardView& view, const Board& board);
 
-// How sharp the picture is at the view's corners: squares of the slopes across the blurrier of the
-// directions, in parts of the contrast. Motion and focus lower it, light does not.
+// Returns how sharp the picture is at the view's corners: the squared slope across the blurrier
+// direction, as a part of the contrast. Motion and bad focus lower it, light does not.
 double sharpnessOf(const GreyFrame& image, const BoardView& view);
 
 // The saddle of grey near a corner where four squares meet, `cell` [px] being the least of their

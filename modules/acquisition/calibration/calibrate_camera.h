@@ -32,7 +32,7 @@ std::array<double, 9> parametersOf(const Camera& camera);
 
 // Called for each frame as it is looked at, in the caller's thread.
 using BoardSeen = std::function<void(std::size_t frame, const std::optional<BoardView>& view)>;
-// Of pictures all are used. Of frames that follow one another, as in a video, 240 or more are
+// All pictures are used. Of frames that follow one another, as in a video, 240 or more are
 // looked at, and at most 60 used that are sharp and differ in the board's pose and in time; a live
 // source ends when it has shown as many, or is cancelled, which then is no error. Throws FileError
 // naming a picture, or `from`: another size than the first, a board that does not fit, fewer than

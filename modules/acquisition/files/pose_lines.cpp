@@ -61,7 +61,7 @@ void addPose(const std::vector<double>& values, const PoseSigmas& unsaid, const 
     throw FileError(name, line,
                     "the quaternion's length is " + formatNumber(pose.orientation.norm()) +
                         ", not 1");
-  // What we wrote is unit but for rounding, and stays as it was.
+  // A quaternion that this program wrote has length 1 but for rounding, and keeps its bits.
   if (std::abs(pose.orientation.norm() - 1) > kRounding) pose.orientation.normalize();
   if (!(pose.sigma_position > 0 && pose.sigma_angle > 0))
     throw FileError(name, line, "deviations must be above 0");

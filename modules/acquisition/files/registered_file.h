@@ -18,7 +18,7 @@ void writeRegisteredPath(const std::filesystem::path& path, const std::vector<Pa
 std::string registeredText(const std::vector<PathSample>& samples,
                            const Registration& registration);
 
-// Where a scan lies on its mesh, of the report that `patina register` writes. Throws FileError.
+// The report of `patina register` says where a scan lies on its mesh. Throws FileError.
 struct RegistrationReport {
   Pose mesh_from_scan = Pose::Identity();
   std::optional<double> compliance; // of the surface [m/N]; absent where nobody asked

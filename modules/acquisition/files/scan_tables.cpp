@@ -124,7 +124,7 @@ std::vector<PathSample> pathIn(CsvReader reader, const std::string& name,
         PathSample sample;
         sample.t = row[0];
         sample.position = {row[1], row[2], row[3]};
-        // What we wrote is unit but for rounding, and stays as it was.
+        // A quaternion that this program wrote has length 1 but for rounding, and keeps its bits.
         sample.orientation = std::abs(turn.norm() - 1) < kRounded ? turn : turn.normalized();
         sample.sigma = row[8];
         sample.force = row[9];
